@@ -1,0 +1,1 @@
+"""What every floor stands on: compiled-kernel flags, faults, units, constants. No physics."""

@@ -1,0 +1,78 @@
+"""Faults: what a person can cause, said in one line each, and the exit code each kind of failure has."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One thing wrong with an input.
+
+    key : dotted name, e.g. ``fluid.viscosity``;  value : as given;  problem : what is wrong with it;
+    unit : SI unit of the key, "" if none;  allowed : range or choices;  repair : what to do;  file : where.
+    """
+
+    key: str
+    value: Any = None
+    problem: str = ""
+    unit: str = ""
+    allowed: str = ""
+    repair: str = ""
+    file: str = ""
+
+    def line(self) -> str:
+        """The fault as one line for people."""
+        text = f"{self.file}: " if self.file else ""
+        text += self.key
+        if self.value is not None:
+            text += f" = {self.value!r}" if isinstance(self.value, str) else f" = {self.value}"
+            if self.unit and not isinstance(self.value, str):
+                text += f" {self.unit}"
+        if self.problem:
+            text += f": {self.problem}"
+        if self.allowed:
+            text += f" (allowed: {self.allowed}{' ' + self.unit if self.unit else ''})"
+        if self.repair:
+            text += f"; {self.repair}"
+        return text
+
+
+class PorescaleError(Exception):
+    """Base of all errors meant for people; ``code`` is the exit code of a command that ends with it."""
+
+    code = 1
+
+
+class InputError(PorescaleError):
+    """Wrong use or wrong input: one or more faults.  Exit code 2."""
+
+    code = 2
+
+    def __init__(self, faults: Fault | Sequence[Fault]) -> None:
+        self.faults: list[Fault] = [faults] if isinstance(faults, Fault) else list(faults)
+        super().__init__("\n".join(fault.line() for fault in self.faults))
+
+    def in_file(self, file: str) -> InputError:
+        """The same faults, each naming ``file``."""
+        return InputError([replace(fault, file=fault.file or file) for fault in self.faults])
+
+
+class Unstable(PorescaleError):
+    """A run left the range in which it means anything.  Exit code 3.
+
+    where : cell, grain or particle;  quantity, value, unit;  step, time (s);  cause : the likely one and its repair.
+    """
+
+    code = 3
+
+    def __init__(
+        self, where: str, quantity: str, value: float, unit: str, step: int, time: float, cause: str
+    ) -> None:
+        self.where, self.quantity, self.value, self.unit = where, quantity, value, unit
+        self.step, self.time, self.cause = step, time, cause
+        super().__init__(
+            f"unstable at step {step} (t = {time:.6g} s): {quantity} = {value:.4g} {unit} at {where}; {cause}"
+        )
