@@ -1,0 +1,101 @@
+"""Quantities at the door: a number is SI already, a string such as "1.5 mm" carries its unit.
+
+Conversion is exact in decimal and rounded once, so "1.5 mm" gives the very bits of 0.0015.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from decimal import Decimal, localcontext
+from functools import lru_cache
+from tokenize import TokenError
+from typing import Any
+
+_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+_POWER = re.compile(r"([^\W\d_])([+-]?\d)")
+# No unit has a power of a power or a three-digit number; both would make the parser compute for ever.
+_ABSURD = re.compile(r"\d\s*(\*\*|\^)|\d{3}")
+
+
+@lru_cache(maxsize=1)
+def _registry() -> Any:
+    """Pint's registry, computing in decimals; importing pint takes longer than all the rest, hence here."""
+    import pint
+
+    return pint.UnitRegistry(non_int_type=Decimal)
+
+
+def _parse(unit: str) -> Any:
+    """The pint unit that ``unit`` names; ``kg/m3`` is read as ``kg/m^3``.  ValueError if there is none."""
+    import pint
+
+    if not _ABSURD.search(unit):
+        for text in (unit, _POWER.sub(r"\1^\2", unit)):
+            try:
+                return _registry().parse_units(text)
+            # What pint raises on text that is no unit: its own errors, and Python's from its parser.
+            except (pint.PintError, ValueError, AssertionError, TypeError, AttributeError, TokenError):
+                continue
+    raise ValueError(f"unknown unit {unit!r}")
+
+
+@lru_cache(maxsize=512)
+def _factor_and_offset(source: str, unit: str) -> tuple[Decimal, Decimal]:
+    """Decimals a and b with value in ``unit`` = a * (value in ``source``) + b.  ValueError if none."""
+    import pint
+
+    registry = _registry()
+    given, wanted = _parse(source), _parse(unit)
+    try:
+        zero = registry.Quantity(Decimal(0), given).to(wanted).magnitude
+        one = registry.Quantity(Decimal(1), given).to(wanted).magnitude
+    except pint.DimensionalityError:
+        raise ValueError(
+            f"{source!r} does not measure the same thing as {unit or 'a plain number'}"
+        ) from None
+    return one - zero, zero
+
+
+def to_si(value: Any, unit: str) -> float:
+    """``value`` in ``unit`` (an SI unit, "" for a plain number), as a float.
+
+    Numbers pass unchanged; a string must be a number followed by a unit of the same dimension (a string
+    without a unit passes only where ``unit`` is "").  Raises ValueError, in words for people, on anything
+    else: booleans, nan, infinities, unknown units, other dimensions.
+    """
+    if isinstance(value, str):
+        result = _from_text(value, unit)
+    elif isinstance(value, bool) or not hasattr(value, "__float__"):
+        raise ValueError(f"is not a number but {_kind(value)}")
+    else:
+        try:
+            result = float(value)
+        except (OverflowError, TypeError):
+            raise ValueError("is not a number that fits") from None
+    if not math.isfinite(result):
+        raise ValueError("is not finite")
+    return result
+
+
+def _from_text(text: str, unit: str) -> float:
+    """The number that ``text`` states, in ``unit``."""
+    match = _QUANTITY.fullmatch(text)
+    if match is None:
+        raise ValueError("is not a number" + (" with a unit" if unit else ""))
+    number, given = match.groups()
+    if not given and unit:
+        raise ValueError(f"has no unit; write {number} without quotes for {unit}, or add the unit")
+    factor, offset = _factor_and_offset(given, unit)
+    try:
+        with localcontext() as context:
+            context.prec = 60  # digits; far more than a double has, so that the only rounding is the last
+            return float(Decimal(number) * factor + offset)
+    except ArithmeticError:  # exponents beyond what decimals hold
+        raise ValueError("is not a number that fits") from None
+
+
+def _kind(value: Any) -> str:
+    """What ``value`` is, in the words of a scene file."""
+    names = {bool: "true or false", dict: "a table", list: "a list", tuple: "a list", type(None): "nothing"}
+    return names.get(type(value), f"a {type(value).__name__}")

@@ -1,0 +1,91 @@
+"""Quantities: numbers pass, texts with units become SI by exact decimal conversion."""
+
+import math
+import subprocess
+import sys
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from porescale.ground.units import to_si
+
+PREFIXES = {"km": 3, "m": 0, "dm": -1, "cm": -2, "mm": -3, "um": -6, "nm": -9}
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_a_number_passes_unchanged(value: float) -> None:
+    assert to_si(value, "m") == value
+
+
+@given(st.decimals(-1000, 1000, places=4, allow_nan=False), st.sampled_from(sorted(PREFIXES)))
+def test_a_prefix_only_shifts_the_decimal_point(number: object, unit: str) -> None:
+    # Exact: decimal shift, then the one rounding that Python's own literal has too.
+    assert to_si(f"{number} {unit}", "m") == float(f"{number}e{PREFIXES[unit]}")
+
+
+def test_scaling_in_binary_would_miss_the_last_bit() -> None:  # the twin: what exact conversion avoids
+    assert any(k / 10 * 0.001 != to_si(f"{k / 10} mm", "m") for k in range(1, 100))
+
+
+@given(st.floats(min_value=-1e6, max_value=1e6, allow_nan=False))
+def test_degrees_and_back(degrees: float) -> None:
+    # pi to 28 digits, one rounding here and one in math.degrees: 2 eps.
+    assert math.degrees(to_si(f"{degrees!r} deg", "rad")) == pytest.approx(
+        degrees, rel=2 * sys.float_info.epsilon
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("1.5 mm", "m", 0.0015),
+        ("0.3mm", "m", 0.0003),
+        ("1 mm^2/s", "m²/s", 1e-6),
+        ("2.65 g/cm³", "kg/m**3", 2650.0),
+        ("2650 kg/m3", "kg/m³", 2650.0),
+        ("1 cP", "Pa s", 1e-3),
+        ("50 %", "", 0.5),
+        ("3", "", 3.0),
+        ("20 kN/m", "N/m", 2e4),
+        ("-9.81 m/s2", "m/s²", -9.81),
+        ("1 min", "s", 60.0),
+        ("20 degC", "K", 293.15),
+    ],
+)
+def test_texts_with_units_become_si(text: str, unit: str, value: float) -> None:
+    assert to_si(text, unit) == value  # exact: decimals, rounded once
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "words"),
+    [
+        ("1 s", "m", "does not measure the same thing as m"),
+        ("1 parsnip", "m", "unknown unit 'parsnip'"),
+        ("1", "m", "has no unit"),
+        ("wide", "m", "is not a number with a unit"),
+        ("1 m**9**9**9", "m", "unknown unit"),
+        ("1 m)", "m", "unknown unit"),
+        ("1e99999999999 m", "m", "fits"),
+        (10**400, "m", "fits"),
+        (True, "m", "true or false"),
+        ([1.0], "m", "a list"),
+        ({}, "m", "a table"),
+        (None, "m", "nothing"),
+        (math.nan, "m", "not finite"),
+        (-math.inf, "m", "not finite"),
+        ("1e999 m", "m", "not finite"),
+    ],
+)
+def test_what_is_no_quantity_is_refused_in_words(value: object, unit: str, words: str) -> None:
+    with pytest.raises(ValueError, match=r"^[^\n]*$") as error:
+        to_si(value, unit)
+    assert words in str(error.value)
+
+
+def test_numbers_never_load_pint() -> None:
+    code = (
+        "import sys; from porescale.ground.units import to_si; to_si(1.0, 'm'); print('pint' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"
