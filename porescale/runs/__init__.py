@@ -1,0 +1,1 @@
+"""A model driven through time and the record of it: files, checkpoints, pictures.  No physics."""

@@ -1,0 +1,105 @@
+"""series.csv: one row per record, one column each, units in the column's name.
+
+Numbers are written as ``repr`` does, so that reading gives the same bits.  Rows are appended; a kill leaves
+at most one torn last line (no newline), which reading ignores and resuming cuts off.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+
+from porescale.ground.check import Fault, InputError
+from porescale.runs.model import Array
+
+NAME = "series.csv"
+
+
+class Series:
+    """The growing series of a run.  ``length`` is the file's size in bytes so far."""
+
+    def __init__(self, path: Path, keep: int = 0) -> None:
+        """Go on in ``path`` after its first ``keep`` bytes; 0 starts anew.  InputError when it is shorter."""
+        self.path = Path(path)
+        size = self.path.stat().st_size if self.path.exists() else 0
+        if size < keep:
+            raise InputError(
+                Fault(
+                    "series",
+                    str(path),
+                    f"{size} bytes, the checkpoint knows {keep}",
+                    repair="start the run anew",
+                )
+            )
+        mode = "r+b" if keep else "wb"
+        self._file: IO[bytes] = open(self.path, mode)  # noqa: SIM115  (stays open)
+        self._file.truncate(keep)
+        self._file.seek(keep)
+        self.length = keep
+        self.names: list[str] | None = read_names(self.path) if keep else None
+
+    def append(self, row: dict[str, float]) -> None:
+        """Add one row; the first one of a file writes the names too.  ValueError when the names differ."""
+        if self.names is None:
+            self.names = list(row)
+            self._write(_line(self.names))
+        if list(row) != self.names:
+            raise ValueError(
+                f"series row has {sorted(set(row) ^ set(self.names))} other than the rows before"
+            )
+        self._write(_line([repr(_plain(value)) for value in row.values()]))
+
+    def sync(self) -> None:
+        """Push what was appended to disk."""
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    def close(self) -> None:
+        """Sync and close."""
+        if not self._file.closed:
+            self.sync()
+            self._file.close()
+
+    def _write(self, line: bytes) -> None:
+        self.length += self._file.write(line)
+        self._file.flush()
+
+
+def _plain(value: float) -> float | int:
+    """A Python number: ``repr`` of a numpy scalar would carry its type."""
+    if isinstance(value, bool | np.bool_):
+        return int(value)
+    if isinstance(value, int | np.integer):
+        return int(value)
+    return float(value)
+
+
+def _line(cells: list[str]) -> bytes:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerow(cells)
+    return text.getvalue().encode()
+
+
+def read_names(path: Path) -> list[str] | None:
+    """The columns' names, None when the file is empty."""
+    with open(path, newline="", encoding="utf-8") as file:
+        return next(csv.reader(file), None)
+
+
+def read_series(path: Path) -> dict[str, Array]:
+    """Columns by name, each (rows,) float64.  A torn last line is ignored; no file or no rows give {}."""
+    path = Path(path)
+    if not path.exists():
+        return {}
+    content = path.read_bytes()
+    lines = content[: content.rfind(b"\n") + 1].decode()
+    rows = list(csv.reader(io.StringIO(lines)))
+    if not rows:
+        return {}
+    table = np.array([[float(cell) for cell in row] for row in rows[1:]], float).reshape(-1, len(rows[0]))
+    return {name: table[:, column].copy() for column, name in enumerate(rows[0])}
