@@ -1,0 +1,1 @@
+"""Collision operators, one a file."""

@@ -1,0 +1,129 @@
+"""The fluid's state and one step of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL, parameters
+from porescale.lbm.equilibrium import equilibrium
+from porescale.lbm.moments import moment_fields
+from porescale.lbm.plate import Plate, exchange
+from porescale.lbm.sides import Sides, empty_halo, fill_halo, slot_pairs
+from porescale.lbm.stream import sweep_even, sweep_odd
+
+Sweep = Callable[..., None]
+
+
+class Fluid:
+    """A box of nx by ny cells of fluid in lattice units, at rest with density 1 until ``set_flow``.
+
+    populations (9, ny + 2, nx + 2): slots, see lattice.py;  step: steps done;  plates: of no thickness, see plate.py.
+    A step allocates nothing.
+    """
+
+    def __init__(
+        self,
+        nx: int,
+        ny: int,
+        relaxation_time: float,
+        *,
+        magic: float = MAGIC_MIDWAY_WALL,
+        force: tuple[float, float] = (0.0, 0.0),
+        sides: Sides | None = None,
+        dtype: DTypeLike = np.float64,
+    ) -> None:
+        if relaxation_time <= 0.5:
+            raise ValueError(f"relaxation time {relaxation_time} must be above 1/2")
+        self.nx, self.ny, self.relaxation_time = nx, ny, relaxation_time
+        self.sides = sides or Sides()
+        self.parameters = parameters(relaxation_time, magic, force, dtype)
+        self.force = force
+        self.populations: NDArray[np.floating] = np.zeros((9, ny + 2, nx + 2), dtype)
+        self._flat = self.populations.reshape(-1)
+        self.pairs = slot_pairs(nx, ny, self.sides, dtype)
+        self.plates: list[Plate] = []
+        self.step = 0
+
+    def add_plate(self, column: int) -> Plate:
+        """Put a plate over the whole height left of cell ``column``; remove it from ``plates`` to take it away."""
+        plate = Plate(self.nx, self.ny, column, self.sides, self.populations.dtype)
+        self.plates.append(plate)
+        return plate
+
+    def set_flow(self, ux: Any, uy: Any, density: Any = 1.0) -> None:
+        """Start from local equilibrium with velocity and density (numbers or (ny, nx)) and step 0."""
+        inside = self.populations[:, 1:-1, 1:-1]
+        inside[...] = equilibrium(density, ux, uy, (self.ny, self.nx))
+        self.step = 0
+
+    def advance(self, even: Sweep = sweep_even, odd: Sweep = sweep_odd, *extra: Any) -> None:
+        """One step.  ``even`` and ``odd`` sweep the cells, given populations, ``extra`` and parameters."""
+        if self.step % 2 == 0:
+            even(self.populations, *extra, self.parameters)
+        else:
+            self._cut()
+            odd(self.populations, *extra, self.parameters)
+            self._join()
+        self.step += 1
+
+    def _cut(self) -> None:
+        fill_halo(self._flat, self.pairs.halo, self.pairs.inner, self.pairs.added)
+        self._exchange(+1.0)
+
+    def _exchange(self, sign: float) -> None:
+        for p in self.plates:
+            exchange(self._flat, p.first, p.second, p.pull, p.links_from(), p.signed_speed(sign))
+
+    def _join(self) -> None:
+        self._exchange(-1.0)
+        empty_halo(self._flat, self.pairs.halo, self.pairs.inner, self.pairs.added)
+
+    @contextmanager
+    def readable(self) -> Iterator[None]:
+        """Within this, every cell's slots can be read at any step; afterwards the state is as before, to the bit."""
+        if self.step % 2 == 0:
+            yield
+            return
+        kept = [(p, self._flat[p.first].copy(), self._flat[p.second].copy()) for p in self.plates]
+        self._cut()
+        try:
+            yield
+        finally:
+            for plate, first, second in kept:
+                self._flat[plate.first], self._flat[plate.second] = first, second
+
+    def fields(self, solid: NDArray[np.floating] | None = None) -> tuple[NDArray[np.floating], ...]:
+        """Density and velocity (rho, ux, uy), each (ny, nx), lattice units.
+
+        ``solid`` (ny, nx): the weight B of partially saturated cells, in which only (1 - B) of the body force acts.
+        """
+        with self.readable():
+            rho, jx, jy = moment_fields(self.populations, self.step % 2)
+        share = 1.0 if solid is None else 1.0 - solid
+        return rho, (jx + 0.5 * share * self.force[0]) / rho, (jy + 0.5 * share * self.force[1]) / rho
+
+    def mass_excess(self) -> float:
+        """Sum over cells of density - 1, lattice units: a small number, so that a leak of 1e-12 shows."""
+        with self.readable():
+            return float(np.sum(moment_fields(self.populations, self.step % 2, shifted=True)[0]))
+
+    def state(self) -> dict[str, Any]:
+        """Everything needed to go on bit for bit (plates' heights included; the list of plates is the owner's)."""
+        return {
+            "populations": self.populations,
+            "step": self.step,
+            "plates": {str(k): {"edge": p.lower_edge, "speed": p.speed} for k, p in enumerate(self.plates)},
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state; the same number of plates must be in place."""
+        self.populations[...] = state["populations"]
+        self.step = int(state["step"])
+        for k, plate in enumerate(self.plates):
+            plate.lower_edge = float(state["plates"][str(k)]["edge"])
+            plate.speed = float(state["plates"][str(k)]["speed"])

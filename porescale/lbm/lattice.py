@@ -1,0 +1,38 @@
+"""The D2Q9 lattice: directions, weights, and where a population lives between steps.
+
+Directions come in opposite pairs, (1, 2), (3, 4), (5, 6), (7, 8), because every operator here works on the even and
+the odd half of a pair.  Populations are stored shifted, h_i = f_i - w_i, so that a fluid at rest is all zeros and
+round-off is that of the disturbance (Skordos 1993).  Speed of sound squared: 1/3.
+
+Storage is one array ``populations`` (9, ny + 2, nx + 2) with a rim of halo cells, streamed in place by the AA pattern
+(Bailey, Myre, Walsh, Lilja & Saar 2009).  Two kinds of step alternate:
+
+    even   reads h_i at slot [i, x], writes the collided h_i to slot [opposite(i), x]
+    odd    reads h_i at slot [opposite(i), x - c_i], writes it to slot [i, x + c_i]
+
+so each cell always reads and writes the same nine slots, and no order of cells and no number of threads can matter.
+``rows`` of stream.py hand the nine slots of a row to one row kernel, the same for both.
+"""
+
+import numpy as np
+
+CX = np.array([0, 1, -1, 0, 0, 1, -1, -1, 1])
+CY = np.array([0, 0, 0, 1, -1, 1, -1, 1, -1])
+OPPOSITE = np.array([0, 2, 1, 4, 3, 6, 5, 8, 7])
+WEIGHTS = np.array([4 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 36, 1 / 36, 1 / 36, 1 / 36])
+SOUND_SPEED_SQUARED = 1 / 3
+
+
+def relaxation_time(viscosity: float) -> float:
+    """Relaxation time of a lattice viscosity, tau = 3 nu + 1/2."""
+    return 3 * viscosity + 0.5
+
+
+def viscosity(relaxation_time: float) -> float:
+    """Lattice viscosity of a relaxation time, nu = (tau - 1/2) / 3."""
+    return (relaxation_time - 0.5) / 3
+
+
+def direction(cx: int, cy: int) -> int:
+    """Number of the direction with components cx, cy."""
+    return int(np.flatnonzero((CX == cx) & (CY == cy))[0])

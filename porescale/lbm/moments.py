@@ -1,0 +1,41 @@
+"""Density and momentum of every cell, from the slots at even and odd steps."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.ground.jit import inline, parallel_kernel, prange
+from porescale.lbm.collision.trt import moments
+from porescale.lbm.stream import even_slots, odd_slots
+
+
+@inline
+def _moment_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, d, jx, jy):
+    """Moments of one row into d, jx, jy (nx,)."""
+    for x in range(d.shape[0]):
+        d[x], jx[x], jy[x] = moments(a0[x], a1[x], a2[x], a3[x], a4[x], a5[x], a6[x], a7[x], a8[x])
+
+
+@parallel_kernel
+def _moments_even(f, d, jx, jy):
+    """Density excess and first moments, each (ny, nx), of populations f before an even step."""
+    for y in prange(d.shape[0]):
+        a0, a1, a2, a3, a4, a5, a6, a7, a8 = even_slots(f, y + 1)
+        _moment_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, d[y], jx[y], jy[y])
+
+
+@parallel_kernel
+def _moments_odd(f, d, jx, jy):
+    """The same before an odd step; the halo must have been filled."""
+    for y in prange(d.shape[0]):
+        a0, a1, a2, a3, a4, a5, a6, a7, a8 = odd_slots(f, y + 1)
+        _moment_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, d[y], jx[y], jy[y])
+
+
+def moment_fields(
+    populations: NDArray[np.floating], parity: int, *, shifted: bool = False
+) -> tuple[NDArray[np.floating], NDArray[np.floating], NDArray[np.floating]]:
+    """Density (its excess over 1 if ``shifted``) and first moments before a step of that parity, each (ny, nx)."""
+    shape = (populations.shape[1] - 2, populations.shape[2] - 2)
+    d, jx, jy = (np.empty(shape, populations.dtype) for _ in range(3))
+    (_moments_odd if parity else _moments_even)(populations, d, jx, jy)
+    return d if shifted else 1 + d, jx, jy

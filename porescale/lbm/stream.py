@@ -1,0 +1,56 @@
+"""Sweeps over the lattice: the slots of each row, handed to a row kernel.  See lattice.py for the in-place pattern."""
+
+from porescale.ground.jit import inline, parallel_kernel, prange
+from porescale.lbm.collision.trt import collide_row
+
+
+@inline
+def even_slots(f, y):
+    """Nine views (nx,) of row ``y`` (1 to ny) of populations (9, ny + 2, nx + 2) for an even step."""
+    n = f.shape[2] - 2
+    return (
+        f[0, y, 1 : n + 1],
+        f[1, y, 1 : n + 1],
+        f[2, y, 1 : n + 1],
+        f[3, y, 1 : n + 1],
+        f[4, y, 1 : n + 1],
+        f[5, y, 1 : n + 1],
+        f[6, y, 1 : n + 1],
+        f[7, y, 1 : n + 1],
+        f[8, y, 1 : n + 1],
+    )
+
+
+@inline
+def odd_slots(f, y):
+    """Nine views (nx,) of row ``y`` for an odd step: h_i is read at slot [opposite(i), x - c_i]."""
+    n = f.shape[2] - 2
+    return (
+        f[0, y, 1 : n + 1],
+        f[2, y, 0:n],
+        f[1, y, 2 : n + 2],
+        f[4, y - 1, 1 : n + 1],
+        f[3, y + 1, 1 : n + 1],
+        f[6, y - 1, 0:n],
+        f[5, y + 1, 2 : n + 2],
+        f[8, y - 1, 2 : n + 2],
+        f[7, y + 1, 0:n],
+    )
+
+
+@parallel_kernel
+def sweep_even(f, p):
+    """Even step of plain fluid on every cell; overwrites populations f (9, ny + 2, nx + 2).  p: ``parameters``."""
+    n = f.shape[2] - 2
+    for y in prange(1, f.shape[1] - 1):
+        a0, a1, a2, a3, a4, a5, a6, a7, a8 = even_slots(f, y)
+        collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, 0, n, p)
+
+
+@parallel_kernel
+def sweep_odd(f, p):
+    """Odd step of plain fluid on every cell; the halo must have been filled.  Overwrites f, halo included."""
+    n = f.shape[2] - 2
+    for y in prange(1, f.shape[1] - 1):
+        a0, a1, a2, a3, a4, a5, a6, a7, a8 = odd_slots(f, y)
+        collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, 0, n, p)
