@@ -1,0 +1,193 @@
+"""Verlet list: pairs of points within reach of each other, kept until something has moved half a skin.
+
+Source of the list and its skin: Verlet, Phys. Rev. 159 (1967) 98; of the cells: Hockney & Eastwood, Computer
+Simulation Using Particles (1981), section 8.4.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.ground.check import Fault, InputError
+from porescale.particles import search
+from porescale.particles.cells import grid_shape, sort_into_cells
+
+Floats = NDArray[np.float64]
+
+SERIAL_BELOW = (
+    20_000  # points; fewer cost less in one thread than a barrier costs (measured, spec/grains.md §4)
+)
+CELLS_PER_CUTOFF = 2  # half-cutoff cells: a window of 6.25 instead of 9 squared cutoffs to look through
+
+
+class PairList:
+    """Pairs (i, j) with |x_i - x_j| < reach_i + reach_j + skin at the last build.
+
+    count : points;  skin : m, >= 0;  lower, upper : corners of the box, m (points may lie outside);
+    periodic : per axis, distances are then between nearest images;  full : list every pair from both ends,
+    else only partner > i;  carried : numbers that each listed pair keeps over rebuilds (new pairs start at
+    0).
+
+    After a build (all replaced by the next one: fetch them again after ``update`` returns True)
+
+    start : (n + 1,) int64, row i is ``partner[start[i]:start[i + 1]]``, ascending;  partner : (m,) int32;
+    carried : (m, k);  anchor : (n, 2) m, positions at the build;  builds : number of builds so far.
+
+    The list is the same at any number of threads.  Buffers grow geometrically and are reused.
+    """
+
+    def __init__(
+        self,
+        count: int,
+        skin: float,
+        lower: tuple[float, float],
+        upper: tuple[float, float],
+        periodic: tuple[bool, bool] = (False, False),
+        full: bool = False,
+        carried: int = 0,
+    ) -> None:
+        if not (np.isfinite(skin) and skin >= 0.0):
+            raise InputError(Fault("skin", skin, "must be a length", "m", ">= 0"))
+        if not all(np.isfinite((*lower, *upper))) or lower[0] >= upper[0] or lower[1] >= upper[1]:
+            raise InputError(Fault("box", (lower, upper), "upper corner must lie beyond the lower one", "m"))
+        self.count, self.skin, self.full = count, float(skin), full
+        self.lower = (float(lower[0]), float(lower[1]))
+        self.upper = (float(upper[0]), float(upper[1]))
+        self.periodic = (bool(periodic[0]), bool(periodic[1]))
+        width, height = self.upper[0] - self.lower[0], self.upper[1] - self.lower[1]
+        self.period = (width if self.periodic[0] else 0.0, height if self.periodic[1] else 0.0)  # m, 0: none
+        self.builds = 0
+        self.anchor: Floats = np.zeros((count, 2))
+        self._anchor_reach: Floats = np.zeros(count)
+        # Two of each, so that a build can read the last list while it writes the next.
+        self._starts = [np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)]
+        self._partners = [np.empty(0, np.int32), np.empty(0, np.int32)]
+        self._carrieds = [np.zeros((0, carried)), np.zeros((0, carried))]
+        self._current = 0
+        self._cell = np.empty(count, np.int32)
+        self._order = np.empty(count, np.int32)
+        self._cell_start = np.zeros(2, np.int64)
+        self._sorted = np.empty((3, count))  # x, y, reach in cell order
+        self._publish(0)
+
+    def _publish(self, total: int) -> None:
+        """Name the current buffers, cut to ``total`` pairs."""
+        self.start: NDArray[np.int64] = self._starts[self._current]
+        self.partner: NDArray[np.int32] = self._partners[self._current][:total]
+        self.carried: Floats = self._carrieds[self._current][:total]
+
+    def _reserve(self, which: int, total: int) -> None:
+        """Room for ``total`` pairs in buffer ``which``; grows by at least half, contents are lost."""
+        have = self._partners[which].shape[0]
+        if have < total:
+            size = max(total, have + have // 2, 4 * self.count)
+            self._partners[which] = np.empty(size, np.int32)
+            self._carrieds[which] = np.zeros((size, self._carrieds[which].shape[1]))
+
+    def update(self, x: Floats, reach: Floats) -> bool:
+        """Build if some point of ``x`` (n, 2) m moved, or its reach (n,) m grew, by skin/2 since the last
+        build.
+
+        Two points that stay within skin/2 of their anchors cannot have come within reach unlisted.
+        True if built; the arrays are then new.  Raises ValueError at a position or reach that is no number.
+        """
+        if self.builds and not search.strayed(
+            x, self.anchor, reach, self._anchor_reach, 0.5 * self.skin, self.period[0], self.period[1]
+        ):
+            return False
+        self.build(x, reach)
+        return True
+
+    def build(self, x: Floats, reach: Floats) -> None:
+        """List the pairs of ``x`` (n, 2) m with ``reach`` (n,) m now; data of pairs listed before is kept.
+
+        Raises ValueError naming the point whose position or reach is not finite (or reach negative),
+        InputError when a periodic side is shorter than two cutoffs: a point would then meet two images of
+        another.
+        """
+        assert x.shape == (self.count, 2)
+        assert reach.shape == (self.count,)
+        bad = search.first_unusable(x, reach)
+        if bad >= 0:
+            raise ValueError(f"point {bad}: position {x[bad].tolist()} m, reach {reach[bad]} m")
+        cutoff = 2.0 * float(reach.max(initial=0.0)) + self.skin
+        self._check_periods(cutoff)
+        shape = self._sort(x, reach, cutoff)
+        new = 1 - self._current
+        old_start, old_partner, old_carried = self.start, self.partner, self.carried
+        where: tuple[Any, ...] = (x, reach, *self._sorted, self._order, self._cell_start, *self.lower, *shape)
+        where += (*self.period, float(reach.max(initial=0.0)), self.skin, self.full)
+        start = self._starts[new]
+        if self.count < SERIAL_BELOW:
+            total = search.fill_serial(start, self._partners[new], *where)
+            if total > self._partners[new].shape[0]:
+                self._reserve(new, total)
+                search.fill_serial(start, self._partners[new], *where)
+        else:
+            total = search.count_parallel(start, self._partners[new], *where)
+            self._reserve(new, total)
+            search.fill_parallel(start, self._partners[new], *where)
+        self._current = new
+        self._publish(total)
+        if self.carried.shape[1]:
+            search.carry(old_start, old_partner, old_carried, self.start, self.partner, self.carried)
+        self.anchor[:] = x
+        self._anchor_reach[:] = reach
+        self.builds += 1
+
+    def _check_periods(self, cutoff: float) -> None:
+        for axis, name in enumerate(("width", "height")):
+            if self.periodic[axis] and self.period[axis] < 2.0 * cutoff:
+                raise InputError(
+                    Fault(
+                        f"periodic {name}",
+                        self.period[axis],
+                        "shorter than two cutoffs of the pair search",
+                        "m",
+                        f">= {2.0 * cutoff:.6g}",
+                        "use a larger box or smaller particles",
+                    )
+                )
+
+    def _sort(self, x: Floats, reach: Floats, cutoff: float) -> tuple[float, float, int, int]:
+        """Sort points into cells; returns cells per metre along x and y, columns, rows."""
+        # Limit: a few cells per point keep the sort linear in points.
+        columns, rows = grid_shape(
+            self.lower, self.upper, cutoff / CELLS_PER_CUTOFF, limit=4 * self.count + 64
+        )
+        if self._cell_start.shape[0] < columns * rows + 1:
+            self._cell_start = np.zeros((columns * rows + 1) * 3 // 2, np.int64)
+        inverse_x = columns / (self.upper[0] - self.lower[0])
+        inverse_y = rows / (self.upper[1] - self.lower[1])
+        sort_into_cells(
+            x, *self.lower, inverse_x, inverse_y, columns, rows, *self.period,
+            self._cell, self._cell_start[: columns * rows + 1], self._order,
+        )  # fmt: skip
+        search.gather_sorted(x, reach, self._order, self._sorted)
+        return inverse_x, inverse_y, columns, rows
+
+    def state(self) -> dict[str, NDArray[np.generic]]:
+        """Copies of everything that decides what the list says next."""
+        return {
+            "start": self.start.copy(),
+            "partner": self.partner.copy(),
+            "carried": self.carried.copy(),
+            "anchor": self.anchor.copy(),
+            "anchor_reach": self._anchor_reach.copy(),
+            "builds": np.array(self.builds, np.int64),
+        }
+
+    def restore(self, state: dict[str, NDArray[np.generic]]) -> None:
+        """Go on exactly from ``state``, taken from a list of the same count, box and options."""
+        total = int(state["partner"].shape[0])
+        self._reserve(self._current, total)
+        self._publish(total)
+        self.start[:] = state["start"]
+        self.partner[:] = state["partner"]
+        self.carried[:] = state["carried"]
+        self.anchor[:] = state["anchor"]
+        self._anchor_reach[:] = state["anchor_reach"]
+        self.builds = int(state["builds"])

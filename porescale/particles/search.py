@@ -1,0 +1,188 @@
+"""Kernels of the pair list: search through windows of cells, rows in ascending order, data carried over."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from porescale.ground.jit import inline, kernel, parallel_kernel, prange
+from porescale.particles.cells import cell_of, minimum_image, wrapped
+
+
+@kernel
+def first_unusable(x, reach):
+    """First i whose ``x`` (n, 2) is not finite, or whose ``reach`` (n,) is not finite or negative; else
+    -1.
+    """
+    for i in range(x.shape[0]):
+        if not (np.isfinite(x[i, 0]) and np.isfinite(x[i, 1]) and np.isfinite(reach[i]) and reach[i] >= 0.0):
+            return i
+    return -1
+
+
+@kernel
+def strayed(x, anchor, reach, anchor_reach, half_skin, period_x, period_y):
+    """True if some point left its ``anchor`` (n, 2) m by more than ``half_skin`` less the growth of its
+    reach.
+
+    Positions that are no numbers count as strayed.  No early exit, so that the loop vectorises.
+    """
+    far = 0
+    for i in range(x.shape[0]):
+        dx = minimum_image(x[i, 0] - anchor[i, 0], period_x)
+        dy = minimum_image(x[i, 1] - anchor[i, 1], period_y)
+        room = half_skin - max(0.0, reach[i] - anchor_reach[i])
+        # not <= instead of >: true for nan
+        far += (not (dx * dx + dy * dy <= room * room)) | (not (room >= 0.0))
+    return far > 0
+
+
+@kernel
+def gather_sorted(x, reach, order, out):
+    """x, y and reach of the points in cell order, for reading in sequence: overwrites ``out`` (3, n)."""
+    for k in range(order.shape[0]):
+        i = order[k]
+        out[0, k] = x[i, 0]
+        out[1, k] = x[i, 1]
+        out[2, k] = reach[i]
+
+
+@inline
+def window(at, range_, lower, inverse_size, number, period):
+    """First cell and number of cells along one axis that hold everything within ``range_`` of ``at``.
+
+    On a periodic side the first may be negative: cells then continue round the end, each named once.
+    """
+    # Padding against rounding: cell indices of points exactly at the range's end, far from the origin too.
+    range_ += 1e-9 * range_ + 1e-15 * abs(at)
+    if period > 0.0:
+        first = int(np.floor((at - range_ - lower) * inverse_size))
+        last = int(np.floor((at + range_ - lower) * inverse_size))
+        return first, min(last - first + 1, number)
+    first = cell_of(at - range_, lower, inverse_size, number)
+    return first, cell_of(at + range_, lower, inverse_size, number) - first + 1
+
+
+@inline
+def search_row(
+    i, x, reach, sx, sy, sreach, order, cell_start, lower_x, lower_y, inverse_x, inverse_y, columns, rows,
+    period_x, period_y, largest, skin, full, partner, begin, room,
+):  # fmt: skip
+    """Partners of point i: written ascending to ``partner[begin:]`` as far as ``room`` goes; returns their
+    number.
+
+    sx, sy, sreach (n,): positions and reaches in cell order;  order, cell_start: see sort_into_cells;
+    largest: largest reach, m.  A pair counts when its squared distance is below (reach_i + reach_j + skin)².
+    """
+    xi = x[i, 0]
+    yi = x[i, 1]
+    range_ = reach[i] + largest + skin
+    first_column, width = window(
+        wrapped(xi, lower_x, period_x), range_, lower_x, inverse_x, columns, period_x
+    )
+    first_row, height = window(wrapped(yi, lower_y, period_y), range_, lower_y, inverse_y, rows, period_y)
+    first_column %= columns  # like Python's, the modulo of a negative index counts from the end
+    # Cells of one row follow each other in the sorted order, so a row of the window is one stretch, or two
+    # where it runs over a periodic end.
+    inside = min(width, columns - first_column)
+    found = 0
+    for step in range(height):
+        row = (first_row + step) % rows
+        base = row * columns
+        for part in range(2):
+            if part == 0:
+                k0 = cell_start[base + first_column]
+                k1 = cell_start[base + first_column + inside]
+            else:
+                k0 = cell_start[base]
+                k1 = cell_start[base + width - inside]
+            for k in range(k0, k1):
+                dx = minimum_image(xi - sx[k], period_x)
+                dy = minimum_image(yi - sy[k], period_y)
+                reached = reach[i] + sreach[k] + skin
+                j = order[k]
+                if dx * dx + dy * dy < reached * reached and (j > i or (full and j != i)):
+                    if found < room:
+                        slot = begin + found  # insertion keeps the row ascending; rows arrive nearly so
+                        while slot > begin and partner[slot - 1] > j:
+                            partner[slot] = partner[slot - 1]
+                            slot -= 1
+                        partner[slot] = j
+                    found += 1
+    return found
+
+
+@kernel
+def fill_serial(
+    start, partner, x, reach, sx, sy, sreach, order, cell_start,
+    lower_x, lower_y, inverse_x, inverse_y, columns, rows,
+    period_x, period_y, largest, skin, full,
+):  # fmt: skip
+    """All rows in one thread: overwrites ``start`` (n + 1,) and ``partner``; returns the number of pairs.
+
+    If that exceeds ``partner``'s length the rows are incomplete: give more room and call again.
+    """
+    start[0] = 0
+    for i in range(x.shape[0]):
+        begin = start[i]
+        found = search_row(
+            i, x, reach, sx, sy, sreach, order, cell_start,
+            lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y,
+            largest, skin, full, partner, begin, partner.shape[0] - begin,
+        )  # fmt: skip
+        start[i + 1] = begin + found
+    return start[x.shape[0]]
+
+
+@parallel_kernel
+def count_parallel(
+    start, partner, x, reach, sx, sy, sreach, order, cell_start,
+    lower_x, lower_y, inverse_x, inverse_y, columns, rows,
+    period_x, period_y, largest, skin, full,
+):  # fmt: skip
+    """Row lengths over threads, summed in order: overwrites ``start`` (n + 1,); returns the number of
+    pairs.
+    """
+    n = x.shape[0]
+    for i in prange(n):
+        start[i + 1] = search_row(
+            i, x, reach, sx, sy, sreach, order, cell_start,
+            lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y,
+            largest, skin, full, partner, 0, 0,  # no room: counts only
+        )  # fmt: skip
+    start[0] = 0
+    for i in range(n):
+        start[i + 1] += start[i]
+    return start[n]
+
+
+@parallel_kernel
+def fill_parallel(
+    start, partner, x, reach, sx, sy, sreach, order, cell_start,
+    lower_x, lower_y, inverse_x, inverse_y, columns, rows,
+    period_x, period_y, largest, skin, full,
+):  # fmt: skip
+    """Rows over threads into the places that ``start`` (n + 1,) names: overwrites ``partner``."""
+    for i in prange(x.shape[0]):
+        search_row(
+            i, x, reach, sx, sy, sreach, order, cell_start,
+            lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y,
+            largest, skin, full, partner, start[i], start[i + 1] - start[i],
+        )  # fmt: skip
+
+
+@kernel
+def carry(old_start, old_partner, old_carried, start, partner, carried):
+    """Data of pairs listed before and now: overwrites ``carried`` (m, k), 0 for new pairs.
+
+    Both lists ascend within a row, so each row is one walk along both.
+    """
+    for i in range(start.shape[0] - 1):
+        old = old_start[i]
+        end = old_start[i + 1]
+        for k in range(start[i], start[i + 1]):
+            while old < end and old_partner[old] < partner[k]:
+                old += 1
+            if old < end and old_partner[old] == partner[k]:
+                carried[k, :] = old_carried[old, :]
+            else:
+                carried[k, :] = 0.0

@@ -1,0 +1,76 @@
+"""Cells hold every point once, in order, wherever it lies."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from porescale.particles.cells import cell_of, grid_shape, minimum_image, sort_into_cells, wrapped
+
+
+def sort(x, columns=4, rows=3, period=(0.0, 0.0), compiled=True):
+    """Sort into cells of 1 m from the origin."""
+    n = len(x)
+    cell, order = np.empty(n, np.int32), np.empty(n, np.int32)
+    start = np.empty(columns * rows + 1, np.int64)
+    run = sort_into_cells if compiled else sort_into_cells.py_func
+    run(x, 0.0, 0.0, 1.0, 1.0, columns, rows, *period, cell, start, order)
+    return cell, start, order
+
+
+def test_sorting_is_stable_and_complete():
+    x = np.random.default_rng(1).uniform(0.0, [4.0, 3.0], (200, 2))
+    cell, start, order = sort(x)
+    assert start[0] == 0
+    assert start[-1] == len(x)
+    assert sorted(order) == list(range(len(x)))
+    for c in range(12):
+        inside = order[start[c] : start[c + 1]]
+        assert np.array_equal(inside, np.flatnonzero(cell == c))  # ascending: stable
+    assert np.array_equal(cell, x[:, 0].astype(int) + 4 * x[:, 1].astype(int))
+
+
+def test_points_outside_fall_into_the_nearest_border_cell():
+    cell, _, _ = sort(np.array([[-5.0, 1.5], [1e300, -1e300], [3.5, 99.0]]))
+    assert cell.tolist() == [4, 3, 11]
+
+
+def test_points_outside_a_periodic_side_fall_into_their_images_cell():
+    cell, _, _ = sort(np.array([[-0.5, 0.5], [4.5, 0.5], [9.5, -1.0]]), period=(4.0, 3.0))
+    assert cell.tolist() == [3, 0, 9]
+
+
+def test_plain_python_and_compiled_agree():
+    x = np.random.default_rng(2).uniform(-1.0, 5.0, (40, 2))
+    for plain, compiled in zip(sort(x, compiled=False), sort(x), strict=True):
+        assert np.array_equal(plain, compiled)
+
+
+def test_minimum_image_is_the_shortest_of_all_images():
+    dx = np.linspace(-7.3, 7.3, 41)
+    for value in dx:
+        images = value + 2.0 * np.arange(-5, 6)
+        # round-off of one product and one difference of numbers up to 8
+        assert abs(minimum_image(value, 2.0)) == pytest.approx(np.abs(images).min(), abs=4e-15)
+        assert minimum_image(value, 0.0) == value
+        assert minimum_image.py_func(value, 2.0) == minimum_image(value, 2.0)
+
+
+def test_wrapping_lands_in_the_box():
+    for value in (-1e3, -0.25, 0.0, 1.999, 2.0, 17.5):
+        assert 1.0 <= wrapped(value, 1.0, 2.0) <= 3.0
+        assert wrapped.py_func(value, 1.0, 0.0) == value
+
+
+def test_cell_index_is_monotone_and_clamped():
+    index = [cell_of(v, 0.0, 2.0, 5) for v in np.linspace(-1.0, 4.0, 101)]
+    assert index == sorted(index)
+    assert (index[0], index[-1]) == (0, 4)
+    assert cell_of.py_func(1.2, 0.0, 2.0, 5) == 2
+
+
+def test_cells_are_no_smaller_than_asked_and_bounded_in_number():
+    assert grid_shape((0.0, 0.0), (10.0, 5.0), 1.0, 1000) == (10, 5)
+    columns, rows = grid_shape((0.0, 0.0), (1e6, 1e6), 1e-3, 500)
+    assert columns * rows <= 500
+    assert grid_shape((0.0, 0.0), (1.0, 1.0), 3.0, 500) == (1, 1)

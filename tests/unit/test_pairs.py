@@ -1,0 +1,222 @@
+"""The pair list says what the definition says, keeps data by pair, and grows without waste."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from porescale.ground.check import InputError
+from porescale.ground.jit import set_threads
+from porescale.particles import PairList, pairs, search
+from tests.reference.pairs import neighbours, rows_of
+
+LOWER, UPPER = (0.0, -1.0), (10.0, 7.0)
+
+
+def cloud(n, seed=0, ratio=1.0, outside=0.0):
+    """Random points (n, 2) in the box, ``outside`` m beyond it, and reaches up to ``ratio`` apart."""
+    rng = np.random.default_rng(seed)
+    x = rng.uniform(np.array(LOWER) - outside, np.array(UPPER) + outside, (n, 2))
+    return x, 0.1 * ratio ** rng.uniform(0.0, 1.0, n)
+
+
+@pytest.mark.parametrize("full", [False, True])
+@pytest.mark.parametrize("periodic", [(False, False), (True, False), (True, True)])
+@pytest.mark.parametrize("ratio", [1.0, 10.0])
+def test_lists_what_the_definition_lists(full, periodic, ratio):
+    x, reach = cloud(300, ratio=ratio, outside=3.0)
+    listed = PairList(300, 0.05, LOWER, UPPER, periodic, full)
+    assert listed.update(x, reach)
+    assert rows_of(listed) == neighbours(x, reach, 0.05, LOWER, UPPER, periodic, full)
+    assert len(listed.partner) == listed.start[-1] > 20
+
+
+def test_a_box_of_just_two_cutoffs_is_right_and_a_thinner_one_refused():
+    x = np.random.default_rng(3).uniform(0.0, 1.0, (60, 2))
+    reach = np.full(60, 0.1)
+    listed = PairList(60, 0.05, (0.0, 0.0), (0.5, 0.5), (True, True), full=True)
+    listed.build(x, reach)
+    assert rows_of(listed) == neighbours(x, reach, 0.05, (0.0, 0.0), (0.5, 0.5), (True, True), True)
+    with pytest.raises(InputError, match="periodic height"):
+        PairList(60, 0.051, (0.0, 0.0), (9.0, 0.5), (True, True)).build(x, reach)
+
+
+def test_points_far_outside_still_meet():
+    x = np.array([[1e6, 1e6], [1e6 + 0.15, 1e6], [-1e6, 0.0], [5.0, 5.0]])
+    listed = PairList(4, 0.0, LOWER, UPPER)
+    listed.build(x, np.full(4, 0.1))
+    assert rows_of(listed) == [[1], [], [], []]
+
+
+def test_a_box_much_larger_than_its_points_need_costs_no_memory():
+    listed = PairList(3, 0.0, (-1e9, -1e9), (1e9, 1e9))
+    listed.build(np.array([[0.0, 0.0], [0.1, 0.0], [5.0, 0.0]]), np.full(3, 0.1))
+    assert rows_of(listed) == [[1], [], []]
+    assert listed._cell_start.shape[0] < 1000
+
+
+@pytest.mark.parametrize("n", [0, 1, 2])
+def test_few_points(n):
+    x, reach = np.zeros((n, 2)), np.full(n, 0.1)
+    listed = PairList(n, 0.0, LOWER, UPPER)
+    listed.update(x, reach)
+    assert rows_of(listed) == neighbours(x, reach, 0.0, LOWER, UPPER)
+
+
+def test_rebuilds_when_half_the_skin_is_used_up_and_not_before():
+    x, reach = cloud(50)
+    listed = PairList(50, 0.2, LOWER, UPPER)
+    assert listed.update(x, reach)
+    x[7] += [0.099, 0.0]
+    assert not listed.update(x, reach)
+    x[7] += [0.002, 0.0]
+    assert listed.update(x, reach)
+    assert not listed.update(x, reach)
+
+
+def test_growing_reach_uses_up_the_skin_too():
+    x, reach = cloud(50)
+    listed = PairList(50, 0.2, LOWER, UPPER)
+    listed.update(x, reach)
+    reach[3] += 0.06
+    x[3] += [0.0, 0.03]
+    assert not listed.update(x, reach)
+    x[3] += [0.0, 0.02]
+    assert listed.update(x, reach)
+    reach[3] += 0.11
+    assert listed.update(x, reach)
+
+
+def test_no_pair_within_reach_is_ever_missing_between_builds():
+    x, reach = cloud(150, seed=5)
+    rng = np.random.default_rng(6)
+    listed = PairList(150, 0.1, LOWER, UPPER, (True, False), full=True)
+    quiet = 0
+    for _ in range(60):
+        quiet += not listed.update(x, reach)
+        within = neighbours(x, reach, 0.0, LOWER, UPPER, (True, False), True)
+        for row, must in zip(rows_of(listed), within, strict=True):
+            assert set(must) <= set(row)
+        x += rng.normal(0.0, 0.006, x.shape)
+    assert 10 < quiet < 59  # the list did rest, and did rebuild
+
+
+def test_crossing_a_periodic_side_is_no_displacement():
+    x, reach = cloud(50)
+    listed = PairList(50, 0.2, LOWER, UPPER, (True, True))
+    listed.update(x, reach)
+    x[4] += [10.0, -8.0]
+    assert not listed.update(x, reach)
+
+
+def test_carried_data_survives_by_pair():
+    x, reach = cloud(120, seed=1)
+    listed = PairList(120, 0.3, LOWER, UPPER, carried=2)
+    listed.update(x, reach)
+    known: dict[tuple[int, int], tuple[float, float]] = {}
+    rng = np.random.default_rng(2)
+    kept = lost = 0
+    for _ in range(8):
+        owner = np.repeat(np.arange(120), np.diff(listed.start))
+        pairs_now = list(zip(owner.tolist(), listed.partner.tolist(), strict=True))
+        for k, pair in enumerate(pairs_now):
+            if pair in known:
+                assert tuple(listed.carried[k]) == known[pair]
+                kept += 1
+            else:
+                assert tuple(listed.carried[k]) == (0.0, 0.0)
+        lost += len(set(known) - set(pairs_now))
+        listed.carried[:] = rng.normal(size=listed.carried.shape)
+        known = {pair: tuple(listed.carried[k]) for k, pair in enumerate(pairs_now)}
+        x += rng.normal(0.0, 0.2, x.shape)
+        assert listed.update(x, reach)
+    assert kept > 100
+    assert lost > 100
+
+
+def test_buffers_are_reused():
+    x, reach = cloud(200)
+    listed = PairList(200, 0.1, LOWER, UPPER, carried=1)
+    for _ in range(2):
+        listed.build(x, reach)
+    held = {id(a) for a in (*listed._partners, *listed._carrieds, *listed._starts, listed._cell_start)}
+    for _ in range(4):
+        listed.build(x, reach)
+    assert held == {
+        id(a) for a in (*listed._partners, *listed._carrieds, *listed._starts, listed._cell_start)
+    }
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_a_position_that_is_no_number_is_named(value):
+    x, reach = cloud(30)
+    listed = PairList(30, 0.1, LOWER, UPPER)
+    listed.update(x, reach)
+    x[17, 1] = value
+    with pytest.raises(ValueError, match="point 17"):
+        listed.update(x, reach)
+    x[17, 1] = 0.0
+    reach[5] = np.nan
+    with pytest.raises(ValueError, match="point 5"):
+        listed.update(x, reach)
+
+
+def test_restored_list_goes_on_exactly():
+    x, reach = cloud(100, seed=4)
+    rng = np.random.default_rng(0)
+    first = PairList(100, 0.2, LOWER, UPPER, full=True, carried=1)
+    first.update(x, reach)
+    first.carried[:] = rng.normal(size=first.carried.shape)
+    x += 0.01  # between builds: the list is not the one a build here would give
+    second = PairList(100, 0.2, LOWER, UPPER, full=True, carried=1)
+    second.restore(first.state())
+    for _ in range(6):
+        assert first.update(x, reach) == second.update(x, reach)
+        for name, value in first.state().items():
+            assert np.array_equal(value, second.state()[name]), name
+        x += rng.normal(0.0, 0.03, x.shape)
+    assert first.builds > 1
+
+
+@pytest.mark.parametrize("full", [False, True])
+def test_one_thread_and_many_list_the_same(full, monkeypatch):
+    x, reach = cloud(400, ratio=5.0)
+    monkeypatch.setattr(pairs, "SERIAL_BELOW", 0)
+    lists = []
+    for count in (1, 2):
+        set_threads(count)
+        listed = PairList(400, 0.1, LOWER, UPPER, (True, False), full)
+        listed.build(x, reach)
+        lists.append(rows_of(listed))
+    set_threads(None)
+    assert lists[0] == lists[1] == neighbours(x, reach, 0.1, LOWER, UPPER, (True, False), full)
+
+
+def test_kernels_as_plain_python():
+    # Compiled kernels do not check bounds; plain Python does.
+    x, reach = cloud(25, outside=2.0)
+    reach *= 4.0
+    listed = PairList(25, 0.1, LOWER, UPPER, (True, False), full=True)
+    listed.build(x, reach)
+    shape = listed._sort(x, reach, 2.0 * reach.max() + 0.1)
+    start, partner = np.zeros(26, np.int64), np.empty(len(listed.partner), np.int32)
+    total = search.fill_serial.py_func(
+        start, partner, x, reach, *listed._sorted, listed._order, listed._cell_start,
+        *LOWER, *shape, *listed.period,
+        reach.max(), 0.1, True,
+    )  # fmt: skip
+    assert total == listed.start[-1]
+    assert np.array_equal(start, listed.start)
+    assert np.array_equal(partner, listed.partner)
+    carried = np.empty((total, 1))
+    search.carry.py_func(start, partner, np.ones((total, 1)), start, partner, carried)
+    assert np.all(carried == 1.0)
+    assert not search.strayed.py_func(x, listed.anchor, reach, reach, 0.05, 10.0, 0.0)
+    assert search.first_unusable.py_func(x, reach) == -1
+
+
+def test_a_box_without_area_and_a_skin_below_zero_are_refused():
+    with pytest.raises(InputError, match="skin"):
+        PairList(3, -0.1, LOWER, UPPER)
+    with pytest.raises(InputError, match="box"):
+        PairList(3, 0.1, UPPER, LOWER)
