@@ -1,0 +1,76 @@
+"""Forces between discs: one pass over a half list of pairs.
+
+With n = (x_j - x_i)/d and t = (-n_y, n_x) the slip v_t = (v_i - v_j).t + w_i a_i + w_j a_j does not change when i
+and j swap, so the history of a contact is one number.  The lever arms a_i = (d^2 + r_i^2 - r_j^2)/(2d), a_j = d - a_i
+reach to the chord of the overlap, where both bodies see the same force: angular momentum is kept to round-off.
+With the radii in their place it leaks by overlap times friction.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from porescale.dem.contact.linear import contact_force
+from porescale.ground.jit import kernel
+from porescale.particles.cells import minimum_image
+
+
+@kernel
+def start_forces(force, torque, external_force, external_torque):
+    """Overwrite force (n, 2) N/m and torque (n,) N m/m with the external ones."""
+    for i in range(torque.shape[0]):
+        force[i, 0] = external_force[i, 0]
+        force[i, 1] = external_force[i, 1]
+        torque[i] = external_torque[i]
+
+
+@kernel
+def add_pair_forces(
+    position, velocity, spin, radius, force, torque, start, partner, carried, period_x, period_y, law, dt
+):  # fmt: skip
+    """Add the contacts of all listed pairs; reset the springs of those that do not touch.
+
+    position, velocity (n, 2) m, m/s;  spin, radius (n,) rad/s, m;  start (n + 1,), partner (m,) half list in CSR;
+    period m, 0 where not periodic;  law (7,) row;  dt s.  Adds to force (n, 2) N/m and torque (n,) N m/m in the
+    order of the list; overwrites carried (m, >= 1), column 0 the tangential spring, m.
+    Not checked: two centres in one place give nan, which Grains.check reports.
+    """
+    for i in range(radius.shape[0]):
+        first, last = start[i], start[i + 1]
+        if first == last:
+            continue
+        xi, yi, ri = position[i, 0], position[i, 1], radius[i]
+        ui, vi, wi = velocity[i, 0], velocity[i, 1], spin[i]
+        fx, fy, moment = 0.0, 0.0, 0.0
+        for k in range(first, last):
+            j = partner[k]
+            dx = minimum_image(position[j, 0] - xi, period_x)
+            dy = minimum_image(position[j, 1] - yi, period_y)
+            rj = radius[j]
+            square = dx * dx + dy * dy
+            if square >= (ri + rj) * (ri + rj):
+                carried[k, 0] = 0.0
+                continue
+            distance = np.sqrt(square)
+            inverse = 1.0 / distance
+            nx, ny = dx * inverse, dy * inverse
+            arm_i = 0.5 * (distance + (ri - rj) * (ri + rj) * inverse)
+            arm_j = distance - arm_i
+            du, dv = ui - velocity[j, 0], vi - velocity[j, 1]
+            closing = du * nx + dv * ny
+            slip = dv * nx - du * ny + wi * arm_i + spin[j] * arm_j
+            normal, tangential, spring = contact_force(
+                ri + rj - distance, closing, slip, carried[k, 0], dt, law
+            )
+            carried[k, 0] = spring
+            gx = -normal * nx - tangential * ny
+            gy = -normal * ny + tangential * nx
+            fx += gx
+            fy += gy
+            moment += tangential * arm_i
+            force[j, 0] -= gx
+            force[j, 1] -= gy
+            torque[j] += tangential * arm_j
+        force[i, 0] += fx
+        force[i, 1] += fy
+        torque[i] += moment

@@ -1,0 +1,131 @@
+"""Time stepping: leap-frog kick and drift, several contact steps in one call, and how long a step may be.
+
+Velocities live at half steps, positions at whole steps; forces are taken at whole-step positions with the
+velocities of half a step before (lagged damping):
+    v(n+1/2) = v(n-1/2) + dt F(x(n), v(n-1/2))/m,      x(n+1) = x(n) + dt v(n+1/2).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from porescale.dem.contact.linear import Linear
+from porescale.dem.forces import add_pair_forces, start_forces
+from porescale.dem.walls import add_plate_forces, add_wall_forces, move_plates
+from porescale.ground.jit import kernel
+
+NEIGHBOURS = 6
+"""Most discs that touch a disc and are no smaller than it: the kissing number of the plane."""
+
+
+@kernel
+def kick_drift(
+    position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt
+):  # fmt: skip
+    """Move all discs one step; True when one has gone further than allowed from its anchor (or is no number).
+
+    Overwrites position (n, 2) m, angle (n,) rad, velocity (n, 2) m/s, spin (n,) rad/s.  mass, inertia (n,) kg/m,
+    kg m^2/m;  force (n, 2) N/m, torque (n,) N m/m;  anchor (n, 2) m, limit_square m^2: the list's skin test;
+    drag 1/s: background damping -drag m v and -drag I w, central in time (0: none, to the bit);  dt s.
+    """
+    before = 1.0 - 0.5 * drag * dt
+    after = 1.0 / (1.0 + 0.5 * drag * dt)
+    moved = False
+    for i in range(mass.shape[0]):
+        per_mass = dt / mass[i]
+        vx = (velocity[i, 0] * before + force[i, 0] * per_mass) * after
+        vy = (velocity[i, 1] * before + force[i, 1] * per_mass) * after
+        w = (spin[i] * before + torque[i] * (dt / inertia[i])) * after
+        velocity[i, 0], velocity[i, 1], spin[i] = vx, vy, w
+        x, y = position[i, 0] + dt * vx, position[i, 1] + dt * vy
+        position[i, 0], position[i, 1] = x, y
+        angle[i] += dt * w
+        dx, dy = x - anchor[i, 0], y - anchor[i, 1]
+        if not (dx * dx + dy * dy <= limit_square):  # also true for nan
+            moved = True
+    return moved
+
+
+@kernel
+def contact_steps(
+    count, dt, drag, position, angle, velocity, spin, radius, mass, inertia, force, torque,
+    external_force, external_torque, start, partner, carried, anchor, limit_square, period_x, period_y, law,
+    walls, wall_laws, wall_spring, wall_force, plates, plate_laws, plate_spring, plate_force,
+):  # fmt: skip
+    """Up to ``count`` contact steps; returns (steps done, whether the pair list must be rebuilt first to go on).
+
+    Arrays as in add_pair_forces, add_wall_forces, add_plate_forces and kick_drift; external_force (n, 2) N/m
+    and external_torque (n,) N m/m are held over all steps.  Overwrites the state of discs, springs, plates.
+    """
+    for step in range(count):
+        start_forces(force, torque, external_force, external_torque)
+        add_pair_forces(
+            position,
+            velocity,
+            spin,
+            radius,
+            force,
+            torque,
+            start,
+            partner,
+            carried,
+            period_x,
+            period_y,
+            law,
+            dt,
+        )
+        add_wall_forces(
+            position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, wall_force, dt
+        )
+        add_plate_forces(
+            position, velocity, spin, radius, force, torque, plates, plate_laws, plate_spring, plate_force, dt
+        )
+        moved = kick_drift(
+            position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt
+        )
+        move_plates(plates, dt)
+        if moved:
+            return step + 1, True
+    return count, False
+
+
+def packing_factor(normal: float, tangential: float) -> float:
+    """Largest eigenvalue bound, N/m: m w^2 of the stiffest motion in any packing of discs of mass >= m.
+
+    Energy of a contact: k_n/2 (n.(u_i - u_j))^2 + k_t/2 (t.(u_i - u_j) + r_i q_i + r_j q_j)^2.  From
+    (a - b)^2 <= 2 a^2 + 2 b^2 it is at most the sum over both ends of k_n (n.u)^2 + k_t (t.u + r q)^2, so w^2 is at
+    most the largest eigenvalue of a single disc on contacts twice as stiff, held still at their other ends.  The
+    smallest disc is the stiffest; it touches at most 6, and six contacts 60 degrees apart give
+        translation: 2 * 3 (k_n + k_t)/m,      rotation: 2 * 6 k_t r^2/I = 24 k_t/m.
+    Table 1 of Saito et al. (k_t = k_n/4): 7.5 k_n/m, dt = 2.2e-5 s; the infinite triangular lattice itself reaches
+    6.5 k_n/m, 2.3e-5 s (a zone-boundary wave), where one pair alone allows 4.2e-5 s.
+    """
+    return max(NEIGHBOURS * (normal + tangential), 4.0 * NEIGHBOURS * tangential)
+
+
+def packing_limit(law: Linear, mass: float) -> float:
+    """Stability limit (s) in any packing whose lightest disc has ``mass`` (kg/m), damping lagged half a step.
+
+    A mode z = -1 needs dt^2 K + 2 dt C = 4 M; with bounds K/M = a, C/M = b: dt = 2 / (b/2 + sqrt(b^2/4 + a)), which
+    is 2 (sqrt(1 + h^2) - h)/w for one pair.
+    """
+    a = packing_factor(law.stiffness, law.tangential_stiffness) / mass
+    b = packing_factor(law.damping, law.tangential_damping) / mass
+    return 2.0 / (0.5 * b + math.sqrt(0.25 * b * b + a))
+
+
+def stable_step(
+    laws: Linear | Sequence[Linear], mass: float, *, safety: float = 0.8, steps_per_contact: float = 10.0
+) -> float:
+    """A safe contact step (s) for discs whose lightest has ``mass`` (kg/m) under all of ``laws``.
+
+    ``safety`` times the packing limit, and at least ``steps_per_contact`` steps in the shortest contact of two
+    such discs (a free bounce errs by about a step in its duration; 0: stability alone decides).
+    """
+    steps = []
+    for law in [laws] if isinstance(laws, Linear) else laws:
+        steps.append(safety * packing_limit(law, mass))
+        if steps_per_contact > 0.0:
+            steps.append(law.contact_time(0.5 * mass) / steps_per_contact)
+    return min(steps)

@@ -1,0 +1,141 @@
+"""Numbers about a packing: energies, momenta, overlaps, contacts.  Nothing here changes the state.
+
+Speeds are those of half a step ago, positions those of now; energies therefore err by a step's work.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.dem.contact.linear import KN, KT
+from porescale.dem.discs import Discs
+from porescale.dem.system import Grains
+from porescale.dem.walls import NX, NY, PX, PY
+from porescale.ground.jit import kernel
+from porescale.particles.cells import minimum_image
+
+Array = NDArray[np.float64]
+
+
+@kernel
+def survey_pairs(position, radius, start, partner, carried, period_x, period_y, law, touching):
+    """(largest overlap over the smaller radius, its i, its j, elastic energy J/m) over the listed pairs.
+
+    Overwrites touching (n,): number of discs that touch each disc.  Arrays as in add_pair_forces.
+    """
+    touching[:] = 0
+    worst, worst_i, worst_j, energy = 0.0, -1, -1, 0.0
+    for i in range(radius.shape[0]):
+        for k in range(start[i], start[i + 1]):
+            j = partner[k]
+            dx = minimum_image(position[j, 0] - position[i, 0], period_x)
+            dy = minimum_image(position[j, 1] - position[i, 1], period_y)
+            overlap = radius[i] + radius[j] - np.sqrt(dx * dx + dy * dy)
+            if overlap > 0.0:
+                touching[i] += 1
+                touching[j] += 1
+                energy += 0.5 * law[KN] * overlap**2 + 0.5 * law[KT] * carried[k, 0] ** 2
+                share = overlap / min(radius[i], radius[j])
+                if share > worst:
+                    worst, worst_i, worst_j = share, i, j
+    return worst, worst_i, worst_j, energy
+
+
+@kernel
+def survey_walls(position, radius, walls, laws, spring):
+    """(largest overlap over the radius, its disc, its wall, elastic energy J/m) over walls (w, 4)."""
+    worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
+    for w in range(walls.shape[0]):
+        for i in range(radius.shape[0]):
+            distance = (position[i, 0] - walls[w, PX]) * walls[w, NX]
+            distance += (position[i, 1] - walls[w, PY]) * walls[w, NY]
+            overlap = radius[i] - distance
+            if overlap > 0.0:
+                energy += 0.5 * laws[w, KN] * overlap**2 + 0.5 * laws[w, KT] * spring[w, i] ** 2
+                if overlap / radius[i] > worst:
+                    worst, worst_i, worst_w = overlap / radius[i], i, w
+    return worst, worst_i, worst_w, energy
+
+
+class Overlap(NamedTuple):
+    """The deepest contact: overlap over the (smaller) radius, the disc, and what it is pressed against."""
+
+    share: float
+    disc: int
+    against: str
+
+
+def kinetic_energy(discs: Discs) -> float:
+    """Translation and rotation, J/m."""
+    moving = float(np.sum(discs.mass * np.sum(discs.velocity**2, axis=1)))
+    return 0.5 * (moving + float(np.sum(discs.inertia * discs.spin**2)))
+
+
+def potential_energy(discs: Discs, acceleration: tuple[float, float]) -> float:
+    """-sum m g.x, J/m, for an ``acceleration`` of free fall in m/s^2."""
+    return -float(np.sum(discs.mass * (discs.position @ np.asarray(acceleration))))
+
+
+def elastic_energy(grains: Grains) -> float:
+    """Stored in the normal and tangential springs of pairs and walls, J/m (plates are not counted)."""
+    pairs = _survey(grains)[3]
+    walls = survey_walls(
+        grains.discs.position, grains.discs.radius, grains.walls, grains.wall_laws, grains.wall_spring
+    )
+    return float(pairs + walls[3])
+
+
+def momentum(discs: Discs) -> Array:
+    """Sum of m v, (2,) kg m/s per metre."""
+    total: Array = (discs.mass[:, None] * discs.velocity).sum(axis=0)
+    return total
+
+
+def angular_momentum(discs: Discs) -> float:
+    """Sum of m x cross v + I w about the origin, kg m^2/s per metre (x at the whole, v at the half step)."""
+    x, v = discs.position, discs.velocity
+    orbital = discs.mass * (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0])
+    return float(np.sum(orbital + discs.inertia * discs.spin))
+
+
+def centre_of_mass(discs: Discs) -> Array:
+    """Centre of mass, (2,) m."""
+    centre: Array = (discs.mass[:, None] * discs.position).sum(axis=0) / discs.mass.sum()
+    return centre
+
+
+def max_overlap(grains: Grains) -> Overlap:
+    """The deepest overlap of all pairs and walls, as a share of the (smaller) radius."""
+    share, i, j, _ = _survey(grains)
+    deepest = Overlap(float(share), int(i), f"grain {j}")
+    share, i, w, _ = survey_walls(
+        grains.discs.position, grains.discs.radius, grains.walls, grains.wall_laws, grains.wall_spring
+    )
+    if share > deepest.share:
+        deepest = Overlap(float(share), int(i), f"the {grains.wall_names[w]} wall")
+    return deepest
+
+
+def coordination(grains: Grains) -> float:
+    """Mean number of discs that touch a disc (walls are not counted)."""
+    _survey(grains)
+    return float(grains.touching.mean()) if grains.discs.count else 0.0
+
+
+def unbalanced(grains: Grains) -> float:
+    """Mean net force on a disc over mean weight-like external force of the last step; 0 in equilibrium."""
+    net = np.hypot(grains.discs.force[:, 0], grains.discs.force[:, 1]).mean()
+    load = np.hypot(grains.external_force[:, 0], grains.external_force[:, 1]).mean()
+    return float(net / load) if load > 0.0 else 0.0
+
+
+def _survey(grains: Grains) -> tuple[float, int, int, float]:
+    """survey_pairs of ``grains``; fills ``grains.touching``."""
+    result: tuple[float, int, int, float] = survey_pairs(
+        grains.discs.position, grains.discs.radius, grains.pairs.start, grains.pairs.partner,
+        grains.pairs.carried, *grains.box.period, grains.law_row, grains.touching,
+    )  # fmt: skip
+    return result

@@ -1,0 +1,235 @@
+"""A system of grains: discs, their law, the walls and plates around them, and the list of pairs, stepped together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.dem.contact.linear import COLUMNS, Linear
+from porescale.dem.discs import Discs
+from porescale.dem.integrate import contact_steps, stable_step
+from porescale.dem.walls import HIGH, LOW, PRESENT, VELOCITY, Box, Plate, X
+from porescale.ground.check import Fault, InputError, Unstable
+from porescale.particles.pairs import PairList
+
+Array = NDArray[np.float64]
+
+SKIN = 0.3  # of the mean radius: measured optimum of a collapsing column between 0.2 and 0.5, flat
+WORST_OVERLAP = 0.3  # of the smaller radius: the linear law and its lever arms mean nothing beyond
+WORST_TRAVEL = 0.1  # of the smallest radius in one step: a contact would be met after the fact
+
+
+class Grains:
+    """Discs under ``law`` in ``box`` with ``plates``.
+
+    law : between discs;  wall_law : at sides and plates (default: ``law``); a plate may have its own friction.
+    skin : m, of the pair list (default 0.3 mean radii).
+
+    Positions are not wrapped on periodic sides.  The first step starts from velocities half a step back; for a
+    start from rest that is the same.  ``steps`` and ``time`` count contact steps and seconds.
+    Arrays held: wall_force (w, 2), plate_force (p, 2) N/m of the last step, wall_spring (w, n), plate_spring (p, n) m.
+    """
+
+    def __init__(
+        self,
+        discs: Discs,
+        law: Linear,
+        box: Box,
+        *,
+        wall_law: Linear | None = None,
+        plates: Sequence[Plate] = (),
+        skin: float | None = None,
+    ) -> None:
+        count = discs.count
+        self.discs, self.box = discs, box
+        mean_radius = float(discs.radius.mean()) if count else 1.0
+        self.pairs = PairList(
+            count, SKIN * mean_radius if skin is None else skin, box.lower, box.upper, box.periodic, carried=1
+        )
+        self.wall_names, self.walls = box.walls()
+        self.plate_names = [plate.name for plate in plates]
+        self.plates = np.array([plate.row() for plate in plates]).reshape(-1, 5)
+        self._plate_frictions = [plate.friction for plate in plates]
+        self.set_law(law, wall_law)
+        self.wall_spring = np.zeros((len(self.walls), count))
+        self.wall_force = np.zeros((len(self.walls), 2))
+        self.plate_spring = np.zeros((len(self.plates), count))
+        self.plate_force = np.zeros((len(self.plates), 2))
+        self.external_force = np.zeros((count, 2))
+        self.external_torque = np.zeros(count)
+        self.touching = np.zeros(count, np.int64)
+        self.steps, self.time, self.last_dt = 0, 0.0, 0.0
+        self._stale = True  # the pair list must be looked at before the next step
+        self._smallest = float(discs.radius.min()) if count else 0.0
+
+    def set_law(self, law: Linear, wall_law: Linear | None = None) -> None:
+        """Use ``law`` between discs and ``wall_law`` (default: the same) at sides and plates from now on."""
+        self.law, self.wall_law = law, law if wall_law is None else wall_law
+        self.law_row = law.row()
+        self.wall_laws = np.array([self.wall_law.row()] * len(self.walls)).reshape(-1, COLUMNS)
+        self.plate_laws = np.array(
+            [
+                (self.wall_law if own is None else self.wall_law.with_friction(own)).row()
+                for own in self._plate_frictions
+            ]
+        ).reshape(-1, COLUMNS)
+
+    def stable_step(self, *, safety: float = 0.8, steps_per_contact: float = 10.0) -> float:
+        """A safe contact step, s; see integrate.stable_step."""
+        return stable_step(
+            [self.law, self.wall_law],
+            float(self.discs.mass.min()),
+            safety=safety,
+            steps_per_contact=steps_per_contact,
+        )
+
+    def step(
+        self,
+        dt: float,
+        external_force: Array | None = None,
+        external_torque: Array | None = None,
+        count: int = 1,
+        drag: float = 0.0,
+    ) -> None:
+        """``count`` contact steps of ``dt`` (s) with the external force (n, 2) N/m and torque (n,) N m/m held.
+
+        None: zero.  drag (1/s): background damping, for settling only.  Raises Unstable when the list must be
+        rebuilt and a position is no number.
+        """
+        if external_force is None:
+            self.external_force[:] = 0.0
+        elif external_force is not self.external_force:
+            self.external_force[:] = external_force
+        if external_torque is None:
+            self.external_torque[:] = 0.0
+        elif external_torque is not self.external_torque:
+            self.external_torque[:] = external_torque
+        d, limit, left = self.discs, (0.5 * self.pairs.skin) ** 2, count
+        self.last_dt = dt
+        while left > 0:
+            if self._stale:
+                self.refresh()
+            pairs = self.pairs
+            done, self._stale = contact_steps(
+                left, dt, drag,
+                d.position, d.angle, d.velocity, d.spin, d.radius, d.mass, d.inertia, d.force, d.torque,
+                self.external_force, self.external_torque,
+                pairs.start, pairs.partner, pairs.carried, pairs.anchor, limit, *self.box.period, self.law_row,
+                self.walls, self.wall_laws, self.wall_spring, self.wall_force,
+                self.plates, self.plate_laws, self.plate_spring, self.plate_force,
+            )  # fmt: skip
+            left -= done
+            self.steps += done
+            self.time += done * dt
+
+    def refresh(self) -> None:
+        """Bring the pair list up to date; call it after moving or resizing discs by hand."""
+        self._check_finite()
+        self.pairs.update(self.discs.position, self.discs.radius)
+        self._stale = False
+
+    def plate(self, name: str) -> int:
+        """Index of the plate called ``name``; raises InputError when there is none."""
+        if name not in self.plate_names:
+            raise InputError(Fault("plate", name, "no such plate", allowed=", ".join(self.plate_names)))
+        return self.plate_names.index(name)
+
+    def move_plate(self, name: str, velocity: float) -> None:
+        """Let the plate rise at ``velocity`` (m/s) from now on."""
+        self.plates[self.plate(name), VELOCITY] = velocity
+
+    def remove_plate(self, name: str) -> None:
+        """The plate vanishes at once; its contacts are forgotten."""
+        index = self.plate(name)
+        self.plates[index, PRESENT] = 0.0
+        self.plate_spring[index] = 0.0
+
+    def plate_ends(self, name: str) -> tuple[float, float, float]:
+        """(x, lower end, upper end) of the plate, m."""
+        row = self.plates[self.plate(name)]
+        return float(row[X]), float(row[LOW]), float(row[HIGH])
+
+    def check(self) -> None:
+        """Raise Unstable, naming grain, quantity and step, when the state is beyond sense.
+
+        That is: a number that is none; a speed beyond 0.1 smallest radii per step; an overlap beyond 30 % of the
+        radius; a centre behind a solid side.
+        """
+        from porescale.dem.measure import max_overlap
+
+        if self.discs.count == 0:
+            return
+        self._check_finite()
+        if self.last_dt > 0.0:
+            speed = np.hypot(self.discs.velocity[:, 0], self.discs.velocity[:, 1])
+            fastest = int(speed.argmax())
+            if speed[fastest] * self.last_dt > WORST_TRAVEL * self._smallest:
+                raise self._unstable(
+                    f"grain {fastest}", "speed", float(speed[fastest]), "m/s",
+                    f"it moves more than {WORST_TRAVEL:g} of the smallest radius in a step: shorten the contact step",
+                )  # fmt: skip
+        for name, wall in zip(self.wall_names, self.walls, strict=True):
+            distance = (self.discs.position - wall[:2]) @ wall[2:]
+            out = int(distance.argmin())
+            if distance[out] < 0.0:
+                raise self._unstable(
+                    f"grain {out}", f"distance to the {name} wall", float(distance[out]), "m",
+                    "it went through the wall: raise the stiffness or shorten the contact step",
+                )  # fmt: skip
+        if not self._stale:
+            deepest = max_overlap(self)
+            if deepest.share > WORST_OVERLAP:
+                raise self._unstable(
+                    f"grain {deepest.disc}", f"overlap with {deepest.against} over radius", deepest.share, "",
+                    "raise the stiffness, or shorten the contact step",
+                )  # fmt: skip
+
+    def _check_finite(self) -> None:
+        d = self.discs
+        for quantity, values, unit in (
+            ("position", d.position, "m"), ("velocity", d.velocity, "m/s"), ("spin", d.spin, "rad/s"),
+        ):  # fmt: skip
+            if not np.isfinite(values).all():
+                bad = int(np.flatnonzero(~np.isfinite(values).reshape(d.count, -1).all(axis=1))[0])
+                raise self._unstable(
+                    f"grain {bad}", quantity, float("nan"), unit,
+                    "two centres met or the contact step is beyond its stability limit",
+                )  # fmt: skip
+
+    def _unstable(self, where: str, quantity: str, value: float, unit: str, cause: str) -> Unstable:
+        return Unstable(where, quantity, value, unit, self.steps, self.time, cause)
+
+    def state(self) -> dict[str, Any]:
+        """Everything needed to go on bit for bit (law, box and the number of plates are the scene's)."""
+        return {
+            "discs": self.discs.state(),
+            "pairs": self.pairs.state(),
+            "wall_spring": self.wall_spring.copy(),
+            "wall_force": self.wall_force.copy(),
+            "plates": self.plates.copy(),
+            "plate_spring": self.plate_spring.copy(),
+            "plate_force": self.plate_force.copy(),
+            "external_force": self.external_force.copy(),
+            "external_torque": self.external_torque.copy(),
+            "steps": self.steps,
+            "time": self.time,
+            "last_dt": self.last_dt,
+            "stale": int(self._stale),
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go on exactly from ``state()`` of a system made alike; raises InputError when the numbers differ."""
+        self.discs.restore(state["discs"])
+        for name in ("wall_spring", "wall_force", "plates", "plate_spring", "plate_force",
+                     "external_force", "external_torque"):  # fmt: skip
+            own, given = getattr(self, name), np.asarray(state[name])
+            if own.shape != given.shape:
+                raise InputError(Fault(f"state.{name}", given.shape, "wrong shape", allowed=str(own.shape)))
+            own[...] = given
+        self.pairs.restore(state["pairs"])
+        self.steps, self.time = int(state["steps"]), float(state["time"])
+        self.last_dt, self._stale = float(state["last_dt"]), bool(state["stale"])
+        self._smallest = float(self.discs.radius.min()) if self.discs.count else 0.0

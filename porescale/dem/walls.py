@@ -1,0 +1,206 @@
+"""Walls: the straight sides of the domain, and plates, which are upright line segments that can move.
+
+A wall is a point and a normal that points into the domain; behind it is solid without end.  A plate has no
+thickness and takes contacts on both sides and at its ends, by its closest point.  Both use the contact law of
+pairs (contact_force): the limit r_j -> infinity of the pair's lever arm is the distance to the wall.
+Every disc keeps one tangential spring per wall and per plate, zero while they do not touch.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.dem.contact.linear import contact_force
+from porescale.ground.check import Fault, InputError
+from porescale.ground.jit import inline, kernel
+
+Array = NDArray[np.float64]
+
+SIDES = ("left", "right", "bottom", "top")
+KINDS = ("solid", "periodic", "open")
+PX, PY, NX, NY = range(4)
+"""Columns of the wall table: a point (m) and the unit normal."""
+X, LOW, HIGH, VELOCITY, PRESENT = range(5)
+"""Columns of the plate table: x, lower and upper end (m), upward velocity (m/s), 1 while it is there."""
+
+
+@dataclass(frozen=True)
+class Box:
+    """The domain: corners in m, and what each side is: "solid", "periodic" (opposite sides both) or "open"."""
+
+    lower: tuple[float, float]
+    upper: tuple[float, float]
+    left: str = "solid"
+    right: str = "solid"
+    bottom: str = "solid"
+    top: str = "solid"
+
+    def __post_init__(self) -> None:
+        faults = [
+            Fault(f"box.{side}", getattr(self, side), "unknown kind of side", allowed=" or ".join(KINDS))
+            for side in SIDES
+            if getattr(self, side) not in KINDS
+        ]
+        for one, other in (("left", "right"), ("bottom", "top")):
+            if (getattr(self, one) == "periodic") != (getattr(self, other) == "periodic"):
+                faults.append(
+                    Fault(f"box.{one}", getattr(self, one), f"the {other} side is {getattr(self, other)}",
+                          repair="make both sides periodic, or neither")
+                )  # fmt: skip
+        if not (self.lower[0] < self.upper[0] and self.lower[1] < self.upper[1]):
+            faults.append(
+                Fault(
+                    "box.upper", self.upper, "must lie right of and above box.lower", "m", f"> {self.lower}"
+                )
+            )
+        if faults:
+            raise InputError(faults)
+
+    @property
+    def periodic(self) -> tuple[bool, bool]:
+        """Whether x and y are periodic."""
+        return self.left == "periodic", self.bottom == "periodic"
+
+    @property
+    def period(self) -> tuple[float, float]:
+        """Length of the period along x and y, m; 0 where not periodic."""
+        return (
+            self.upper[0] - self.lower[0] if self.periodic[0] else 0.0,
+            self.upper[1] - self.lower[1] if self.periodic[1] else 0.0,
+        )
+
+    def walls(self) -> tuple[list[str], Array]:
+        """Names of the solid sides and their wall table (w, 4), in the order of SIDES."""
+        table = {
+            "left": (*self.lower, 1.0, 0.0),
+            "right": (*self.upper, -1.0, 0.0),
+            "bottom": (*self.lower, 0.0, 1.0),
+            "top": (*self.upper, 0.0, -1.0),
+        }
+        names = [side for side in SIDES if getattr(self, side) == "solid"]
+        return names, np.array([table[name] for name in names], dtype=np.float64).reshape(-1, 4)
+
+
+@dataclass(frozen=True)
+class Plate:
+    """An upright plate without thickness: x, ends (m), upward velocity (m/s), friction (None: that of the walls)."""
+
+    x: float
+    y_low: float
+    y_high: float
+    velocity: float = 0.0
+    friction: float | None = None
+    name: str = "plate"
+
+    def __post_init__(self) -> None:
+        numbers = (self.x, self.y_low, self.y_high, self.velocity)
+        if not all(math.isfinite(value) for value in numbers) or self.y_low >= self.y_high:
+            raise InputError(
+                Fault(f"{self.name}.y_high", self.y_high, "must lie above y_low", "m", f"> {self.y_low}")
+            )
+        if self.friction is not None and not self.friction >= 0.0:
+            raise InputError(Fault(f"{self.name}.friction", self.friction, allowed=">= 0"))
+
+    def row(self) -> Array:
+        """The plate as kernels read it, (5,): columns X, LOW, HIGH, VELOCITY, PRESENT."""
+        return np.array([self.x, self.y_low, self.y_high, self.velocity, 1.0])
+
+
+@inline
+def surface_contact(nx, ny, distance, overlap, vx, vy, spin, spring, dt, p):
+    """Disc against a surface: (force x, force y N/m, torque N m/m, spring m) on the disc.
+
+    (nx, ny) unit vector from the disc to the surface;  distance centre to surface (m), the lever arm;
+    overlap (m) > 0;  (vx, vy) velocity relative to the surface (m/s);  spin (rad/s);  dt (s);  p law row (7,).
+    """
+    closing = vx * nx + vy * ny
+    slip = vy * nx - vx * ny + spin * distance
+    normal, tangential, spring = contact_force(overlap, closing, slip, spring, dt, p)
+    return (
+        -normal * nx - tangential * ny,
+        -normal * ny + tangential * nx,
+        tangential * distance,
+        spring,
+    )
+
+
+@kernel
+def add_wall_forces(
+    position, velocity, spin, radius, force, torque, walls, laws, spring, wall_force, dt
+):  # fmt: skip
+    """Add the contacts of all discs with all walls; reset the springs of those that do not touch.
+
+    position, velocity (n, 2) m, m/s;  spin, radius (n,) rad/s, m;  walls (w, 4);  laws (w, 7);  dt s.
+    Adds to force (n, 2) N/m and torque (n,) N m/m; overwrites spring (w, n) m and wall_force (w, 2) N/m, the
+    force of the discs on each wall, summed in the order of discs.
+    """
+    for w in range(walls.shape[0]):
+        px, py, nx, ny = walls[w, PX], walls[w, PY], walls[w, NX], walls[w, NY]
+        p = laws[w]
+        sum_x, sum_y = 0.0, 0.0
+        for i in range(radius.shape[0]):
+            distance = (position[i, 0] - px) * nx + (position[i, 1] - py) * ny
+            overlap = radius[i] - distance
+            if overlap > 0.0:
+                fx, fy, moment, kept = surface_contact(
+                    -nx, -ny, distance, overlap, velocity[i, 0], velocity[i, 1], spin[i], spring[w, i], dt, p
+                )
+                force[i, 0] += fx
+                force[i, 1] += fy
+                torque[i] += moment
+                spring[w, i] = kept
+                sum_x -= fx
+                sum_y -= fy
+            else:
+                spring[w, i] = 0.0
+        wall_force[w, 0] = sum_x
+        wall_force[w, 1] = sum_y
+
+
+@kernel
+def add_plate_forces(
+    position, velocity, spin, radius, force, torque, plates, laws, spring, plate_force, dt
+):  # fmt: skip
+    """Add the contacts of all discs with all plates that are present; reset the springs of those that do not touch.
+
+    plates (p, 5);  laws (p, 7);  spring (p, n) m;  plate_force (p, 2) N/m, force of the discs on each plate.
+    The rest as in add_wall_forces.
+    """
+    for w in range(plates.shape[0]):
+        sum_x, sum_y = 0.0, 0.0
+        if plates[w, PRESENT] != 0.0:
+            x, low, high, rise = plates[w, X], plates[w, LOW], plates[w, HIGH], plates[w, VELOCITY]
+            p = laws[w]
+            for i in range(radius.shape[0]):
+                dx = x - position[i, 0]
+                dy = min(max(position[i, 1], low), high) - position[i, 1]
+                square = dx * dx + dy * dy
+                if square < radius[i] * radius[i]:
+                    distance = np.sqrt(square)
+                    fx, fy, moment, kept = surface_contact(
+                        dx / distance, dy / distance, distance, radius[i] - distance,
+                        velocity[i, 0], velocity[i, 1] - rise, spin[i], spring[w, i], dt, p,
+                    )  # fmt: skip
+                    force[i, 0] += fx
+                    force[i, 1] += fy
+                    torque[i] += moment
+                    spring[w, i] = kept
+                    sum_x -= fx
+                    sum_y -= fy
+                else:
+                    spring[w, i] = 0.0
+        plate_force[w, 0] = sum_x
+        plate_force[w, 1] = sum_y
+
+
+@inline
+def move_plates(plates, dt):
+    """Raise every present plate (p, 5) by its velocity over ``dt`` (s); overwrites LOW and HIGH."""
+    for w in range(plates.shape[0]):
+        rise = plates[w, VELOCITY] * plates[w, PRESENT] * dt
+        plates[w, LOW] += rise
+        plates[w, HIGH] += rise
