@@ -63,15 +63,52 @@ def window(at, range_, lower, inverse_size, number, period):
 
 
 @inline
-def search_row(
-    i, x, reach, sx, sy, sreach, order, cell_start, lower_x, lower_y, inverse_x, inverse_y, columns, rows,
-    period_x, period_y, largest, skin, full, partner, begin, room,
+def count_stretch(i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, period_x, period_y, full):
+    """Number of partners of point i among slots k0 … k1-1 of the cell order.  Without writing, so it
+    vectorises.
+    """
+    found = 0
+    for k in range(k0, k1):
+        dx = minimum_image(xi - sx[k], period_x)
+        dy = minimum_image(yi - sy[k], period_y)
+        reached = reach_i + sreach[k] + skin
+        j = order[k]
+        found += (dx * dx + dy * dy < reached * reached) & ((j > i) | (full & (j != i)))
+    return found
+
+
+@inline
+def fill_stretch(
+    i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, period_x, period_y, full, partner, slot, end
 ):  # fmt: skip
-    """Partners of point i: written ascending to ``partner[begin:]`` as far as ``room`` goes; returns their
+    """As count_stretch, writing partners from ``partner[slot]`` on, never at ``end`` or beyond; returns their
     number.
+
+    Every candidate is written and only a partner moves on to the next slot: half the candidates are partners,
+    and a branch on that would be guessed wrong every other time.
+    """
+    begin = slot
+    for k in range(k0, k1):
+        dx = minimum_image(xi - sx[k], period_x)
+        dy = minimum_image(yi - sy[k], period_y)
+        reached = reach_i + sreach[k] + skin
+        j = order[k]
+        if slot < end:
+            partner[slot] = j
+        slot += (dx * dx + dy * dy < reached * reached) & ((j > i) | (full & (j != i)))
+    return slot - begin
+
+
+@inline
+def search_row(
+    write, i, x, reach, sx, sy, sreach, order, cell_start, lower_x, lower_y, inverse_x, inverse_y, columns, rows,
+    period_x, period_y, largest, skin, full, partner, begin, end,
+):  # fmt: skip
+    """Number of partners of point i; if ``write``, they are put ascending into ``partner[begin:end]``.
 
     sx, sy, sreach (n,): positions and reaches in cell order;  order, cell_start: see sort_into_cells;
     largest: largest reach, m.  A pair counts when its squared distance is below (reach_i + reach_j + skin)².
+    Where the row is longer than end - begin the rest is lost, and the number tells.
     """
     xi = x[i, 0]
     yi = x[i, 1]
@@ -86,28 +123,28 @@ def search_row(
     inside = min(width, columns - first_column)
     found = 0
     for step in range(height):
-        row = (first_row + step) % rows
-        base = row * columns
-        for part in range(2):
-            if part == 0:
-                k0 = cell_start[base + first_column]
-                k1 = cell_start[base + first_column + inside]
+        base = (first_row + step) % rows * columns
+        for part in range(1 + (width > inside)):
+            k0 = cell_start[base + first_column] if part == 0 else cell_start[base]
+            k1 = cell_start[base + first_column + inside] if part == 0 else cell_start[base + width - inside]
+            if write:
+                found += fill_stretch(
+                    i, k0, k1, xi, yi, reach[i], skin, sx, sy, sreach, order, period_x, period_y, full,
+                    partner, begin + found, end,
+                )  # fmt: skip
             else:
-                k0 = cell_start[base]
-                k1 = cell_start[base + width - inside]
-            for k in range(k0, k1):
-                dx = minimum_image(xi - sx[k], period_x)
-                dy = minimum_image(yi - sy[k], period_y)
-                reached = reach[i] + sreach[k] + skin
-                j = order[k]
-                if dx * dx + dy * dy < reached * reached and (j > i or (full and j != i)):
-                    if found < room:
-                        slot = begin + found  # insertion keeps the row ascending; rows arrive nearly so
-                        while slot > begin and partner[slot - 1] > j:
-                            partner[slot] = partner[slot - 1]
-                            slot -= 1
-                        partner[slot] = j
-                    found += 1
+                found += count_stretch(
+                    i, k0, k1, xi, yi, reach[i], skin, sx, sy, sreach, order, period_x, period_y, full
+                )  # fmt: skip
+    if write:
+        for slot in range(
+            begin + 1, min(begin + found, end)
+        ):  # insertion sort: rows come out nearly ascending
+            j = partner[slot]
+            while slot > begin and partner[slot - 1] > j:
+                partner[slot] = partner[slot - 1]
+                slot -= 1
+            partner[slot] = j
     return found
 
 
@@ -125,9 +162,9 @@ def fill_serial(
     for i in range(x.shape[0]):
         begin = start[i]
         found = search_row(
-            i, x, reach, sx, sy, sreach, order, cell_start,
+            True, i, x, reach, sx, sy, sreach, order, cell_start,
             lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y,
-            largest, skin, full, partner, begin, partner.shape[0] - begin,
+            largest, skin, full, partner, begin, partner.shape[0],
         )  # fmt: skip
         start[i + 1] = begin + found
     return start[x.shape[0]]
@@ -145,9 +182,9 @@ def count_parallel(
     n = x.shape[0]
     for i in prange(n):
         start[i + 1] = search_row(
-            i, x, reach, sx, sy, sreach, order, cell_start,
+            False, i, x, reach, sx, sy, sreach, order, cell_start,
             lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y,
-            largest, skin, full, partner, 0, 0,  # no room: counts only
+            largest, skin, full, partner, 0, 0,
         )  # fmt: skip
     start[0] = 0
     for i in range(n):
@@ -164,9 +201,9 @@ def fill_parallel(
     """Rows over threads into the places that ``start`` (n + 1,) names: overwrites ``partner``."""
     for i in prange(x.shape[0]):
         search_row(
-            i, x, reach, sx, sy, sreach, order, cell_start,
+            True, i, x, reach, sx, sy, sreach, order, cell_start,
             lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y,
-            largest, skin, full, partner, start[i], start[i + 1] - start[i],
+            largest, skin, full, partner, start[i], start[i + 1],
         )  # fmt: skip
 
 
