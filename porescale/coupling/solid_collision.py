@@ -1,0 +1,90 @@
+"""Collision in partially saturated cells: SC1, bounce-back of the non-equilibrium part (Noble & Torczynski 1998).
+
+    f_i* = f_i + (1 - B)(Omega_i + S_i) + B Omega^s_i,    Omega^s_i = f_-i - f_i + f^eq_i(rho, u_s) - f^eq_-i(rho, u)
+
+with rho u = sum f c + (1 - B) F/2: the forcing belongs inside (1 - B), or a resting disc feels a force that is not there.
+In halves: even, f^eq+(u_s) - f^eq+(u);  odd, -2 f^- + 3 w rho c.(u_s + u).  Mass is conserved in each cell; the solid
+gains  B (sum f c - (1 - B) F/2 - rho u_s)  of momentum.  Where B = 0 this is the plain operator.
+
+Grains that share a cell act with the mean velocity of the solid in it, u_s = sum e u_s,n / sum e; their loads
+use each one's own velocity and add up to the same total (load.py).
+"""
+
+from porescale.coupling.weighting import saturation_weight
+from porescale.ground.jit import inline, parallel_kernel, prange
+from porescale.lbm.collision.trt import collide_row, moments, relax, targets
+from porescale.lbm.stream import even_slots, odd_slots
+
+
+@inline
+def collide_saturated_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, first, last, k, p):
+    """Collide cells ``first`` to ``last`` - 1 of a row in which grains lie.
+
+    a_i (nx,): slots, as in collide_row;  k (1,): tau - 1/2;  p: parameters.  s, sx, sy (nx,): sum of the solid fractions
+    and of fraction times solid velocity; in covered cells overwritten with density and with the first moment less
+    (1 - B) F/2, which is what loads are made of.
+    """
+    one, half, fx, fy = p[12], p[13], p[2], p[3]
+    even, odd, c15, c45, two = p[0], p[1], p[14], p[15], p[12] + p[12]
+    zero = one - one
+    for x in range(first, last):
+        f0, f1, f2, f3, f4 = a0[x], a1[x], a2[x], a3[x], a4[x]
+        f5, f6, f7, f8 = a5[x], a6[x], a7[x], a8[x]
+        e = s[x]
+        covered = e > zero
+        b = saturation_weight(e, k[0], one)
+        free = one - b
+        part = one / (e if covered else one)
+        vx, vy = sx[x] * part, sy[x] * part
+        d, jx, jy = moments(f0, f1, f2, f3, f4, f5, f6, f7, f8)
+        hx = half * free * fx
+        hy = half * free * fy
+        rho = one + d
+        lightness = one / rho
+        ux, uy = (jx + hx) * lightness, (jy + hy) * lightness
+        q, xx, yy, xy, mx, my = targets(d, jx + hx, jy + hy, ux, uy, p)
+        br = b * rho
+        dxx = vx * vx - ux * ux
+        dyy = vy * vy - uy * uy
+        q = free * q - c15 * br * (dxx + dyy)
+        xx = free * xx + c45 * br * dxx
+        yy = free * yy + c45 * br * dyy
+        xy = free * xy + (c45 + c45) * br * (vx * vy - ux * uy)
+        mx = free * mx + br * (vx + ux)
+        my = free * my + br * (vy + uy)
+        g0, g1, g2, g3, g4, g5, g6, g7, g8 = relax(
+            f0, f1, f2, f3, f4, f5, f6, f7, f8, free * even, free * odd + two * b, q, xx, yy, xy, mx, my, p
+        )
+        a0[x], a2[x], a1[x], a4[x], a3[x] = g0, g1, g2, g3, g4
+        a6[x], a5[x], a8[x], a7[x] = g5, g6, g7, g8
+        s[x] = rho if covered else zero
+        sx[x] = jx - hx if covered else zero
+        sy[x] = jy - hy if covered else zero
+
+
+@inline
+def _row(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, span, k, p):
+    """One row: plain fluid outside ``span`` (2,), saturated cells inside."""
+    n = s.shape[0]
+    if span[1] <= span[0]:
+        collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, 0, n, p)
+        return
+    collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, 0, span[0], p)
+    collide_saturated_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, span[0], span[1], k, p)
+    collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, span[1], n, p)
+
+
+@parallel_kernel
+def sweep_even(f, solid, solid_x, solid_y, span, k, p):
+    """Even step with grains; overwrites populations f and the solid fields as collide_saturated_row says."""
+    for y in prange(solid.shape[0]):
+        a0, a1, a2, a3, a4, a5, a6, a7, a8 = even_slots(f, y + 1)
+        _row(a0, a1, a2, a3, a4, a5, a6, a7, a8, solid[y], solid_x[y], solid_y[y], span[y], k, p)
+
+
+@parallel_kernel
+def sweep_odd(f, solid, solid_x, solid_y, span, k, p):
+    """Odd step with grains; the halo must have been filled."""
+    for y in prange(solid.shape[0]):
+        a0, a1, a2, a3, a4, a5, a6, a7, a8 = odd_slots(f, y + 1)
+        _row(a0, a1, a2, a3, a4, a5, a6, a7, a8, solid[y], solid_x[y], solid_y[y], span[y], k, p)
