@@ -1,0 +1,1 @@
+"""What all commands share: scenes, reports, validations, benchmarks, the command line.  No physics."""

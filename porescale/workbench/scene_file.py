@@ -1,0 +1,123 @@
+"""Scene files: finding and reading them, laying one table over another, and `--set` entries."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from porescale.ground.check import Fault, InputError
+from porescale.workbench.faults import Key, dotted, parse_key
+
+SCENE_FILE = "scene.toml"
+
+
+def find(path: Path) -> Path:
+    """The scene file that ``path`` (a file, or a folder with scene.toml) names; InputError if none."""
+    file = path / SCENE_FILE if path.is_dir() else path
+    if file.is_file():
+        return file
+    looked = f"looked for the file {file}" if path.is_dir() else f"looked for a file or folder {path}"
+    raise InputError(
+        Fault(
+            str(path),
+            problem="no scene here",
+            repair=f"{looked}; give a TOML file or a folder with {SCENE_FILE}",
+        )
+    )
+
+
+def name_of(file: Path) -> str:
+    """Name of the scene in ``file``: its folder's if it is a scene.toml, else its own."""
+    return file.resolve().parent.name if file.name == SCENE_FILE else file.stem
+
+
+def read(file: Path) -> dict[str, Any]:
+    """The tables of a TOML file; InputError naming the line if it is none."""
+    try:
+        return tomllib.loads(file.read_text(encoding="utf-8"))
+    except tomllib.TOMLDecodeError as error:
+        text, _, place = str(error).partition(" (at ")
+        place = place.replace("end of document", f"line {len(file.read_text().splitlines())}, end of file")
+        raise InputError(
+            Fault(place.rstrip(")"), problem=text, repair="correct the TOML there", file=str(file))
+        ) from None
+    except UnicodeDecodeError as error:
+        line = error.object[: error.start].count(b"\n") + 1
+        raise InputError(
+            Fault(f"line {line}", problem="is not UTF-8 text", repair="save it as UTF-8", file=str(file))
+        ) from None
+    except OSError as error:
+        raise InputError(Fault(str(file), problem=f"cannot be read ({error.strerror})")) from None
+
+
+def merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+    """A new table, ``base`` with ``over`` laid on it: tables merge, all else (lists too) is replaced."""
+    merged = dict(base)
+    for name, value in over.items():
+        below = merged.get(name)
+        merged[name] = (
+            merge(below if isinstance(below, Mapping) else {}, value) if isinstance(value, Mapping) else value
+        )
+    return merged
+
+
+def holds(table: Any, key: Key) -> bool:
+    """Whether ``table`` has an entry at ``key``."""
+    for part in key:
+        inside = isinstance(table, list) and isinstance(part, int) and part < len(table)
+        if not inside and not (isinstance(table, Mapping) and part in table):
+            return False
+        table = table[part]
+    return True
+
+
+def parse_setting(text: str) -> tuple[Key, Any]:
+    """``section.key=value`` as key and value (a TOML value, else the text itself); else InputError."""
+    name, equals, value = text.partition("=")
+    if not equals or not re.fullmatch(r"[\w-]+(\[\d+\])*(\.[\w-]+(\[\d+\])*)*", name.strip()):
+        raise InputError(
+            Fault(
+                repr(text),
+                None,
+                "is not section.key=value",
+                file="--set",
+                repair="write it as --set fluid.spacing=0.001",
+            )
+        )
+    try:
+        parsed = tomllib.loads(f"value = {value}")
+    except tomllib.TOMLDecodeError:
+        parsed = {}
+    return parse_key(name.strip()), parsed["value"] if parsed.keys() == {"value"} else value.strip()
+
+
+def assign(table: Mapping[str, Any], key: Key, value: Any) -> dict[str, Any]:
+    """A copy of ``table`` with ``value`` at ``key``; missing tables are made.  InputError on bad indices."""
+    return dict(_assigned(table, key, value, ()))
+
+
+def _assigned(below: Any, key: Key, value: Any, above: Key) -> Any:
+    """``below`` (what is at ``above``) with ``value`` at ``key`` inside it."""
+    if not key:
+        return value
+    part, rest = key[0], key[1:]
+    if isinstance(below, list):
+        if not isinstance(part, int) or part >= len(below):
+            allowed = f"0 to {len(below) - 1}" if below else "none: the list is empty"
+            fault = Fault(
+                dotted((*above, part)),
+                None,
+                "no such entry of a list",
+                "",
+                allowed,
+                "name one, as in grains[0].radius=…",
+                "--set",
+            )
+            raise InputError(fault)
+        return [*below[:part], _assigned(below[part], rest, value, (*above, part)), *below[part + 1 :]]
+    tables = below if isinstance(below, Mapping) else {}
+    name = str(part)
+    return {**tables, name: _assigned(tables.get(name, {}), rest, value, (*above, name))}
