@@ -1,7 +1,5 @@
 """The partially saturated cells of a lattice: what discs cover of it, and one fluid step with them in it."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -71,16 +69,17 @@ class Saturated:
         """One fluid step with the discs where they are; fills ``force`` and ``torque``."""
         self.cover(centre, velocity, spin)
         share(
-            self._start, self._width, self._patch, self._corner, self.periodic_x, self.periodic_y, self.solid, self._k[0]
+            self._start,
+            self._width,
+            self._patch,
+            self._corner,
+            self.periodic_x,
+            self.periodic_y,
+            self.solid,
+            self._k[0],
         )
         fluid.advance(sweep_even, sweep_odd, self.solid, self.solid_x, self.solid_y, self.span, self._k)
         loads(
             centre, velocity, spin, self._start, self._width, self._patch, self._corner, self.periodic_x,
             self.periodic_y, self.solid, self.solid_x, self.solid_y, self.force, self.torque,
         )  # fmt: skip
-
-    def state(self) -> dict[str, Any]:
-        """Nothing but loads survives a step: the cells are covered anew."""
-        return {"force": self.force, "torque": self.torque}
-
-

@@ -73,7 +73,7 @@ prange = numba.prange
 
 def set_threads(count: int | None) -> int:
     """Use ``count`` threads (None: all cores) in parallel kernels; returns the number in use."""
-    limit = int(numba.config.NUMBA_NUM_THREADS)
+    limit = int(vars(numba.config)["NUMBA_NUM_THREADS"])
     chosen = limit if count is None else max(1, min(count, limit))
     numba.set_num_threads(chosen)
     return chosen

@@ -112,6 +112,12 @@ class Fluid:
         with self.readable():
             return float(np.sum(moment_fields(self.populations, self.step % 2, shifted=True)[0]))
 
+    def momentum(self) -> tuple[float, float]:
+        """Sum over cells of the first moments, lattice units."""
+        with self.readable():
+            _, jx, jy = moment_fields(self.populations, self.step % 2)
+        return float(np.sum(jx)), float(np.sum(jy))
+
     def state(self) -> dict[str, Any]:
         """Everything needed to go on bit for bit (plates' heights included; the list of plates is the owner's)."""
         return {

@@ -11,7 +11,7 @@ Storage is one array ``populations`` (9, ny + 2, nx + 2) with a rim of halo cell
     odd    reads h_i at slot [opposite(i), x - c_i], writes it to slot [i, x + c_i]
 
 so each cell always reads and writes the same nine slots, and no order of cells and no number of threads can matter.
-``rows`` of stream.py hand the nine slots of a row to one row kernel, the same for both.
+``even_slots`` and ``odd_slots`` of stream.py hand the nine slots of a row to one row kernel, the same for both.
 """
 
 import numpy as np
@@ -35,4 +35,4 @@ def viscosity(relaxation_time: float) -> float:
 
 def direction(cx: int, cy: int) -> int:
     """Number of the direction with components cx, cy."""
-    return int(np.flatnonzero((CX == cx) & (CY == cy))[0])
+    return int(np.flatnonzero((cx == CX) & (cy == CY))[0])

@@ -31,8 +31,24 @@ def parameters(
     """
     even, odd = 1 / relaxation_time, odd_rate(relaxation_time, magic)
     return np.array(
-        [even, odd, force[0], force[1], 1 - even / 2, 1 - odd / 2, 4 / 9, 1 / 9, 1 / 36, 1 / 3, 1 / 12, 3]
-        + [1, 0.5, 1.5, 4.5],
+        [
+            even,
+            odd,
+            force[0],
+            force[1],
+            1 - even / 2,
+            1 - odd / 2,
+            4 / 9,
+            1 / 9,
+            1 / 36,
+            1 / 3,
+            1 / 12,
+            3,
+            1,
+            0.5,
+            1.5,
+            4.5,
+        ],
         dtype=dtype,
     )
 
