@@ -1,0 +1,145 @@
+"""card.json: what was run, with what, where, and how it ended."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import json
+import math
+import os
+import platform
+import subprocess
+import sys
+from collections.abc import Collection
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import porescale
+from porescale.ground import jit
+from porescale.runs.atomic import write_text
+
+NAME = "card.json"
+RUNNING, FINISHED, INTERRUPTED, UNSTABLE, FAILED = "running", "finished", "interrupted", "unstable", "failed"
+FREE = ("duration", "snapshot_interval", "series_interval", "checkpoint_seconds", "output")
+"""Scene keys (or whole sections) that may change when a run is resumed: they do not enter the physics."""
+
+
+def new_card(given: dict[str, Any]) -> dict[str, Any]:
+    """A card for a run that starts now: ``given`` ("scene", "seeds", ...) and the circumstances."""
+    return {
+        **plain(given),
+        "versions": versions(),
+        "sources": jit.source_hash(),
+        "commit": commit(),
+        "threads": jit.threads(),
+        "machine": machine(),
+        "command": list(sys.argv),
+        "started": now(),
+        "ended": None,
+        "seconds": 0.0,
+        "step": 0,
+        "time": 0.0,
+        "outcome": RUNNING,
+    }
+
+
+def write_card(folder: Path, card: dict[str, Any]) -> None:
+    """Write the card, whole or not at all."""
+    write_text(Path(folder) / NAME, json.dumps(plain(card), indent=2, ensure_ascii=False) + "\n")
+
+
+def read_card(folder: Path) -> dict[str, Any]:
+    """The card of a run; FileNotFoundError or ValueError when there is none."""
+    card = json.loads((Path(folder) / NAME).read_text(encoding="utf-8"))
+    if not isinstance(card, dict):
+        raise ValueError("not a card")
+    return card
+
+
+def now() -> str:
+    """The time of day, UTC, to the second."""
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+def versions() -> dict[str, str | None]:
+    """Versions of what the numbers depend on."""
+    found: dict[str, str | None] = {"python": platform.python_version(), "porescale": porescale.__version__}
+    for name in ("numpy", "numba", "llvmlite", "h5py", "scipy"):
+        try:
+            found[name] = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:
+            found[name] = None
+    return found
+
+
+def commit() -> dict[str, Any] | None:
+    """{"hash", "changed"} of the git checkout that the package lies in, None when it lies in none."""
+    root = Path(__file__).resolve().parents[2]
+    if not (root / ".git").exists():
+        return None
+    try:
+        revision = _git(root, "rev-parse", "HEAD")
+        changed = bool(_git(root, "status", "--porcelain", "--untracked-files=no"))
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return {"hash": revision, "changed": changed}
+
+
+def _git(root: Path, *words: str) -> str:
+    done = subprocess.run(
+        ["git", "-C", str(root), *words], capture_output=True, text=True, timeout=10, check=True
+    )
+    return done.stdout.strip()
+
+
+def machine() -> dict[str, Any]:
+    """Processor, cores this process may use, memory (bytes), operating system."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    memory = None
+    if hasattr(os, "sysconf") and "SC_PHYS_PAGES" in os.sysconf_names:
+        memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    return {"processor": _processor(), "cores": cores, "memory": memory, "system": platform.platform()}
+
+
+def _processor() -> str:
+    """The processor's own name where the system tells it."""
+    info = Path("/proc/cpuinfo")
+    if info.exists():
+        for line in info.read_text(errors="replace").splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    return platform.processor() or platform.machine()
+
+
+def plain(value: Any) -> Any:
+    """``value`` as JSON has it: numpy numbers as numbers, arrays as lists, paths, inf, nan as text."""
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple | set | frozenset):
+        return [plain(item) for item in value]
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return repr(value)
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    return str(value)
+
+
+def changed_keys(
+    old: Any, new: Any, free: Collection[str] = FREE, place: str = ""
+) -> dict[str, tuple[Any, Any]]:
+    """Dotted keys in which two scenes differ, with both values, but for ``free`` ones and below."""
+    if place and place.rpartition(".")[2] in free:
+        return {}
+    if isinstance(old, dict) and isinstance(new, dict):
+        found: dict[str, tuple[Any, Any]] = {}
+        for key in [*old, *(key for key in new if key not in old)]:
+            below = f"{place}.{key}" if place else str(key)
+            found |= changed_keys(old.get(key), new.get(key), free, below)
+        return found
+    return {} if old == new else {place: (old, new)}

@@ -1,0 +1,115 @@
+"""Open the folder of a run, finished or killed, and look at it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from porescale.ground.check import Fault, InputError
+from porescale.runs import card as cards
+from porescale.runs import snapshots
+from porescale.runs.atomic import owned
+from porescale.runs.model import Array, Snapshot
+from porescale.runs.series import NAME as SERIES
+from porescale.runs.series import read_series
+from porescale.runs.vtkhdf import Frame
+
+
+class Run:
+    """What a run recorded.  Snapshots are read when asked for, one at a time."""
+
+    def __init__(self, folder: Path, card: dict[str, Any], frames: dict[int, dict[str, Frame]]) -> None:
+        self.folder, self.card = folder, card
+        self._frames = list(frames.items())
+
+    @property
+    def name(self) -> str:
+        """The run's name: the card's, or the folder's."""
+        return str(self.card.get("name") or self.folder.resolve().name)
+
+    @cached_property
+    def series(self) -> dict[str, Array]:
+        """Columns of series.csv by name ("time (s)", ...), each (rows,)."""
+        return read_series(self.folder / SERIES)
+
+    @property
+    def times(self) -> Array:
+        """(snapshots,) s."""
+        return np.array([next(iter(entry.values())).time for _, entry in self._frames])
+
+    @property
+    def steps(self) -> Array:
+        """(snapshots,) steps done."""
+        return np.array([step for step, _ in self._frames], np.int64)
+
+    @property
+    def grids(self) -> list[str]:
+        """Names of the grids in every snapshot."""
+        return sorted(self.snapshot(0).grids) if self._frames else []
+
+    @property
+    def clouds(self) -> list[str]:
+        """Names of the clouds in every snapshot."""
+        return sorted(self.snapshot(0).clouds) if self._frames else []
+
+    def __len__(self) -> int:
+        return len(self._frames)
+
+    def snapshot(self, k: int) -> Snapshot:
+        """Snapshot ``k`` (negative from the end).  IndexError beyond, InputError when its file is damaged."""
+        step, entry = self._frames[k]
+        try:
+            return snapshots.load(entry, step)
+        except (OSError, KeyError, ValueError, RuntimeError) as error:
+            raise _damaged(self.folder, error) from error
+
+    def nearest(self, time: float) -> Snapshot:
+        """The snapshot nearest to ``time``, s."""
+        return self.snapshot(int(np.abs(self.times - time).argmin()))
+
+    def snapshots(self) -> Iterator[Snapshot]:
+        """All snapshots in time, one in memory at a time."""
+        return (self.snapshot(k) for k in range(len(self)))
+
+
+def open_run(folder: Path | str) -> Run:
+    """Open a run folder.  The parts of a killed run are joined first, unless a living run holds the folder.
+
+    InputError when the folder holds no run or its files are damaged.
+    """
+    folder = Path(folder)
+    try:
+        card = cards.read_card(folder)
+    except (OSError, ValueError) as error:
+        missing = isinstance(error, OSError)
+        problem = "no run here (card.json is missing)" if missing else "card.json is damaged"
+        repair = "name a folder that `run` has written"
+        raise InputError(Fault("run folder", str(folder), problem, repair=repair)) from error
+    try:
+        if snapshots.parts(folder):
+            _join(folder)
+        return Run(folder, card, snapshots.catalogue(folder))
+    except (OSError, KeyError, ValueError, RuntimeError) as error:
+        raise _damaged(folder, error) from error
+
+
+def _join(folder: Path) -> None:
+    """Join parts where this process may write and nobody else does; they can be read as they are otherwise."""
+    try:
+        with owned(folder) as held:
+            if held:
+                snapshots.assemble(folder)
+    except PermissionError:
+        return
+
+
+def _damaged(folder: Path, error: Exception) -> InputError:
+    reason = " ".join(str(error).split())[:120]
+    repair = "run it again, or take the file from a backup"
+    return InputError(
+        Fault("run folder", str(folder), f"a snapshot file is damaged ({reason})", repair=repair)
+    )

@@ -1,0 +1,137 @@
+"""How far a run is, for people: a bar with time left on a terminal, a line every ten seconds elsewhere."""
+
+from __future__ import annotations
+
+import threading
+import time as clock
+from types import TracebackType
+
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    Progress,
+    SpinnerColumn,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+from rich.text import Text
+
+PATIENCE = 2.0
+"""Seconds after which a person wonders what happens."""
+LINE_EVERY = 10.0
+COMPILING = "compiling kernels"
+
+
+class Watch:
+    """Context that shows the progress of a run from ``start`` to ``end`` (s of simulated time).
+
+    quiet : nothing at all.  On a terminal a bar appears after two seconds; otherwise plain lines on stderr,
+    the first after ten seconds.  Until the first :meth:`update` the run counts as compiling its kernels.
+    """
+
+    def __init__(self, title: str, start: float, end: float, *, quiet: bool = False) -> None:
+        self.title, self.start, self.end, self.quiet = title, start, end, quiet
+        self.console = Console(stderr=True)
+        self.bar: Progress | None = None
+        self.phase = COMPILING
+        self.time, self.step = start, 0
+        self.began = clock.perf_counter()
+        self.running_since: float | None = None
+        self.last_line = self.began
+        self._stop = threading.Event()
+        self._thread: threading.Thread | None = None
+
+    def __enter__(self) -> Watch:
+        self.began = self.last_line = clock.perf_counter()
+        if not self.quiet:
+            self._thread = threading.Thread(target=self._attend, daemon=True)
+            self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._stop.set()
+        if self._thread is not None:
+            self._thread.join()
+
+    def update(self, step: int, time: float) -> None:
+        """The run has come to ``step`` at ``time``, s."""
+        self.step, self.time = step, time
+        if self.running_since is None:
+            self.running_since = clock.perf_counter()
+            self.start = time
+            self.phase = "running"
+
+    def enter(self, phase: str) -> None:
+        """Name what happens now, e.g. "writing pictures and film"."""
+        self.phase = phase
+
+    def say(self, text: str) -> None:
+        """One line for people."""
+        if not self.quiet:
+            self.console.print(Text(text), highlight=False, soft_wrap=True)
+
+    def left(self) -> float | None:
+        """Seconds left at the mean speed since the first step; None while unknown."""
+        if self.running_since is None or self.time <= self.start:
+            return None
+        spent = clock.perf_counter() - self.running_since
+        return spent * (self.end - self.time) / (self.time - self.start)
+
+    def line(self) -> str:
+        """Where the run is, in one line."""
+        share = 100 * self.time / self.end if self.end else 100.0
+        text = f"{self.title}: {self.phase}, t = {self.time:.4g} of {self.end:.4g} s ({share:.0f} %)"
+        text += f", step {self.step}"
+        left = self.left()
+        return text if left is None else f"{text}, {duration(left)} left"
+
+    def _attend(self) -> None:
+        """Runs beside the model: wakes the bar after a while, then keeps it or the lines going."""
+        if self._stop.wait(PATIENCE):
+            return
+        if self.console.is_terminal:
+            self._show_bar()
+            return
+        while not self._stop.wait(LINE_EVERY if self.last_line > self.began else LINE_EVERY - PATIENCE):
+            self.last_line = clock.perf_counter()
+            self.say(self.line())
+
+    def _show_bar(self) -> None:
+        columns = (
+            SpinnerColumn(),
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TaskProgressColumn(),
+            TextColumn("{task.fields[where]}"),
+            TimeElapsedColumn(),
+            TextColumn("left"),
+            TimeRemainingColumn(),
+        )
+        with Progress(*columns, console=self.console, transient=True) as bar:
+            task = bar.add_task(self.title, start=False, total=None, where="")
+            started = False
+            while not self._stop.wait(0.2):
+                if self.running_since is not None and not started:
+                    bar.start_task(task)
+                    started = True
+                bar.update(
+                    task,
+                    description=f"{self.title}: {self.phase}",
+                    total=self.end if started else None,
+                    completed=self.time,
+                    where=f"t = {self.time:.4g} s",
+                )
+
+
+def duration(seconds: float) -> str:
+    """Seconds as people say them: "8 s", "3 min 20 s", "2 h 05 min"."""
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60:02d} s"
+    return f"{whole // 3600} h {whole % 3600 // 60:02d} min"

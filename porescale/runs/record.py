@@ -1,0 +1,191 @@
+"""The files of one run while it is driven: series, snapshot parts, checkpoint, card.
+
+The checkpoint is the authority.  It holds the model's state, how long series.csv was, and which snapshot
+was the last; resuming cuts both back to it.  Rows and snapshots that are there only because the run ended
+(not on their schedule) are marked, so that a run extended later is the same as one that was longer from the
+start.
+"""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Collection
+from pathlib import Path
+from typing import Any
+
+from porescale.ground.check import Fault, InputError
+from porescale.runs import atomic, snapshots
+from porescale.runs import card as cards
+from porescale.runs.checkpoint import read_checkpoint, read_header, write_checkpoint
+from porescale.runs.model import Model
+from porescale.runs.schedule import Schedule
+from porescale.runs.series import NAME as SERIES
+from porescale.runs.series import Series
+
+CHECKPOINT = "checkpoint.h5"
+MADE_LATER = ("*.png", "film.mp4", "film.webm")
+WORTH_KEEPING = 60.0
+"""An unfinished run that cost more than this many seconds is not overwritten without being asked."""
+
+
+class Record:
+    """Open files of a run.  Made by :meth:`fresh` or :meth:`resumed`."""
+
+    def __init__(self, folder: Path, card: dict[str, Any], keep: int = 0) -> None:
+        self.folder, self.card = folder, card
+        self.series = Series(folder / SERIES, keep)
+        self.scheduled_bytes = keep
+        self.row_step = self.snapshot_step = -1
+        self.before = float(card["seconds"])
+        self.began = clock.perf_counter()
+        self.saved = self.began
+        self.save_cost = 0.0
+        self.saved_step: int | None = None
+        self.saved_time = 0.0
+        self.snapshots = len(snapshots.catalogue(folder))
+        self.scheduled_row_step = self.scheduled_snapshot_step = -1
+
+    @classmethod
+    def fresh(cls, folder: Path, given: dict[str, Any]) -> Record:
+        """Start in ``folder``; an older run there is removed, unless it is unfinished and was dear."""
+        if (folder / cards.NAME).exists():
+            _refuse_to_lose(folder)
+            for name in (SERIES, CHECKPOINT, cards.NAME):
+                (folder / name).unlink(missing_ok=True)
+            for pattern in MADE_LATER:
+                for path in folder.glob(pattern):
+                    path.unlink()
+            snapshots.clear(folder)
+        card = cards.new_card(given)
+        cards.write_card(folder, card)
+        return cls(folder, card)
+
+    @classmethod
+    def resumed(
+        cls, folder: Path, given: dict[str, Any], model: Model, schedules: dict[str, Schedule]
+    ) -> Record:
+        """Go on from the checkpoint: the model, the schedules and the files as they were then."""
+        content = read_checkpoint(folder / CHECKPOINT)
+        card = {**cards.read_card(folder), **cards.plain(given)}
+        try:
+            model.restore(content["state"])
+            meta = content["record"]
+            keep = int(meta["series_bytes"])
+            extra = meta["snapshot_step"] != meta["last_snapshot_step"]
+        except (KeyError, ValueError, TypeError, IndexError) as error:
+            reason = f"does not fit this model ({' '.join(str(error).split())[:120]})"
+            repair = "start the run anew"
+            raise InputError(Fault("checkpoint", str(folder / CHECKPOINT), reason, repair=repair)) from error
+        for name, schedule in schedules.items():
+            schedule.restore(content["schedules"][name], model.time)
+        snapshots.trim(folder, model.step - 1 if extra else model.step)
+        snapshots.assemble(folder)
+        card["seconds"] = content["seconds"]
+        card["resumed"] = [
+            *card.get("resumed", []),
+            {"at": cards.now(), "step": model.step, "time": model.time},
+        ]
+        card.update(outcome=cards.RUNNING, ended=None)
+        card.pop("problem", None)
+        cards.write_card(folder, card)
+        record = cls(folder, card, keep)
+        record.row_step = record.scheduled_row_step = int(meta["row_step"])
+        record.snapshot_step = record.scheduled_snapshot_step = int(meta["snapshot_step"])
+        record.saved_step, record.saved_time = model.step, model.time
+        return record
+
+    def seconds(self) -> float:
+        """Wall-clock time spent on this run so far, all sessions together."""
+        return self.before + clock.perf_counter() - self.began
+
+    def row(self, model: Model, *, scheduled: bool) -> None:
+        """Append a row of the series."""
+        self.series.append(model.series())
+        self.row_step = model.step
+        if scheduled:
+            self.scheduled_row_step, self.scheduled_bytes = model.step, self.series.length
+
+    def snapshot(self, model: Model, *, scheduled: bool) -> None:
+        """Put a snapshot on disk."""
+        snapshots.write_part(self.folder, model.snapshot())
+        self.snapshot_step = model.step
+        self.snapshots += 1
+        if scheduled:
+            self.scheduled_snapshot_step = model.step
+
+    def save(self, model: Model, schedules: dict[str, Schedule]) -> None:
+        """Write the checkpoint."""
+        start = clock.perf_counter()
+        self.series.sync()
+        content = {
+            "step": model.step,
+            "time": model.time,
+            "seconds": self.seconds(),
+            "record": {
+                "series_bytes": self.scheduled_bytes,
+                "row_step": self.scheduled_row_step,
+                "snapshot_step": self.scheduled_snapshot_step,
+                "last_snapshot_step": self.snapshot_step,
+                "snapshots": self.snapshots,
+            },
+            "schedules": {name: schedule.state() for name, schedule in schedules.items()},
+            "state": model.state(),
+        }
+        write_checkpoint(self.folder / CHECKPOINT, content)
+        self.saved = clock.perf_counter()
+        self.save_cost = self.saved - start
+        self.saved_step, self.saved_time = model.step, model.time
+
+    def last_good(self) -> str:
+        """Where the last good state lies, for people."""
+        if self.saved_step is None:
+            return "no good state was saved"
+        where = f"step {self.saved_step}, t = {self.saved_time:.6g} s"
+        return f"last good state: {self.folder / CHECKPOINT} ({where})"
+
+    def close(self, model: Model, outcome: str, problem: str = "") -> None:
+        """Join the parts and say in the card how the run ended."""
+        self.series.close()
+        snapshots.assemble(self.folder)
+        self.conclude(model, outcome, problem)
+
+    def conclude(self, model: Model, outcome: str, problem: str = "") -> None:
+        """Say in the card how the run ended."""
+        self.card.update(
+            outcome=outcome, ended=cards.now(), seconds=self.seconds(), step=model.step, time=model.time
+        )
+        if problem:
+            self.card["problem"] = problem
+        cards.write_card(self.folder, self.card)
+
+
+def refuse_changes(folder: Path, given: dict[str, Any], free: Collection[str]) -> None:
+    """InputError naming every scene key that differs from the run in ``folder`` and may not."""
+    old, new = cards.read_card(folder).get("scene"), cards.plain(given).get("scene")
+    faults = []
+    for key, (was, now) in cards.changed_keys(old, new, free).items():
+        repair = f"resume with {was!r}, or start another run"
+        faults.append(
+            Fault(key or "scene", now if now is not None else "absent", f"was {was!r}", repair=repair)
+        )
+    if faults:
+        raise InputError(faults)
+
+
+def _refuse_to_lose(folder: Path) -> None:
+    """InputError when ``folder`` holds an unfinished run worth keeping."""
+    try:
+        outcome = cards.read_card(folder).get("outcome")
+        header = read_header(folder / CHECKPOINT)
+    except (ValueError, InputError):
+        return
+    if outcome in (cards.RUNNING, cards.INTERRUPTED) and header["seconds"] > WORTH_KEEPING:
+        problem = f"holds an unfinished run of {header['seconds']:.0f} s, saved at t = {header['time']:.4g} s"
+        repair = "resume it, remove the folder, or name another one"
+        raise InputError(Fault("run folder", str(folder), problem, repair=repair))
+
+
+def prepare(folder: Path) -> None:
+    """Remove what killed writers left half-made."""
+    atomic.clean(folder)
+    snapshots.clean(folder)
