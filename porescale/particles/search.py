@@ -68,7 +68,7 @@ def count_stretch(i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, perio
     vectorises.
     """
     found = 0
-    for k in range(k0, k1):
+    for k in range(np.uint64(k0), np.uint64(k1)):  # unsigned: no wraparound of negative indices
         dx = minimum_image(xi - sx[k], period_x)
         dy = minimum_image(yi - sy[k], period_y)
         reached = reach_i + sreach[k] + skin
@@ -81,27 +81,28 @@ def count_stretch(i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, perio
 def fill_stretch(
     i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, period_x, period_y, full, partner, slot, end
 ):  # fmt: skip
-    """As count_stretch, writing partners from ``partner[slot]`` on, never at ``end`` or beyond; returns their
-    number.
+    """As count_stretch, writing partners from ``partner[slot]`` on, never at ``end`` or beyond; returns
+    their number.
 
     Every candidate is written and only a partner moves on to the next slot: half the candidates are partners,
     and a branch on that would be guessed wrong every other time.
     """
     begin = slot
-    for k in range(k0, k1):
+    for k in range(np.uint64(k0), np.uint64(k1)):  # unsigned: no wraparound of negative indices
         dx = minimum_image(xi - sx[k], period_x)
         dy = minimum_image(yi - sy[k], period_y)
         reached = reach_i + sreach[k] + skin
         j = order[k]
         if slot < end:
-            partner[slot] = j
+            partner[np.uint64(slot)] = j
         slot += (dx * dx + dy * dy < reached * reached) & ((j > i) | (full & (j != i)))
     return slot - begin
 
 
 @inline
 def search_row(
-    write, i, x, reach, sx, sy, sreach, order, cell_start, lower_x, lower_y, inverse_x, inverse_y, columns, rows,
+    write, i, x, reach, sx, sy, sreach, order, cell_start,
+    lower_x, lower_y, inverse_x, inverse_y, columns, rows,
     period_x, period_y, largest, skin, full, partner, begin, end,
 ):  # fmt: skip
     """Number of partners of point i; if ``write``, they are put ascending into ``partner[begin:end]``.
