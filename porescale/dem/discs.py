@@ -1,7 +1,7 @@
 """Discs: the state of rigid round grains in two dimensions, one array per quantity.
 
-Mass and moment of inertia are those of a homogeneous cylinder per metre of depth, m = pi r^2 rho and I = m r^2/2.
-Velocity and spin are held at half steps (integrate.py); position and angle at whole steps.
+Mass and moment of inertia are those of a homogeneous cylinder per metre of depth, m = pi r^2 rho and I = m
+r^2/2. Velocity and spin are held at half steps (integrate.py); position and angle at whole steps.
 """
 
 from __future__ import annotations

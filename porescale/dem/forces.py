@@ -1,9 +1,9 @@
 """Forces between discs: one pass over a half list of pairs.
 
-With n = (x_j - x_i)/d and t = (-n_y, n_x) the slip v_t = (v_i - v_j).t + w_i a_i + w_j a_j does not change when i
-and j swap, so the history of a contact is one number.  The lever arms a_i = (d^2 + r_i^2 - r_j^2)/(2d), a_j = d - a_i
-reach to the chord of the overlap, where both bodies see the same force: angular momentum is kept to round-off.
-With the radii in their place it leaks by overlap times friction.
+With n = (x_j - x_i)/d and t = (-n_y, n_x) the slip v_t = (v_i - v_j).t + w_i a_i + w_j a_j does not change
+when i and j swap, so the history of a contact is one number.  The lever arms a_i = (d^2 + r_i^2 -
+r_j^2)/(2d), a_j = d - a_i reach to the chord of the overlap, where both bodies see the same force: angular
+momentum is kept to round-off. With the radii in their place it leaks by overlap times friction.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ def add_pair_forces(
     """Add the contacts of all listed pairs; reset the springs of those that do not touch.
 
     position, velocity (n, 2) m, m/s;  spin, radius (n,) rad/s, m;  start (n + 1,), partner (m,) half list in CSR;
-    period m, 0 where not periodic;  law (7,) row;  dt s.  Adds to force (n, 2) N/m and torque (n,) N m/m in the
-    order of the list; overwrites carried (m, >= 1), column 0 the tangential spring, m.
+    period m, 0 where not periodic;  law (7,) row;  dt s.  Adds to force (n, 2) N/m and torque (n,) N m/m
+    in the order of the list; overwrites carried (m, >= 1), column 0 the tangential spring, m.
     Not checked: two centres in one place give nan, which Grains.check reports.
     """
     for i in range(radius.shape[0]):

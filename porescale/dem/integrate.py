@@ -23,7 +23,8 @@ NEIGHBOURS = 6
 def kick_drift(
     position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt
 ):  # fmt: skip
-    """Move all discs one step; True when one has gone further than allowed from its anchor (or is no number).
+    """Move all discs one step; True when one has gone further than allowed from its anchor (or is no
+    number).
 
     Overwrites position (n, 2) m, angle (n,) rad, velocity (n, 2) m/s, spin (n,) rad/s.  mass, inertia (n,) kg/m,
     kg m^2/m;  force (n, 2) N/m, torque (n,) N m/m;  anchor (n, 2) m, limit_square m^2: the list's skin test;
@@ -53,7 +54,8 @@ def contact_steps(
     external_force, external_torque, start, partner, carried, anchor, limit_square, period_x, period_y, law,
     walls, wall_laws, wall_spring, wall_force, plates, plate_laws, plate_spring, plate_force,
 ):  # fmt: skip
-    """Up to ``count`` contact steps; returns (steps done, whether the pair list must be rebuilt first to go on).
+    """Up to ``count`` contact steps; returns (steps done, whether the pair list must be rebuilt first to
+    go on).
 
     Arrays as in add_pair_forces, add_wall_forces, add_plate_forces and kick_drift; external_force (n, 2) N/m
     and external_torque (n,) N m/m are held over all steps.  Overwrites the state of discs, springs, plates.
@@ -94,21 +96,23 @@ def packing_factor(normal: float, tangential: float) -> float:
     """Largest eigenvalue bound, N/m: m w^2 of the stiffest motion in any packing of discs of mass >= m.
 
     Energy of a contact: k_n/2 (n.(u_i - u_j))^2 + k_t/2 (t.(u_i - u_j) + r_i q_i + r_j q_j)^2.  From
-    (a - b)^2 <= 2 a^2 + 2 b^2 it is at most the sum over both ends of k_n (n.u)^2 + k_t (t.u + r q)^2, so w^2 is at
-    most the largest eigenvalue of a single disc on contacts twice as stiff, held still at their other ends.  The
-    smallest disc is the stiffest; it touches at most 6, and six contacts 60 degrees apart give
+    (a - b)^2 <= 2 a^2 + 2 b^2 it is at most the sum over both ends of k_n (n.u)^2 + k_t (t.u + r q)^2, so
+    w^2 is at most the largest eigenvalue of a single disc on contacts twice as stiff, held still at their
+    other ends.  The smallest disc is the stiffest; it touches at most 6, and six contacts 60 degrees apart
+    give
         translation: 2 * 3 (k_n + k_t)/m,      rotation: 2 * 6 k_t r^2/I = 24 k_t/m.
-    Table 1 of Saito et al. (k_t = k_n/4): 7.5 k_n/m, dt = 2.2e-5 s; the infinite triangular lattice itself reaches
-    6.5 k_n/m, 2.3e-5 s (a zone-boundary wave), where one pair alone allows 4.2e-5 s.
+    Table 1 of Saito et al. (k_t = k_n/4): 7.5 k_n/m, dt = 2.2e-5 s; the infinite triangular lattice itself
+    reaches 6.5 k_n/m, 2.3e-5 s (a zone-boundary wave), where one pair alone allows 4.2e-5 s.
     """
     return max(NEIGHBOURS * (normal + tangential), 4.0 * NEIGHBOURS * tangential)
 
 
 def packing_limit(law: Linear, mass: float) -> float:
-    """Stability limit (s) in any packing whose lightest disc has ``mass`` (kg/m), damping lagged half a step.
+    """Stability limit (s) in any packing whose lightest disc has ``mass`` (kg/m), damping lagged half a
+    step.
 
-    A mode z = -1 needs dt^2 K + 2 dt C = 4 M; with bounds K/M = a, C/M = b: dt = 2 / (b/2 + sqrt(b^2/4 + a)), which
-    is 2 (sqrt(1 + h^2) - h)/w for one pair.
+    A mode z = -1 needs dt^2 K + 2 dt C = 4 M; with bounds K/M = a, C/M = b: dt = 2 / (b/2 + sqrt(b^2/4 +
+    a)), which is 2 (sqrt(1 + h^2) - h)/w for one pair.
     """
     a = packing_factor(law.stiffness, law.tangential_stiffness) / mass
     b = packing_factor(law.damping, law.tangential_damping) / mass
@@ -120,8 +124,8 @@ def stable_step(
 ) -> float:
     """A safe contact step (s) for discs whose lightest has ``mass`` (kg/m) under all of ``laws``.
 
-    ``safety`` times the packing limit, and at least ``steps_per_contact`` steps in the shortest contact of two
-    such discs (a free bounce errs by about a step in its duration; 0: stability alone decides).
+    ``safety`` times the packing limit, and at least ``steps_per_contact`` steps in the shortest contact of
+    two such discs (a free bounce errs by about a step in its duration; 0: stability alone decides).
     """
     steps = []
     for law in [laws] if isinstance(laws, Linear) else laws:

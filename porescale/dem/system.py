@@ -1,4 +1,6 @@
-"""A system of grains: discs, their law, the walls and plates around them, and the list of pairs, stepped together."""
+"""A system of grains: discs, their law, the walls and plates around them, and the list of pairs, stepped
+together.
+"""
 
 from __future__ import annotations
 
@@ -25,12 +27,13 @@ WORST_TRAVEL = 0.1  # of the smallest radius in one step: a contact would be met
 class Grains:
     """Discs under ``law`` in ``box`` with ``plates``.
 
-    law : between discs;  wall_law : at sides and plates (default: ``law``); a plate may have its own friction.
-    skin : m, of the pair list (default 0.3 mean radii).
+    law : between discs;  wall_law : at sides and plates (default: ``law``); a plate may have its own
+    friction. skin : m, of the pair list (default 0.3 mean radii).
 
-    Positions are not wrapped on periodic sides.  The first step starts from velocities half a step back; for a
-    start from rest that is the same.  ``steps`` and ``time`` count contact steps and seconds.
-    Arrays held: wall_force (w, 2), plate_force (p, 2) N/m of the last step, wall_spring (w, n), plate_spring (p, n) m.
+    Positions are not wrapped on periodic sides.  The first step starts from velocities half a step back;
+    for a start from rest that is the same.  ``steps`` and ``time`` count contact steps and seconds.
+    Arrays held: wall_force (w, 2), plate_force (p, 2) N/m of the last step, wall_spring (w, n),
+    plate_spring (p, n) m.
     """
 
     def __init__(
@@ -52,7 +55,7 @@ class Grains:
         self.wall_names, self.walls = box.walls()
         self.plate_names = [plate.name for plate in plates]
         self.plates = np.array([plate.row() for plate in plates]).reshape(-1, 5)
-        self._plate_frictions = [plate.friction for plate in plates]
+        self.plate_frictions = [plate.friction for plate in plates]
         self.set_law(law, wall_law)
         self.wall_spring = np.zeros((len(self.walls), count))
         self.wall_force = np.zeros((len(self.walls), 2))
@@ -73,7 +76,7 @@ class Grains:
         self.plate_laws = np.array(
             [
                 (self.wall_law if own is None else self.wall_law.with_friction(own)).row()
-                for own in self._plate_frictions
+                for own in self.plate_frictions
             ]
         ).reshape(-1, COLUMNS)
 
@@ -94,10 +97,11 @@ class Grains:
         count: int = 1,
         drag: float = 0.0,
     ) -> None:
-        """``count`` contact steps of ``dt`` (s) with the external force (n, 2) N/m and torque (n,) N m/m held.
+        """``count`` contact steps of ``dt`` (s) with the external force (n, 2) N/m and torque (n,) N m/m
+        held.
 
-        None: zero.  drag (1/s): background damping, for settling only.  Raises Unstable when the list must be
-        rebuilt and a position is no number.
+        None: zero.  drag (1/s): background damping, for settling only.  Raises Unstable when the list must
+        be rebuilt and a position is no number.
         """
         if external_force is None:
             self.external_force[:] = 0.0
@@ -117,7 +121,8 @@ class Grains:
                 left, dt, drag,
                 d.position, d.angle, d.velocity, d.spin, d.radius, d.mass, d.inertia, d.force, d.torque,
                 self.external_force, self.external_torque,
-                pairs.start, pairs.partner, pairs.carried, pairs.anchor, limit, *self.box.period, self.law_row,
+                pairs.start, pairs.partner, pairs.carried, pairs.anchor, limit, *self.box.period,
+                self.law_row,
                 self.walls, self.wall_laws, self.wall_spring, self.wall_force,
                 self.plates, self.plate_laws, self.plate_spring, self.plate_force,
             )  # fmt: skip
@@ -155,8 +160,8 @@ class Grains:
     def check(self) -> None:
         """Raise Unstable, naming grain, quantity and step, when the state is beyond sense.
 
-        That is: a number that is none; a speed beyond 0.1 smallest radii per step; an overlap beyond 30 % of the
-        radius; a centre behind a solid side.
+        That is: a number that is none; a speed beyond 0.1 smallest radii per step; an overlap beyond 30 %
+        of the radius; a centre behind a solid side.
         """
         from porescale.dem.measure import max_overlap
 
@@ -169,7 +174,7 @@ class Grains:
             if speed[fastest] * self.last_dt > WORST_TRAVEL * self._smallest:
                 raise self._unstable(
                     f"grain {fastest}", "speed", float(speed[fastest]), "m/s",
-                    f"it moves more than {WORST_TRAVEL:g} of the smallest radius in a step: shorten the contact step",
+                    f"more than {WORST_TRAVEL:g} of the smallest radius in a step: shorten the contact step",
                 )  # fmt: skip
         for name, wall in zip(self.wall_names, self.walls, strict=True):
             distance = (self.discs.position - wall[:2]) @ wall[2:]
@@ -221,7 +226,9 @@ class Grains:
         }
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Go on exactly from ``state()`` of a system made alike; raises InputError when the numbers differ."""
+        """Go on exactly from ``state()`` of a system made alike; raises InputError when the numbers
+        differ.
+        """
         self.discs.restore(state["discs"])
         for name in ("wall_spring", "wall_force", "plates", "plate_spring", "plate_force",
                      "external_force", "external_torque"):  # fmt: skip

@@ -1,8 +1,8 @@
 """Walls: the straight sides of the domain, and plates, which are upright line segments that can move.
 
 A wall is a point and a normal that points into the domain; behind it is solid without end.  A plate has no
-thickness and takes contacts on both sides and at its ends, by its closest point.  Both use the contact law of
-pairs (contact_force): the limit r_j -> infinity of the pair's lever arm is the distance to the wall.
+thickness and takes contacts on both sides and at its ends, by its closest point.  Both use the contact law
+of pairs (contact_force): the limit r_j -> infinity of the pair's lever arm is the distance to the wall.
 Every disc keeps one tangential spring per wall and per plate, zero while they do not touch.
 """
 
@@ -30,7 +30,9 @@ X, LOW, HIGH, VELOCITY, PRESENT = range(5)
 
 @dataclass(frozen=True)
 class Box:
-    """The domain: corners in m, and what each side is: "solid", "periodic" (opposite sides both) or "open"."""
+    """The domain: corners in m, and what each side is: "solid", "periodic" (opposite sides both) or
+    "open".
+    """
 
     lower: tuple[float, float]
     upper: tuple[float, float]
@@ -87,7 +89,9 @@ class Box:
 
 @dataclass(frozen=True)
 class Plate:
-    """An upright plate without thickness: x, ends (m), upward velocity (m/s), friction (None: that of the walls)."""
+    """An upright plate without thickness: x, ends (m), upward velocity (m/s), friction (None: that of the
+    walls).
+    """
 
     x: float
     y_low: float
@@ -115,7 +119,8 @@ def surface_contact(nx, ny, distance, overlap, vx, vy, spin, spring, dt, p):
     """Disc against a surface: (force x, force y N/m, torque N m/m, spring m) on the disc.
 
     (nx, ny) unit vector from the disc to the surface;  distance centre to surface (m), the lever arm;
-    overlap (m) > 0;  (vx, vy) velocity relative to the surface (m/s);  spin (rad/s);  dt (s);  p law row (7,).
+    overlap (m) > 0;  (vx, vy) velocity relative to the surface (m/s);  spin (rad/s);  dt (s);  p law row
+    (7,).
     """
     closing = vx * nx + vy * ny
     slip = vy * nx - vx * ny + spin * distance
@@ -165,7 +170,8 @@ def add_wall_forces(
 def add_plate_forces(
     position, velocity, spin, radius, force, torque, plates, laws, spring, plate_force, dt
 ):  # fmt: skip
-    """Add the contacts of all discs with all plates that are present; reset the springs of those that do not touch.
+    """Add the contacts of all discs with all plates that are present; reset the springs of those that do
+    not touch.
 
     plates (p, 5);  laws (p, 7);  spring (p, n) m;  plate_force (p, 2) N/m, force of the discs on each plate.
     The rest as in add_wall_forces.

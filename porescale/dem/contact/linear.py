@@ -8,10 +8,11 @@ Two rules for the end of a contact, which differ in restitution:
   release "overlap" : F as it is while d > 0, may attract; the contact ends when the overlap vanishes.
 
 Friction, limit L = mu max(0, F).  The spring is a Coulomb element of its own: first it moves with the slip,
-s <- s + v_t dt, and is cut back to |k_t s| <= L, which is the reset on sliding; only then the dashpot is added, and
-the sum is cut to |f| <= L again.  So the dashpot decides with the spring whether the contact slides, but never
-enters the stored spring.  Each cut only dissipates: a spring lengthens by no more than the slip that did work on it.
-(Resetting the spring to the limit with the dashpot in the check, as is common, stores energy nobody supplied.)
+s <- s + v_t dt, and is cut back to |k_t s| <= L, which is the reset on sliding; only then the dashpot is
+added, and the sum is cut to |f| <= L again.  So the dashpot decides with the spring whether the contact
+slides, but never enters the stored spring.  Each cut only dissipates: a spring lengthens by no more than
+the slip that did work on it. (Resetting the spring to the limit with the dashpot in the check, as is
+common, stores energy nobody supplied.)
 
 Sources: Cundall & Strack 1979; release at zero force: Schwager & Poeschel 2007, Granular Matter 9, 465.
 """
@@ -29,7 +30,9 @@ from porescale.ground.check import Fault, InputError
 from porescale.ground.jit import inline
 
 KN, CN, KT, CT, MU, RULE, YIELD = range(7)
-"""Columns of a law's row, as kernels read it; YIELD is 1/k_t, which spares a division per contact (0 for k_t = 0)."""
+"""Columns of a law's row, as kernels read it; YIELD is 1/k_t, which spares a division per contact (0 for
+k_t = 0).
+"""
 COLUMNS = 7
 RELEASES = ("force", "overlap")
 RELEASE_FORCE, RELEASE_OVERLAP = 0.0, 1.0
@@ -37,7 +40,9 @@ RELEASE_FORCE, RELEASE_OVERLAP = 0.0, 1.0
 
 @inline
 def normal_force(overlap, closing, p):
-    """Repulsion (N/m) at ``overlap`` (m) > 0 and ``closing`` speed (m/s) of the law row p (7,); see module."""
+    """Repulsion (N/m) at ``overlap`` (m) > 0 and ``closing`` speed (m/s) of the law row p (7,); see
+    module.
+    """
     force = p[KN] * overlap + p[CN] * closing
     if p[RULE] == RELEASE_FORCE:
         force = max(force, 0.0)
@@ -115,7 +120,9 @@ class Linear:
         friction: float = 0.0,
         release: str = "force",
     ) -> Linear:
-        """The law whose normal coefficient of restitution is ``restitution`` at effective ``mass`` (kg/m)."""
+        """The law whose normal coefficient of restitution is ``restitution`` at effective ``mass``
+        (kg/m).
+        """
         damping = damping_from_restitution(restitution, mass, stiffness, release)
         return cls(stiffness, damping, tangential_stiffness, tangential_damping, friction, release)
 
@@ -164,7 +171,9 @@ class Linear:
 
 
 def contact_phase(h: float, release: str) -> float:
-    """Duration of a contact times w0, at damping ratio ``h``; Schwager & Poeschel 2007 for release "force"."""
+    """Duration of a contact times w0, at damping ratio ``h``; Schwager & Poeschel 2007 for release
+    "force".
+    """
     if release == "overlap":
         return math.pi / math.sqrt(1.0 - h * h) if h < 1.0 else math.inf
     if abs(h - 1.0) < 1e-8:
