@@ -1,0 +1,31 @@
+"""Options that several commands share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import Parameter
+
+from porescale.ground.check import Fault, InputError
+
+Scene = Annotated[Path, Parameter(help="TOML file, or folder with scene.toml")]
+Quality = Annotated[
+    Literal["draft", "standard", "fine"] | None,
+    Parameter(help="level of the scene's [quality.…] tables; its quality_default if not given"),
+]
+Settings = Annotated[
+    list[str] | None,
+    Parameter(name="--set", help="section.key=value, over the scene and its quality; repeatable"),
+]
+Threads = Annotated[int | None, Parameter(help="threads of the kernels; all cores if not given")]
+Json = Annotated[bool, Parameter(name="--json", help="print JSON instead of tables")]
+
+
+def use_threads(count: int | None) -> int:
+    """Set the number of kernel threads and give the one in use; InputError below 1."""
+    from porescale.ground.jit import set_threads
+
+    if count is not None and count < 1:
+        raise InputError(Fault("--threads", count, "is out of range", "", ">= 1"))
+    return set_threads(count)

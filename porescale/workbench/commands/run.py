@@ -1,0 +1,90 @@
+"""`run SCENE`: a simulation and its run folder."""
+
+from __future__ import annotations
+
+import resource
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from porescale.ground.check import Fault, InputError
+from porescale.workbench.commands.options import Quality, Scene, Settings, Threads, use_threads
+from porescale.workbench.package import Outcome, Package
+
+CARD = "card.json"
+"""Every run folder has one from its first moment on."""
+
+
+def command(package: Package) -> Callable[..., int]:
+    """The `run` command of a package."""
+
+    def run(
+        scene: Scene,
+        /,
+        *,
+        out: Annotated[Path | None, Parameter(help="run folder; runs/<scene name> if not given")] = None,
+        quality: Quality = None,
+        settings: Settings = None,
+        threads: Threads = None,
+        resume: Annotated[bool, Parameter(help="go on with the run in the run folder")] = False,
+        overwrite: Annotated[bool, Parameter(help="replace the run in the run folder")] = False,
+        quiet: Annotated[bool, Parameter(help="no progress, no summary")] = False,
+    ) -> int:
+        """Run a scene and write its run folder."""
+        from porescale.workbench.sections import open_scene, scene_as_dict
+
+        opened = open_scene(scene, package.scene(), quality=quality, overrides=settings or ())
+        folder = out if out is not None else Path("runs") / opened.name
+        refuse_folder(folder, resume=resume, overwrite=overwrite)
+        use_threads(threads)
+        card = {
+            "package": package.name,
+            "name": opened.name,
+            "scene": scene_as_dict(opened.scene),
+            "scene_file": str(opened.file.resolve()),
+            "quality": opened.quality,
+            "settings": list(opened.settings),
+        }
+        model = package.build(opened.scene)
+        outcome = package.drive(model, folder, opened.scene, card=card, resume=resume, quiet=quiet)
+        if not quiet:
+            print(summary(package.name, opened.name, folder, outcome))
+        return 0
+
+    return run
+
+
+def refuse_folder(folder: Path, *, resume: bool, overwrite: bool) -> None:
+    """InputError unless a run may be written to ``folder``: nothing that is there is lost by accident."""
+    if resume and overwrite:
+        raise InputError(Fault("--resume", None, "contradicts --overwrite", repair="give one of them"))
+    if folder.exists() and not folder.is_dir():
+        raise InputError(Fault("--out", str(folder), "is a file", repair="name a folder"))
+    if resume:
+        if not (folder / CARD).is_file():
+            repair = f"no {CARD} there; name the run's folder with --out, or leave --resume out"
+            raise InputError(Fault("--out", str(folder), "holds no run to resume", repair=repair))
+    elif folder.is_dir() and any(folder.iterdir()) and not overwrite:
+        problem = "already holds a run" if (folder / CARD).is_file() else "is not empty"
+        repair = "choose another --out, --resume the run, or --overwrite it"
+        if problem == "is not empty":
+            repair = "choose another --out, or --overwrite to write beside what is there"
+        raise InputError(Fault("--out", str(folder), problem, repair=repair))
+
+
+def summary(command: str, name: str, folder: Path, outcome: Outcome) -> str:
+    """What the run cost and where to look, for people."""
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+    speed = f", {outcome.steps_per_second:.4g} steps/s" if outcome.steps_per_second else ""
+    files = (
+        ", ".join(sorted(path.name for path in folder.iterdir() if path.is_file())) if folder.is_dir() else ""
+    )
+    return (
+        f"{name}: {outcome.outcome} at t = {outcome.time:.6g} s, step {outcome.step}; "
+        f"{outcome.seconds:.3g} s{speed}, {outcome.snapshots} snapshots, {peak / 2**20:.0f} MiB at most\n"
+        f"look at {folder}: {files}\n"
+        f"more pictures: {command} show {folder}"
+    )

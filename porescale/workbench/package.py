@@ -1,0 +1,81 @@
+"""What a package hands to the workbench to get its commands.  Every part is a function, so that nothing is
+imported before a command needs it: `--help` must not wait for a compiler.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from porescale.workbench.benchmarks import Benchmarks
+    from porescale.workbench.report import Report
+    from porescale.workbench.sections import Section
+    from porescale.workbench.validations import Validations
+
+
+class Outcome(Protocol):
+    """How a run ended."""
+
+    @property
+    def outcome(self) -> str:
+        """ "finished", "already finished"."""
+
+    @property
+    def step(self) -> int:
+        """Steps done."""
+
+    @property
+    def time(self) -> float:
+        """Time reached, s."""
+
+    @property
+    def seconds(self) -> float:
+        """Wall-clock time of the run, all sessions together."""
+
+    @property
+    def snapshots(self) -> int:
+        """Snapshots on disk."""
+
+    @property
+    def steps_per_second(self) -> float:
+        """Speed of this session; 0 if nothing was left to do."""
+
+
+class Drive(Protocol):
+    """Takes a model through the time its scene asks for, keeping the record in a run folder."""
+
+    def __call__(
+        self, model: Any, folder: Path, scene: Any, *, card: dict[str, Any], resume: bool, quiet: bool
+    ) -> Outcome:
+        """Run, or go on with the run in ``folder``.
+
+        card : what card.json must hold of the request: package, name, scene (full, with defaults), scene_file,
+        quality, settings;  quiet : no progress.
+        """
+
+
+@dataclass(frozen=True)
+class Package:
+    """A simulator's parts.
+
+    name : of the command;  summary : one line for --help;  version;
+    scene : gives the scene type;  template : gives the commented scene.toml that `new` writes;
+    build : scene -> model;  drive : runs it;  report : scene -> what `check` says (it may raise InputError);
+    show : makes pictures and a film in a run folder and gives their paths;
+    validations, benchmarks : give the registers.
+    """
+
+    name: str
+    summary: str
+    version: str
+    scene: Callable[[], type[Section]]
+    template: Callable[[], str]
+    build: Callable[[Any], Any]
+    drive: Drive
+    report: Callable[[Any], Report]
+    show: Callable[[Path], Iterable[Path]]
+    validations: Callable[[], Validations]
+    benchmarks: Callable[[], Benchmarks]

@@ -1,0 +1,86 @@
+"""What `check` says about a scene: named values under headings, and warnings."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+Value = float | int | str | bool
+
+
+@dataclass(frozen=True)
+class Row:
+    """One value of a report;  unit : SI unit or "";  note : what it means, or what is recommended."""
+
+    name: str
+    value: Value
+    unit: str = ""
+    note: str = ""
+
+
+@dataclass
+class Report:
+    """Rows under headings, in the order they were added, and warnings.
+
+    ``heading`` opens a group, ``row`` adds to the group opened last, ``warn`` adds one line of warning.
+    """
+
+    title: str
+    groups: dict[str, list[Row]] = field(default_factory=dict)
+    warnings: list[str] = field(default_factory=list)
+
+    def heading(self, name: str) -> None:
+        """Open the group ``name``; opening it again goes on with it."""
+        self.groups[name] = self.groups.pop(name, [])
+
+    def row(self, name: str, value: Value, unit: str = "", note: str = "") -> None:
+        """Add a row to the group opened last (one without a name if none is)."""
+        if not self.groups:
+            self.heading("")
+        self.groups[next(reversed(self.groups))].append(Row(name, value, unit, note))
+
+    def warn(self, text: str) -> None:
+        """Add a warning: what is doubtful, why, and what to do, in one line."""
+        self.warnings.append(text)
+
+    def as_dict(self) -> dict[str, Any]:
+        """JSON-able: ``{"title", "groups": {heading: [{"name", "value", "unit", "note"}]}, "warnings"}``."""
+        groups = {name: [asdict(row) for row in rows] for name, rows in self.groups.items()}
+        return {"title": self.title, "groups": groups, "warnings": list(self.warnings)}
+
+    def show(self, console: Console | None = None) -> None:
+        """Print the report, a table per heading, warnings last."""
+        from rich.console import Console
+        from rich.table import Table
+        from rich.text import Text
+
+        console = console or Console()
+        console.print(Text(self.title, style="bold"))
+        for name, rows in self.groups.items():
+            table = Table(
+                title=name or None, title_justify="left", box=None, show_header=False, pad_edge=False
+            )
+            table.add_column()
+            table.add_column(justify="right")
+            table.add_column()
+            table.add_column()
+            for row in rows:
+                table.add_row(*map(Text, (row.name, shown(row.value), row.unit, row.note)))
+            console.print(table)
+        for warning in self.warnings:
+            console.print(Text(f"warning: {warning}", style="yellow"), soft_wrap=True)
+
+
+def shown(value: Any) -> str:
+    """A value for people: six digits of a float, words for booleans, "–" for nothing."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, list | tuple):
+        few = [shown(part) for part in value[:4]]
+        return ", ".join([*few, "…"] if len(value) > 4 else few)
+    return "–" if value is None else str(value)
