@@ -120,35 +120,44 @@ def open_scene(
     table = scene_file.read(file)
     levels, level, faults = _levels(table, quality)
     base = {name: value for name, value in table.items() if name not in ("quality", "quality_default")}
-    chosen = written = scene_file.merge(base, levels[level]) if level else base
-    settings: list[Key] = []
-    for text in overrides:
-        try:
-            key, value = scene_file.parse_setting(text)
-            chosen = scene_file.assign(chosen, key, value)
-            settings.append(key)
-        except InputError as error:
-            faults += error.faults
+    written = scene_file.merge(base, levels[level]) if level else base
+    chosen, settings, wrong_settings = _with_settings(written, overrides)
     scene, wrong = _try(scene_type, chosen, file.parent)
+    faults += wrong_settings
     for key, fault in wrong:
         made = not scene_file.holds(written, key)  # by a setting within a section that the file does not have
         if any(key[: len(it)] == it or (made and it[: len(key)] == key) for it in settings):
             faults.append(replace(fault, file="--set"))
-        elif level and scene_file.holds(levels[level], key):
-            faults.append(replace(fault, key=dotted(("quality", level, *key))))
         else:
-            faults.append(fault)
-    for other, entries in levels.items():
-        if other != level:
-            _, wrong = _try(scene_type, scene_file.merge(base, entries), file.parent)
-            faults += [
-                replace(f, key=dotted(("quality", other, *key)))
-                for key, f in wrong
-                if scene_file.holds(entries, key)
-            ]
+            faults.append(_in_level(key, fault, level, levels[level]) if level else fault)
+    for other in (name for name in levels if name != level):
+        _, wrong = _try(scene_type, scene_file.merge(base, levels[other]), file.parent)
+        own = [(key, fault) for key, fault in wrong if scene_file.holds(levels[other], key)]
+        faults += [_in_level(key, fault, other, levels[other]) for key, fault in own]
     if faults or scene is None:
         raise InputError(faults).in_file(str(file))
     return Opened(scene, file, scene_file.name_of(file), level, tuple(levels), tuple(overrides))
+
+
+def _with_settings(
+    table: Mapping[str, Any], overrides: Sequence[str]
+) -> tuple[Mapping[str, Any], list[Key], list[Fault]]:
+    """``table`` with the settings in it, their keys, and what is wrong with those that cannot be set."""
+    keys: list[Key] = []
+    faults: list[Fault] = []
+    for text in overrides:
+        try:
+            key, value = scene_file.parse_setting(text)
+            table = scene_file.assign(table, key, value)
+            keys.append(key)
+        except InputError as error:
+            faults += error.faults
+    return table, keys, faults
+
+
+def _in_level(key: Key, fault: Fault, level: str, entries: Mapping[str, Any]) -> Fault:
+    """``fault`` with the key that a person must correct: the quality level's, if that is where it stands."""
+    return replace(fault, key=dotted(("quality", level, *key))) if scene_file.holds(entries, key) else fault
 
 
 def scene_as_dict(scene: Section) -> dict[str, Any]:

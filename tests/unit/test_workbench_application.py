@@ -182,6 +182,12 @@ def test_options_reach_the_run(toy) -> None:
     assert made["settings"] == ["decay.rate=7", "duration=5"]
 
 
+def test_options_may_stand_anywhere_and_values_may_be_negative(toy) -> None:
+    toy("new", "decay")
+    assert toy("run", "--set", "decay.rate=1", "decay", "--set=decay.start=-1", "--quiet")[0] == 0
+    assert card()["scene"]["decay"] == {"rate": 1.0, "start": -1.0}
+
+
 def test_an_existing_run_is_refused_resumed_or_overwritten(toy) -> None:
     toy("new", "decay")
     assert "holds no run to resume" in toy("run", "decay", "--resume")[2][0]

@@ -25,7 +25,9 @@ def command(package: Package) -> Callable[..., int]:
         scene: Scene,
         /,
         *,
-        out: Annotated[Path | None, Parameter(help="run folder; runs/<scene name> if not given")] = None,
+        out: Annotated[
+            Path | None, Parameter(help="run folder; runs/ and the name of the scene if not given")
+        ] = None,
         quality: Quality = None,
         settings: Settings = None,
         threads: Threads = None,
@@ -79,9 +81,8 @@ def summary(command: str, name: str, folder: Path, outcome: Outcome) -> str:
     """What the run cost and where to look, for people."""
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
     speed = f", {outcome.steps_per_second:.4g} steps/s" if outcome.steps_per_second else ""
-    files = (
-        ", ".join(sorted(path.name for path in folder.iterdir() if path.is_file())) if folder.is_dir() else ""
-    )
+    names = [path.name for path in folder.iterdir() if path.is_file()] if folder.is_dir() else []
+    files = ", ".join(sorted(it for it in names if not it.startswith(".")))
     return (
         f"{name}: {outcome.outcome} at t = {outcome.time:.6g} s, step {outcome.step}; "
         f"{outcome.seconds:.3g} s{speed}, {outcome.snapshots} snapshots, {peak / 2**20:.0f} MiB at most\n"
