@@ -5,12 +5,14 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from porescale.runs.look import GRAIN, PAPER, RIM, WALL, Survey, magnitude, rgb
+from porescale.runs.look import GRAIN, PAPER, PLATE, RIM, WALL, Survey, magnitude, rgb
 from porescale.runs.model import Array, Cloud, Grid, Snapshot
 
 SHIFT = 4
 """OpenCV coordinates in sixteenths of a pixel."""
 ONE = 1 << SHIFT
+SPECK = 4.0
+"""Arrows shorter than this many pixels say nothing."""
 
 
 class Canvas:
@@ -30,32 +32,47 @@ class Canvas:
         at[:, 1] = (self.top - points[:, 1]) * self.per_y - 0.5
         return at
 
-    def draw(self, snapshot: Snapshot) -> Array:
-        """The image of a snapshot, (height, width, 3) uint8 RGB."""
+    def draw(self, snapshot: Snapshot, over_field: Array | None = None) -> Array:
+        """The image of a snapshot, (height, width, 3) uint8 RGB.
+
+        over_field : RGBA image of the same size, blended over the field and under the points (streamlines).
+        """
         grid, cloud = self.look.painted(snapshot), self.look.drawn(snapshot)
         image = np.full((self.height, self.width, 3), rgb(PAPER), np.uint8)
         if grid is not None and self.survey.field is not None:
             self._field(image, grid)
+        if over_field is not None:
+            _blend(image, over_field[..., 3] / 255.0, over_field[..., :3])
         if cloud is not None and len(cloud.position):
             self._cloud(image, cloud)
         if grid is not None and self.look.arrows:
             self._arrows(image, grid)
         lines = self.look.lines(snapshot) if callable(self.look.lines) else self.look.lines
         for ends in lines:
-            self._line(image, self.pixels(np.array(ends, float)), rgb(RIM), max(2, self.width // 250))
+            at, thick = self.pixels(np.array(ends, float)), max(2, self.width // 250)
+            self._line(image, at, rgb(RIM), thick + 2)
+            self._line(image, at, rgb(PLATE), thick)
         return image
 
     def _field(self, image: Array, grid: Grid) -> None:
         assert self.survey.field is not None
-        values, inside = self._resampled(grid, magnitude(grid.cells[self.look.field], 2))
-        image[inside] = self.survey.field.colours(values)[inside]
+        rows, columns = self._inside(grid)
+        part = image[rows, columns]
+        values = self._resampled(grid, magnitude(grid.cells[self.look.field], 2))
+        part[:] = self.survey.field.colours(values[rows, columns])
         if self.look.walls in grid.cells:
-            solid, _ = self._resampled(grid, grid.cells[self.look.walls].astype(np.float32))
-            share = np.where(inside, np.clip(solid, 0, 1), 0)[..., None]
-            image[:] = (image * (1 - share) + np.array(rgb(WALL)) * share + 0.5).astype(np.uint8)
+            share = self._resampled(grid, grid.cells[self.look.walls])[rows, columns]
+            _blend(part, np.clip(share, 0, 1), rgb(WALL))
 
-    def _resampled(self, grid: Grid, values: Array) -> tuple[Array, Array]:
-        """Cell values at the pixels' centres (linear; averaged where cells are finer) and where they lie."""
+    def _inside(self, grid: Grid) -> tuple[slice, slice]:
+        """Rows and columns of the pixels whose centres lie in the grid."""
+        left, right, bottom, top = grid.extent
+        edges = self.pixels(np.array([[left, top], [right, bottom]]))
+        (first, upper), (last, lower) = np.ceil(edges).astype(int).tolist()
+        return slice(max(0, upper), max(0, lower)), slice(max(0, first), max(0, last))
+
+    def _resampled(self, grid: Grid, values: Array) -> Array:
+        """Cell values at the pixels' centres, (height, width): linear, averaged where cells are finer."""
         values = np.ascontiguousarray(values, np.float32)
         ny, nx = values.shape
         left, right, bottom, top = grid.extent
@@ -64,19 +81,17 @@ class Canvas:
         if (up, across) != (ny, nx):
             values = cv2.resize(values, (across, up), interpolation=cv2.INTER_AREA)
         dx, dy = (right - left) / across, (top - bottom) / up
-        x = self.left + (np.arange(self.width) + 0.5) / self.per_x
-        y = self.top - (np.arange(self.height) + 0.5) / self.per_y
+        x, y = self.left + 0.5 / self.per_x, self.top - 0.5 / self.per_y
         matrix = np.array(
             [
-                [1 / (self.per_x * dx), 0.0, (x[0] - left) / dx - 0.5],
-                [0.0, -1 / (self.per_y * dy), (y[0] - bottom) / dy - 0.5],
+                [1 / (self.per_x * dx), 0.0, (x - left) / dx - 0.5],
+                [0.0, -1 / (self.per_y * dy), (y - bottom) / dy - 0.5],
             ]
         )
         how = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
         size = (self.width, self.height)
-        warped = cv2.warpAffine(values, matrix, size, flags=how, borderMode=cv2.BORDER_REPLICATE)
-        inside = ((y >= bottom) & (y <= top))[:, None] & ((x >= left) & (x <= right))[None, :]
-        return warped, inside
+        warped: Array = cv2.warpAffine(values, matrix, size, flags=how, borderMode=cv2.BORDER_REPLICATE)
+        return warped
 
     def _cloud(self, image: Array, cloud: Cloud) -> None:
         discs = "radius" in cloud.data
@@ -127,29 +142,44 @@ class Canvas:
         return painted
 
     def _arrows(self, image: Array, grid: Grid) -> None:
-        """Velocity arrows on a regular raster; the longest one spans a raster cell."""
+        """Velocity arrows on a regular raster; one at the top of the colour range spans a raster cell."""
         assert self.survey.field is not None
         velocity = grid.cells[self.look.field]
         if velocity.ndim != 3:
             return
         pitch = self.width / self.look.arrows
-        u, inside = self._resampled(grid, velocity[..., 0])
-        v, _ = self._resampled(grid, velocity[..., 1])
-        top = self.survey.field.high
-        for row in np.arange(pitch / 2, self.height, pitch).astype(int):
-            for column in np.arange(pitch / 2, self.width, pitch).astype(int):
-                along = np.array([u[row, column], -v[row, column]]) / top
-                speed = float(np.hypot(*along))
-                if not inside[row, column] or not speed > 0.02:
-                    continue
-                along *= 0.9 * pitch * min(1.0, 1.0 / speed)
-                start = np.array([column, row]) - along / 2
-                tip = float(np.clip(5.0 / np.hypot(*along), 0.3, 0.6))
-                tail, head = np.rint(np.array([start, start + along]) * ONE).astype(int).tolist()
-                for colour, width in ((rgb(RIM), 3), (rgb(PAPER), 1)):
-                    cv2.arrowedLine(image, tail, head, colour, width, cv2.LINE_AA, SHIFT, tip)
+        rows, columns = self._inside(grid)
+        down = np.arange(rows.start + pitch / 2, min(rows.stop, self.height), pitch).astype(int)
+        across = np.arange(columns.start + pitch / 2, min(columns.stop, self.width), pitch).astype(int)
+        along = np.stack(
+            [self._resampled(grid, velocity[..., axis])[np.ix_(down, across)] for axis in (0, 1)], -1
+        )
+        along *= [0.9 * pitch / self.survey.field.high, -0.9 * pitch / self.survey.field.high]
+        length = np.hypot(along[..., 0], along[..., 1])
+        where = np.nonzero(length > SPECK)
+        for j, i in zip(*where, strict=True):
+            size = min(length[j, i], pitch)
+            shape = _arrow(np.array([across[i], down[j]]), along[j, i] / length[j, i], size)
+            outline = [np.rint(shape * ONE).astype(np.int32)]
+            cv2.fillPoly(image, outline, rgb(PAPER), cv2.LINE_AA, SHIFT)
+            cv2.polylines(image, outline, True, rgb(RIM), 1, cv2.LINE_AA, SHIFT)
 
     def _line(self, image: Array, ends: Array, colour: tuple[int, int, int], thickness: int) -> None:
         """A segment between two pixel positions, (2, 2)."""
         start, end = np.rint(ends * ONE).astype(int).tolist()
         cv2.line(image, start, end, colour, thickness, cv2.LINE_AA, SHIFT)
+
+
+def _arrow(middle: Array, along: Array, length: float) -> Array:
+    """Outline of an arrow, (7, 2) pixels, its width growing with its length."""
+    half, head = 0.045 * length + 0.6, 0.36 * length
+    profile = [(0.0, half), (length - head, half), (length - head, 3.2 * half), (length, 0.0)]
+    points = np.array([*profile, *((x, -y) for x, y in profile[2::-1])])
+    across = np.array([-along[1], along[0]])
+    return np.asarray(middle + (points[:, :1] - length / 2) * along + points[:, 1:] * across)
+
+
+def _blend(image: Array, share: Array, colour: Array | tuple[int, int, int]) -> None:
+    """Paint ``colour`` over an image with opacity ``share`` (height, width) of 0..1."""
+    opacity = share[..., None]
+    image[:] = (image * (1 - opacity) + np.asarray(colour) * opacity + 0.5).astype(np.uint8)

@@ -20,7 +20,7 @@ Limits = tuple[float, float]
 View = tuple[float, float, float, float]
 
 SEQUENTIAL, DIVERGING = "viridis", "RdBu_r"
-GRAIN, RIM, WALL, PAPER = "#ece3cf", "#3b352b", "#565a61", "#ffffff"
+GRAIN, RIM, WALL, PLATE, PAPER = "#ece3cf", "#3b352b", "#565a61", "#c3c8d0", "#ffffff"
 SHARE = 99.5
 """Colours end at this percentile of all values: one outlier must not darken a film."""
 
@@ -36,7 +36,7 @@ class Look:
     limits, cloud_limits : range of the colours (None: from the values, robustly);
     walls : cell array holding a solid fraction, painted grey;  lines : segments ((x, y), (x, y)) m, or a
     function of the snapshot;  arrows : velocity arrows across the picture, 0 none;  streamlines : an extra
-    still with them; dot : radius of a dot, m (None: half the particles' spacing);  view : (left, right,
+    still with them; dot : radius of a dot, m (None: about half the particles' spacing);  view : (left, right,
     bottom, top), m; size : long side, pixels;  title, label (of the field), colour_map, cloud_map.
     """
 
@@ -58,6 +58,11 @@ class Look:
     label: str = ""
     colour_map: str = ""
     cloud_map: str = ""
+
+    @property
+    def cells(self) -> tuple[str, ...]:
+        """The cell arrays that a picture needs."""
+        return tuple(name for name in (self.field, self.walls) if name)
 
     def painted(self, snapshot: Snapshot) -> Grid | None:
         """The grid to paint, if the snapshot has it."""
@@ -90,16 +95,18 @@ class Scale:
 
     def colours(self, values: Array) -> Array:
         """RGB of values, (..., 3) uint8; what is not a number is white."""
-        with np.errstate(invalid="ignore"):
-            place = (values - self.low) * (255.0 / (self.high - self.low))
-            index = np.clip(np.nan_to_num(place), 0, 255).astype(np.uint8)
-        painted = np.asarray(self.table[index])
-        painted[np.isnan(values)] = 255
+        nowhere = np.isnan(values)
+        place = np.where(nowhere, self.low, values) if nowhere.any() else values
+        place = np.clip(place, self.low, self.high)
+        place -= self.low
+        place *= 255.0 / (self.high - self.low)
+        painted = np.take(self.table, place.astype(np.uint8), axis=0)
+        painted[nowhere] = 255
         return painted
 
 
 def magnitude(values: Array, axes: int) -> Array:
-    """Length of vectors, scalars as they are, floating; ``axes`` are 2 in a grid, 1 in a cloud, vectors one more."""
+    """Length of vectors, scalars as they are, floating; a scalar has ``axes``: 2 in a grid, 1 in a cloud."""
     if values.ndim > axes:
         length: Array = np.sqrt(np.einsum("...i,...i->...", values, values))
         return length
@@ -196,7 +203,7 @@ def survey(snapshots: Iterable[Snapshot], look: Look) -> Survey:
             points.append(_thin(magnitude(cloud.data[coloured_by], 1)))
             cloud_units = cloud.units.get(coloured_by, "")
         if "radius" not in cloud.data and not found.dot:
-            found.dot = look.dot or 0.5 * _spacing(cloud.position)
+            found.dot = look.dot or 0.55 * _spacing(cloud.position)
         reach = cloud.data.get("radius", np.array(found.dot))
         low, high = cloud.position - np.reshape(reach, (-1, 1)), cloud.position + np.reshape(reach, (-1, 1))
         edges = (*low.min(0), *high.max(0))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -59,11 +59,14 @@ class Run:
     def __len__(self) -> int:
         return len(self._frames)
 
-    def snapshot(self, k: int) -> Snapshot:
-        """Snapshot ``k`` (negative from the end).  IndexError beyond, InputError when its file is damaged."""
+    def snapshot(self, k: int, cells: Collection[str] | None = None) -> Snapshot:
+        """Snapshot ``k`` (negative from the end); of its grids only the arrays in ``cells``, if given.
+
+        IndexError beyond the last, InputError when its file is damaged.
+        """
         step, entry = self._frames[k]
         try:
-            return snapshots.load(entry, step)
+            return snapshots.load(entry, step, cells)
         except (OSError, KeyError, ValueError, RuntimeError) as error:
             raise _damaged(self.folder, error) from error
 
@@ -71,9 +74,9 @@ class Run:
         """The snapshot nearest to ``time``, s."""
         return self.snapshot(int(np.abs(self.times - time).argmin()))
 
-    def snapshots(self) -> Iterator[Snapshot]:
+    def snapshots(self, cells: Collection[str] | None = None) -> Iterator[Snapshot]:
         """All snapshots in time, one in memory at a time."""
-        return (self.snapshot(k) for k in range(len(self)))
+        return (self.snapshot(k, cells) for k in range(len(self)))
 
 
 def open_run(folder: Path | str) -> Run:

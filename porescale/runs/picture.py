@@ -29,6 +29,8 @@ from porescale.runs.open_run import Run, open_run
 DPI = 100
 LEFT, RIGHT, TOP, BOTTOM, BAR = 70, 18, 44, 58, 92
 """Margins around the inside of a picture 1000 pixels wide, and the room of one colour bar."""
+CALM = 0.01
+"""Share of the colours' range below which no streamline is drawn: they would follow round-off."""
 SURVEYED = 60
 """At most so many snapshots are looked at for the colours' range."""
 
@@ -57,15 +59,15 @@ class Painter:
         self.canvas = Canvas(found, self.width, self.height)
         self.background = self._background()
 
-    def paint(self, snapshot: Snapshot) -> Array:
-        """The whole picture."""
+    def paint(self, snapshot: Snapshot, over_field: Array | None = None) -> Array:
+        """The whole picture; ``over_field`` as in :meth:`Canvas.draw`."""
         image = self.background.copy()
         inside = image[self.y : self.y + self.height, self.x : self.x + self.width]
-        inside[:] = self.canvas.draw(snapshot)
+        inside[:] = self.canvas.draw(snapshot, over_field)
         self._frame(image)
         label = _text(time_text(snapshot.time, self.survey.longest), 11 * self.unit)
         tall, wide = label.shape[:2]
-        bottom, right = self.y - round(8 * self.unit), self.x + self.width
+        bottom, right = self.y - round(3 * self.unit), self.x + self.width
         image[bottom - tall : bottom, right - wide : right] = label
         return image
 
@@ -76,46 +78,46 @@ class Painter:
 
     def _background(self) -> Array:
         """Axes, title and bars without the inside."""
-        return _pixels(self._figure()[0])
-
-    def _figure(self) -> tuple[Figure, Axes]:
         full_x, full_y = self.full
         figure = Figure((full_x / DPI, full_y / DPI), dpi=DPI)
         axes = _place(figure, self.full, self.x, self.y, self.width, self.height)
         font = 10 * self.unit
         _dress(axes, self.survey, font)
-        axes.set_title(
-            self.survey.look.title, loc="left", fontsize=11 * self.unit, pad=8 * self.unit * 72 / DPI
-        )
+        fits = max(0, int((self.width / self.unit - 110) / 8.0))
+        title = self.survey.look.title
+        if len(title) > fits:
+            title = title[: fits - 1] + "…" if fits > 8 else ""
+        axes.set_title(title, loc="left", fontsize=11 * self.unit, pad=8 * self.unit * 72 / DPI)
         at = self.x + self.width + 18 * self.unit
         for scale in self.scales:
             _bar(figure, scale, (self.full, at, self.y, 16 * self.unit, self.height), font)
             at += BAR * self.unit
         if self.survey.look.kinds:
             _legend(figure, self.survey.look, ((at - 8 * self.unit) / full_x, 1 - self.y / full_y), font)
-        return figure, axes
+        return _pixels(figure)
 
     def streamlines(self, snapshot: Snapshot) -> Array:
-        """The picture with streamlines over it, so that vortices can be seen."""
+        """The picture with streamlines under the points, where anything moves: vortices can be seen."""
         grid = self.survey.look.painted(snapshot)
-        if grid is None or grid.cells[self.survey.look.field].ndim != 3:
+        if grid is None or self.survey.field is None or grid.cells[self.survey.look.field].ndim != 3:
             return self.paint(snapshot)
-        figure, axes = self._figure()
-        factor, _ = length_unit(self.survey.view)
-        extent = _scaled(self.survey.view, factor)
-        axes.imshow(self.canvas.draw(snapshot), extent=extent, aspect="auto", zorder=0)
-        ny, nx = grid.shape
-        left, _, bottom, _ = grid.extent
-        x = factor * (left + (np.arange(nx) + 0.5) * grid.spacing[0])
-        y = factor * (bottom + (np.arange(ny) + 0.5) * grid.spacing[1])
-        velocity = grid.cells[self.survey.look.field]
-        axes.streamplot(
-            x, y, velocity[..., 0], velocity[..., 1], color="white", linewidth=0.8, arrowsize=0.7, density=1.6
-        )
-        axes.set(xlim=extent[:2], ylim=extent[2:])
-        text = time_text(snapshot.time, self.survey.longest)
-        axes.set_title(text, loc="right", fontsize=11 * self.unit, pad=8 * self.unit * 72 / DPI)
-        return _pixels(figure)
+        velocity = grid.cells[self.survey.look.field].astype(float)
+        velocity[np.hypot(velocity[..., 0], velocity[..., 1]) < CALM * self.survey.field.high] = np.nan
+        (ny, nx), (left, _, bottom, _) = grid.shape, grid.extent
+        x = left + (np.arange(nx) + 0.5) * grid.spacing[0]
+        y = bottom + (np.arange(ny) + 0.5) * grid.spacing[1]
+        figure = Figure((self.width / DPI, self.height / DPI), dpi=DPI, facecolor="none")
+        axes = figure.add_axes((0, 0, 1, 1))
+        lines: dict[str, Any] = {
+            "color": "white",
+            "linewidth": 0.9 * self.unit,
+            "arrowsize": 0.8 * self.unit,
+            "density": 1.8,
+        }
+        axes.streamplot(x, y, velocity[..., 0], velocity[..., 1], **lines)
+        axes.set(xlim=self.survey.view[:2], ylim=self.survey.view[2:])
+        axes.axis("off")
+        return self.paint(snapshot, _pixels(figure, alpha=True))
 
 
 def paint(snapshot: Snapshot, look: Look | None = None, **changes: Any) -> Array:
@@ -132,19 +134,21 @@ def painter_of(run: Run, look: Look) -> Painter:
     every = max(1, -(-len(run) // SURVEYED))
     chosen = sorted({*range(0, len(run), every), len(run) - 1})
     title = look.title or run.name
-    return Painter(survey((run.snapshot(k) for k in chosen), replace(look, title=title)))
+    return Painter(survey((run.snapshot(k, look.cells) for k in chosen), replace(look, title=title)))
 
 
 def pictures(folder: Path | str, look: Look | None = None, **changes: Any) -> list[Path]:
     """Write montage.png, final.png and, if the look asks for them, streamlines.png; returns their paths."""
     run = open_run(folder)
     painter = painter_of(run, replace(look or Look(), **changes))
-    made = {"final.png": painter.paint(run.snapshot(-1))}
+    cells = painter.survey.look.cells
+    last = run.snapshot(-1, cells)
+    made = {"final.png": painter.paint(last)}
     times = np.unique(np.linspace(0, len(run) - 1, 6).round().astype(int))
     if len(times) > 1:
-        made["montage.png"] = montage(painter, [run.snapshot(int(k)) for k in times])
+        made["montage.png"] = montage(painter, [run.snapshot(int(k), cells) for k in times])
     if painter.survey.look.streamlines:
-        made["streamlines.png"] = painter.streamlines(run.snapshot(-1))
+        made["streamlines.png"] = painter.streamlines(last)
     for name, image in made.items():
         write_bytes(run.folder / name, png(image))
     return [run.folder / name for name in made]
@@ -203,8 +207,9 @@ def _dress(axes: Axes, found: Survey, font: float, *, x_label: bool = True, y_la
     left, right, bottom, top = _scaled(found.view, factor)
     axes.set(xlim=(left, right), ylim=(bottom, top))
     axes.tick_params(labelsize=font, direction="out", labelbottom=x_label, labelleft=y_label)
-    axes.locator_params(axis="x", nbins=8, min_n_ticks=2)
-    axes.locator_params(axis="y", nbins=7, min_n_ticks=2)
+    inside = axes.get_window_extent()
+    axes.locator_params(axis="x", nbins=_ticks(inside.width, 90), min_n_ticks=2)
+    axes.locator_params(axis="y", nbins=_ticks(inside.height, 60), min_n_ticks=2)
     if x_label:
         axes.set_xlabel(f"x ({unit})", fontsize=font)
     if y_label:
@@ -220,7 +225,7 @@ def _bar(
     extend = "max" if scale.low == 0 else "both"
     bar = figure.colorbar(ScalarMappable(norm, scale.map_name), cax=axes, extend=extend, extendfrac=0.025)
     bar.ax.tick_params(labelsize=font)
-    bar.ax.locator_params(nbins=7)
+    bar.ax.locator_params(nbins=_ticks(where[4], 50))
     bar.set_label(scale.label, fontsize=font)
 
 
@@ -246,11 +251,16 @@ def _text(text: str, points: float) -> Array:
     return _pixels(figure)
 
 
-def _pixels(figure: Figure) -> Array:
-    """A figure as RGB."""
+def _pixels(figure: Figure, *, alpha: bool = False) -> Array:
+    """A figure as RGB, or RGBA."""
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
-    return np.ascontiguousarray(np.asarray(canvas.buffer_rgba())[..., :3])
+    return np.array(np.asarray(canvas.buffer_rgba())[..., : 4 if alpha else 3])
+
+
+def _ticks(pixels: float, each: float) -> int:
+    """How many intervals fit when each takes so many pixels."""
+    return int(np.clip(pixels / each, 2, 9))
 
 
 def _scaled(view: View, factor: float) -> View:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 import shutil
+from collections.abc import Collection
 from pathlib import Path
 
 from porescale.runs import atomic, vtkhdf
@@ -62,11 +63,11 @@ def catalogue(folder: Path) -> dict[int, dict[str, Frame]]:
     return {step: entry for step, entry in sorted(found.items()) if entry.keys() == names}
 
 
-def load(frames: dict[str, Frame], step: int) -> Snapshot:
-    """One entry of the catalogue, read."""
+def load(frames: dict[str, Frame], step: int, cells: Collection[str] | None = None) -> Snapshot:
+    """One entry of the catalogue, read; of grids only the arrays named in ``cells``, if given."""
     snapshot = Snapshot(next(iter(frames.values())).time, step)
     for name, frame in frames.items():
-        block = vtkhdf.read_frame(frame.path, frame.index)[2]
+        block = vtkhdf.read_frame(frame.path, frame.index, cells)[2]
         if isinstance(block, Grid):
             snapshot.grids[name] = block
         elif isinstance(block, Cloud):

@@ -12,7 +12,7 @@ chunks, so that no more than one frame is ever in memory and nothing is compress
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -244,15 +244,16 @@ def frames_of(path: Path) -> list[Frame]:
     return [Frame(path, k, int(s), float(t), int(n)) for k, (s, t, n) in enumerate(rows)]
 
 
-def read_frame(path: Path, index: int) -> tuple[str, str, Grid | Cloud]:
-    """One frame as (kind, name, block), kind "grids" or "clouds"."""
+def read_frame(path: Path, index: int, cells: Collection[str] | None = None) -> tuple[str, str, Grid | Cloud]:
+    """One frame as (kind, name, block), kind "grids" or "clouds"; of a grid only ``cells``, if named."""
     with h5py.File(path, "r") as file:
         kind, name = _kind(file), str(file["porescale"].attrs["name"])
         units = {key: column.units for key, column in _columns(file).items()}
         if kind == "grids":
             origin, spacing = _geometry(file)
-            cells = {key: item[index] for key, item in file["VTKHDF/CellData"].items()}
-            return kind, name, Grid(origin, spacing, cells, units)
+            stored = file["VTKHDF/CellData"]
+            wanted = [key for key in stored if cells is None or key in cells] or list(stored)[:1]
+            return kind, name, Grid(origin, spacing, {key: stored[key][index] for key in wanted}, units)
         rows = _rows(file, index)
         data = {key: item[rows] for key, item in file["VTKHDF/PointData"].items()}
         return kind, name, Cloud(file["VTKHDF/Points"][rows][:, :2], data, units)

@@ -1,7 +1,6 @@
 """A model without physics that runs can be tested on: beads on springs, a diffusing field, random kicks.
 
-As a script it is a run that can be killed:  python -m tests.reference.toy_model FOLDER [--resume]
-[--varying] ...
+As a script it is a run that can be killed:  python -m tests.reference.toy_model FOLDER [--resume] ...
 """
 
 from __future__ import annotations
