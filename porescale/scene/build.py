@@ -1,0 +1,177 @@
+"""From a scene to a simulation: each part is built only if the scene has its section."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.coupling.step import Coupled, buoyant_weight
+from porescale.dem.discs import Discs, make_discs
+from porescale.dem.settle import Pile, prepare
+from porescale.dem.system import Grains
+from porescale.dem.walls import Box, Plate
+from porescale.ground.check import Fault, InputError
+from porescale.lbm.fluid import Fluid
+from porescale.lbm.sides import Sides
+from porescale.particles.placement import place
+from porescale.scene.derive import Derived, derive, grain_count
+from porescale.scene.sections import Domain, Packing, Scene
+from porescale.scene.simulation import Gatekeeper, Simulation
+
+GATE = "gate"
+TOUCH = 1e-3
+"""Overlap, over the smaller diameter, up to which grains placed by hand may start."""
+
+
+def build(scene: Scene) -> Simulation:
+    """The simulation of ``scene`` at time 0; raises InputError for what the scene must not ask.
+
+    A packing is settled first, or read from the cache; that can take seconds.
+    """
+    derived = derive(scene)
+    grains = _grains(scene, derived) if scene.grains else None
+    fluid = _fluid(scene, derived) if scene.fluid else None
+    coupled = None
+    if fluid and grains and scene.grains:
+        assert derived.scales
+        assert derived.contact_steps
+        assert scene.grains.hydraulic_radius_ratio
+        coupled = Coupled(
+            fluid, grains, derived.scales, hydraulic_ratio=scene.grains.hydraulic_radius_ratio,
+            contact_steps=derived.contact_steps, acceleration=scene.gravity,
+        )  # fmt: skip
+    weight = buoyant_weight(grains, 0.0, scene.gravity) if grains and not fluid else None
+    gate = None
+    if scene.gate:
+        plate = fluid.add_plate(derived.gate_column or 0) if fluid else None
+        gate = Gatekeeper(scene.gate.opens_at, scene.gate.lift_speed, plate, grains, GATE)
+    return Simulation(scene, derived, fluid=fluid, grains=grains, coupled=coupled, weight=weight, gate=gate)
+
+
+def _fluid(scene: Scene, derived: Derived) -> Fluid:
+    assert scene.fluid
+    assert derived.cells
+    assert derived.scales
+    fx, fy = (component / derived.scales.body_force for component in scene.fluid.body_force)
+    d = scene.domain
+    return Fluid(
+        *derived.cells, derived.scales.relaxation_time, magic=scene.fluid.magic, force=(fx, fy),
+        sides=Sides(d.left, d.right, d.bottom, d.top),
+    )  # fmt: skip
+
+
+def _box(domain: Domain) -> Box:
+    kinds = {
+        side: "periodic" if getattr(domain, side) == "periodic" else "solid"
+        for side in ("left", "right", "bottom", "top")
+    }
+    return Box((0.0, 0.0), (domain.width, domain.height), **kinds)
+
+
+def _grains(scene: Scene, derived: Derived) -> Grains:
+    assert scene.grains
+    assert derived.law
+    box, law, wall_law = _box(scene.domain), derived.law, derived.wall_law
+    plates = (
+        [Plate(scene.gate.x, 0.0, scene.domain.height, friction=scene.gate.friction, name=GATE)] if scene.gate else []
+    )
+    packing = scene.grains.packing
+    settled = prepared(scene, packing, box, derived, plates) if packing and packing.settle else None
+    if settled and not scene.grains.grain:
+        return settled
+    parts = [settled.discs] if settled else []
+    if packing and not packing.settle:
+        parts.append(_placed(scene, packing))
+    if scene.grains.grain:
+        parts.append(_by_hand(scene))
+    discs = Discs(*(np.concatenate([getattr(p, f) for p in parts]) for f in Discs.__dataclass_fields__))
+    _refuse_overlaps(discs, scene.domain)
+    return Grains(discs, law, box, wall_law=wall_law, plates=plates)
+
+
+def prepared(scene: Scene, packing: Packing, box: Box, derived: Derived, plates: list[Plate]) -> Grains:
+    """The packing settled dry, then at rest under the run's contact law and its weight in the fluid."""
+    assert scene.grains
+    assert derived.law
+    if scene.gravity[0] != 0 or scene.gravity[1] >= 0:
+        raise InputError(
+            Fault("gravity", str(scene.gravity), "a packing settles downwards", "m/s^2", "(0, g) with g < 0",
+                  "set grains.packing.settle = false")
+        )  # fmt: skip
+    pile = Pile(
+        corner=(packing.left, packing.bottom), width=packing.width, count=grain_count(scene) - len(scene.grains.grain),
+        diameter=packing.diameter, density=scene.grains.density, spread=packing.size_spread,
+        friction=packing.settling_friction, seed=packing.seed, gravity=-scene.gravity[1],
+    )  # fmt: skip
+    lighter = scene.fluid.density if scene.fluid else 0.0
+    return prepare(
+        pile, box, derived.law, wall_law=derived.wall_law, plates=plates, weight_density=scene.grains.density - lighter
+    )
+
+
+def _placed(scene: Scene, packing: Packing) -> Discs:
+    assert scene.grains
+    placed = place(
+        (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height),
+        diameter=packing.diameter, spread=packing.size_spread, packing_fraction=packing.packing_fraction,
+        seed=packing.seed,
+    )  # fmt: skip
+    return make_discs(placed.position, placed.radius, scene.grains.density)
+
+
+def _by_hand(scene: Scene) -> Discs:
+    assert scene.grains
+    grains = scene.grains.grain
+    return make_discs(
+        [(g.x, g.y) for g in grains], np.array([g.diameter / 2 for g in grains]), scene.grains.density,
+        np.array([g.velocity for g in grains]), np.array([g.spin for g in grains]),
+    )  # fmt: skip
+
+
+def _refuse_overlaps(discs: Discs, domain: Domain) -> None:
+    """Refuse grains outside the box or in each other, naming the first of each kind."""
+    faults = []
+    x, r = discs.position, discs.radius
+    box = np.array([domain.width, domain.height])
+    solid = np.array([domain.left != "periodic", domain.bottom != "periodic"])
+    out = np.flatnonzero((((x < r[:, None] * (1 - TOUCH)) | (x > box - r[:, None] * (1 - TOUCH))) & solid).any(axis=1))
+    if len(out):
+        k = int(out[0])
+        faults.append(Fault(f"grains.grain[{k}]", f"({x[k, 0]:g}, {x[k, 1]:g})", "reaches out of the box", "m",
+                            repair="move it inside by its radius"))  # fmt: skip
+    overlap = _deepest(x, r)
+    if overlap is not None and overlap[2] > TOUCH * 2 * min(r[overlap[0]], r[overlap[1]]):
+        i, j, depth = overlap
+        faults.append(
+            Fault(f"grains.grain[{i}]", None, f"overlaps grain {j} by {depth:.3g} m", repair="move one of them")
+        )
+    if faults:
+        raise InputError(faults)
+
+
+def _deepest(x: NDArray[np.float64], r: NDArray[np.float64]) -> tuple[int, int, float] | None:
+    """(i, j, overlap) of the deepest overlap among discs, or None; grid search by scipy, outside the time loop."""
+    from scipy.spatial import cKDTree
+
+    pairs = cKDTree(x).query_pairs(2 * float(r.max()), output_type="ndarray")
+    if len(pairs) == 0:
+        return None
+    i, j = pairs.T
+    depth = r[i] + r[j] - np.hypot(*(x[i] - x[j]).T)
+    worst = int(depth.argmax())
+    return int(i[worst]), int(j[worst]), float(depth[worst])
+
+
+def memory(derived: Derived) -> float:
+    """Bytes that the simulation's arrays will take: populations, solid fields, patches, grains; an estimate."""
+    total = 0.0
+    if derived.cells:
+        nx, ny = derived.cells
+        total += 9 * 8 * (nx + 2) * (ny + 2)
+        if derived.grain_count:
+            total += 3 * 8 * nx * ny
+    if derived.diameters and derived.scales:
+        total += 8 * derived.grain_count * (math.ceil(derived.diameters[2] / derived.scales.spacing) + 2) ** 2
+    return total + derived.grain_count * 400.0

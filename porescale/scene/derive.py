@@ -1,0 +1,147 @@
+"""What a scene implies before anything is built: lattice, contact step, regime numbers; and what it must not imply.
+
+Refusals are faults with a repair; whatever merely deserves a thought is a warning.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from porescale.dem.contact.linear import Linear
+from porescale.dem.integrate import packing_limit, stable_step
+from porescale.ground.check import Fault, InputError
+from porescale.lbm.scales import NAMES, Scales, implied
+from porescale.scene.regime import expected_speed, judge
+from porescale.scene.sections import Contact, Fluid, Scene
+
+WHOLE = 1e-6
+"""A length is a whole number of cells if it misses by less than this share of a cell."""
+
+
+@dataclass(frozen=True)
+class Derived:
+    """Numbers that follow from a scene.  None where the scene has no such part."""
+
+    scales: Scales | None = None
+    cells: tuple[int, int] | None = None
+    gate_column: int | None = None
+    law: Linear | None = None
+    wall_law: Linear | None = None
+    contact_limit: float | None = None  # s, stability limit in a packing
+    contact_step: float | None = None  # s
+    contact_steps: int | None = None  # per model step
+    model_step: float = 0.0  # s
+    grain_count: int = 0
+    diameters: tuple[float, float, float] | None = None  # smallest, mean, largest, m
+    speed: float = 0.0  # m/s, the largest to expect
+    density_variation: float = 0.0
+    warnings: tuple[str, ...] = field(default=())
+
+
+def derive(scene: Scene) -> Derived:
+    """All of the above; raises InputError with every refusal, each with its repair."""
+    faults: list[Fault] = []
+    warnings: list[str] = []
+    scales, cells, column = _lattice(scene, faults) if scene.fluid else (None, None, None)
+    sizes = diameters(scene)
+    law = wall_law = limit = step = steps = None
+    model_step = scales.step if scales else 0.0
+    if scene.grains and scene.contact and sizes:
+        mass = math.pi / 4 * sizes[0] ** 2 * scene.grains.density
+        law, wall_law = laws(scene.contact, math.pi / 4 * sizes[1] ** 2 * scene.grains.density)
+        limit = min(packing_limit(law, mass), packing_limit(wall_law, mass))
+        step, steps = _contact_step(scene.contact, stable_step([law, wall_law], mass), limit, scales, faults)
+        model_step = scales.step if scales else step
+    speed = expected_speed(scene, scales, sizes)
+    variation = 0.0
+    if scales:
+        variation = judge(scene, scales, speed, sizes, faults, warnings)
+    if faults:
+        raise InputError(faults)
+    return Derived(
+        scales, cells, column, law, wall_law, limit, step, steps, model_step, grain_count(scene), sizes, speed,
+        variation, tuple(warnings),
+    )  # fmt: skip
+
+
+def fluid_scales(fluid: Fluid) -> Scales:
+    """The lattice's scales from the three or four numbers given."""
+    given = {name: getattr(fluid, name) for name in NAMES if getattr(fluid, name) is not None}
+    full = {**implied(**given), **given}
+    return Scales(full["spacing"], full["step"], full["relaxation_time"], fluid.density)
+
+
+def laws(contact: Contact, mass: float) -> tuple[Linear, Linear]:
+    """Contact law between grains and at walls; a restitution is that of two grains of mean ``mass`` (kg/m)."""
+    rest = (contact.tangential_stiffness, contact.tangential_damping, contact.friction, contact.release)
+    if contact.damping is not None:
+        law = Linear(contact.stiffness, contact.damping, *rest)
+    else:
+        assert contact.restitution is not None
+        law = Linear.from_restitution(contact.restitution, mass / 2, contact.stiffness, *rest)
+    wall = contact.friction if contact.wall_friction is None else contact.wall_friction
+    return law, law.with_friction(wall)
+
+
+def grain_count(scene: Scene) -> int:
+    """Number of grains."""
+    if scene.grains is None:
+        return 0
+    packing, placed = scene.grains.packing, len(scene.grains.grain)
+    if packing is None:
+        return placed
+    area = math.pi / 4 * packing.diameter**2 * (1 + packing.size_spread**2 / 3)
+    return placed + max(1, round(packing.packing_fraction * packing.width * packing.height / area))
+
+
+def diameters(scene: Scene) -> tuple[float, float, float] | None:
+    """Smallest, mean and largest diameter, m (the mean of a packing where there is one)."""
+    if scene.grains is None:
+        return None
+    sizes = [grain.diameter for grain in scene.grains.grain]
+    packing = scene.grains.packing
+    mean = packing.diameter if packing else sum(sizes) / len(sizes)
+    if packing:
+        sizes += [packing.diameter * (1 - packing.size_spread), packing.diameter * (1 + packing.size_spread)]
+    return min(sizes), mean, max(sizes)
+
+
+def _lattice(scene: Scene, faults: list[Fault]) -> tuple[Scales, tuple[int, int], int | None]:
+    assert scene.fluid is not None
+    scales = fluid_scales(scene.fluid)
+    h = scales.spacing
+    for key, length in (("domain.width", scene.domain.width), ("domain.height", scene.domain.height)):
+        _whole(key, length, h, faults)
+    column = None
+    if scene.gate:
+        _whole("gate.x", scene.gate.x, h, faults)
+        column = round(scene.gate.x / h)
+        if "periodic" in (scene.domain.bottom, scene.domain.left):
+            faults.append(Fault("gate", None, "stands in a periodic box", repair="give the box walls"))
+    return scales, (round(scene.domain.width / h), round(scene.domain.height / h)), column
+
+
+def _whole(key: str, length: float, spacing: float, faults: list[Fault]) -> None:
+    cells = length / spacing
+    if round(cells) < 1 or abs(cells - round(cells)) > WHOLE * max(1.0, cells):
+        better = length / max(1, round(cells))
+        faults.append(
+            Fault(key, length, f"is {cells:.6g} cells of {spacing:.6g} m, not a whole number", "m",
+                  repair=f"a spacing of {better:.9g} m divides it")
+        )  # fmt: skip
+
+
+def _contact_step(
+    contact: Contact, safe: float, limit: float, scales: Scales | None, faults: list[Fault]
+) -> tuple[float, int]:
+    """Contact step (s) and their number per model step."""
+    wanted = contact.step or safe
+    steps = 1 if scales is None else max(1, math.ceil(scales.step / wanted * (1 - 1e-9)))
+    step = wanted if scales is None else scales.step / steps
+    if step > limit:
+        faults.append(
+            Fault("contact.step", step, "is beyond the stability limit of a packing", "s", f"< {limit:.3g}",
+                  f"leave it out (it would be {safe:.3g} s), or lower the stiffness")
+        )  # fmt: skip
+    return step, steps

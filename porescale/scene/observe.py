@@ -1,0 +1,86 @@
+"""What a collapse is measured by: front, run-out, centre of mass, surface, energies."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.dem.measure import centre_of_mass, coordination, kinetic_energy, max_overlap
+from porescale.dem.system import Grains
+from porescale.lbm.scales import Scales
+from porescale.scene.sections import Scene
+
+Array = NDArray[np.floating]
+
+
+class Watch:
+    """Follows the grains from where they start.
+
+    The front is the foremost edge of any grain on the side to which the packing can flow: left if it starts right of
+    the middle of the box, right otherwise.  Run-out is how far the front has come since the start.
+    """
+
+    def __init__(self, scene: Scene, grains: Grains) -> None:
+        middle = 0.5 * scene.domain.width
+        self.leftward = bool(centre_of_mass(grains.discs)[0] > middle)
+        self.start = self.front(grains)
+
+    def front(self, grains: Grains) -> float:
+        """Position of the front, m."""
+        x, r = grains.discs.position[:, 0], grains.discs.radius
+        return float((x - r).min() if self.leftward else (x + r).max())
+
+    def row(self, grains: Grains) -> dict[str, float]:
+        """Columns of the series."""
+        discs, front = grains.discs, self.front(grains)
+        x, y = centre_of_mass(discs)
+        return {
+            "front (m)": front,
+            "run-out (m)": self.start - front if self.leftward else front - self.start,
+            "centre of mass x (m)": float(x),
+            "centre of mass y (m)": float(y),
+            "highest grain (m)": float((discs.position[:, 1] + discs.radius).max()),
+            "kinetic energy of grains (J/m)": kinetic_energy(discs),
+            "largest grain speed (m/s)": float(np.hypot(*discs.velocity.T).max()),
+            "largest overlap over diameter ()": 0.5 * max_overlap(grains).share,
+            "coordination number ()": coordination(grains),
+        }
+
+    def state(self) -> dict[str, Any]:
+        """Where the front started."""
+        return {"start": self.start, "leftward": self.leftward}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state."""
+        self.start, self.leftward = float(state["start"]), bool(state["leftward"])
+
+
+def fluid_row(excess: Array, ux: Array, uy: Array, solid: Array, scales: Scales | None) -> dict[str, float]:
+    """Columns of the series for the fluid between the grains; arrays (ny, nx), SI."""
+    assert scales
+    square = ux**2 + uy**2
+    energy = 0.5 * float(np.sum((scales.density + excess) * square * (1 - solid))) * scales.spacing**2
+    return {
+        "kinetic energy of fluid (J/m)": energy,
+        "largest fluid speed (m/s)": float(np.sqrt(square.max())),
+        "Mach number ()": float(np.sqrt(square.max())) / scales.sound_speed,
+        "lowest relative density ()": 1 + float(excess.min()) / scales.density,
+        "highest relative density ()": 1 + float(excess.max()) / scales.density,
+    }
+
+
+def surface(position: Array, radius: Array, edges: Array) -> Array:
+    """Height of the pile's surface in bins between ``edges`` (b + 1,) m: top of the highest disc reaching in, (b,) m.
+
+    Discs are taken at their true shape: over a bin, the highest point of the disc within it.
+    """
+    height = np.zeros(len(edges) - 1)
+    for (x, y), r in zip(position, radius, strict=True):
+        first = max(int(np.searchsorted(edges, x - r, side="right")) - 1, 0)
+        last = min(int(np.searchsorted(edges, x + r, side="left")), len(height))
+        for b in range(first, last):
+            off = min(max(x, edges[b]), edges[b + 1]) - x
+            height[b] = max(height[b], y + np.sqrt(max(r * r - off * off, 0.0)))
+    return height

@@ -1,0 +1,208 @@
+"""A simulation: the parts that a scene asked for, driven through time.  Implements the model that ``runs`` drives."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.coupling.step import Coupled
+from porescale.dem.system import Grains
+from porescale.ground.check import Unstable
+from porescale.lbm.fluid import Fluid
+from porescale.lbm.plate import Plate
+from porescale.runs.model import Cloud, Grid, Snapshot
+from porescale.scene import observe
+from porescale.scene.derive import Derived
+from porescale.scene.sections import Scene
+
+Array = NDArray[np.float64]
+
+WORST_MACH = 0.6
+"""Beyond it the lattice's equilibrium means nothing; populations turn negative near it."""
+WORST_DENSITY = 0.5
+"""Relative density change beyond which the fluid is not what the scene calls a liquid."""
+
+
+class Gatekeeper:
+    """Opens the gate, for fluid and grains alike, at its time: at once, or upward with a speed."""
+
+    def __init__(
+        self, opens_at: float, lift_speed: float | None, plate: Plate | None, grains: Grains | None, name: str
+    ) -> None:
+        self.opens_at, self.lift_speed = opens_at, lift_speed
+        self.plate, self.grains, self.name = plate, grains, name
+        self.open = False
+
+    def advance(self, time: float, fluid: Fluid | None, spacing: float, step: float) -> None:
+        """What the gate does in the step that begins at ``time`` (s)."""
+        if not self.open and time >= self.opens_at - 0.5 * step:
+            self.open = True
+            if self.lift_speed is None:
+                if fluid and self.plate in fluid.plates:
+                    fluid.plates.remove(self.plate)
+                if self.grains:
+                    self.grains.remove_plate(self.name)
+            else:
+                if self.plate:
+                    self.plate.speed = self.lift_speed * step / spacing
+                if self.grains:
+                    self.grains.move_plate(self.name, self.lift_speed)
+        if self.plate:
+            self.plate.lower_edge += self.plate.speed
+
+
+class Simulation:
+    """A scene in motion.
+
+    step : model steps done (fluid steps, or contact steps without fluid);  step_seconds : s;  time : s.
+    fluid, grains, coupled, gate : None where the scene has no such part.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        derived: Derived,
+        *,
+        fluid: Fluid | None,
+        grains: Grains | None,
+        coupled: Coupled | None,
+        weight: Array | None,
+        gate: Gatekeeper | None,
+    ) -> None:
+        self.scene, self.derived = scene, derived
+        self.fluid, self.grains, self.coupled, self.gate = fluid, grains, coupled, gate
+        self.weight = weight
+        self.step = 0
+        self.step_seconds = derived.model_step
+        self._mass = fluid.mass_excess() if fluid else 0.0
+        self._watch = observe.Watch(scene, grains) if grains else None
+
+    @property
+    def time(self) -> float:
+        """Time reached, s."""
+        return self.step * self.step_seconds
+
+    def advance(self, steps: int) -> None:
+        """Do ``steps`` steps."""
+        scales = self.derived.scales
+        for _ in range(steps):
+            if self.gate:
+                self.gate.advance(self.time, self.fluid, scales.spacing if scales else 1.0, self.step_seconds)
+            if self.coupled:
+                self.coupled.advance()
+            elif self.fluid:
+                self.fluid.advance()
+            elif self.grains:
+                self.grains.step(self.step_seconds, self.weight)
+            self.step += 1
+
+    def fields(self) -> tuple[Array, Array, Array, Array]:
+        """Density excess (kg/m³), velocity (m/s, two arrays) and solid fraction of every cell, each (ny, nx)."""
+        assert self.fluid
+        assert self.derived.scales
+        if self.coupled:
+            return self.coupled.fields()
+        s = self.derived.scales
+        rho, ux, uy = self.fluid.fields()
+        return (rho - 1) * s.density, ux * s.velocity, uy * s.velocity, np.zeros_like(rho)
+
+    def check(self) -> None:
+        """Raise Unstable, naming cell or grain, quantity and step, when the state is beyond sense."""
+        if self.grains:
+            self.grains.check()
+        if self.fluid:
+            excess, ux, uy, _ = self.fields()
+            self._check_fluid(excess, np.hypot(ux, uy))
+
+    def _check_fluid(self, excess: Array, speed: Array) -> None:
+        s = self.derived.scales
+        assert s
+        for name, values, bound, unit, cause in (
+            ("relative density change", np.abs(excess) / s.density, WORST_DENSITY, "",
+             "the pressure is too high for the sound speed of the lattice: shorten fluid.step"),
+            ("speed", speed, WORST_MACH * s.sound_speed, "m/s",
+             "too fast for the lattice: shorten fluid.step, or raise the viscosity or refine the spacing where the "
+             "relaxation time is near 1/2"),
+        ):  # fmt: skip
+            worst = np.nan_to_num(values, nan=np.inf)
+            at = int(worst.argmax())
+            if worst.flat[at] > bound:
+                y, x = divmod(at, values.shape[1])
+                where = f"cell ({x}, {y}) at ({(x + 0.5) * s.spacing:.4g}, {(y + 0.5) * s.spacing:.4g}) m"
+                raise Unstable(where, name, float(values.flat[at]), unit, self.step, self.time, cause)
+
+    def series(self) -> dict[str, float]:
+        """One row: time, and what the parts present have to say."""
+        row = {"time (s)": self.time}
+        if self.grains and self._watch:
+            row |= self._watch.row(self.grains)
+        if self.fluid:
+            excess, ux, uy, solid = self.fields()
+            row |= observe.fluid_row(excess, ux, uy, solid, self.derived.scales)
+            cells = self.fluid.nx * self.fluid.ny
+            row["fluid mass change ()"] = (self.fluid.mass_excess() - self._mass) / cells
+        return row
+
+    def snapshot(self) -> Snapshot:
+        """Fluid as cells, grains as points."""
+        snapshot = Snapshot(self.time, self.step)
+        if self.fluid and self.derived.scales:
+            snapshot.grids["fields"] = self._grid()
+        if self.grains:
+            d = self.grains.discs
+            flat = np.zeros((d.count, 3))
+            flat[:, :2] = d.velocity
+            data = {"radius": d.radius, "angle": d.angle, "velocity": flat, "spin": d.spin}
+            units = {"radius": "m", "angle": "rad", "velocity": "m/s", "spin": "rad/s"}
+            snapshot.clouds["grains"] = Cloud(d.position, data, units)
+        return snapshot
+
+    def _grid(self) -> Grid:
+        s = self.derived.scales
+        assert s
+        assert self.fluid
+        excess, ux, uy, solid = self.fields()
+        velocity = np.zeros((*ux.shape, 3), np.float32)
+        velocity[..., 0], velocity[..., 1] = ux, uy
+        reduced = excess * s.velocity**2 / 3
+        depth = (self.fluid.ny - 0.5 - np.arange(self.fluid.ny)) * s.spacing
+        along = (np.arange(self.fluid.nx) + 0.5) * s.spacing
+        hydrostatic = s.density * (-self.scene.gravity[1] * depth[:, None] + self.scene.gravity[0] * along[None, :])
+        cells: dict[str, Array] = {"velocity": velocity, "pressure": (reduced + hydrostatic).astype(np.float32)}
+        if self.grains:
+            cells["solid_fraction"] = solid.astype(np.float32)
+        units = {"velocity": "m/s", "pressure": "Pa"}
+        return Grid((0.0, 0.0), (s.spacing, s.spacing), cells, units)
+
+    def state(self) -> dict[str, Any]:
+        """Everything needed to go on bit for bit."""
+        state: dict[str, Any] = {"step": self.step, "mass": self._mass}
+        if self.coupled:
+            state["coupled"] = self.coupled.state()
+        elif self.fluid:
+            state["fluid"] = self.fluid.state()
+        elif self.grains:
+            state["grains"] = self.grains.state()
+        if self._watch:
+            state["watch"] = self._watch.state()
+        if self.gate:
+            state["gate_open"] = self.gate.open
+        return state
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state of a simulation built from the same scene."""
+        self.step, self._mass = int(state["step"]), float(state["mass"])
+        if self.gate and bool(state["gate_open"]):
+            self.gate.open = True
+            if self.gate.lift_speed is None and self.fluid:
+                self.fluid.plates.clear()
+        if self.coupled:
+            self.coupled.restore(state["coupled"])
+        elif self.fluid:
+            self.fluid.restore(state["fluid"])
+        elif self.grains:
+            self.grains.restore(state["grains"])
+        if self._watch:
+            self._watch.restore(state["watch"])
