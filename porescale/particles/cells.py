@@ -16,10 +16,11 @@ from porescale.ground.jit import inline, kernel
 def minimum_image(dx, period):
     """Distance component between nearest periodic images, m; ``period`` 0: side is not periodic.
 
-    ``dx - period * nearest integer(dx / period)``: in [-period/2, period/2] for any ``dx``.
+    ``dx - period * nearest integer(dx / period)``: in [-period/2, period/2] for any ``dx``.  The reciprocal does
+    not depend on ``dx``: it leaves the loop that this is used in, where a division would cost most of a pair.
     """
     if period > 0.0:
-        dx -= period * np.rint(dx / period)
+        dx -= period * np.rint(dx * (1.0 / period))
     return dx
 
 
