@@ -1,8 +1,9 @@
 """Settled packings: discs placed without overlap, dropped behind walls and plates until they rest.
 
 Settling is a means, not a simulation: it uses a stiff, well damped law of its own and a background drag
--gamma m v, both stated here and gone afterwards.  ``relax`` then finds the equilibrium under the law and weights
-of the run, so that nothing jumps at its first step.  A packing is kept on disk under a hash of all that made it.
+-gamma m v, both stated here and gone afterwards.  ``relax`` then finds the equilibrium under the law and
+weights of the run, so that nothing jumps at its first step.  A packing is kept on disk under a hash of all
+that made it.
 """
 
 from __future__ import annotations
@@ -33,11 +34,11 @@ from porescale.particles import place
 Array = NDArray[np.float64]
 
 OVERLAP = 1e-3  # of a diameter: deepest overlap left by settling, so that the geometry is that of hard discs
-SOFTER = 16.0  # first the grains fall this much softer, with steps 4 times as long, then they stiffen in place
+SOFTER = 16.0  # grains fall this much softer first, with steps 4 times as long, and then stiffen in place
 RESTITUTION = 0.5  # of the settling law: damps a bounce in a few impacts; less would shorten the stable step
-SHEAR = 0.25  # tangential over normal stiffness of the settling law: more would make rotation the stiffest motion
-CHAIN = 4.0  # strongest contact force over the weight of the discs above one diameter of width (measured 3 to 5)
-DRAG = 0.3  # background damping in sqrt(g/d): grains fall at most about their own free-fall speed over d
+SHEAR = 0.25  # tangential over normal stiffness of the settling law: more would make rotation the stiffest
+CHAIN = 4.0  # strongest contact force over the weight of the discs above a diameter of width (measured: 3 to 4)
+DRAG = 0.3  # background damping in sqrt(g/d): grains fall at a few times their free-fall speed over d
 ENERGY = 1e-8  # kinetic energy per grain over m g d that counts as rest
 BALANCE = 3e-3  # mean net force over mean weight that counts as rest
 CHUNK = 500  # steps between looks
@@ -48,8 +49,8 @@ PATIENCE = 400  # chunks before settling gives up
 class Pile:
     """What is dropped: ``count`` discs of mean ``diameter`` (m) (1 ± spread) and ``density`` (kg/m^3).
 
-    They are placed from ``corner`` (m) upwards over ``width`` (m) at ``fraction`` of area, with ``seed``, and settle
-    under ``gravity`` (m/s^2) with ``friction``: little of it packs densely, much of it loosely.
+    They are placed from ``corner`` (m) upwards over ``width`` (m) at ``fraction`` of area, with ``seed``,
+    and settle under ``gravity`` (m/s^2) with ``friction``: little of it packs densely, much of it loosely.
     """
 
     corner: tuple[float, float]
@@ -70,11 +71,13 @@ class Pile:
         return self.corner[1] + area / (self.fraction * self.width) + self.diameter
 
     def discs(self) -> Discs:
-        """The discs as placed, at rest."""
+        """The discs as placed, at rest, numbered column by column so that neighbours lie close in memory."""
         placed = place(
             self.corner, (self.corner[0] + self.width, self.top()), radii=self.radii(), seed=self.seed
         )
-        return make_discs(placed.position, placed.radius, self.density)
+        columns = np.floor(placed.position[:, 0] / (2.0 * self.diameter))
+        order = np.lexsort((placed.position[:, 1], columns))
+        return make_discs(placed.position[order], placed.radius[order], self.density)
 
     def radii(self) -> Array:
         """Radii, (n,) m, uniform in diameter (1 ± spread)."""
@@ -93,34 +96,42 @@ def settling_law(pile: Pile) -> Linear:
     return dataclasses.replace(law, tangential_damping=SHEAR * law.damping)
 
 
-def come_to_rest(grains: Grains, weights: Array, gravity: float) -> None:
+def come_to_rest(
+    grains: Grains, weights: Array, gravity: float, *, energy: float = ENERGY, balance: float = BALANCE
+) -> None:
     """Step under ``weights`` (n, 2) N/m with drag until kinetic energy and net forces are negligible.
 
-    Raises PorescaleError when they are not after PATIENCE chunks of steps, Unstable when the state is senseless.
+    energy : kinetic, per grain over m g d;  balance : mean net force over mean weight.
+
+    Raises PorescaleError when they are not after PATIENCE chunks of steps, Unstable when the state is
+    senseless.
     """
     discs = grains.discs
     diameter = 2.0 * float(discs.radius.mean())
     drag = DRAG * math.sqrt(gravity / diameter)
     dt = grains.stable_step(steps_per_contact=0.0)
-    rest = ENERGY * gravity * diameter * float(discs.mass.sum())
+    rest = energy * gravity * diameter * float(discs.mass.sum())
     for _ in range(PATIENCE):
         grains.step(dt, weights, None, CHUNK, drag)
         grains.check()
-        if kinetic_energy(discs) < rest and unbalanced(grains) < BALANCE:
+        if kinetic_energy(discs) < rest and unbalanced(grains) < balance:
             break
     else:
         raise PorescaleError(
             f"the packing did not come to rest in {PATIENCE * CHUNK} steps: kinetic energy "
-            f"{kinetic_energy(discs) / rest * ENERGY:.2g} m g d per grain, net force {unbalanced(grains):.2g} of weight"
+            f"{kinetic_energy(discs) / rest * energy:.2g} m g d per grain, "
+            f"net force {unbalanced(grains):.2g} of weight"
         )
     discs.velocity[:] = 0.0
     discs.spin[:] = 0.0
 
 
 def settle(grains: Grains, pile: Pile) -> None:
-    """Drop the discs of ``grains`` under the law of settling_law until they rest with overlaps below OVERLAP d.
+    """Drop the discs of ``grains`` under the law of settling_law until they rest with overlaps below
+    OVERLAP d.
 
-    Plates stand still meanwhile, and as high as needed.  The law of ``grains`` afterwards is the settling law.
+    Plates stand still meanwhile, and as high as needed.  The law of ``grains`` afterwards is the settling
+    law.
     """
     law = settling_law(pile)
     weights = np.zeros((grains.discs.count, 2))
@@ -145,7 +156,9 @@ def settle(grains: Grains, pile: Pile) -> None:
     for name, high in zip(grains.plate_names, plates[:, HIGH], strict=True):
         if high < settled_top:
             raise InputError(
-                Fault(f"{name}.y_high", float(high), "grains would spill over it", "m", f">= {settled_top:.4g}")
+                Fault(
+                    f"{name}.y_high", float(high), "grains would spill over it", "m", f">= {settled_top:.4g}"
+                )
             )
 
 
@@ -167,11 +180,14 @@ def scale_springs(grains: Grains, factor: float) -> None:
     grains.plate_spring *= factor
 
 
-def relax(grains: Grains, law: Linear, weights: Array, gravity: float, *, wall_law: Linear | None = None) -> None:
+def relax(
+    grains: Grains, law: Linear, weights: Array, gravity: float, *, wall_law: Linear | None = None
+) -> None:
     """From rest under one law and weight to rest under ``law`` and ``weights`` (n, 2) N/m.
 
-    The friction forces are carried over in proportion to the weights, so that the packing does not forget which
-    way it leans; plates stand still.  ``gravity`` (m/s^2) sets the scale of drag and rest.  Raises as come_to_rest.
+    The friction forces are carried over in proportion to the weights, so that the packing does not forget
+    which way it leans; plates stand still.  ``gravity`` (m/s^2) sets the scale of drag and rest.  Raises
+    as come_to_rest.
     """
     before = np.hypot(grains.external_force[:, 0], grains.external_force[:, 1]).sum()
     share = np.hypot(weights[:, 0], weights[:, 1]).sum() / before if before > 0.0 else 1.0
@@ -195,12 +211,13 @@ def prepare(
     folder: Path | None = None,
     cache: bool = True,
 ) -> Grains:
-    """Grains of ``pile`` at rest in ``box`` behind ``plates`` under the run's ``law`` and weights; from disk if known.
+    """Grains of ``pile`` at rest in ``box`` behind ``plates`` under the run's ``law`` and weights; from
+    disk if known.
 
-    weight_density (kg/m^3): weights are weight_density * area * gravity, downwards; the density of the grains by
-    default, density difference to a fluid for buoyant ones.  folder: of the cache, default
-    $XDG_CACHE_HOME/porescale/packings.  What is loaded has the bits of what was made.  Raises InputError when the
-    weight is not downwards, or when no side or plate holds the pile.
+    weight_density (kg/m^3): weights are weight_density * area * gravity, downwards; the density of the
+    grains by default, density difference to a fluid for buoyant ones.  folder: of the cache, default
+    $XDG_CACHE_HOME/porescale/packings.  What is loaded has the bits of what was made.  Raises InputError
+    when the weight is not downwards, or when no side or plate holds the pile.
     """
     weighs = pile.density if weight_density is None else weight_density
     if not weighs > 0.0:
@@ -209,9 +226,8 @@ def prepare(
                   f"> {pile.density - weighs:g}")
         )  # fmt: skip
     grains = Grains(pile.discs(), law, box, wall_law=wall_law, plates=plates)
-    described = json.dumps(
-        [dataclasses.asdict(part) for part in (pile, box, law, grains.wall_law, *plates)] + [weighs, sources()]
-    )
+    made_of: list[Any] = [pile, box, law, grains.wall_law, *plates]
+    described = json.dumps([dataclasses.asdict(part) for part in made_of] + [weighs, sources()])
     name = hashlib.sha256(described.encode()).hexdigest()[:16]
     path = (folder or cache_folder()) / f"{name}.npz"
     if cache and path.exists():
@@ -222,7 +238,7 @@ def prepare(
         grains, law, weights_of(grains.discs, weighs, pile.gravity), pile.gravity * weighs / pile.density,
         wall_law=wall_law,
     )  # fmt: skip
-    grains.steps, grains.time = 0, 0.0
+    grains.reset_clock()
     if cache:
         pack(path, grains.state())
     return grains
@@ -252,8 +268,10 @@ def sources() -> str:
 
 
 def pack(path: Path, state: dict[str, Any]) -> None:
-    """Write a nested ``state`` of arrays and numbers to ``path``, beside first, then renamed: whole or absent."""
-    flat = {}
+    """Write a nested ``state`` of arrays and numbers to ``path``, beside first, then renamed: whole or
+    absent.
+    """
+    flat: dict[str, Any] = {}
     for key, value in state.items():
         for inner, part in value.items() if isinstance(value, dict) else [("", value)]:
             flat[f"{key}/{inner}" if inner else key] = np.asarray(part)

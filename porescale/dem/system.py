@@ -19,7 +19,9 @@ from porescale.particles.pairs import PairList
 
 Array = NDArray[np.float64]
 
-SKIN = 0.3  # of the mean radius: measured optimum of a collapsing column between 0.2 and 0.5, flat
+SKIN = (
+    0.5  # of the mean radius: measured 12 % faster than 0.3 in a dry collapse, 2 % slower in a pile at rest
+)
 WORST_OVERLAP = 0.3  # of the smaller radius: the linear law and its lever arms mean nothing beyond
 WORST_TRAVEL = 0.1  # of the smallest radius in one step: a contact would be met after the fact
 
@@ -28,7 +30,7 @@ class Grains:
     """Discs under ``law`` in ``box`` with ``plates``.
 
     law : between discs;  wall_law : at sides and plates (default: ``law``); a plate may have its own
-    friction. skin : m, of the pair list (default 0.3 mean radii).
+    friction. skin : m, of the pair list (default 0.5 mean radii).
 
     Positions are not wrapped on periodic sides.  The first step starts from velocities half a step back;
     for a start from rest that is the same.  ``steps`` and ``time`` count contact steps and seconds.
@@ -64,7 +66,8 @@ class Grains:
         self.external_force = np.zeros((count, 2))
         self.external_torque = np.zeros(count)
         self.touching = np.zeros(count, np.int64)
-        self.steps, self.time, self.last_dt = 0, 0.0, 0.0
+        self.steps, self.last_dt = 0, 0.0
+        self._time, self._steps_of_dt = 0.0, 0  # seconds before dt last changed, steps since
         self._stale = True  # the pair list must be looked at before the next step
         self._smallest = float(discs.radius.min()) if count else 0.0
 
@@ -79,6 +82,15 @@ class Grains:
                 for own in self.plate_frictions
             ]
         ).reshape(-1, COLUMNS)
+
+    @property
+    def time(self) -> float:
+        """Seconds done; the same bits however the steps were divided into calls."""
+        return self._time + self._steps_of_dt * self.last_dt
+
+    def reset_clock(self) -> None:
+        """Count steps and seconds from zero again."""
+        self.steps, self._time, self._steps_of_dt = 0, 0.0, 0
 
     def stable_step(self, *, safety: float = 0.8, steps_per_contact: float = 10.0) -> float:
         """A safe contact step, s; see integrate.stable_step."""
@@ -112,7 +124,8 @@ class Grains:
         elif external_torque is not self.external_torque:
             self.external_torque[:] = external_torque
         d, limit, left = self.discs, (0.5 * self.pairs.skin) ** 2, count
-        self.last_dt = dt
+        if dt != self.last_dt:
+            self._time, self._steps_of_dt, self.last_dt = self.time, 0, dt
         while left > 0:
             if self._stale:
                 self.refresh()
@@ -128,7 +141,7 @@ class Grains:
             )  # fmt: skip
             left -= done
             self.steps += done
-            self.time += done * dt
+            self._steps_of_dt += done
 
     def refresh(self) -> None:
         """Bring the pair list up to date; call it after moving or resizing discs by hand."""
@@ -184,13 +197,14 @@ class Grains:
                     f"grain {out}", f"distance to the {name} wall", float(distance[out]), "m",
                     "it went through the wall: raise the stiffness or shorten the contact step",
                 )  # fmt: skip
-        if not self._stale:
-            deepest = max_overlap(self)
-            if deepest.share > WORST_OVERLAP:
-                raise self._unstable(
-                    f"grain {deepest.disc}", f"overlap with {deepest.against} over radius", deepest.share, "",
-                    "raise the stiffness, or shorten the contact step",
-                )  # fmt: skip
+        if self._stale:
+            self.refresh()  # as the next step would
+        deepest = max_overlap(self)
+        if deepest.share > WORST_OVERLAP:
+            raise self._unstable(
+                f"grain {deepest.disc}", f"overlap with {deepest.against} over radius", deepest.share, "",
+                "raise the stiffness or shorten the contact step",
+            )  # fmt: skip
 
     def _check_finite(self) -> None:
         d = self.discs
@@ -220,7 +234,8 @@ class Grains:
             "external_force": self.external_force.copy(),
             "external_torque": self.external_torque.copy(),
             "steps": self.steps,
-            "time": self.time,
+            "time": self._time,
+            "steps_of_dt": self._steps_of_dt,
             "last_dt": self.last_dt,
             "stale": int(self._stale),
         }
@@ -237,6 +252,7 @@ class Grains:
                 raise InputError(Fault(f"state.{name}", given.shape, "wrong shape", allowed=str(own.shape)))
             own[...] = given
         self.pairs.restore(state["pairs"])
-        self.steps, self.time = int(state["steps"]), float(state["time"])
+        self.steps, self._time = int(state["steps"]), float(state["time"])
+        self._steps_of_dt = int(state["steps_of_dt"])
         self.last_dt, self._stale = float(state["last_dt"]), bool(state["stale"])
         self._smallest = float(self.discs.radius.min()) if self.discs.count else 0.0

@@ -1,7 +1,8 @@
-"""Discs in contact, slow and obvious, written from spec/grains.md section 1: every pair, every step, plain Python.
+"""Discs in contact, slow and obvious, written from spec/grains.md section 1: every pair, every step, plain
+Python.
 
-One dictionary holds the springs.  ``arms="radius"`` uses the radii as lever arms, as many codes do: the twin that
-must lose angular momentum.
+One dictionary holds the springs.  ``arms="radius"`` uses the radii as lever arms, as many codes do: the
+twin that must lose angular momentum.
 """
 
 from __future__ import annotations
@@ -40,7 +41,9 @@ class World:
     arms: str = "lever"
     springs: dict[tuple[str, int, int], float] = field(default_factory=dict)
 
-    def law(self, key: tuple[str, int, int], overlap: float, closing: float, slip: float, dt: float, mu: float):
+    def law(
+        self, key: tuple[str, int, int], overlap: float, closing: float, slip: float, dt: float, mu: float
+    ):
         """Normal and tangential force of one contact with its spring."""
         normal = self.k * overlap + self.c * closing
         if not self.pulls and normal < 0:

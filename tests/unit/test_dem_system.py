@@ -1,0 +1,338 @@
+"""Grains stepped together: against the slow twin, as plain Python, restarted, watched."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from porescale.dem import forces, integrate, measure, walls
+from porescale.dem.contact.linear import Linear
+from porescale.dem.discs import make_discs
+from porescale.dem.settle import pack, unpack
+from porescale.dem.system import Grains
+from porescale.dem.walls import Box, Plate
+from porescale.ground.check import InputError, Unstable
+from tests.reference.dem import Body, World
+
+DENSITY = 2000.0
+LAW = Linear(1e6, 5.0, 3e5, 4.0, 0.4)
+
+
+def grains_in_a_box(seed=0, count=24, law=LAW, plates=None, skin=None):
+    """Spinning discs of radii 1:2 flying about in a small closed box with a rising plate."""
+    rng = np.random.default_rng(seed)
+    side = int(np.ceil(np.sqrt(count)))
+    grid = np.stack(np.meshgrid(np.arange(side), np.arange(side)), axis=-1).reshape(-1, 2)[:count]
+    discs = make_discs(
+        (grid + 0.5) * 0.021,
+        0.01 * rng.uniform(0.5, 1.0, count),
+        DENSITY,
+        velocity=rng.normal(0.0, 1.0, (count, 2)),
+        spin=rng.normal(0.0, 100.0, count),
+    )
+    if plates is None:
+        plates = [Plate(2.0 * 0.021, -0.01, 0.05, velocity=0.7, friction=0.1)]
+    box = Box((0.0, 0.0), (side * 0.021, side * 0.021))
+    return Grains(discs, law, box, plates=plates, skin=skin)
+
+
+def twin_of(grains):
+    d, law = grains.discs, grains.law
+    bodies = [
+        Body(*d.position[i], d.radius[i], d.mass[i], *d.velocity[i], d.spin[i], d.angle[i])
+        for i in range(d.count)
+    ]
+    return World(
+        bodies, law.stiffness, law.damping, law.tangential_stiffness, law.tangential_damping, law.friction,
+        pulls=law.release == "overlap",
+        walls=[tuple(row) for row in grains.walls.tolist()],
+        plates=[[*p[:4], mu] for p, mu in zip(grains.plates.tolist(), grains.plate_laws[:, 4].tolist(), strict=True)],
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("release", ["force", "overlap"])
+def test_fast_grains_follow_the_slow_twin(release):
+    grains = grains_in_a_box(law=Linear(1e6, 5.0, 3e5, 4.0, 0.4, release))
+    twin = twin_of(grains)
+    weights = np.tile([1.0, -DENSITY * 9.81 * 1e-4], (24, 1))
+    twist = np.full(24, 1e-3)
+    dt, steps = grains.stable_step(), 400
+    grains.step(dt, weights, twist, steps)
+    for _ in range(steps):
+        twin.step(dt, [(*weights[i], twist[i]) for i in range(24)])
+    d = grains.discs
+    assert grains.pairs.builds > 1
+    assert measure.coordination(grains) > 0 or grains.wall_spring.any()
+    # Same arithmetic in another order: 1e-16 a step, enlarged by collisions (a factor of about 10 each, 5
+    # each).
+    for name, fast, slow in (
+        ("x", d.position[:, 0], [b.x for b in twin.bodies]),
+        ("y", d.position[:, 1], [b.y for b in twin.bodies]),
+        ("angle", d.angle * d.radius, [b.angle * b.r for b in twin.bodies]),
+    ):
+        np.testing.assert_allclose(fast, slow, atol=1e-10 * 0.1, rtol=0, err_msg=name)
+    assert grains.plate_ends("plate")[1] == pytest.approx(twin.plates[0][1], rel=1e-12)
+
+
+def arrays_for_forces(grains):
+    d, p = grains.discs, grains.pairs
+    loads = np.zeros_like(d.force), np.zeros_like(d.torque)
+    return d, p, loads
+
+
+def compress(grains):
+    """A state with contacts everywhere: every disc 8 % larger than the room it has."""
+    grains.discs.radius[:] = 0.0113
+    grains.refresh()
+    return grains
+
+
+def test_kernels_do_the_same_as_plain_python():
+    # Python checks the bounds that compiled code does not.
+    a, b = compress(grains_in_a_box()), compress(grains_in_a_box())
+    for grains, plain in ((a, False), (b, True)):
+        d, p, (force, torque) = arrays_for_forces(grains)
+        call = (lambda kernel: kernel.py_func) if plain else (lambda kernel: kernel)
+        call(forces.start_forces)(force, torque, np.ones_like(force), np.ones_like(torque))
+        call(forces.add_pair_forces)(
+            d.position, d.velocity, d.spin, d.radius, force, torque, p.start, p.partner, p.carried, 0.0, 0.0,
+            grains.law_row, 1e-5,
+        )  # fmt: skip
+        call(walls.add_wall_forces)(
+            d.position, d.velocity, d.spin, d.radius, force, torque, grains.walls, grains.wall_laws,
+            grains.wall_spring, grains.wall_force, 1e-5,
+        )  # fmt: skip
+        call(walls.add_plate_forces)(
+            d.position, d.velocity, d.spin, d.radius, force, torque, grains.plates, grains.plate_laws,
+            grains.plate_spring, grains.plate_force, 1e-5,
+        )  # fmt: skip
+        call(integrate.kick_drift)(
+            d.position,
+            d.angle,
+            d.velocity,
+            d.spin,
+            d.mass,
+            d.inertia,
+            force,
+            torque,
+            p.anchor,
+            1.0,
+            3.0,
+            1e-5,
+        )
+        d.force[:], d.torque[:] = force, torque
+        grains.kept = call(measure.survey_pairs)(
+            d.position, d.radius, p.start, p.partner, p.carried, 0.0, 0.0, grains.law_row, grains.touching
+        ) + call(measure.survey_walls)(
+            d.position, d.radius, grains.walls, grains.wall_laws, grains.wall_spring
+        )  # fmt: skip
+    assert (a.touching > 1).all()
+    assert a.plate_force.any()
+    assert a.kept == b.kept
+    for name, one in a.state()["discs"].items():
+        np.testing.assert_array_equal(one, b.state()["discs"][name], err_msg=name)
+    for name in ("wall_spring", "plate_spring", "wall_force", "plate_force", "touching"):
+        np.testing.assert_array_equal(getattr(a, name), getattr(b, name), err_msg=name)
+
+
+def test_walls_and_plates_feel_the_force_they_exert():
+    grains = compress(grains_in_a_box(plates=[Plate(0.042, 0.0, 0.05)]))
+    d = grains.discs
+    grains.step(1e-9)
+    # Pair forces cancel in the sum; 200 terms of order 1e3 N/m round at 1e-16 each.
+    total = d.force.sum(axis=0) + grains.wall_force.sum(axis=0) + grains.plate_force.sum(axis=0)
+    assert np.abs(grains.wall_force).sum() > 1e2
+    np.testing.assert_allclose(total, 0.0, atol=200 * 1e-16 * 1e5)
+
+
+def test_a_call_of_many_steps_equals_many_calls():
+    one, many = grains_in_a_box(), grains_in_a_box()
+    one.step(1e-5, count=300)
+    for _ in range(100):
+        many.step(1e-5, count=3)
+    assert_same_bits(one, many)
+    assert one.pairs.builds == many.pairs.builds > 1
+
+
+def assert_same_bits(one, other):
+    a, b = one.state(), other.state()
+    for key in a:
+        if isinstance(a[key], dict):
+            for name in a[key]:
+                np.testing.assert_array_equal(a[key][name], b[key][name], err_msg=f"{key}/{name}")
+        else:
+            np.testing.assert_array_equal(a[key], b[key], err_msg=key)
+
+
+@pytest.mark.parametrize("before", [1, 137, 250])
+def test_a_restart_equals_the_uninterrupted_run_bit_for_bit(before, tmp_path):
+    through, first, second = (grains_in_a_box() for _ in range(3))
+    through.step(1e-5, count=600)
+    first.step(1e-5, count=before)
+    pack(tmp_path / "state.npz", first.state())
+    second.discs.position += 0.3  # nothing of the fresh one may survive
+    second.restore(unpack(tmp_path / "state.npz"))
+    assert_same_bits(first, second)
+    second.step(1e-5, count=600 - before)
+    assert_same_bits(through, second)
+
+
+def test_without_its_springs_a_restart_takes_another_path():  # the twin that must fail
+    through, forgetful = (compress(grains_in_a_box()) for _ in range(2))
+    through.step(1e-6, count=40)
+    forgetful.step(1e-6, count=20)
+    forgetful.pairs.carried[:] = 0.0
+    forgetful.step(1e-6, count=20)
+    assert not np.array_equal(through.discs.velocity, forgetful.discs.velocity)
+
+
+def test_the_skin_does_not_change_what_happens():
+    thin, thick = grains_in_a_box(skin=2e-4), grains_in_a_box(skin=8e-3)
+    for grains in (thin, thick):
+        grains.step(1e-5, count=500)
+    assert thin.pairs.builds > 5 * thick.pairs.builds
+    np.testing.assert_array_equal(thin.discs.position, thick.discs.position)  # rows are sorted: same sums
+
+
+def test_a_periodic_side_joins_left_and_right():
+    # A row of discs around the seam does the same wherever the seam lies; positions of order 1 round to 1e-16,
+    # amplified by stiffness times steps^2 dt^2 / m = 40.
+    ends = []
+    for shift in (0.0, 0.05):
+        x = np.array([[0.002 + shift, 0.0], [0.091 + shift, 0.001], [0.0215 + shift, -0.001]])
+        grains = Grains(
+            make_discs(x, 0.01, DENSITY, velocity=[[0, 0], [1.0, 0.5], [-1.0, 0.0]], spin=[0.0, 30.0, 0.0]),
+            LAW,
+            Box((0.0, -1.0), (0.1, 1.0), left="periodic", right="periodic", bottom="open", top="open"),
+        )
+        grains.step(1e-5, count=400)
+        ends.append((grains.discs.position - [shift, 0.0], grains.discs.spin))
+    assert abs(ends[0][1]).min() > 1.0  # all three have met
+    np.testing.assert_allclose(ends[0][0], ends[1][0], atol=1e-13)
+
+
+def test_a_plate_holds_until_it_is_removed_and_then_is_nothing():
+    def column():
+        discs = make_discs([[0.0101, 0.0]], 0.01, DENSITY, velocity=[[-1.0, 0.0]])
+        box = Box((-1.0, -1.0), (1.0, 1.0), "open", "open", "open", "open")
+        return Grains(discs, LAW, box, plates=[Plate(0.0, -0.1, 0.1, name="gate")])
+
+    held, freed = column(), column()
+    held.step(1e-5, count=2000)
+    assert held.discs.velocity[0, 0] > 0.0
+    assert held.discs.velocity[0, 0] == pytest.approx(
+        LAW.restitution(held.discs.mass[0]), abs=1e-2
+    )  # T_c/1000
+    freed.remove_plate("gate")
+    freed.step(1e-5, count=2000)
+    assert freed.discs.velocity[0, 0] == -1.0
+    with pytest.raises(InputError, match=r"no such plate.*gate"):
+        held.remove_plate("gat")
+
+
+def test_a_plate_is_met_at_its_end_along_the_line_to_the_end():
+    discs = make_discs([[0.0, 0.0]], 0.01, DENSITY)
+    box = Box((-1.0, -1.0), (1.0, 1.0), "open", "open", "open", "open")
+    grains = Grains(discs, LAW.with_friction(0.0), box, plates=[Plate(0.005, 0.005, 0.1)])
+    grains.step(1e-9)
+    push = LAW.stiffness * (0.01 - 0.005 * np.sqrt(2.0)) / np.sqrt(2.0)
+    np.testing.assert_allclose(discs.force[0], [-push, -push], rtol=1e-14)
+
+
+def test_a_rising_plate_drags_grains_up_only_by_its_friction():
+    lifted = []
+    for friction in (0.0, 0.5):
+        discs = make_discs([[0.0099, 0.0]], 0.01, DENSITY)
+        box = Box((-1.0, -1.0), (1.0, 1.0), "open", "open", "open", "open")
+        grains = Grains(discs, LAW, box, plates=[Plate(0.0, -0.1, 0.1, friction=friction, name="gate")])
+        grains.move_plate("gate", 1.0)
+        grains.step(1e-5, np.array([[-20.0, 0.0]]), count=100)
+        lifted.append(discs.velocity[0, 1])
+    assert lifted[0] == 0.0
+    assert lifted[1] > 0.0
+
+
+def test_energy_is_kept_without_damping_and_friction():
+    # Leap-frog at T_c/300: the energy of a bounce errs by (w dt)^2 = 1e-4 at most while in contact.
+    law = Linear(1e6, 0.0, 0.0, 0.0, 0.0)
+    grains = grains_in_a_box(law=law, plates=[])
+
+    def energy():
+        return measure.kinetic_energy(grains.discs) + measure.elastic_energy(grains)
+
+    start = energy()
+    grains.step(law.contact_time(0.5 * grains.discs.mass.min()) / 300.0, count=3000)
+    assert energy() == pytest.approx(start, rel=1e-2 * np.pi / 3)  # half-step speed lags by w dt
+
+
+def test_unstable_grains_are_named():
+    grains = grains_in_a_box()
+    grains.step(1e-5)
+    grains.check()
+    grains.discs.velocity[7, 1] = np.nan
+    with pytest.raises(Unstable, match="velocity = nan m/s at grain 7"):
+        grains.check()
+
+
+def test_a_number_that_is_none_stops_the_run_before_the_search():
+    grains = grains_in_a_box()
+    grains.step(1e-5)
+    grains.discs.velocity[3] = np.nan
+    with pytest.raises(Unstable, match="at grain 3"):
+        grains.step(1e-5, count=10)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "text"),
+    [
+        (lambda d: d.velocity.__setitem__(5, 1e4), "speed = 1.414e\\+04 m/s at grain 5"),
+        (
+            lambda d: d.position.__setitem__(6, (-1e-3, 0.05)),
+            "distance to the left wall = -0.001 m at grain 6",
+        ),
+        (lambda d: d.position.__setitem__(2, d.position[1] + 1e-3), "overlap with grain 2 .* at grain 1"),
+    ],
+)
+def test_a_state_beyond_sense_is_unstable(spoil, text):
+    grains = grains_in_a_box()
+    grains.step(1e-5)
+    spoil(grains.discs)
+    grains.refresh()
+    with pytest.raises(Unstable, match=text):
+        grains.check()
+
+
+def test_a_step_beyond_the_limit_is_caught():
+    grains = compress(grains_in_a_box())
+
+    def run():
+        for _ in range(200):
+            grains.step(3.0 * integrate.packing_limit(LAW, grains.discs.mass.min()), count=10)
+            grains.check()
+
+    with pytest.raises(Unstable):
+        run()
+
+
+@pytest.mark.parametrize(
+    ("make", "key"),
+    [
+        (lambda: Box((0, 0), (1, 1), left="periodic"), "box.left"),
+        (lambda: Box((0, 0), (1, 1), top="soft"), "box.top"),
+        (lambda: Box((0, 0), (0, 1)), "box.upper"),
+        (lambda: Plate(0.0, 1.0, 0.5), "plate.y_high"),
+        (lambda: make_discs([[0, 0]], -1.0, 1.0), "grains.radius"),
+        (lambda: make_discs([[0, np.inf]], 1.0, 1.0), "grains.position"),
+        (lambda: grains_in_a_box().restore(grains_in_a_box(count=5).state()), "state.position"),
+    ],
+)
+def test_wrong_input_is_refused_by_name(make, key):
+    with pytest.raises(InputError, match=key):
+        make()
+
+
+def test_no_grains_is_a_system_too():
+    grains = Grains(make_discs(np.zeros((0, 2)), 1.0, 1.0), LAW, Box((0, 0), (1, 1)))
+    grains.step(1e-3, count=5)
+    grains.check()
+    assert measure.coordination(grains) == 0.0
