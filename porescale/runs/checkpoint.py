@@ -37,7 +37,7 @@ def write_checkpoint(path: Path, content: dict[str, Any]) -> None:
     with whole(Path(path)) as beside, h5py.File(beside, "w", libver=("v110", "v110")) as file:
         group = file.create_group("arrays")
         for number, (where, flat) in enumerate(arrays):
-            _store(group, f"{number:05d}", flat).attrs["place"] = where.encode("utf-8", "backslashreplace")
+            _store(group, f"{number:05d}", flat).attrs["place"] = where.encode("unicode_escape").decode()
         _store(file, "tree", np.frombuffer(json.dumps(tree).encode(), np.uint8))
 
 

@@ -24,6 +24,7 @@ from porescale.runs.series import Series
 
 CHECKPOINT = "checkpoint.h5"
 MADE_LATER = ("*.png", "film.mp4", "film.webm")
+ABANDONED = (cards.RUNNING, cards.INTERRUPTED, cards.FAILED)
 WORTH_KEEPING = 60.0
 """An unfinished run that cost more than this many seconds is not overwritten without being asked."""
 
@@ -179,7 +180,7 @@ def _refuse_to_lose(folder: Path) -> None:
         header = read_header(folder / CHECKPOINT)
     except (ValueError, InputError):
         return
-    if outcome in (cards.RUNNING, cards.INTERRUPTED) and header["seconds"] > WORTH_KEEPING:
+    if outcome in ABANDONED and header["seconds"] > WORTH_KEEPING:
         problem = f"holds an unfinished run of {header['seconds']:.0f} s, saved at t = {header['time']:.4g} s"
         repair = "resume it, remove the folder, or name another one"
         raise InputError(Fault("run folder", str(folder), problem, repair=repair))

@@ -143,24 +143,27 @@ def _points(
     data = root.create_group("PointData")
     for key, column in columns.items():
         _empty(data, key, total, column)
+    # VTK takes steps of equal CellOffsets for one and the same mesh and then reads the first one's offsets
+    # (seen with 9.7): a step without points gets room for one vertex that it does not have.
+    room = np.maximum(n, 1)
+    first = np.cumsum(room) - room
     for topology in ("Vertices", "Lines", "Polygons", "Strips"):
-        cells = n if topology == "Vertices" else np.zeros_like(n)
+        used = topology == "Vertices"
         group = root.create_group(topology)
-        _dataset(group, "NumberOfCells", cells)
-        _dataset(group, "NumberOfConnectivityIds", cells)
+        _dataset(group, "NumberOfCells", n if used else 0 * n)
+        _dataset(group, "NumberOfConnectivityIds", n if used else 0 * n)
         index = Column(np.dtype(np.int64), (), "1")
-        offsets = _empty(group, "Offsets", int(cells.sum()) + frames, index)
-        ids = _empty(group, "Connectivity", int(cells.sum()), index)
-        for k, (many, start) in enumerate(zip(cells, np.cumsum(cells) - cells, strict=True)):
-            _fill(offsets, slice(start + k, start + k + many + 1), np.arange(many + 1))
-            _fill(ids, slice(start, start + many), np.arange(many))
+        offsets = _empty(group, "Offsets", frames + used * int(room.sum()), index)
+        ids = _empty(group, "Connectivity", used * total, index)
+        for k in range(frames if used else 0):
+            offsets[first[k] + k : first[k] + k + n[k] + 1] = np.arange(n[k] + 1)
+            _fill(ids, slice(before[k], before[k] + n[k]), np.arange(n[k]))
     series = root["Steps"]
-    four = np.zeros((frames, 4), np.int64)
-    four[:, 0] = before
+    others = np.zeros((frames, 3), np.int64)
     _dataset(series, "PartOffsets", np.arange(frames))
     _dataset(series, "PointOffsets", before)
-    _dataset(series, "CellOffsets", four)
-    _dataset(series, "ConnectivityIdOffsets", four)
+    _dataset(series, "CellOffsets", np.column_stack([first, others]))
+    _dataset(series, "ConnectivityIdOffsets", np.column_stack([before, others]))
     return points, data
 
 

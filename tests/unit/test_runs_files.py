@@ -1,0 +1,135 @@
+"""Files of a run: whole or absent, series that survive a kill, the card."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from porescale.ground.check import InputError
+from porescale.runs import atomic, card
+from porescale.runs.series import Series, read_series
+
+
+def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
+    path = tmp_path / "data.txt"
+    atomic.write_text(path, "old")
+
+    def fail(beside):
+        beside.write_text("half")
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        atomic.save(path, fail)
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_what_a_dead_process_left_is_cleaned_and_a_living_one_keeps_its_file(tmp_path):
+    dead = subprocess.Popen([sys.executable, "-c", ""])
+    dead.wait()
+    stale = tmp_path / f".fields.{dead.pid}.writing.vtkhdf"
+    alive = tmp_path / f".film.{os.getppid()}.writing.mp4"
+    data = tmp_path / "fields.vtkhdf"
+    for path in (stale, alive, data):
+        path.write_bytes(b"x")
+    assert atomic.clean(tmp_path) == [stale]
+    assert alive.exists()
+    assert data.exists()
+
+
+def test_a_folder_has_one_writer(tmp_path):
+    with atomic.owned(tmp_path) as first, atomic.owned(tmp_path) as second:
+        assert first
+        assert not second
+    with atomic.owned(tmp_path) as again:
+        assert again
+
+
+ROWS = [{"time (s)": 0.1 * k, "front (m)": math.pi * 10.0 ** (k - 300)} for k in range(5)]
+
+
+def written(path, rows, keep=0):
+    series = Series(path, keep)
+    for row in rows:
+        series.append(row)
+    series.close()
+    return series
+
+
+def test_a_series_reads_back_bit_for_bit(tmp_path):
+    written(tmp_path / "series.csv", ROWS)
+    read = read_series(tmp_path / "series.csv")
+    assert list(read) == ["time (s)", "front (m)"]
+    for name, column in read.items():
+        assert column.tobytes() == np.array([row[name] for row in ROWS]).tobytes()
+
+
+def test_a_torn_last_line_is_ignored(tmp_path):
+    path = tmp_path / "series.csv"
+    written(path, ROWS)
+    whole = path.read_bytes()
+    for cut in range(len(whole)):
+        path.write_bytes(whole[:cut])
+        read = read_series(path)
+        rows = max(0, whole[:cut].count(b"\n") - 1)
+        assert all(len(column) == rows for column in read.values())
+        assert all(value == ROWS[k]["front (m)"] for k, value in enumerate(read.get("front (m)", [])))
+
+
+def test_a_series_cut_back_and_continued_is_the_uninterrupted_one(tmp_path):
+    whole, cut = tmp_path / "whole.csv", tmp_path / "cut.csv"
+    written(whole, ROWS)
+    keep = written(cut, ROWS[:2]).length
+    with open(cut, "ab") as file:
+        file.write(b"0.2,999\n0.3,")
+    written(cut, ROWS[2:], keep)
+    assert cut.read_bytes() == whole.read_bytes()
+
+
+def test_a_series_shorter_than_its_checkpoint_is_refused(tmp_path):
+    with pytest.raises(InputError, match="the checkpoint knows 100"):
+        Series(tmp_path / "series.csv", 100)
+
+
+def test_a_row_with_other_columns_is_refused(tmp_path):
+    series = Series(tmp_path / "series.csv")
+    series.append({"time (s)": 0.0})
+    with pytest.raises(ValueError, match="mass"):
+        series.append({"time (s)": 0.0, "mass (kg)": 1.0})
+    series.close()
+
+
+def test_numbers_of_numpy_are_written_as_numbers(tmp_path):
+    written(tmp_path / "s.csv", [{"a": np.float64(0.1), "b": np.float32(0.5), "c": np.int64(3), "d": True}])
+    assert (tmp_path / "s.csv").read_text() == "a,b,c,d\n0.1,0.5,3,1\n"
+
+
+def test_the_card_tells_what_ran_where_and_with_what(tmp_path):
+    given = {"scene": {"a": np.float64(1.5), "b": [np.int32(2)], "c": math.inf}, "seeds": {"place": 7}}
+    card.write_card(tmp_path, card.new_card(given))
+    read = json.loads((tmp_path / "card.json").read_text())
+    assert read["scene"] == {"a": 1.5, "b": [2], "c": "inf"}
+    assert read["seeds"] == {"place": 7}
+    assert {"python", "numpy", "numba", "h5py", "porescale"} <= read["versions"].keys()
+    assert read["versions"]["numpy"] == np.__version__
+    assert read["machine"]["cores"] >= 1
+    assert read["outcome"] == "running"
+    assert read["commit"] is None or len(read["commit"]["hash"]) == 40
+
+
+def test_changed_keys_are_named_and_free_ones_are_not():
+    old = {"fluid": {"viscosity": 1.0, "density": 2.0}, "run": {"duration": 1.0}, "output": {"x": 1}}
+    new = {
+        "fluid": {"viscosity": 1.5, "density": 2.0, "model": "trt"},
+        "run": {"duration": 2.0},
+        "output": {},
+    }
+    expected = {"fluid.viscosity": (1.0, 1.5), "fluid.model": (None, "trt")}
+    assert card.changed_keys(old, new) == expected
+    assert "run.duration" in card.changed_keys(old, new, free=())
