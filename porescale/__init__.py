@@ -1,3 +1,38 @@
-"""porescale: round grains in a viscous fluid at the scale of single pores, in two dimensions."""
+"""porescale: round grains in a viscous fluid at the scale of single pores, in two dimensions.
+
+from porescale import build, load, open_run
+simulation = build(load("cases/column_collapse", quality="draft"))
+simulation.advance(100)
+"""
+
+from __future__ import annotations
+
+from typing import Any
 
 __version__ = "0.1.0"
+__all__ = ["Scene", "Simulation", "__version__", "build", "load", "open_run"]
+
+
+def __getattr__(name: str) -> Any:
+    """The API of a handful of names, imported when first asked for: --help must not wait for a compiler."""
+    if name == "load":
+        from porescale.scene.build import load_scene
+
+        return load_scene
+    if name == "build":
+        from porescale.scene.build import build
+
+        return build
+    if name == "Scene":
+        from porescale.scene.sections import Scene
+
+        return Scene
+    if name == "Simulation":
+        from porescale.scene.simulation import Simulation
+
+        return Simulation
+    if name == "open_run":
+        from porescale.runs.open_run import open_run
+
+        return open_run
+    raise AttributeError(f"porescale has no {name!r}; it has {', '.join(__all__)}")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,10 +20,16 @@ from porescale.particles.placement import place
 from porescale.scene.derive import Derived, derive, grain_count
 from porescale.scene.sections import Domain, Packing, Scene
 from porescale.scene.simulation import Gatekeeper, Simulation
+from porescale.workbench.sections import load
 
 GATE = "gate"
 TOUCH = 1e-3
 """Overlap, over the smaller diameter, up to which grains placed by hand may start."""
+
+
+def load_scene(path: str | Path, *, quality: str | None = None, settings: Sequence[str] = ()) -> Scene:
+    """The scene at ``path`` (a TOML file or a folder with scene.toml), with ``section.key=value`` settings."""
+    return load(path, Scene, quality=quality, overrides=settings)
 
 
 def build(scene: Scene) -> Simulation:
@@ -162,16 +169,3 @@ def _deepest(x: NDArray[np.float64], r: NDArray[np.float64]) -> tuple[int, int, 
     depth = r[i] + r[j] - np.hypot(*(x[i] - x[j]).T)
     worst = int(depth.argmax())
     return int(i[worst]), int(j[worst]), float(depth[worst])
-
-
-def memory(derived: Derived) -> float:
-    """Bytes that the simulation's arrays will take: populations, solid fields, patches, grains; an estimate."""
-    total = 0.0
-    if derived.cells:
-        nx, ny = derived.cells
-        total += 9 * 8 * (nx + 2) * (ny + 2)
-        if derived.grain_count:
-            total += 3 * 8 * nx * ny
-    if derived.diameters and derived.scales:
-        total += 8 * derived.grain_count * (math.ceil(derived.diameters[2] / derived.scales.spacing) + 2) ** 2
-    return total + derived.grain_count * 400.0

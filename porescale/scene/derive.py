@@ -34,6 +34,7 @@ class Derived:
     model_step: float = 0.0  # s
     grain_count: int = 0
     diameters: tuple[float, float, float] | None = None  # smallest, mean, largest, m
+    mean_mass: float = 0.0  # kg/m, of a grain of mean diameter
     speed: float = 0.0  # m/s, the largest to expect
     density_variation: float = 0.0
     warnings: tuple[str, ...] = field(default=())
@@ -46,10 +47,11 @@ def derive(scene: Scene) -> Derived:
     scales, cells, column = _lattice(scene, faults) if scene.fluid else (None, None, None)
     sizes = diameters(scene)
     law = wall_law = limit = step = steps = None
-    model_step = scales.step if scales else 0.0
+    model_step, mean_mass = scales.step if scales else 0.0, 0.0
     if scene.grains and scene.contact and sizes:
         mass = math.pi / 4 * sizes[0] ** 2 * scene.grains.density
-        law, wall_law = laws(scene.contact, math.pi / 4 * sizes[1] ** 2 * scene.grains.density)
+        mean_mass = math.pi / 4 * sizes[1] ** 2 * scene.grains.density
+        law, wall_law = laws(scene.contact, mean_mass)
         limit = min(packing_limit(law, mass), packing_limit(wall_law, mass))
         step, steps = _contact_step(scene.contact, stable_step([law, wall_law], mass), limit, scales, faults)
         model_step = scales.step if scales else step
@@ -60,8 +62,8 @@ def derive(scene: Scene) -> Derived:
     if faults:
         raise InputError(faults)
     return Derived(
-        scales, cells, column, law, wall_law, limit, step, steps, model_step, grain_count(scene), sizes, speed,
-        variation, tuple(warnings),
+        scales, cells, column, law, wall_law, limit, step, steps, model_step, grain_count(scene), sizes,
+        mean_mass, speed, variation, tuple(warnings),
     )  # fmt: skip
 
 

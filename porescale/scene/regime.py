@@ -27,8 +27,9 @@ Sizes = tuple[float, float, float]
 def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None) -> float:
     """The largest speed to expect, m/s: an upper estimate from energy, drag and what the scene starts with.
 
-    Grains: free fall over the height they can fall, reduced by buoyancy, or the terminal speed of one grain if that is
-    less.  Fluid under a body force: the parabola between the walls across it, without grains.
+    Grains: free fall over the height they can fall, reduced by buoyancy; in fluid the terminal speed of a grain if that
+    is less, and for a packing that of the gravity current it can become, sqrt(g' H)/2 with g' = phi |s - 1| g (Benjamin
+    1968): grains that fall together fall faster than each alone.  Fluid under a body force: the parabola between the walls across it, without grains.
     """
     g, speed = math.hypot(*scene.gravity), 0.0
     if scene.grains and sizes:
@@ -42,6 +43,8 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None) -> 
         if scales:
             driving = abs(scene.grains.density / scales.density - 1) * g
             free = min(free, terminal_speed(sizes[2], driving, scales.viscosity))
+            if packing:
+                free = max(free, 0.5 * math.sqrt(packing.packing_fraction * driving * packing.height))
         speed = max(speed, free)
     if scene.fluid and scales and not scene.grains:
         push = math.hypot(*scene.fluid.body_force) / scales.density
@@ -87,11 +90,11 @@ def judge(
     across = sizes[1] * ratio / scales.spacing
     if across < CELLS_COARSE:
         warnings.append(
-            f"the fluid sees {across:.3g} cells per grain: below {CELLS_COARSE:g} its drag is off by a tenth or more"
+            f"the fluid sees {across:.3g} cells per grain: below {CELLS_COARSE:g} the drag is off by a tenth"
         )
     if scales.relaxation_time > TAU_COARSE:
         warnings.append(
-            f"relaxation time {scales.relaxation_time:.3g}: above {TAU_COARSE} the drag is more than a tenth too small; "
+            f"relaxation time {scales.relaxation_time:.3g}: above {TAU_COARSE} the drag is a tenth too small or more; "
             "shorten the step"
         )
     if scene.grains.packing is None:

@@ -17,7 +17,7 @@ from porescale.scene import observe
 from porescale.scene.derive import Derived
 from porescale.scene.sections import Scene
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 
 WORST_MACH = 0.6
 """Beyond it the lattice's equilibrium means nothing; populations turn negative near it."""
@@ -75,14 +75,10 @@ class Simulation:
         self.fluid, self.grains, self.coupled, self.gate = fluid, grains, coupled, gate
         self.weight = weight
         self.step = 0
+        self.time = 0.0
         self.step_seconds = derived.model_step
         self._mass = fluid.mass_excess() if fluid else 0.0
         self._watch = observe.Watch(scene, grains) if grains else None
-
-    @property
-    def time(self) -> float:
-        """Time reached, s."""
-        return self.step * self.step_seconds
 
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps."""
@@ -97,6 +93,7 @@ class Simulation:
             elif self.grains:
                 self.grains.step(self.step_seconds, self.weight)
             self.step += 1
+            self.time = self.step * self.step_seconds
 
     def fields(self) -> tuple[Array, Array, Array, Array]:
         """Density excess (kg/m³), velocity (m/s, two arrays) and solid fraction of every cell, each (ny, nx)."""
@@ -194,6 +191,7 @@ class Simulation:
     def restore(self, state: dict[str, Any]) -> None:
         """Take up a state of a simulation built from the same scene."""
         self.step, self._mass = int(state["step"]), float(state["mass"])
+        self.time = self.step * self.step_seconds
         if self.gate and bool(state["gate_open"]):
             self.gate.open = True
             if self.gate.lift_speed is None and self.fluid:

@@ -1,0 +1,27 @@
+"""The command line ``porescale``."""
+
+from __future__ import annotations
+
+import porescale
+from porescale.app import bench, check, new, run, show, verify
+from porescale.workbench import application
+from porescale.workbench.package import Package
+
+PACKAGE = Package(
+    name="porescale",
+    summary="Round grains in a viscous fluid at the scale of single pores: DEM, lattice Boltzmann, and films of both.",
+    version=porescale.__version__,
+    scene=run.scene_type,
+    template=new.template,
+    build=run.build,
+    drive=run.drive,
+    report=check.report,
+    show=show.show,
+    validations=verify.validations,
+    benchmarks=bench.benchmarks,
+)
+
+
+def main() -> int:
+    """Run ``porescale`` with the arguments of the process; returns the exit code."""
+    return application.main(application.application(PACKAGE))

@@ -1,0 +1,55 @@
+"""``porescale run``: a scene, its model and its run folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from porescale.runs.drive import Outcome
+    from porescale.scene.sections import Scene
+    from porescale.scene.simulation import Simulation
+
+
+def scene_type() -> type[Scene]:
+    """The type of a porescale scene."""
+    from porescale.scene.sections import Scene
+
+    return Scene
+
+
+def build(scene: Scene) -> Simulation:
+    """The simulation of a scene; warnings about it go to stderr."""
+    import sys
+
+    from porescale.scene.build import build as build_scene
+    from porescale.scene.derive import derive
+
+    for warning in derive(scene).warnings:
+        print(f"warning: {warning}", file=sys.stderr)
+    return build_scene(scene)
+
+
+def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any], resume: bool, quiet: bool) -> Outcome:
+    """Run the model to the scene's end, write the run folder, and note how fast this machine is."""
+    from porescale.app.show import show
+    from porescale.runs.drive import drive as drive_model
+    from porescale.scene.cost import remember
+
+    packing = scene.grains.packing if scene.grains else None
+    after: Callable[[Path], None] = show  # type: ignore[assignment]
+    outcome = drive_model(
+        model,
+        folder,
+        scene.time.end,
+        snapshot_interval=scene.output.snapshot_interval,
+        series_interval=scene.output.series_interval,
+        checkpoint_seconds=scene.output.checkpoint_seconds,
+        card={**card, "seeds": {"grains.packing.seed": packing.seed} if packing else {}},
+        resume=resume,
+        quiet=quiet,
+        after=after,
+    )
+    remember(model.derived, outcome.steps_per_second)
+    return outcome

@@ -1,0 +1,51 @@
+"""``porescale show``: pictures, a film and the pile's surface of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from porescale.runs.look import Line
+    from porescale.runs.model import Snapshot
+
+
+def show(folder: Path) -> list[Path]:
+    """Write pictures, film and surface of the run in ``folder``; returns their paths."""
+    from porescale.runs.film import film
+    from porescale.runs.look import Look
+    from porescale.runs.open_run import open_run
+    from porescale.runs.picture import pictures
+    from porescale.scene.surface import write_surface
+
+    run = open_run(folder)
+    scene = run.card["scene"]
+    look = Look(
+        title=scene.get("title") or run.card.get("name", ""),
+        label="speed of the fluid",
+        lines=gate_lines(scene),
+        streamlines=scene["fluid"] is not None,
+        colour="speed" if scene["fluid"] is None else None,
+        view=(0.0, scene["domain"]["width"], 0.0, scene["domain"]["height"]),
+    )
+    written = [*pictures(folder, look), film(folder, look)]
+    if scene["grains"] is not None:
+        written.append(write_surface(run, folder))
+    return written
+
+
+def gate_lines(scene: dict[str, Any]) -> Callable[[Snapshot], list[Line]]:
+    """The gate as a line, at any time, from the scene on a run card."""
+    gate, height = scene.get("gate"), scene["domain"]["height"]
+
+    def lines(snapshot: Snapshot) -> list[Line]:
+        if gate is None:
+            return []
+        since = snapshot.time - gate["opens_at"]
+        if since >= 0 and gate["lift_speed"] is None and snapshot.step > 0:
+            return []
+        low = max(0.0, since) * (gate["lift_speed"] or 0.0)
+        return [((gate["x"], low), (gate["x"], height))] if low < height else []
+
+    return lines

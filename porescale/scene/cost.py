@@ -1,0 +1,73 @@
+"""What a run will cost: memory, and a time from this machine's last runs."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from pathlib import Path
+
+from porescale.ground.check import Fault, InputError
+from porescale.scene.derive import Derived
+
+CELLS_PER_SECOND, DISCS_PER_SECOND = 150e6, 15e6
+"""Rates that a run is first reckoned with (two cores, float64); how this machine differs is learnt from its runs."""
+
+
+def memory(derived: Derived) -> float:
+    """Bytes that the simulation's arrays will take: populations, solid fields, patches, grains; an estimate."""
+    total = 400.0 * derived.grain_count
+    if derived.cells:
+        nx, ny = derived.cells
+        total += 9 * 8 * (nx + 2) * (ny + 2)
+        if derived.grain_count:
+            total += 3 * 8 * nx * ny
+    if derived.diameters and derived.scales:
+        total += 8 * derived.grain_count * (math.ceil(derived.diameters[2] / derived.scales.spacing) + 2) ** 2
+    return total
+
+
+def step_seconds(derived: Derived) -> float:
+    """Wall-clock seconds of a model step at the nominal rates."""
+    cells = derived.cells[0] * derived.cells[1] if derived.cells else 0
+    return cells / CELLS_PER_SECOND + derived.grain_count * (derived.contact_steps or 0) / DISCS_PER_SECOND
+
+
+def expected_seconds(derived: Derived, steps: int) -> tuple[float, bool]:
+    """Wall-clock seconds of ``steps`` steps, and whether this machine has been measured."""
+    slowness = _slowness()
+    return steps * step_seconds(derived) * (slowness or 1.0), slowness is not None
+
+
+def remember(derived: Derived, steps_per_second: float) -> None:
+    """Note how this machine compares to the nominal rates, for the next ``check``."""
+    if steps_per_second > 0:
+        path = _file()
+        path.parent.mkdir(parents=True, exist_ok=True)
+        beside = path.with_name(f"{path.name}.{os.getpid()}")
+        beside.write_text(json.dumps({"slowness": 1 / (steps_per_second * step_seconds(derived))}))
+        os.replace(beside, path)
+
+
+def refuse_too_large(derived: Derived) -> None:
+    """Raise InputError when the arrays would not fit into this machine's memory."""
+    have = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    need = memory(derived)
+    if need > 0.9 * have and derived.scales:
+        coarser = derived.scales.spacing * math.sqrt(need / (0.5 * have))
+        raise InputError(
+            Fault("fluid.spacing", derived.scales.spacing, f"needs {need / 2**30:.1f} GiB of {have / 2**30:.1f} GiB", "m",
+                  repair=f"a spacing of {coarser:.2g} m takes half of the memory")
+        )  # fmt: skip
+
+
+def _file() -> Path:
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "porescale" / "rate.json"
+
+
+def _slowness() -> float | None:
+    try:
+        value = float(json.loads(_file().read_text())["slowness"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    return value if math.isfinite(value) and value > 0 else None

@@ -1,0 +1,121 @@
+"""What ``check`` says of a scene: every derived number, the regime, the parts that will be built, and the cost."""
+
+from __future__ import annotations
+
+import math
+
+from porescale.scene.cost import expected_seconds, memory, refuse_too_large
+from porescale.scene.derive import Derived, derive
+from porescale.scene.sections import Scene
+from porescale.workbench.report import Report
+
+
+def report(scene: Scene) -> Report:
+    """All of the above; raises InputError with every refusal."""
+    derived = derive(scene)
+    refuse_too_large(derived)
+    out = Report(scene.title or "scene")
+    _parts(scene, out)
+    if derived.scales:
+        _lattice(scene, derived, out)
+    if scene.grains:
+        _grains(scene, derived, out)
+        _contact(derived, out)
+    if scene.fluid and scene.grains:
+        _regime(scene, derived, out)
+    _cost(scene, derived, out)
+    for warning in derived.warnings:
+        out.warn(warning)
+    return out
+
+
+def _parts(scene: Scene, out: Report) -> None:
+    out.heading("Parts")
+    built = [name for name in ("fluid", "grains", "contact", "gate") if getattr(scene, name) is not None]
+    absent = [name for name in ("fluid", "grains", "contact", "gate") if getattr(scene, name) is None]
+    out.row("built", ", ".join(built))
+    out.row("absent, not built", ", ".join(absent) or "none")
+    d = scene.domain
+    out.row("sides", f"left {d.left}, right {d.right}, bottom {d.bottom}, top {d.top}")
+
+
+def _lattice(scene: Scene, derived: Derived, out: Report) -> None:
+    s, cells = derived.scales, derived.cells
+    assert s is not None
+    assert cells is not None
+    out.heading("Lattice")
+    out.row("cells", f"{cells[0]} x {cells[1]}")
+    out.row("spacing", s.spacing, "m")
+    out.row("step", s.step, "s")
+    out.row("relaxation time", s.relaxation_time, "", "0.52 to 1 is best")
+    out.row("viscosity", s.viscosity, "m²/s")
+    out.row("speed of sound", s.sound_speed, "m/s")
+    out.row("largest speed to expect", derived.speed, "m/s", "an estimate from energy and drag")
+    out.row("Mach number", derived.speed / s.sound_speed, "", "below 0.1")
+
+
+def _grains(scene: Scene, derived: Derived, out: Report) -> None:
+    assert scene.grains is not None
+    assert derived.diameters is not None
+    out.heading("Grains")
+    out.row("number", derived.grain_count)
+    low, mean, high = derived.diameters
+    out.row("diameter", f"{low:.4g} … {high:.4g}, mean {mean:.4g}", "m")
+    if derived.scales:
+        ratio = scene.grains.hydraulic_radius_ratio or 1.0
+        out.row("cells per diameter", mean / derived.scales.spacing)
+        out.row("hydraulic radius ratio", ratio, "", "lambda; 1 seals a 2-D bed at rest")
+        out.row("cells per hydraulic diameter", ratio * mean / derived.scales.spacing)
+
+
+def _contact(derived: Derived, out: Report) -> None:
+    law, wall = derived.law, derived.wall_law
+    assert law is not None
+    assert wall is not None
+    assert derived.diameters is not None
+    assert derived.contact_limit is not None
+    assert derived.contact_step is not None
+    out.heading("Contact")
+    mass = derived.mean_mass / 2
+    out.row("damping ratio of a pair", law.damping_ratio(mass))
+    out.row("restitution of a pair", law.restitution(mass))
+    out.row("contact time of a pair", law.contact_time(mass), "s")
+    out.row("stability limit in a packing", derived.contact_limit, "s")
+    out.row("contact step", derived.contact_step, "s")
+    out.row("contact steps per model step", derived.contact_steps or 1)
+
+
+def _regime(scene: Scene, derived: Derived, out: Report) -> None:
+    s = derived.scales
+    assert s is not None
+    assert scene.grains is not None
+    assert derived.diameters is not None
+    d, ratio = derived.diameters[1], scene.grains.density / s.density
+    reynolds = derived.speed * d / s.viscosity
+    out.heading("Regime")
+    out.row("density ratio", ratio, "", "grains over fluid")
+    out.row(
+        "Archimedes number", abs(ratio - 1) * math.hypot(*scene.gravity) * d**3 / s.viscosity**2, "", "(s - 1) g d³/nu²"
+    )
+    out.row("Reynolds number", reynolds, "", "U d/nu at the largest speed to expect")
+    out.row("Stokes number", ratio * reynolds / 18, "", "s Re/18: viscous below 1, inertial above 10")
+    if derived.density_variation:
+        out.row(
+            "density variation by pore pressure",
+            derived.density_variation,
+            "",
+            "3 (rho_s - rho) g phi H/(rho c²), below 0.05",
+        )
+
+
+def _cost(scene: Scene, derived: Derived, out: Report) -> None:
+    steps = max(1, round(scene.time.end / derived.model_step))
+    seconds, measured = expected_seconds(derived, steps)
+    out.heading("Cost")
+    out.row("steps", steps, "", f"of {derived.model_step:.3g} s")
+    out.row("memory", memory(derived) / 2**20, "MiB")
+    out.row(
+        "time", seconds, "s", "by this machine's last run" if measured else "a guess until this machine has done a run"
+    )
+    snapshots = scene.time.end / scene.output.snapshot_interval
+    out.row("snapshots", math.floor(snapshots + 1e-9) + 1)
