@@ -153,7 +153,9 @@ def _watched(run: _Run, record: Record, watch: Watch, after: Callable[[Path], No
     except BaseException as error:
         with suppress(OSError):
             record.series.close()
-            record.conclude(model, cards.FAILED, f"{type(error).__name__}: {error}")
+            stopped = isinstance(error, KeyboardInterrupt)
+            outcome = cards.INTERRUPTED if stopped else cards.FAILED
+            record.conclude(model, outcome, f"{type(error).__name__}: {error}")
         raise
     speed = (model.step - first) / spent if spent > 0 else 0.0
     seconds, count = record.seconds(), record.snapshots

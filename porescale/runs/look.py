@@ -204,9 +204,11 @@ def survey(snapshots: Iterable[Snapshot], look: Look) -> Survey:
             cloud_units = cloud.units.get(coloured_by, "")
         if "radius" not in cloud.data and not found.dot:
             found.dot = look.dot or 0.55 * _spacing(cloud.position)
-        reach = cloud.data.get("radius", np.array(found.dot))
-        low, high = cloud.position - np.reshape(reach, (-1, 1)), cloud.position + np.reshape(reach, (-1, 1))
-        edges = (*low.min(0), *high.max(0))
+        reach = np.broadcast_to(cloud.data.get("radius", found.dot), len(cloud.position))[:, None]
+        there = np.isfinite(cloud.position).all(1)
+        if not there.any():
+            continue
+        edges = (*(cloud.position - reach)[there].min(0), *(cloud.position + reach)[there].max(0))
         box = [min(box[0], edges[0]), max(box[1], edges[2]), min(box[2], edges[1]), max(box[3], edges[3])]
     if values:
         sample = np.concatenate(values)

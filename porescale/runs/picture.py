@@ -67,7 +67,7 @@ class Painter:
         self._frame(image)
         label = _text(time_text(snapshot.time, self.survey.longest), 11 * self.unit)
         tall, wide = label.shape[:2]
-        bottom, right = self.y - round(3 * self.unit), self.x + self.width
+        bottom, right = self.y - round(3 * self.unit), max(self.x + self.width, wide)
         image[bottom - tall : bottom, right - wide : right] = label
         return image
 

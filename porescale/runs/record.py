@@ -23,7 +23,7 @@ from porescale.runs.series import NAME as SERIES
 from porescale.runs.series import Series
 
 CHECKPOINT = "checkpoint.h5"
-MADE_LATER = ("*.png", "film.mp4", "film.webm")
+MADE_LATER = ("final.png", "montage.png", "streamlines.png", "film.mp4", "film.webm")
 ABANDONED = (cards.RUNNING, cards.INTERRUPTED, cards.FAILED)
 WORTH_KEEPING = 60.0
 """An unfinished run that cost more than this many seconds is not overwritten without being asked."""
@@ -51,11 +51,8 @@ class Record:
         """Start in ``folder``; an older run there is removed, unless it is unfinished and was dear."""
         if (folder / cards.NAME).exists():
             _refuse_to_lose(folder)
-            for name in (SERIES, CHECKPOINT, cards.NAME):
+            for name in (SERIES, CHECKPOINT, cards.NAME, *MADE_LATER):
                 (folder / name).unlink(missing_ok=True)
-            for pattern in MADE_LATER:
-                for path in folder.glob(pattern):
-                    path.unlink()
             snapshots.clear(folder)
         card = cards.new_card(given)
         cards.write_card(folder, card)

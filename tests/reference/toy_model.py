@@ -82,13 +82,13 @@ class Toy:
         self.step, self.time, self.step_seconds = state["step"], state["time"], state["step_seconds"]
 
 
-def run_toy(folder: Path, *, model: Toy | None = None, duration: float = 0.3, **options: Any) -> Outcome:
+def run_toy(folder: Path, *, model: Toy | None = None, duration: float = 0.12, **options: Any) -> Outcome:
     """Drive a toy with short intervals; ``options`` as for ``drive``, ``scene`` for the card."""
     scene = options.pop("scene", {"toy": {"beads": 7}, "run": {"duration": duration}})
     settings: dict[str, Any] = {
         "snapshot_interval": 0.02,
         "series_interval": 0.005,
-        "checkpoint_seconds": 0.02,
+        "checkpoint_seconds": 60.0,
         "quiet": True,
         "card": {"name": "toy", "scene": scene, "seeds": {"toy": 1}},
     }
@@ -105,7 +105,8 @@ def main() -> int:
     given = parser.parse_args()
     model = Toy(pause=given.pause, varying=given.varying)
     try:
-        run_toy(given.folder, model=model, duration=given.duration, resume=given.resume)
+        options = {"duration": given.duration, "checkpoint_seconds": 0.02, "resume": given.resume}
+        run_toy(given.folder, model=model, **options)
     except PorescaleError as error:
         print(error, file=sys.stderr)
         return error.code

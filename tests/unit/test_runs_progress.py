@@ -1,0 +1,70 @@
+"""Progress: silent when asked, a line now and then where there is no terminal, a bar where there is one."""
+
+from __future__ import annotations
+
+import io
+import time
+
+import pytest
+from rich.console import Console
+
+from porescale.runs import progress
+from porescale.runs.progress import COMPILING, Watch, duration
+
+
+def watched(monkeypatch, *, terminal=False, quiet=False) -> str:
+    """What a run of a tenth of a second says when people are impatient."""
+    monkeypatch.setattr(progress, "PATIENCE", 0.02)
+    monkeypatch.setattr(progress, "LINE_EVERY", 0.04)
+    watch = Watch("dam", 0.0, 2.0, quiet=quiet)
+    said = io.StringIO()
+    watch.console = Console(file=said, force_terminal=terminal, width=200)
+    with watch:
+        for step in range(40):
+            if step >= 15:
+                watch.update(step, step / 20)
+            time.sleep(0.02)
+    return said.getvalue()
+
+
+def test_where_there_is_no_terminal_lines_tell_how_far_it_is(monkeypatch):
+    lines = watched(monkeypatch).splitlines()
+    assert COMPILING in lines[0]
+    assert "dam: running, t = " in lines[-1]
+    assert " of 2 s (" in lines[-1]
+    assert lines[-1].endswith(" left")
+
+
+def test_a_terminal_gets_a_bar_that_names_the_compiling(monkeypatch):
+    said = watched(monkeypatch, terminal=True)
+    assert COMPILING in said
+    assert "running" in said
+    assert "%" in said
+
+
+def test_quiet_is_quiet(monkeypatch):
+    assert watched(monkeypatch, quiet=True) == ""
+
+
+def test_a_short_run_says_nothing(capsys):
+    with Watch("dam", 0.0, 1.0) as watch:
+        watch.update(1, 1.0)
+    assert capsys.readouterr().err == ""
+
+
+def test_time_left_counts_from_the_first_step_not_from_the_compiling(monkeypatch):
+    now = [0.0]
+    monkeypatch.setattr(progress.clock, "perf_counter", lambda: now[0])
+    watch = Watch("dam", 0.0, 10.0, quiet=True)
+    now[0] = 20.0
+    watch.update(1, 0.1)
+    assert watch.left() is None
+    now[0] = 25.0
+    watch.update(51, 5.1)
+    # 5 s of wall clock for 5 s of the run; 4.9 s remain.
+    assert watch.left() == pytest.approx(4.9)
+
+
+@pytest.mark.parametrize(("seconds", "said"), [(8.2, "8 s"), (200, "3 min 20 s"), (7500, "2 h 05 min")])
+def test_durations_are_said_as_people_do(seconds, said):
+    assert duration(seconds) == said
