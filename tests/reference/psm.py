@@ -1,0 +1,125 @@
+"""Partially saturated cells, slow and obvious, on the two-array lattice of tests/reference/lbm.py.
+
+Written from Noble & Torczynski 1998 and spec/fluid-grains.md section 1: dense coverage of every disc from the area a
+circle has in common with a square; collision  f + (1 - B)(Omega^f + S) + B Omega^s;  loads  -sum B_n sum_i Omega^s_n c_i.
+The switches are the wrong ways that the tests must be able to tell from the right one.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from tests.reference.lbm import BACK, C, W, Lattice, equilibrium, guo, trt
+
+
+def _under_edge(px, py, qx, qy, r):
+    """Signed area that the triangle (0, p, q) has in common with the disc of radius r around 0."""
+    dx, dy = qx - px, qy - py
+    a, b, c = dx * dx + dy * dy, px * dx + py * dy, px * px + py * py - r * r
+    cuts = [0.0, 1.0]
+    if b * b > a * c:
+        root = math.sqrt(b * b - a * c)
+        cuts += [t for t in ((-b - root) / a, (-b + root) / a) if 0 < t < 1]
+    cuts.sort()
+    area = 0.0
+    for s, t in zip(cuts, cuts[1:], strict=False):
+        ax, ay, bx, by = px + s * dx, py + s * dy, px + t * dx, py + t * dy
+        mx, my = (ax + bx) / 2, (ay + by) / 2
+        cross = ax * by - ay * bx
+        if mx * mx + my * my <= r * r:
+            area += cross / 2
+        else:
+            area += r * r * math.atan2(cross, ax * bx + ay * by) / 2
+    return area
+
+
+def overlap(x, y, cx, cy, r):
+    """Area of the unit square with lower left corner (x, y) inside the disc around (cx, cy)."""
+    corner = [(x - cx, y - cy), (x + 1 - cx, y - cy), (x + 1 - cx, y + 1 - cy), (x - cx, y + 1 - cy)]
+    return sum(_under_edge(*corner[k], *corner[(k + 1) % 4], r) for k in range(4))
+
+
+def coverage(cx, cy, r, nx, ny, periodic=(False, False)):
+    """Solid fraction of every cell, (ny, nx), and the cell centres' distance vectors from (cx, cy) where it is not 0."""
+    e, rx, ry = np.zeros((3, ny, nx))
+    for y in range(math.floor(cy - r), math.ceil(cy + r)):
+        for x in range(math.floor(cx - r), math.ceil(cx + r)):
+            at_x = x % nx if periodic[0] else x
+            at_y = y % ny if periodic[1] else y
+            if 0 <= at_x < nx and 0 <= at_y < ny:
+                e[at_y, at_x] = max(0.0, overlap(x, y, cx, cy, r))
+                rx[at_y, at_x], ry[at_y, at_x] = x + 0.5 - cx, y + 0.5 - cy
+    return e, rx, ry
+
+
+def weight(e, tau):
+    """B2 of Noble & Torczynski 1998."""
+    return e * (tau - 0.5) / ((1 - e) + (tau - 0.5))
+
+
+@dataclass
+class Disc:
+    x: float
+    y: float
+    r: float
+    u: float = 0.0
+    v: float = 0.0
+    w: float = 0.0
+
+
+@dataclass
+class Saturated(Lattice):
+    """The lattice with discs in it.
+
+    even_half: keep the even half of SC1 (the textbook operator);  forcing "inside" or "outside" of (1 - B);
+    sharing "total": B(min(1, sum e)) in proportion to e;  "sum": the sum of every disc's own B(e).
+    """
+
+    even_half: bool = False
+    forcing: str = "inside"
+    sharing: str = "total"
+
+    def split(self, discs):
+        """Each disc's share of the weight (n, ny, nx) and its solid velocity at the cell centres."""
+        periodic = self.side("left")[0] == "periodic", self.side("bottom")[0] == "periodic"
+        parts = [coverage(d.x, d.y, d.r, self.nx, self.ny, periodic) for d in discs]
+        e = np.array([part[0] for part in parts]).reshape(-1, self.ny, self.nx)
+        if self.sharing == "sum":
+            share = weight(e, self.tau)
+        else:
+            total = e.sum(0)
+            share = weight(np.minimum(total, 1), self.tau) * e / np.where(total > 0, total, 1)
+        speed = [(d.u - d.w * ry, d.v + d.w * rx) for d, (_, rx, ry) in zip(discs, parts, strict=True)]
+        arm = [(rx, ry) for _, rx, ry in parts]
+        return share, speed, arm
+
+    def solid_operator(self, rho, ux, uy, sx, sy):
+        """SC1 in every cell for a solid velocity s; without its even half unless that is asked for."""
+        if self.even_half:
+            return self.f[BACK] - self.f + equilibrium(rho, sx, sy) - equilibrium(rho, ux, uy)[BACK]
+        out = [3 * w * rho * (cx * (sx + ux) + cy * (sy + uy)) for (cx, cy), w in zip(C, W, strict=True)]
+        return self.f[BACK] - self.f + np.array(out)
+
+    def step_with(self, discs):
+        """One step; returns force (n, 2) and torque (n,) on the discs."""
+        share, speed, arm = self.split(discs)
+        b = share.sum(0)
+        rho, jx, jy = self.moments()
+        fx, fy = self.force
+        part = 1 - b if self.forcing == "inside" else 1.0
+        ux, uy = (jx + part * fx / 2) / rho, (jy + part * fy / 2) / rho
+        source = guo(ux, uy, fx, fy, self.even, self.odd)
+        g = self.f + (1 - b) * trt(self.f, equilibrium(rho, ux, uy), self.even, self.odd) + part * source
+        force, torque = np.zeros((len(discs), 2)), np.zeros(len(discs))
+        cx, cy = np.array(C).T
+        for n, ((sx, sy), (rx, ry)) in enumerate(zip(speed, arm, strict=True)):
+            gain = share[n] * self.solid_operator(rho, ux, uy, sx, sy)
+            g += gain
+            px, py = -np.tensordot(cx, gain, 1), -np.tensordot(cy, gain, 1)
+            force[n] = px.sum(), py.sum()
+            torque[n] = (rx * py - ry * px).sum()
+        self.stream(g)
+        return force, torque
