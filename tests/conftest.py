@@ -1,0 +1,20 @@
+"""Options of the test suite: slow tests are left out unless asked for, and can be run in shares."""
+
+from __future__ import annotations
+
+import pytest
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--share", default="0/1", help="run every n-th of the chosen tests, from the k-th: k/n")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    if not config.option.markexpr:
+        deselected = [item for item in items if item.get_closest_marker("slow")]
+        items[:] = [item for item in items if not item.get_closest_marker("slow")]
+        config.hook.pytest_deselected(items=deselected)
+    part, parts = map(int, config.getoption("--share").split("/"))
+    if parts > 1:
+        config.hook.pytest_deselected(items=[item for k, item in enumerate(items) if k % parts != part])
+        items[:] = items[part::parts]
