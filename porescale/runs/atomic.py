@@ -7,6 +7,7 @@ removes at the next start.  Measured: 100 of 100 files good after a SIGKILL (spe
 from __future__ import annotations
 
 import os
+import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -78,14 +79,17 @@ def sync_folder(folder: Path) -> None:
 
 
 def clean(folder: Path) -> list[Path]:
-    """Remove temporary files left in ``folder`` (and one level below) by processes that no longer live."""
+    """Remove temporary files and folders left in ``folder`` (and one level below) by dead processes."""
     removed = []
     for pattern in (f".*{MARK}*", f"*/.*{MARK}*"):
         for path in Path(folder).glob(pattern):
             process = path.name.split(MARK)[0].rpartition(".")[2]
             if process.isdigit() and int(process) != os.getpid() and _lives(int(process)):
                 continue
-            path.unlink(missing_ok=True)
+            if path.is_dir():
+                shutil.rmtree(path)
+            else:
+                path.unlink(missing_ok=True)
             removed.append(path)
     return removed
 

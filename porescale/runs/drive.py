@@ -12,11 +12,11 @@ from typing import Any
 from porescale.ground.check import Fault, InputError, Unstable
 from porescale.runs import card as cards
 from porescale.runs import snapshots
-from porescale.runs.atomic import owned, refuse_shared
+from porescale.runs.atomic import clean, owned, refuse_shared
 from porescale.runs.checkpoint import read_header
 from porescale.runs.model import Model, variable_step
 from porescale.runs.progress import Watch
-from porescale.runs.record import CHECKPOINT, Record, prepare, refuse_changes
+from porescale.runs.record import CHECKPOINT, Record, refuse_changes
 from porescale.runs.schedule import SLACK, Schedule, positive
 from porescale.runs.stop import Interrupted, StopRequest, polite_stop
 
@@ -81,7 +81,7 @@ def drive(
     with owned(folder) as held:
         if not held:
             raise refuse_shared(folder)
-        prepare(folder)
+        clean(folder)
         run = _Run(model, duration, step_seconds, schedules, checkpoint_seconds)
         name = str(card.get("name") or folder.name)
         resume = resume and (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists()

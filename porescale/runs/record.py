@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from porescale.ground.check import Fault, InputError
-from porescale.runs import atomic, snapshots
+from porescale.runs import snapshots
 from porescale.runs import card as cards
 from porescale.runs.checkpoint import read_checkpoint, read_header, write_checkpoint
 from porescale.runs.model import Model
@@ -181,9 +181,3 @@ def _refuse_to_lose(folder: Path) -> None:
         problem = f"holds an unfinished run of {header['seconds']:.0f} s, saved at t = {header['time']:.4g} s"
         repair = "resume it, remove the folder, or name another one"
         raise InputError(Fault("run folder", str(folder), problem, repair=repair))
-
-
-def prepare(folder: Path) -> None:
-    """Remove what killed writers left half-made."""
-    atomic.clean(folder)
-    snapshots.clean(folder)

@@ -112,9 +112,3 @@ def clear(folder: Path) -> None:
     shutil.rmtree(Path(folder) / PARTS, ignore_errors=True)
     for path in Path(folder).glob("[!.]*.vtkhdf"):
         path.unlink()
-
-
-def clean(folder: Path) -> None:
-    """Remove parts that a killed run left half-made."""
-    for path in (Path(folder) / PARTS).glob(f".*{atomic.MARK}"):
-        shutil.rmtree(path, ignore_errors=True)

@@ -28,10 +28,13 @@ def toy(folder: Path, *options: str) -> subprocess.Popen[bytes]:
 
 
 def kill_in_the_middle(process: subprocess.Popen[bytes], folder: Path, delay: float) -> None:
-    """SIGKILL ``delay`` seconds after the run has begun to write rows (importing takes most of the time)."""
+    """SIGKILL ``delay`` seconds after the run has got further (importing takes most of the time)."""
     series = folder / "series.csv"
     size = series.stat().st_size if series.exists() else 0
-    while process.poll() is None and (not series.exists() or series.stat().st_size <= size):
+    while process.poll() is None:
+        moved = series.exists() and series.stat().st_size > size
+        if moved and (any(folder.glob("parts/0*")) or any(folder.glob("*.vtkhdf"))):
+            break
         time.sleep(0.002)
     time.sleep(delay)
     if process.poll() is None:
@@ -70,22 +73,24 @@ def assert_same(one: Path, other: Path) -> None:
 def test_a_run_killed_again_and_again_ends_as_the_untouched_one(tmp_path, varying):
     options = ("--varying",) if varying else ()
     untouched, killed = tmp_path / "untouched", tmp_path / "killed"
-    assert toy(untouched, *options).wait() == 0
+    process = toy(untouched, *options)
+    _, said = process.communicate()
+    assert process.returncode == 0, said.decode()
     dice = random.Random(varying)
-    ends, opened = [], []
-    for number in range(3):
+    ends = []
+    for number in range(2):
         resume = ("--resume",) if number else ()
         process = toy(killed, "--pause", "0.002", *resume, *options)
-        kill_in_the_middle(process, killed, dice.uniform(0.0, 0.2))
+        kill_in_the_middle(process, killed, dice.uniform(0.0, 0.15))
         ends.append(process.returncode)
         run = open_run(killed)
-        opened.append(len(run))
+        assert len(run) >= 1
         for snapshot in run.snapshots():
             assert np.isfinite(snapshot.grids["fields"].cells["velocity"]).all()
     assert -signal.SIGKILL in ends
-    assert max(opened) >= 1
     last = toy(killed, "--resume", *options)
-    assert last.wait() == 0
+    _, said = last.communicate()
+    assert last.returncode == 0, said.decode()
     assert_same(untouched, killed)
     assert not (killed / "parts").exists()
     assert not list(killed.glob(".*writing*"))
@@ -93,7 +98,7 @@ def test_a_run_killed_again_and_again_ends_as_the_untouched_one(tmp_path, varyin
 
 def test_a_polite_stop_saves_and_says_so(tmp_path):
     untouched, stopped = tmp_path / "untouched", tmp_path / "stopped"
-    run_toy(untouched, duration=0.3)
+    run_toy(untouched, duration=0.2)
     process = toy(stopped, "--pause", "0.002")
     while not ((stopped / "series.csv").exists() and (stopped / "series.csv").stat().st_size):
         time.sleep(0.005)
@@ -103,7 +108,7 @@ def test_a_polite_stop_saves_and_says_so(tmp_path):
     assert b"resume to continue" in said
     assert len(said.strip().splitlines()) == 1
     assert open_run(stopped).card["outcome"] == "interrupted"
-    run_toy(stopped, duration=0.3, resume=True)
+    run_toy(stopped, duration=0.2, resume=True)
     assert_same(untouched, stopped)
 
 

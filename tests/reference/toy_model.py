@@ -101,7 +101,7 @@ def main() -> int:
     parser.add_argument("--resume", action="store_true")
     parser.add_argument("--varying", action="store_true")
     parser.add_argument("--pause", type=float, default=0.0)
-    parser.add_argument("--duration", type=float, default=0.3)
+    parser.add_argument("--duration", type=float, default=0.2)
     given = parser.parse_args()
     model = Toy(pause=given.pause, varying=given.varying)
     try:

@@ -34,11 +34,15 @@ def test_what_a_dead_process_left_is_cleaned_and_a_living_one_keeps_its_file(tmp
     dead = subprocess.Popen([sys.executable, "-c", ""])
     dead.wait()
     stale = tmp_path / f".fields.{dead.pid}.writing.vtkhdf"
+    part = tmp_path / "parts" / f".000000000041.{dead.pid}.writing"
+    part.mkdir(parents=True)
+    (part / "fields.vtkhdf").write_bytes(b"x")
     alive = tmp_path / f".film.{os.getppid()}.writing.mp4"
     data = tmp_path / "fields.vtkhdf"
     for path in (stale, alive, data):
         path.write_bytes(b"x")
-    assert atomic.clean(tmp_path) == [stale]
+    assert atomic.clean(tmp_path) == [stale, part]
+    assert list((tmp_path / "parts").iterdir()) == []
     assert alive.exists()
     assert data.exists()
 
