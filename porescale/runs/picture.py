@@ -31,7 +31,7 @@ LEFT, RIGHT, TOP, BOTTOM, BAR = 70, 18, 44, 58, 92
 """Margins around the inside of a picture 1000 pixels wide, and the room of one colour bar."""
 CALM = 0.01
 """Share of the colours' range below which no streamline is drawn: they would follow round-off."""
-SURVEYED = 60
+SURVEYED = 24
 """At most so many snapshots are looked at for the colours' range."""
 
 

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from porescale.ground.check import Fault, InputError
-from porescale.runs import snapshots
 from porescale.runs import card as cards
+from porescale.runs import snapshots
 from porescale.runs.checkpoint import read_checkpoint, read_header, write_checkpoint
 from porescale.runs.model import Model
 from porescale.runs.schedule import Schedule
