@@ -37,9 +37,7 @@ def pair(sides: dict[str, tuple[str, float]], *, nx=7, ny=6, tau=0.7, magic=3 / 
 def box(left, right, bottom, top, speed=0.0):
     """Sides of the four kinds; walls move at ``speed``, each a little differently."""
     kinds = {"left": left, "right": right, "bottom": bottom, "top": top}
-    return {
-        name: (kind, (k + 1) * speed if kind == "wall" else 0.0) for k, (name, kind) in enumerate(kinds.items())
-    }
+    return {name: (kind, (k + 1) * speed if kind == "wall" else 0.0) for k, (name, kind) in enumerate(kinds.items())}
 
 
 def same(fluid, other, steps):
