@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.ground.jit import set_threads, threads
 from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL, odd_rate
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import relaxation_time
@@ -16,6 +19,17 @@ Array = NDArray[np.floating]
 
 MEMORY = 40.0
 """e-folds after which a start has been forgotten: exp(-40) = 4e-18 is below round-off."""
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Within this, kernels run on one thread: in a box of a few cells waiting for a second one is all that is done."""
+    before = threads()
+    set_threads(1)
+    try:
+        yield
+    finally:
+        set_threads(before)
 
 
 def steady_steps(height: int, viscosity: float, magic: float) -> int:
@@ -38,8 +52,9 @@ def poiseuille(
     force = 8 * viscosity * peak / height**2
     sides = Sides(left="periodic", right="periodic")
     fluid = Fluid(3, height, relaxation_time(viscosity), magic=magic, force=(force, 0.0), sides=sides)
-    for _ in range(steady_steps(height, viscosity, magic)):
-        fluid.advance()
+    with one_thread():
+        for _ in range(steady_steps(height, viscosity, magic)):
+            fluid.advance()
     y = np.arange(height) + 0.5
     return fluid.fields()[1][:, 1] / peak, 4 * y * (height - y) / height**2
 
@@ -50,8 +65,9 @@ def couette(
     """Velocity of each row over the lid's, measured and exact, y/H, (height,); started from rest."""
     sides = Sides(left="periodic", right="periodic", top_speed=speed)
     fluid = Fluid(3, height, relaxation_time(viscosity), magic=magic, sides=sides)
-    for _ in range(steady_steps(height, viscosity, magic)):
-        fluid.advance()
+    with one_thread():
+        for _ in range(steady_steps(height, viscosity, magic)):
+            fluid.advance()
     return fluid.fields()[1][:, 1] / speed, (np.arange(height) + 0.5) / height
 
 
