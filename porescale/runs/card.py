@@ -22,8 +22,16 @@ from porescale.runs.atomic import write_text
 
 NAME = "card.json"
 RUNNING, FINISHED, INTERRUPTED, UNSTABLE, FAILED = "running", "finished", "interrupted", "unstable", "failed"
-FREE = ("duration", "snapshot_interval", "series_interval", "checkpoint_seconds", "output")
-"""Scene keys (or whole sections) that may change when a run is resumed: they do not enter the physics."""
+FREE = (
+    "time.end",
+    "duration",
+    "snapshot_interval",
+    "series_interval",
+    "checkpoint_seconds",
+    "output",
+    "title",
+)
+"""Scene keys, dotted or by their last name, and sections that may change when a run is resumed: no physics."""
 
 
 def new_card(given: dict[str, Any]) -> dict[str, Any]:
@@ -134,7 +142,7 @@ def changed_keys(
     old: Any, new: Any, free: Collection[str] = FREE, place: str = ""
 ) -> dict[str, tuple[Any, Any]]:
     """Dotted keys in which two scenes differ, with both values, but for ``free`` ones and below."""
-    if place and place.rpartition(".")[2] in free:
+    if place and (place in free or place.rpartition(".")[2] in free):
         return {}
     if isinstance(old, dict) and isinstance(new, dict):
         found: dict[str, tuple[Any, Any]] = {}

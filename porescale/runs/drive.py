@@ -52,7 +52,7 @@ def drive(
     checkpoint_seconds: float = 300.0,
     resume: bool = False,
     quiet: bool = False,
-    after: Callable[[Path], None] | None = None,
+    after: Callable[[Path], object] | None = None,
     free: Collection[str] = cards.FREE,
 ) -> Outcome:
     """Advance ``model`` to ``duration`` (s) and write the run folder.
@@ -131,7 +131,7 @@ class _Run:
         return max(1, min(due - step, int(rate * BLOCK_SECONDS)))
 
 
-def _watched(run: _Run, record: Record, watch: Watch, after: Callable[[Path], None] | None) -> Outcome:
+def _watched(run: _Run, record: Record, watch: Watch, after: Callable[[Path], object] | None) -> Outcome:
     """The loop, and how it may end."""
     model, first = run.model, run.model.step
     try:

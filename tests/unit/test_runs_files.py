@@ -128,12 +128,17 @@ def test_the_card_tells_what_ran_where_and_with_what(tmp_path):
 
 
 def test_changed_keys_are_named_and_free_ones_are_not():
-    old = {"fluid": {"viscosity": 1.0, "density": 2.0}, "run": {"duration": 1.0}, "output": {"x": 1}}
+    old = {
+        "fluid": {"viscosity": 1.0, "density": 2.0},
+        "run": {"duration": 1.0},
+        "output": {"x": 1},
+        "time": {"end": 1.0, "step": 1},
+    }
     new = {
         "fluid": {"viscosity": 1.5, "density": 2.0, "model": "trt"},
         "run": {"duration": 2.0},
         "output": {},
     }
-    expected = {"fluid.viscosity": (1.0, 1.5), "fluid.model": (None, "trt")}
+    expected = {"fluid.viscosity": (1.0, 1.5), "fluid.model": (None, "trt"), "time.step": (1, 2)}
     assert card.changed_keys(old, new) == expected
     assert "run.duration" in card.changed_keys(old, new, free=())
