@@ -138,6 +138,7 @@ def test_changed_keys_are_named_and_free_ones_are_not():
         "fluid": {"viscosity": 1.5, "density": 2.0, "model": "trt"},
         "run": {"duration": 2.0},
         "output": {},
+        "time": {"end": 2.0, "step": 2},
     }
     expected = {"fluid.viscosity": (1.0, 1.5), "fluid.model": (None, "trt"), "time.step": (1, 2)}
     assert card.changed_keys(old, new) == expected
