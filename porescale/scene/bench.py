@@ -1,0 +1,53 @@
+"""Rate of the main job as a whole: the underwater column collapse, all of a step included, in cells per second."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from porescale.ground.check import Fault, InputError
+from porescale.scene.build import build
+from porescale.scene.sections import Scene
+from porescale.workbench.benchmarks import Benchmarks, Dtype, Work
+from porescale.workbench.sections import validate
+
+BENCHMARKS = Benchmarks()
+
+SIZE = 400
+"""Cells across the box: 400 is the case's draft quality, 1200 its standard."""
+FALLEN = 0.05
+"""Time (s) after which it is timed: grains move, the pair list is rebuilt now and then."""
+STEPS = 40
+
+
+def column(size: int) -> Scene:
+    """The column collapse of cases/column_collapse on ``size``² cells, the step scaled with the spacing."""
+    spacing = 0.12 / size
+    table: dict[str, Any] = {
+        "domain": {"width": 0.12, "height": 0.12, "top": "slip"},
+        "time": {"end": 1.2},
+        "output": {"snapshot_interval": 0.02, "series_interval": 0.005},
+        "fluid": {"viscosity": 1e-4, "spacing": spacing, "step": 0.125 * spacing},
+        "grains": {
+            "density": 2500,
+            "hydraulic_radius_ratio": 0.8,
+            "packing": {"left": 0.09, "width": 0.03, "height": 0.072, "diameter": 0.0015},
+        },
+        "contact": {"stiffness": 5e5, "tangential_stiffness": 1.25e5, "restitution": 0.97, "friction": 0.5},
+        "gate": {"x": 0.09, "friction": 0.05},
+    }
+    return validate(Scene, table)
+
+
+@BENCHMARKS.row("column")
+def bench_column(size: int | None, threads: int, dtype: Dtype) -> Work:
+    """Coupled steps of the collapsing column; raises InputError for float32 and sizes that do not fit the gate."""
+    if dtype != "float64":
+        raise InputError(
+            Fault("--dtype", dtype, "scenes run in float64", allowed="float64", repair="leave --dtype out")
+        )
+    cells = SIZE if size is None else size
+    if cells % 4 or cells < 100:
+        raise InputError(Fault("--size", cells, "the gate stands at three quarters", allowed="multiples of 4 from 100"))
+    simulation = build(column(cells))
+    simulation.advance(max(2, round(FALLEN / simulation.step_seconds)))
+    return Work(lambda: simulation.advance(STEPS), cells * cells * STEPS, "cells/s", cells)
