@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.coupling.step import Coupled, buoyant_weight
 from porescale.dem.discs import Discs, make_discs
@@ -18,13 +17,12 @@ from porescale.lbm.fluid import Fluid
 from porescale.lbm.sides import Sides
 from porescale.particles.placement import place
 from porescale.scene.derive import Derived, derive, grain_count
+from porescale.scene.geometry import refuse_overlaps
 from porescale.scene.sections import Domain, Packing, Scene
 from porescale.scene.simulation import Gatekeeper, Simulation
 from porescale.workbench.sections import load
 
 GATE = "gate"
-TOUCH = 1e-3
-"""Overlap, over the smaller diameter, up to which grains placed by hand may start."""
 
 
 def load_scene(path: str | Path, *, quality: str | None = None, settings: Sequence[str] = ()) -> Scene:
@@ -94,7 +92,7 @@ def _grains(scene: Scene, derived: Derived) -> Grains:
     if scene.grains.grain:
         parts.append(_by_hand(scene))
     discs = Discs(*(np.concatenate([getattr(p, f) for p in parts]) for f in Discs.__dataclass_fields__))
-    _refuse_overlaps(discs, scene.domain)
+    refuse_overlaps(discs, scene.domain, discs.count - len(scene.grains.grain))
     return Grains(discs, law, box, wall_law=wall_law, plates=plates)
 
 
@@ -135,37 +133,3 @@ def _by_hand(scene: Scene) -> Discs:
         [(g.x, g.y) for g in grains], np.array([g.diameter / 2 for g in grains]), scene.grains.density,
         np.array([g.velocity for g in grains]), np.array([g.spin for g in grains]),
     )  # fmt: skip
-
-
-def _refuse_overlaps(discs: Discs, domain: Domain) -> None:
-    """Refuse grains outside the box or in each other, naming the first of each kind."""
-    faults = []
-    x, r = discs.position, discs.radius
-    box = np.array([domain.width, domain.height])
-    solid = np.array([domain.left != "periodic", domain.bottom != "periodic"])
-    out = np.flatnonzero((((x < r[:, None] * (1 - TOUCH)) | (x > box - r[:, None] * (1 - TOUCH))) & solid).any(axis=1))
-    if len(out):
-        k = int(out[0])
-        faults.append(Fault(f"grains.grain[{k}]", f"({x[k, 0]:g}, {x[k, 1]:g})", "reaches out of the box", "m",
-                            repair="move it inside by its radius"))  # fmt: skip
-    overlap = _deepest(x, r)
-    if overlap is not None and overlap[2] > TOUCH * 2 * min(r[overlap[0]], r[overlap[1]]):
-        i, j, depth = overlap
-        faults.append(
-            Fault(f"grains.grain[{i}]", None, f"overlaps grain {j} by {depth:.3g} m", repair="move one of them")
-        )
-    if faults:
-        raise InputError(faults)
-
-
-def _deepest(x: NDArray[np.float64], r: NDArray[np.float64]) -> tuple[int, int, float] | None:
-    """(i, j, overlap) of the deepest overlap among discs, or None; grid search by scipy, outside the time loop."""
-    from scipy.spatial import cKDTree
-
-    pairs = cKDTree(x).query_pairs(2 * float(r.max()), output_type="ndarray")
-    if len(pairs) == 0:
-        return None
-    i, j = pairs.T
-    depth = r[i] + r[j] - np.hypot(*(x[i] - x[j]).T)
-    worst = int(depth.argmax())
-    return int(i[worst]), int(j[worst]), float(depth[worst])

@@ -56,7 +56,7 @@ def refuse_too_large(derived: Derived) -> None:
     if need > 0.9 * have and derived.scales:
         coarser = derived.scales.spacing * math.sqrt(need / (0.5 * have))
         raise InputError(
-            Fault("fluid.spacing", derived.scales.spacing, f"needs {need / 2**30:.1f} GiB of {have / 2**30:.1f} GiB", "m",
+            Fault("fluid.spacing", derived.scales.spacing, f"needs {need / 2**30:.1f} of {have / 2**30:.1f} GiB", "m",
                   repair=f"a spacing of {coarser:.2g} m takes half of the memory")
         )  # fmt: skip
 

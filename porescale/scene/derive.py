@@ -12,6 +12,7 @@ from porescale.dem.contact.linear import Linear
 from porescale.dem.integrate import packing_limit, stable_step
 from porescale.ground.check import Fault, InputError
 from porescale.lbm.scales import NAMES, Scales, implied
+from porescale.scene.geometry import judge_places
 from porescale.scene.regime import expected_speed, judge
 from porescale.scene.sections import Contact, Fluid, Scene
 
@@ -45,6 +46,7 @@ def derive(scene: Scene) -> Derived:
     faults: list[Fault] = []
     warnings: list[str] = []
     scales, cells, column = _lattice(scene, faults) if scene.fluid else (None, None, None)
+    judge_places(scene, faults)
     sizes = diameters(scene)
     law = wall_law = limit = step = steps = None
     model_step, mean_mass = scales.step if scales else 0.0, 0.0

@@ -29,7 +29,8 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None) -> 
 
     Grains: free fall over the height they can fall, reduced by buoyancy; in fluid the terminal speed of a grain if that
     is less, and for a packing that of the gravity current it can become, sqrt(g' H)/2 with g' = phi |s - 1| g (Benjamin
-    1968): grains that fall together fall faster than each alone.  Fluid under a body force: the parabola between the walls across it, without grains.
+    1968): grains that fall together fall faster than each alone.  Fluid under a body force, without grains: the
+    parabola between the walls across it.
     """
     g, speed = math.hypot(*scene.gravity), 0.0
     if scene.grains and sizes:

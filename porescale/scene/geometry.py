@@ -1,0 +1,111 @@
+"""Where a scene puts its grains: inside the box, clear of each other and of the gate, or refused by name."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.dem.discs import Discs
+from porescale.dem.settle import Pile
+from porescale.ground.check import Fault, InputError
+from porescale.scene.sections import Domain, Gate, Packing, Scene
+
+TOUCH = 1e-3
+"""Overlap, over the smaller diameter, up to which grains placed by hand may start."""
+EDGE = 1e-9
+"""Relative slack of a packing's edges: 8 mm + 4 mm is 12 mm whatever its last bit."""
+
+
+def judge_places(scene: Scene, faults: list[Fault]) -> None:
+    """Add a fault for a packing beyond the box or across the gate, and for the first misplaced grain of each kind."""
+    if scene.grains is None:
+        return
+    if scene.grains.packing:
+        _judge_packing(scene.grains.packing, scene.domain, scene.gate, faults)
+    grains = scene.grains.grain
+    if not grains:
+        return
+    x, r = np.array([(g.x, g.y) for g in grains]), np.array([g.diameter / 2 for g in grains])
+    box, inner = np.array([scene.domain.width, scene.domain.height]), r[:, None] * (1 - TOUCH)
+    beyond = np.where(_periodic(scene.domain), (x < 0) | (x > box), (x < inner) | (x > box - inner)).any(axis=1)
+    if beyond.any():
+        faults.append(_misplaced(int(beyond.argmax()), x, "reaches out of the box", "move it inside by its radius"))
+    if scene.gate:
+        across = np.abs(x[:, 0] - scene.gate.x) < inner[:, 0]
+        if across.any():
+            faults.append(_misplaced(int(across.argmax()), x, "stands across the gate", "move one of them"))
+    _judge_overlap(x, r, scene.domain, 0, faults)
+
+
+def refuse_overlaps(discs: Discs, domain: Domain, packed: int) -> None:
+    """InputError naming the deepest overlap among discs, the first ``packed`` of which are the packing's."""
+    faults: list[Fault] = []
+    _judge_overlap(discs.position, discs.radius, domain, packed, faults)
+    if faults:
+        raise InputError(faults)
+
+
+def deepest(x: NDArray[np.float64], r: NDArray[np.float64], domain: Domain) -> tuple[int, int, float] | None:
+    """(i, j, overlap in m) of the deepest overlap, i > j, or None; also through periodic sides.
+
+    x : (n, 2) m;  r : (n,) m.  Grid search by scipy, outside the time loop.
+    """
+    from scipy.spatial import cKDTree
+
+    periodic, box = _periodic(domain), np.array([domain.width, domain.height])
+    inside = np.where(periodic, x % box, x)
+    inside = np.where(periodic & (inside >= box), 0.0, inside)  # a tiny negative number modulo the box is the box
+    low = np.where(periodic, 0.0, inside.min(axis=0))  # the search wants coordinates from 0 on a side without period
+    pairs = cKDTree(inside - low, boxsize=np.where(periodic, box, 0.0)).query_pairs(
+        2 * float(r.max()), output_type="ndarray"
+    )
+    if len(pairs) == 0:
+        return None
+    pairs.sort(axis=1)
+    j, i = pairs.T
+    apart = x[i] - x[j]
+    apart -= np.where(periodic, box * np.round(apart / box), 0.0)
+    depth = r[i] + r[j] - np.hypot(*apart.T)
+    worst = int(depth.argmax())
+    return int(i[worst]), int(j[worst]), float(depth[worst])
+
+
+def _judge_packing(packing: Packing, domain: Domain, gate: Gate | None, faults: list[Fault]) -> None:
+    right, top = packing.left + packing.width, packing.bottom + packing.height
+    for key, value, end, size in (
+        ("left", packing.left, right, domain.width),
+        ("height", packing.height, top, domain.height),
+    ):
+        if end > size * (1 + EDGE):
+            problem = f"the packing reaches to {end:g} m, out of the box of {size:g} m"
+            faults.append(Fault(f"grains.packing.{key}", value, problem, "m", repair="move it inside or shrink it"))
+    # Settling starts from a looser placement: as high as dem.settle.Pile.top says.
+    head = packing.bottom + packing.packing_fraction * packing.height / Pile.fraction + packing.diameter
+    if packing.settle and top <= domain.height * (1 + EDGE) < head:
+        problem = f"is placed up to {head:.4g} m before it settles, above the box of {domain.height:g} m"
+        faults.append(
+            Fault("grains.packing.height", packing.height, problem, "m", repair=f"make the box {head:.4g} m high")
+        )
+    if gate and packing.left * (1 + EDGE) < gate.x < right * (1 - EDGE):
+        problem = f"stands in the packing, which reaches from {packing.left:g} to {right:g} m"
+        faults.append(Fault("gate.x", gate.x, problem, "m", repair="move one of them"))
+
+
+def _judge_overlap(
+    x: NDArray[np.float64], r: NDArray[np.float64], domain: Domain, packed: int, faults: list[Fault]
+) -> None:
+    found = deepest(x, r, domain)
+    if found is None or found[2] <= TOUCH * 2 * min(r[found[0]], r[found[1]]):
+        return
+    i, j, depth = found
+    other = f"grain {j - packed}" if j >= packed else "a grain of the packing"
+    key = f"grains.grain[{i - packed}]" if i >= packed else "grains.packing"
+    faults.append(Fault(key, None, f"overlaps {other} by {depth:.3g} m", repair="move one of them"))
+
+
+def _misplaced(k: int, x: NDArray[np.float64], problem: str, repair: str) -> Fault:
+    return Fault(f"grains.grain[{k}]", f"({x[k, 0]:g}, {x[k, 1]:g})", problem, "m", repair=repair)
+
+
+def _periodic(domain: Domain) -> NDArray[np.bool_]:
+    return np.array([domain.left == "periodic", domain.bottom == "periodic"])
