@@ -34,6 +34,9 @@ CALM = 0.01
 SURVEYED = 24
 """At most so many snapshots are looked at for the colours' range."""
 
+FINER = 3
+"""Panels of a montage are drawn this much finer and averaged: small discs stay round."""
+
 
 class Painter:
     """Paints snapshots that share a survey, each as (height, width, 3) uint8 RGB with even sides."""
@@ -169,14 +172,15 @@ def montage(painter: Painter, shown: Sequence[Snapshot]) -> Array:
         _even(top + rows * height + (rows - 1) * gap_y + bottom),
     )
     figure = Figure((full[0] / DPI, full[1] / DPI), dpi=DPI)
-    canvas = Canvas(found, width, height)
+    canvas = Canvas(found, FINER * width, FINER * height)
     factor, _ = length_unit(found.view)
     extent = _scaled(found.view, factor)
     for k, snapshot in enumerate(shown):
         row, column = divmod(k, columns)
+        inside = cv2.resize(canvas.draw(snapshot), (width, height), interpolation=cv2.INTER_AREA)
         x, y = left + column * (width + gap_x), top + row * (height + gap_y)
         axes = _place(figure, full, x, y, width, height)
-        axes.imshow(canvas.draw(snapshot), extent=extent, aspect="auto", interpolation="nearest")
+        axes.imshow(inside, extent=extent, aspect="auto", interpolation="nearest")
         _dress(axes, found, 9.5, x_label=k + columns >= len(shown), y_label=column == 0)
         axes.set_title(time_text(snapshot.time, found.longest), loc="right", fontsize=9.5, pad=4)
     figure.text(left / full[0], 1 - 14 / full[1], found.look.title, fontsize=12, va="top", ha="left")
