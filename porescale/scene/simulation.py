@@ -153,7 +153,9 @@ class Simulation:
             flat[:, :2] = d.velocity
             data = {"radius": d.radius, "angle": d.angle, "velocity": flat, "spin": d.spin}
             units = {"radius": "m", "angle": "rad", "velocity": "m/s", "spin": "rad/s"}
-            snapshot.clouds["grains"] = Cloud(d.position, data, units)
+            period = np.array(self.grains.box.period)
+            inside = np.where(period > 0, np.mod(d.position, np.where(period > 0, period, 1.0)), d.position)
+            snapshot.clouds["grains"] = Cloud(inside, data, units)
         return snapshot
 
     def _grid(self) -> Grid:
