@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -118,11 +119,14 @@ def prepared(scene: Scene, packing: Packing, box: Box, derived: Derived, plates:
 
 def _placed(scene: Scene, packing: Packing) -> Discs:
     assert scene.grains
-    placed = place(
-        (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height),
-        diameter=packing.diameter, spread=packing.size_spread, packing_fraction=packing.packing_fraction,
-        seed=packing.seed,
-    )  # fmt: skip
+    try:
+        placed = place(
+            (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height),
+            diameter=packing.diameter, spread=packing.size_spread, packing_fraction=packing.packing_fraction,
+            seed=packing.seed,
+        )  # fmt: skip
+    except InputError as error:
+        raise InputError([replace(fault, key=f"grains.packing.{fault.key}") for fault in error.faults]) from None
     return make_discs(placed.position, placed.radius, scene.grains.density)
 
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from porescale.dem.discs import Discs
 from porescale.dem.settle import Pile
 from porescale.ground.check import Fault, InputError
+from porescale.particles.placement import DENSEST
 from porescale.scene.sections import Domain, Gate, Packing, Scene
 
 TOUCH = 1e-3
@@ -79,6 +80,10 @@ def _judge_packing(packing: Packing, domain: Domain, gate: Gate | None, faults: 
         if end > size * (1 + EDGE):
             problem = f"the packing reaches to {end:g} m, out of the box of {size:g} m"
             faults.append(Fault(f"grains.packing.{key}", value, problem, "m", repair="move it inside or shrink it"))
+    if not packing.settle and packing.packing_fraction > DENSEST:
+        problem = "is denser than discs can be placed at random"
+        key, repair = "grains.packing.packing_fraction", "let it settle, or lower it"
+        faults.append(Fault(key, packing.packing_fraction, problem, "", f"<= {DENSEST:g}", repair))
     # Settling starts from a looser placement: as high as dem.settle.Pile.top says.
     head = packing.bottom + packing.packing_fraction * packing.height / Pile.fraction + packing.diameter
     if packing.settle and top <= domain.height * (1 + EDGE) < head:

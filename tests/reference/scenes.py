@@ -1,4 +1,4 @@
-"""Small scenes that tests start from: a column of 32 grains behind a gate that lifts, on 60 x 40 cells; and parts of it."""
+"""Small scenes that tests start from: a column of 31 grains behind a gate that lifts, on 60 x 40 cells."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ COLUMN: dict[str, Any] = {
     "grains": {
         "density": 2500,
         "hydraulic_radius_ratio": 0.8,
-        "packing": {"left": 0.008, "width": 0.004, "height": 0.005, "diameter": 0.0008, "packing_fraction": 0.8},
+        "packing": {"left": 0.008, "width": 0.004, "height": 0.0055, "diameter": 0.0008, "packing_fraction": 0.7},
     },
     "contact": {"stiffness": 2e5, "tangential_stiffness": 5e4, "restitution": 0.9, "friction": 0.5},
     "gate": {"x": 0.008, "opens_at": 0.002, "lift_speed": 0.4, "friction": 0.05},

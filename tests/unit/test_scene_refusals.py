@@ -33,7 +33,7 @@ def test_the_small_column_itself_is_not_refused():
     derived = derive(column())
     assert derived.cells == (60, 40)
     assert derived.gate_column == 40
-    assert derived.grain_count == 32
+    assert derived.grain_count == 31
 
 
 def test_table_1_implies_what_the_specification_prints():
@@ -96,7 +96,7 @@ def test_the_hydraulic_radius_must_be_stated_by_grains_in_fluid():
     assert line.startswith("grains.hydraulic_radius_ratio: every scene with grains in fluid states it")
     assert "allowed: > 0 and <= 1" in line
     assert "0.8 opens the pores" in line
-    assert derive(dry()).grain_count == 32  # without fluid there is nothing to state
+    assert derive(dry()).grain_count == 31  # without fluid there is nothing to state
 
 
 def test_a_hydraulic_radius_ratio_of_one_warns_that_it_seals_a_bed():
@@ -207,11 +207,11 @@ def test_a_mach_number_above_a_tenth_warns_and_above_three_tenths_is_refused():
 
 
 def test_the_weight_of_a_column_warns_and_then_refuses_through_the_pore_pressure():
-    # 3 (rho_s - rho) g phi H/(rho c^2) = 3 * 1500 * 9.81 * 0.8 * 0.005/(1000 * 25) = 0.00706 as it stands; the
+    # 3 (rho_s - rho) g phi H/(rho c^2) = 3 * 1500 * 9.81 * 0.7 * 0.0055/(1000 * 25) = 0.0068 as it stands; the
     # density of the grains sets it, in a fluid viscous enough that the speed stays out of the matter.
     viscous = {"fluid__viscosity": 1e-4}
     still = derive(column(**viscous))
-    assert still.density_variation == pytest.approx(3 * 1500 * 9.81 * 0.8 * 0.005 / 25e3, rel=1e-4)
+    assert still.density_variation == pytest.approx(3 * 1500 * 9.81 * 0.7 * 0.0055 / 25e3, rel=1e-4)
     heavy = {"grains__density": 1000 + 1500 * 0.1 / still.density_variation, **viscous}
     warnings = [it for it in derive(column(**heavy)).warnings if "pore pressure" in it]
     assert warnings
@@ -223,7 +223,7 @@ def test_the_weight_of_a_column_warns_and_then_refuses_through_the_pore_pressure
 
 
 def test_the_repair_of_the_pore_pressure_removes_the_warning():
-    viscous = {"fluid__viscosity": 1e-4, "grains__density": 12000.0}
+    viscous = {"fluid__viscosity": 1e-4, "grains__density": 15000.0}
     (warning,) = [it for it in derive(column(**viscous)).warnings if "pore pressure" in it]
     step = float(warning.partition("a step of ")[2].partition(" s")[0])
     assert not [it for it in derive(column(fluid__step=step, **viscous)).warnings if "pore pressure" in it]
@@ -283,9 +283,24 @@ def test_a_packing_outside_the_box_or_across_the_gate_is_refused():
 
 def test_a_packing_needs_head_room_to_settle_from():
     # Placed at an area fraction of 0.75: 0.8 * 0.0075/0.75 + 0.0008 m high.
-    (line,) = lines(grains__packing__height=0.0075)
+    (line,) = lines(grains__packing__height=0.0075, grains__packing__packing_fraction=0.8)
     assert line.startswith("grains.packing.height = 0.0075 m: is placed up to 0.0088 m before it settles")
-    assert derive(dry(grains__packing__height=0.0075)).grain_count == 48  # left where it is placed, it needs none
+    derive(dry(grains__packing__height=0.0075, grains__packing__packing_fraction=0.8))  # left in place, it needs none
+
+
+def test_discs_are_not_placed_denser_than_they_can_be():
+    assert derive(column(grains__packing__packing_fraction=0.81)).grain_count > 31  # settled: its mean, not its start
+    with pytest.raises(InputError) as caught:
+        derive(dry(grains__packing__packing_fraction=0.81))
+    (fault,) = caught.value.faults
+    assert fault.line().startswith("grains.packing.packing_fraction = 0.81: ")
+    assert "(allowed: <= 0.8)" in fault.line()
+
+
+def test_a_placement_that_jams_is_named_by_its_key():
+    with pytest.raises(InputError) as caught:
+        build(dry(grains__packing__packing_fraction=0.8, grains__packing__height=0.005, grains__packing__size_spread=0))
+    assert caught.value.faults[0].key == "grains.packing.packing_fraction"
 
 
 def test_a_grain_across_the_gate_is_named():

@@ -1,0 +1,178 @@
+"""A scene builds what it has sections for, and nothing else: no lattice when dry, no pair list without grains."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from typing import Any, NoReturn
+
+import numpy as np
+import pytest
+
+import porescale.coupling.saturated
+import porescale.coupling.step
+import porescale.dem.system
+import porescale.lbm.fluid
+import porescale.lbm.plate
+import porescale.particles.pairs
+import porescale.scene.build
+from porescale.scene.simulation import Simulation
+from tests.reference.scenes import column, dry, table, water
+
+build = porescale.scene.build.build
+STEPS = 60
+"""Past the opening of the gate, a rebuild of the list and an odd and even step."""
+
+
+class Built(Exception):
+    """A part was made that the scene did not ask for."""
+
+
+def forbid(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
+    """Making a part of one of these classes raises, wherever its name was imported to."""
+
+    def refuse(self: Any, *args: Any, **options: Any) -> NoReturn:
+        raise Built(type(self).__name__)
+
+    found = set()
+    for module in [it for name, it in sys.modules.items() if name.startswith("porescale.")]:
+        for name in names:
+            part = getattr(module, name, None)
+            if isinstance(part, type):
+                monkeypatch.setattr(part, "__init__", refuse)
+                found.add(name)
+    assert found == set(names)
+
+
+def arrays(root: Any) -> Iterator[tuple[str, np.ndarray]]:
+    """Every array that can be reached from ``root`` through attributes, containers and closures, with its path."""
+    seen: set[int] = set()
+    stack: list[tuple[str, Any]] = [("simulation", root)]
+    while stack:
+        path, item = stack.pop()
+        if id(item) in seen or isinstance(item, str | bytes | int | float | type | np.generic) or item is None:
+            continue
+        seen.add(id(item))
+        if isinstance(item, np.ndarray):
+            yield path, item
+            if item.base is not None:
+                stack.append((f"{path}.base", item.base))
+        elif isinstance(item, dict):
+            stack += [(f"{path}[{key!r}]", value) for key, value in item.items()]
+        elif isinstance(item, list | tuple | set | frozenset):
+            stack += [(f"{path}[{number}]", value) for number, value in enumerate(item)]
+        elif type(item).__module__.startswith("porescale"):
+            held = dict(getattr(item, "__dict__", {}))
+            slots = [name for kind in type(item).__mro__ for name in getattr(kind, "__slots__", ())]
+            held |= {name: getattr(item, name) for name in slots if hasattr(item, name)}
+            stack += [(f"{path}.{name}", value) for name, value in held.items()]
+        else:
+            cells = getattr(item, "__closure__", None) or ()
+            stack += [(f"{path}.closure", cell.cell_contents) for cell in cells]
+            if getattr(item, "__self__", None) is not None:
+                stack.append((f"{path}.self", item.__self__))
+
+
+def lattices(simulation: Simulation, cells: int) -> list[str]:
+    """Paths of arrays with at least as many floating-point numbers as there are cells."""
+    return [path for path, it in arrays(simulation) if it.size >= cells and np.issubdtype(it.dtype, np.floating)]
+
+
+def test_a_dry_scene_makes_no_lattice(monkeypatch):
+    forbid(monkeypatch, "Fluid", "Saturated", "Coupled", "Sides", "Scales")
+    simulation = build(dry(gate={"x": 0.008, "opens_at": 0.0005}))
+    simulation.advance(STEPS)
+    assert (simulation.fluid, simulation.coupled) == (None, None)
+    assert set(simulation.snapshot().grids) == set()
+    assert not any("fluid" in name or "Mach" in name for name in simulation.series())
+
+
+def test_a_dry_scene_holds_no_array_of_lattice_size():
+    # 60 x 40 cells at the column's own spacing; 32 grains hold at most a few hundred numbers in an array.
+    simulation = build(dry(gate={"x": 0.008}))
+    simulation.advance(STEPS)
+    assert lattices(simulation, 60 * 40) == []
+    assert sum(it.nbytes for _, it in arrays(simulation)) < 60 * 40 * 8
+
+
+def test_the_walk_finds_the_lattice_of_a_wet_scene():
+    # The twin that must fail: populations, and per cell the weights of solids, are found by the same walk.
+    found = lattices(build(column()), 60 * 40)
+    assert any(path.startswith("simulation.fluid.") for path in found)
+    assert any("saturated" in path for path in found)
+    assert lattices(build(water()), 60 * 40)
+
+
+@pytest.mark.parametrize("part", ["Fluid", "Saturated", "PairList", "Plate"])
+def test_a_forbidden_part_is_noticed_where_it_is_needed(monkeypatch, part):
+    # The twin of the constructors that raise: the wet column behind a gate needs them all.
+    forbid(monkeypatch, part)
+    with pytest.raises(Built):
+        build(column(grains__packing__settle=False))
+
+
+def test_a_scene_without_grains_makes_no_pair_list_and_covers_no_cell(monkeypatch):
+    forbid(monkeypatch, "PairList", "Grains", "Saturated", "Coupled", "Discs", "Linear")
+    simulation = build(water())
+    simulation.advance(STEPS)
+    assert (simulation.grains, simulation.coupled, simulation.weight) == (None, None, None)
+    assert set(simulation.snapshot().clouds) == set()
+    assert "solid_fraction" not in simulation.snapshot().grids["fields"].cells
+    assert not any("grain" in name or "overlap" in name for name in simulation.series())
+    assert simulation.series()["largest fluid speed (m/s)"] > 0
+
+
+def test_without_a_gate_there_is_no_plate(monkeypatch):
+    forbid(monkeypatch, "Plate")
+    for scene in (column(gate=None, grains__packing__settle=False), dry(), water()):
+        simulation = build(scene)
+        assert simulation.gate is None
+        assert simulation.fluid is None or simulation.fluid.plates == []
+        assert simulation.grains is None or len(simulation.grains.plates) == 0
+
+
+def test_a_gate_stands_in_fluid_and_grains_alike():
+    simulation = build(column(grains__packing__settle=False))
+    assert simulation.fluid
+    assert simulation.grains
+    assert len(simulation.fluid.plates) == 1
+    assert simulation.grains.plate_ends("gate") == (0.008, 0.0, 0.008)
+    dry_one, wet_one = build(dry(gate={"x": 0.008})), build(water(gate={"x": 0.004}, domain=table()["domain"]))
+    assert dry_one.grains
+    assert len(dry_one.grains.plates) == 1
+    assert wet_one.fluid
+    assert len(wet_one.fluid.plates) == 1
+
+
+def test_the_gate_opens_at_its_time_and_rises_alike_in_fluid_and_grains():
+    simulation = build(column(grains__packing__settle=False))
+    assert simulation.fluid
+    assert simulation.grains
+    (plate,) = simulation.fluid.plates
+    simulation.advance(50)  # opens_at 2 ms = 50 steps of 40 us
+    assert (plate.lower_edge, simulation.grains.plate_ends("gate")[1]) == (0.0, 0.0)
+    simulation.advance(25)
+    # 0.4 m/s over 25 steps of 4e-5 s is 0.4 mm = 2 cells; sums of 25 roundings.
+    assert plate.lower_edge == pytest.approx(2.0, rel=25 * 2**-52)
+    assert simulation.grains.plate_ends("gate")[1] == pytest.approx(0.0004, rel=100 * 2**-52)
+
+
+def test_a_gate_without_lift_speed_vanishes_at_its_time():
+    simulation = build(column(grains__packing__settle=False, gate__lift_speed=None))
+    assert simulation.fluid
+    simulation.advance(50)
+    assert len(simulation.fluid.plates) == 1
+    simulation.advance(1)
+    assert simulation.fluid.plates == []
+
+
+def test_a_gate_holds_water_and_grains_until_it_opens():
+    simulation = build(column(gate__opens_at=1.0))
+    simulation.advance(100)
+    row = simulation.series()
+    # Held, the grains stay at rest: their packing was brought to net forces of 3e-3 of the weight, which moves
+    # nothing by more than 3e-3 * 6 m/s^2 * (4 ms)^2/2 = 1.4e-7 m = 2e-4 diameters.
+    assert row["run-out (m)"] < 1e-6
+    free = build(column(gate=None, grains__packing__settle=False))  # the twin: without the gate the water moves
+    free.advance(100)
+    assert free.series()["kinetic energy of fluid (J/m)"] > 100 * row["kinetic energy of fluid (J/m)"]
