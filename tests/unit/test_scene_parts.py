@@ -98,7 +98,7 @@ def test_a_dry_scene_holds_no_array_of_lattice_size():
 def test_the_walk_finds_the_lattice_of_a_wet_scene():
     # The twin that must fail: populations, and per cell the weights of solids, are found by the same walk.
     found = lattices(build(column()), 60 * 40)
-    assert any(path.startswith("simulation.fluid.") for path in found)
+    assert any("fluid" in path for path in found)
     assert any("saturated" in path for path in found)
     assert lattices(build(water()), 60 * 40)
 
