@@ -81,7 +81,18 @@ class Simulation:
         self._watch = observe.Watch(scene, grains) if grains else None
 
     def advance(self, steps: int) -> None:
-        """Do ``steps`` steps."""
+        """Do ``steps`` steps; raises Unstable when a grain is nowhere."""
+        try:
+            self._advance(steps)
+        except Unstable as error:
+            raise self._in_steps(error) from None
+
+    def _in_steps(self, error: Unstable) -> Unstable:
+        """``error`` of the grains, which count contact steps, in steps and time of the model."""
+        e = error
+        return Unstable(e.where, e.quantity, e.value, e.unit, self.step, self.time, e.cause)
+
+    def _advance(self, steps: int) -> None:
         scales = self.derived.scales
         for _ in range(steps):
             if self.gate:
@@ -107,11 +118,19 @@ class Simulation:
 
     def check(self) -> None:
         """Raise Unstable, naming cell or grain, quantity and step, when the state is beyond sense."""
+        fault = None
         if self.grains:
-            self.grains.check()
-        if self.fluid:
+            try:
+                self.grains.check()
+            except Unstable as error:
+                fault = self._in_steps(error)
+                if not self.fluid or not np.isfinite(self.grains.discs.position).all():
+                    raise fault from None
+        if self.fluid:  # where both are beyond sense the lattice is named: it throws the grains, not they it
             excess, ux, uy, _ = self.fields()
             self._check_fluid(excess, np.hypot(ux, uy))
+        if fault:
+            raise fault
 
     def _check_fluid(self, excess: Array, speed: Array) -> None:
         s = self.derived.scales
