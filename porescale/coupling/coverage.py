@@ -20,8 +20,12 @@ from porescale.ground.jit import inline, kernel, parallel_kernel, prange
 
 @inline
 def quarter_area(a, r):
-    """G(a): area under the quarter circle of radius r from 0 to a, 0 <= a <= r."""
-    return 0.5 * (a * math.sqrt(max(r * r - a * a, 0.0)) + r * r * math.asin(min(a / r, 1.0)))
+    """G(a): area under the quarter circle of radius r from 0 to a, 0 <= a <= r.
+
+    The angle comes from both legs: asin(a/r) loses half the digits of a disc that just touches a grid line.
+    """
+    h = math.sqrt((r - a) * (r + a))
+    return 0.5 * (a * h + r * r * math.atan2(a, h))
 
 
 @inline

@@ -1,6 +1,7 @@
 """Force and torque of the fluid on every grain (Noble & Torczynski 1998, with SC1's moments).
 
-F_n = sum over its cells of B_n (j - rho u_s,n),  j = sum f c - (1 - B) F/2;   T_n = sum (x - X_n) x the same.  Lattice units.
+F_n = sum over its cells of B_n (j - rho u_s,n),  j = sum f c - (1 - B) F/2;   T_n = sum (x - X_n) x the same.
+Lattice units.
 """
 
 from porescale.ground.jit import parallel_kernel, prange

@@ -28,9 +28,8 @@ class Saturated:
         self.periodic_x = fluid.sides.left == "periodic"
         self.periodic_y = fluid.sides.bottom == "periodic"
         self._width = (np.floor(2 * self.radius) + 2).astype(np.int64)
-        if (self.periodic_x and self._width.max(initial=0) > nx) or (
-            self.periodic_y and self._width.max(initial=0) > ny
-        ):
+        widest = 2 * self.radius.max(initial=0)
+        if (self.periodic_x and widest > nx) or (self.periodic_y and widest > ny):
             raise ValueError("a disc is wider than the periodic box")
         self._start = np.concatenate(([0], np.cumsum(self._width**2)[:-1])).astype(np.int64)[:count]
         self._patch = np.zeros(int(np.sum(self._width**2)), float)

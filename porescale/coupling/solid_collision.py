@@ -25,9 +25,9 @@ from porescale.lbm.stream import even_slots, odd_slots
 def collide_saturated_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, first, last, k, p):
     """Collide cells ``first`` to ``last`` - 1 of a row in which grains lie.
 
-    a_i (nx,): slots, as in collide_row;  k (1,): tau - 1/2;  p: parameters.  s, sx, sy (nx,): sum of the solid fractions
-    and of fraction times solid velocity; in covered cells overwritten with density and with the first moment less
-    (1 - B) F/2, which is what loads are made of.
+    a_i (nx,): slots, as in collide_row;  k (1,): tau - 1/2;  p: parameters.  s, sx, sy (nx,): sum of the solid
+    fractions and of fraction times solid velocity; in covered cells overwritten with density and with the first
+    moment less (1 - B) F/2, which is what loads are made of.
     """
     one, half, fx, fy = p[12], p[13], p[2], p[3]
     even, odd, two = p[0], p[1], p[12] + p[12]

@@ -1,9 +1,10 @@
 """One coupled step: cover, stream and collide, load, and the contact steps under the held load.
 
 The fluid inside a disc is dragged along, so the sum over its cells contains -m_f dU/dt, m_f = rho0 pi R_h²; it is given
-back with the last known acceleration, (U^n - U^(n-1))/dt, likewise for rotation with m_f R_h²/2 (a rigid disc of fluid).
-The conserved momentum is then  sum rho u + sum (m_p U^n - m_f U^(n-1)).  The pressure is the reduced one, p + rho0 g y:
-the fluid carries no weight, and each disc that of its mechanical area less the fluid's, (rho_s - rho0) A g.
+back with the last known acceleration, (U^n - U^(n-1))/dt, likewise for rotation with m_f R_h²/2 (a rigid disc of
+fluid).  The conserved momentum is then  sum rho u + sum (m_p U^n - m_f U^(n-1)).  The pressure is the reduced one,
+p + rho0 g y: the fluid carries no weight, and each disc that of its mechanical area less the fluid's,
+(rho_s - rho0) A g.
 """
 
 from typing import Any
@@ -38,9 +39,9 @@ def total_load(
 ):  # fmt: skip
     """Weight, load and inner mass of every disc, SI; then remember the velocity.
 
-    load (n, 2), load_torque (n,): lattice units, of force_unit N/m and torque_unit N m/m;  weight (n, 2) N/m;  velocity
-    m/s, spin rad/s;  inner_mass (n,) kg/m, inner_inertia (n,) kg m²/m;  step s.  Overwrites force (n, 2) N/m, torque (n,)
-    N m/m, old_velocity and old_spin.
+    load (n, 2), load_torque (n,): lattice units, of force_unit N/m and torque_unit N m/m;  weight (n, 2) N/m;
+    velocity m/s, spin rad/s;  inner_mass (n,) kg/m, inner_inertia (n,) kg m²/m;  step s.  Overwrites force (n, 2) N/m,
+    torque (n,) N m/m, old_velocity and old_spin.
     """
     for n in range(spin.shape[0]):
         for a in range(2):

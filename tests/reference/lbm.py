@@ -53,6 +53,7 @@ class Lattice:
     plate: int | None = None  # column to the right of the plate
     plate_edge: float = 0.0
     plate_speed: float = 0.0
+    tables: dict = field(default_factory=dict)  # where every link leads, until the plate moves
 
     def __post_init__(self):
         self.f = equilibrium(np.ones((self.ny, self.nx)), 0.0, 0.0)
@@ -78,12 +79,14 @@ class Lattice:
         )
 
     def stream(self, g):
+        key = (self.plate, self.plate_edge, self.plate_speed)
+        if key not in self.tables:
+            links = [(i, y, x) for i in range(9) for y in range(self.ny) for x in range(self.nx)]
+            arrivals = [self.arrival(x, y, *C[i]) for i, y, x in links]
+            self.tables = {key: [np.array(column) for column in zip(*arrivals, strict=True)]}
         out = np.full_like(g, np.nan)
-        for y in range(self.ny):
-            for x in range(self.nx):
-                for i, (cx, cy) in enumerate(C):
-                    tx, ty, j, added = self.arrival(x, y, cx, cy)
-                    out[j, ty, tx] = g[i, y, x] + added
+        tx, ty, j, added = self.tables[key]
+        out[j, ty, tx] = g.reshape(-1) + added
         self.f = out
 
     def step(self):

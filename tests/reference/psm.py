@@ -43,7 +43,7 @@ def overlap(x, y, cx, cy, r):
 
 
 def coverage(cx, cy, r, nx, ny, periodic=(False, False)):
-    """Solid fraction of every cell, (ny, nx), and the cell centres' distance vectors from (cx, cy) where it is not 0."""
+    """Solid fraction of every cell, (ny, nx), and the vector from (cx, cy) to the centres of those it may cover."""
     e, rx, ry = np.zeros((3, ny, nx))
     for y in range(math.floor(cy - r), math.ceil(cy + r)):
         for x in range(math.floor(cx - r), math.ceil(cx + r)):
