@@ -54,7 +54,7 @@ def test_python_m_porescale_is_the_same_command():
     assert done.stdout == ""
 
 
-def test_check_prints_what_a_scene_implies_and_runs_nothing(scene, porescale, capsys, tmp_path, monkeypatch):
+def test_check_prints_what_a_scene_implies_and_builds_nothing(scene, porescale, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(Simulation, "__init__", None)  # nothing is built
     assert porescale("check", scene) == 0
