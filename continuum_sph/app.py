@@ -1,0 +1,132 @@
+"""The command line ``continuum-sph``, made from the same workbench as ``porescale``."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import porescale
+from porescale.workbench import application
+from porescale.workbench.package import Package
+
+if TYPE_CHECKING:
+    from continuum_sph.model import Simulation
+    from continuum_sph.scene import Scene
+    from porescale.runs.drive import Outcome
+    from porescale.workbench.benchmarks import Benchmarks
+    from porescale.workbench.report import Report
+    from porescale.workbench.validations import Validations
+
+
+def scene_type() -> type[Scene]:
+    """The type of a continuum scene."""
+    from continuum_sph.scene import Scene
+
+    return Scene
+
+
+def template() -> str:
+    """The text of the scene that ``new`` writes."""
+    return files("continuum_sph").joinpath("template.toml").read_text(encoding="utf-8")
+
+
+def build(scene: Scene) -> Simulation:
+    """The simulation of a scene; warnings about it go to stderr, refusals are InputErrors."""
+    import sys
+
+    from continuum_sph.model import Simulation
+    from continuum_sph.report import report as scene_report
+
+    for warning in scene_report(scene).warnings:
+        print(f"warning: {warning}", file=sys.stderr)
+    return Simulation(scene)
+
+
+def drive(
+    model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any], resume: bool, quiet: bool
+) -> Outcome:
+    """Run the model to the scene's end and write the run folder."""
+    from porescale.runs.drive import drive as drive_model
+
+    def after(folder: Path) -> None:
+        show(folder)
+
+    return drive_model(
+        model,
+        folder,
+        scene.time.end,
+        snapshot_interval=scene.output.snapshot_interval,
+        series_interval=scene.output.series_interval,
+        checkpoint_seconds=scene.output.checkpoint_seconds,
+        card=card,
+        resume=resume,
+        quiet=quiet,
+        after=after,
+    )
+
+
+def report(scene: Scene) -> Report:
+    """Every derived number of a scene; raises InputError with all refusals."""
+    from continuum_sph.report import report as scene_report
+
+    return scene_report(scene)
+
+
+def show(folder: Path) -> list[Path]:
+    """Write pictures and film of the run in ``folder``; returns their paths."""
+    from porescale.runs.film import film
+    from porescale.runs.look import Look
+    from porescale.runs.open_run import open_run
+    from porescale.runs.picture import pictures
+
+    run = open_run(folder)
+    scene = run.card["scene"]
+    width, height = scene["tank"]["width"], scene["tank"]["height"]
+    corners = [(0.0, height), (0.0, 0.0), (width, 0.0), (width, height)]
+    if scene["tank"]["lid"]:
+        corners.append(corners[0])
+    margin = 0.02 * width
+    look = Look(
+        title=scene["title"] or run.card.get("name", ""),
+        cloud="particles",
+        colour="velocity",
+        lines=list(zip(corners[:-1], corners[1:], strict=True)),
+        dot=0.5 * scene["numerics"]["spacing"],
+        view=(-margin, width + margin, -margin, height + margin),
+    )
+    return [*pictures(folder, look), film(folder, look)]
+
+
+def validations() -> Validations:
+    """All rows of ``verify``."""
+    from continuum_sph.verify import VALIDATIONS
+
+    return VALIDATIONS
+
+
+def benchmarks() -> Benchmarks:
+    """All rows of ``bench``."""
+    from continuum_sph.bench import BENCHMARKS
+
+    return BENCHMARKS
+
+
+PACKAGE = Package(
+    name="continuum-sph",
+    summary="Soil, water and air as layers of smoothed particles (so far: water in a tank).",
+    version=porescale.__version__,
+    scene=scene_type,
+    template=template,
+    build=build,
+    drive=drive,
+    report=report,
+    show=show,
+    validations=validations,
+    benchmarks=benchmarks,
+)
+
+
+def main() -> int:
+    """Run ``continuum-sph`` with the arguments of the process; returns the exit code."""
+    return application.main(application.application(PACKAGE))

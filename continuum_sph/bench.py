@@ -1,0 +1,33 @@
+"""Rate of weakly compressible water: a column on its way down, pair list rebuilds included."""
+
+from __future__ import annotations
+
+from continuum_sph.build import flow_of
+from continuum_sph.trials import column_scene
+from porescale.ground.check import Fault, InputError
+from porescale.workbench.benchmarks import Benchmarks, Dtype, Work
+
+BENCHMARKS = Benchmarks()
+
+SIZE = 20_000  # water particles
+STEPS = 50
+FALLEN = 200  # steps before timing: water in motion, list rebuilt at its usual rate
+
+
+@BENCHMARKS.row("water")
+def bench_water(size: int | None, threads: int, dtype: Dtype) -> Work:
+    """Particle-steps of collapsing water, wall particles computed but not counted; InputError for float32."""
+    if dtype != "float64":
+        raise InputError(Fault("--dtype", dtype, "smoothed particles have", allowed="float64"))
+    count = size or SIZE
+    across = max(8, round((count / 2) ** 0.5))
+    flow = flow_of(column_scene(1.0 / across, tank=(4.0, 3.0), column=(1.0, 2.0), pressure="released"))
+
+    def steps() -> None:
+        for _ in range(STEPS):
+            flow.advance()
+
+    for _ in range(FALLEN // STEPS):
+        steps()
+    fluid = flow.layer.fluid
+    return Work(steps, float(fluid * STEPS), "particles/s", fluid)

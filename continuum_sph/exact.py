@@ -1,0 +1,62 @@
+"""Exact solutions that validations hold the particles to.  SI; arrays in, arrays out."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+def released_pressure(
+    x: Floats, y: Floats, width: float, height: float, density: float, gravity: float, terms: int = 400
+) -> Floats:
+    """Pressure (Pa) in a column of incompressible water the instant its right face is set free.
+
+    ∇²p = 0 with p = 0 on the top y = H and the face x = a, ∂p/∂x = 0 on the wall x = 0, ∂p/∂y = -ρg on the floor.
+    With p = ρg{(H - y) - φ}: φ = Σ 2/(H k²) cos(k y) cosh(k x)/cosh(k a), k = (n + 1/2)π/H.
+    """
+    head = height - y
+    for n in range(terms):
+        k = (n + 0.5) * np.pi / height
+        # cosh(kx)/cosh(ka) without overflow
+        ratio = np.exp(k * (x - width)) * (1.0 + np.exp(-2.0 * k * x)) / (1.0 + np.exp(-2.0 * k * width))
+        head = head - 2.0 / (height * k * k) * np.cos(k * y) * ratio
+    return density * gravity * np.maximum(head, 0.0)
+
+
+def couette(y: Floats, time: float, gap: float, speed: float, viscosity: float) -> Floats:
+    """Velocity (m/s) between a wall at rest (y = 0) and one that starts at ``speed`` (y = gap); ν in m²/s.
+
+    Morris, Fox & Zhu 1997, eq. 35.
+    """
+    u = speed * y / gap
+    for n in range(1, 200):
+        decay = np.exp(-viscosity * (n * np.pi / gap) ** 2 * time)
+        u = u + 2.0 * speed / (n * np.pi) * (-1) ** n * np.sin(n * np.pi * y / gap) * decay
+    return u
+
+
+def poiseuille(y: Floats, time: float, gap: float, force: float, viscosity: float) -> Floats:
+    """Velocity (m/s) between walls at rest a time after a body ``force`` (m/s²) sets in; ν in m²/s.
+
+    Morris, Fox & Zhu 1997, eq. 36.
+    """
+    u = force / (2.0 * viscosity) * y * (gap - y)
+    for n in range(200):
+        k = (2 * n + 1) * np.pi / gap
+        u = u - 4.0 * force / (viscosity * gap * k**3) * np.sin(k * y) * np.exp(-viscosity * k * k * time)
+    return u
+
+
+def leapfrog_growth(phase: float, extrapolated: bool) -> float:
+    """Largest amplification of sound per step at ω Δt = ``phase`` in the scheme of `step`.
+
+    Unknowns v½, ρ, D, D_before: ρ* = ρ + Δt(2D - D_before) (or ρ + Δt D), D' = ω v½, ρ' = ρ + Δt D', v' = v½ - ω Δt ρ*.
+    """
+    v, rho, last, before = np.eye(4)
+    predicted = rho + 2.0 * last - before if extrapolated else rho + last
+    rate = phase * v
+    matrix = np.array([v - phase * (predicted), rho + rate, rate, last])
+    # v here is v½ at the step's middle: its kick uses ρ* at the step's end
+    return float(np.abs(np.linalg.eigvals(matrix)).max())

@@ -1,0 +1,63 @@
+"""State of a layer of smoothed particles: arrays, fluid particles first, wall particles after them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+X, Y, VX, VY, RHO, PUSH, VOLUME, STIFF = range(8)
+"""Columns of a record: m, m, m/s, m/s, kg/m³, p/ρ² (m⁵/(kg s²)), m/ρ (m²), ρ/c² (kg s²/m⁵)."""
+
+
+@dataclass
+class Layer:
+    """Particles of one liquid and of the walls that hold it.
+
+    fluid : number of fluid particles, the first rows of every array;
+    x (n, 2) m;  v (n, 2) m/s, of walls the wall's own;  mass (n,) kg per metre of depth;
+    density (fluid,) kg/m³;  the rest is made of these: pressure (n,) Pa and what the pass over pairs reads.
+    """
+
+    fluid: int
+    x: Floats
+    v: Floats
+    mass: Floats
+    density: Floats
+    acceleration: Floats = field(init=False)  # (fluid, 2) m/s²
+    rate: Floats = field(init=False)  # (fluid,) kg/(m³ s), over the last step
+    rate_before: Floats = field(init=False)  # (fluid,) over the one before
+    predicted: Floats = field(init=False)  # (fluid,) kg/m³, density at the end of the step
+    pressure: Floats = field(init=False)  # (n,) Pa
+    record: Floats = field(init=False)  # (n, 8) all that a pair reads of a partner, in one cache line
+    smoothed: Floats = field(init=False)  # (fluid, 2) m/s, what XSPH adds to the velocity of moving
+    ghost: Floats = field(init=False)  # (n, 2) m/s, velocity that makes fluid at a wall stick (rows of walls)
+
+    def __post_init__(self) -> None:
+        n = len(self.x)
+        assert self.x.shape == self.v.shape == (n, 2)
+        assert self.mass.shape == (n,)
+        assert self.density.shape == (self.fluid,)
+        self.acceleration, self.smoothed = np.zeros((self.fluid, 2)), np.zeros((self.fluid, 2))
+        self.rate, self.rate_before = np.zeros(self.fluid), np.zeros(self.fluid)
+        self.predicted, self.pressure = np.zeros(self.fluid), np.zeros(n)
+        self.record, self.ghost = np.zeros((n, 8)), np.zeros((n, 2))
+
+    @property
+    def count(self) -> int:
+        """All particles."""
+        return len(self.x)
+
+    KEPT = ("x", "v", "mass", "density", "acceleration", "rate", "rate_before", "smoothed", "pressure")
+
+    def state(self) -> dict[str, Floats]:
+        """Copies of the arrays that later steps depend on."""
+        return {name: getattr(self, name).copy() for name in self.KEPT}
+
+    def restore(self, state: dict[str, Floats]) -> None:
+        """Take over what `state` of an equal layer gave."""
+        for name in self.KEPT:
+            getattr(self, name)[:] = state[name]

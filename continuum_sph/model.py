@@ -1,0 +1,144 @@
+"""A tank of water as `porescale.runs` drives it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from continuum_sph.build import flow_of
+from continuum_sph.rates import split_rows
+from continuum_sph.scene import Scene
+from continuum_sph.step import RULES, Flow
+from porescale.ground.check import Unstable
+from porescale.runs.model import Cloud, Snapshot
+
+DENSEST = 1.3  # of ρ0: Tait pressures of half B and more; sound at Mach 0.1 needs 1.01, the hardest impacts 1.15
+
+
+class Simulation:
+    """Model of a scene; see `porescale.runs.model.Model`."""
+
+    variable_step = True
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.flow: Flow = flow_of(scene)
+
+    @property
+    def step(self) -> int:
+        """Steps done."""
+        return self.flow.step
+
+    @property
+    def time(self) -> float:
+        """Time reached, s."""
+        return self.flow.time
+
+    @property
+    def step_seconds(self) -> float:
+        """Length of the next step, s."""
+        return self.flow.next_step
+
+    def advance(self, steps: int) -> None:
+        """Do ``steps`` steps; Unstable when a position is no number any more."""
+        for _ in range(steps):
+            try:
+                self.flow.advance()
+            except ValueError as error:
+                raise Unstable(
+                    str(error), "position", float("nan"), "m", self.step, self.time,
+                    "lower numerics.courant, or raise numerics.artificial_viscosity or water.sound_speed",
+                ) from error  # fmt: skip
+
+    def inside(self) -> NDArray[np.bool_]:
+        """Which water particles are in the tank, (fluid,)."""
+        tank, x = self.scene.tank, self.flow.layer.x[: self.flow.layer.fluid]
+        low = (x >= 0.0).all(axis=1)
+        inside: NDArray[np.bool_] = low & (x[:, 0] <= tank.width) & (x[:, 1] <= tank.height)
+        return inside
+
+    def check(self) -> None:
+        """Raise Unstable when water in the tank is faster than sound or too dense to mean anything."""
+        layer, tait = self.flow.layer, self.flow.law.tait
+        inside = np.flatnonzero(self.inside())
+        speed = np.hypot(layer.v[inside, 0], layer.v[inside, 1])
+        ratio = layer.density[inside] / tait.density
+        for values, limit, name, unit, scale in (
+            (speed, tait.sound_speed, "speed", "m/s", 1.0),
+            (ratio, DENSEST, "density", "kg/m³", tait.density),
+        ):
+            bad = np.flatnonzero(~(values <= limit))
+            if bad.size:
+                at = inside[bad[0]]
+                raise Unstable(
+                    f"particle {at} at ({layer.x[at, 0]:.4g}, {layer.x[at, 1]:.4g}) m", name,
+                    float(values[bad[0]]) * scale, unit, self.step, self.time,
+                    "raise water.sound_speed or numerics.artificial_viscosity, or lower numerics.courant",
+                )  # fmt: skip
+
+    def series(self) -> dict[str, float]:
+        """One row: where the water is, its energies, and how the step was chosen."""
+        layer, scene, tait = self.flow.layer, self.scene, self.flow.law.tait
+        n, half = layer.fluid, 0.5 * scene.numerics.spacing
+        x, v, mass = layer.x[:n], layer.v[:n], layer.mass[:n]
+        inside = self.inside()
+        at = x[inside] if inside.any() else np.zeros((1, 2))
+        speed2 = (v * v).sum(axis=1)
+        return {
+            "time (s)": self.time,
+            "step (s)": self.flow.next_step,
+            "front (m)": float(at[:, 0].max()) + half,
+            "highest water (m)": float(at[:, 1].max()) + half,
+            "mean height (m)": float((mass * x[:, 1]).sum() / mass.sum()),
+            "kinetic energy (J/m)": float(0.5 * (mass * speed2).sum()),
+            "potential energy (J/m)": float(scene.gravity * (mass * x[:, 1]).sum()),
+            "momentum x (kg/s)": float((mass * v[:, 0]).sum()),
+            "fastest (m/s)": float(np.sqrt(speed2[inside].max())) if inside.any() else 0.0,
+            "densest (kg/m3)": float(layer.density.max()) if n else tait.density,
+            "mass (kg/m)": float(mass.sum()),
+            "particles outside": float(n - int(inside.sum())),
+            "stops at walls": float(self.flow.stopped),
+            **{f"steps limited by {rule}": float(k) for rule, k in zip(RULES, self.flow.limited, strict=True)},
+        }
+
+    def snapshot(self) -> Snapshot:
+        """The water as a cloud: velocity, pressure, density."""
+        layer = self.flow.layer
+        n = layer.fluid
+        velocity = np.zeros((n, 3))
+        velocity[:, :2] = layer.v[:n]
+        cloud = Cloud(
+            layer.x[:n].copy(),
+            {"velocity": velocity, "pressure": layer.pressure[:n].copy(), "density": layer.density.copy()},
+            {"velocity": "m/s", "pressure": "Pa", "density": "kg/m3"},
+        )
+        return Snapshot(self.time, self.step, clouds={"particles": cloud})
+
+    def state(self) -> dict[str, Any]:
+        """Everything that later steps depend on."""
+        flow = self.flow
+        return {
+            "layer": flow.layer.state(),
+            "pairs": flow.pairs.state(),
+            "step": flow.step,
+            "time": flow.time,
+            "next_step": flow.next_step,
+            "last_steps": list(flow.last_steps),
+            "limited": list(flow.limited),
+            "rule": flow.rule,
+            "stopped": flow.stopped,
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go on bit for bit from a state of a model of the same scene."""
+        flow = self.flow
+        flow.layer.restore(state["layer"])
+        flow.pairs.restore(state["pairs"])
+        split_rows(flow.layer.fluid, flow.pairs.start, flow.pairs.partner, flow.split)
+        flow.step, flow.time, flow.next_step = state["step"], state["time"], state["next_step"]
+        first, second = state["last_steps"]
+        flow.last_steps = (first, second)
+        flow.limited, flow.rule = list(state["limited"]), state["rule"]
+        flow.stopped = state["stopped"]

@@ -1,0 +1,88 @@
+"""What `check` says about a scene before it runs."""
+
+from __future__ import annotations
+
+import math
+
+from continuum_sph.build import law_of, wall_layers
+from continuum_sph.scene import Scene
+from continuum_sph.smoothing import SUPPORT
+from continuum_sph.step import RULES
+from porescale.ground.check import Fault, InputError
+from porescale.workbench.report import Report
+
+MACH_WARNED, MACH_REFUSED = 0.1, 0.3
+RATE = 3e6  # particle-steps per second and thread: measured on the two-core machine of the benchmarks, rounded down
+BYTES = 600  # per particle: state, record, and about 27 partners in two lists
+
+
+def report(scene: Scene) -> Report:
+    """Resolution, sound, steps and cost; warns above Mach 0.1 and refuses above 0.3 (InputError)."""
+    law, spacing = law_of(scene), scene.numerics.spacing
+    tait, h = law.tait, law.smoothing.length
+    out = Report(scene.title or "water in a tank")
+    water = sum(round(c.width / spacing) * round(c.height / spacing) for c in scene.water.column)
+    layers = wall_layers(law, spacing)
+    tank = scene.tank
+    sides = 2 if tank.lid else 1
+    walls = round(2 * layers * tank.height / spacing + sides * layers * (tank.width / spacing + 2 * layers))
+    out.heading("resolution")
+    out.row("water particles", water)
+    out.row("wall particles", walls, "", f"{layers} layers")
+    least = min(min(c.width, c.height) for c in scene.water.column)
+    out.row("particles across the narrowest water", least / spacing)
+    out.row("smoothing length", h, "m", law.smoothing.name)
+    out.row("partners of a particle", math.pi * (SUPPORT * h / spacing) ** 2, "", "inside the water")
+    out.heading("sound")
+    fall = scene.fall_speed
+    mach = fall / tait.sound_speed
+    out.row("sound speed", tait.sound_speed, "m/s")
+    out.row("stiffness B", tait.stiffness, "Pa")
+    out.row("speed of free fall from the highest water", fall, "m/s")
+    out.row("Mach number", mach, "", "at most 0.1 keeps density changes below 1 %")
+    deepest = float(tait.settled_density(scene.head, scene.gravity)) / tait.density - 1.0  # type: ignore[arg-type]
+    out.row("compression at the floor", 100.0 * deepest, "%")
+    if law.viscosity > 0.0:
+        out.row("Reynolds number", fall * scene.head * tait.density / law.viscosity)
+    out.heading("steps")
+    limits = law.limits(2.0 * scene.gravity, tait.density * (1.0 + deepest))
+    for rule, limit in zip(RULES, limits, strict=True):
+        out.row(f"longest step for {rule}", limit, "s")
+    step = min(limits)
+    out.row("limited by", RULES[limits.index(step)])
+    steps = scene.time.end / step
+    out.row("steps", round(steps))
+    out.row("memory", BYTES * (water + walls) / 2**20, "MiB")
+    out.row("expected time", steps * (water + walls) / RATE, "s", f"at {RATE:.2g} particle-steps/s, one thread")
+    _judge(scene, mach, out)
+    return out
+
+
+def _judge(scene: Scene, mach: float, out: Report) -> None:
+    """Warnings, and the refusal of water too soft to be water."""
+    if mach > MACH_REFUSED:
+        raise InputError(
+            Fault(
+                "water.sound_speed", scene.sound_speed, f"makes the fall of the water Mach {mach:.2g}", "m/s",
+                f">= {scene.fall_speed / MACH_WARNED:.4g}", "raise it or leave it out",
+            )  # fmt: skip
+        )
+    if mach > MACH_WARNED * (1 + 1e-9):
+        out.warn(
+            f"Mach number {mach:.2g}: the water compresses by more than 1 %; "
+            f"raise water.sound_speed to {scene.fall_speed / MACH_WARNED:.4g} m/s or leave it out"
+        )
+    for index, column in enumerate(scene.water.column):
+        for name in ("left", "bottom", "width", "height"):
+            share = getattr(column, name) / scene.numerics.spacing
+            if abs(share - round(share)) > 1e-6:
+                out.warn(
+                    f"water.column[{index}].{name} is {share:.4g} spacings: taken as whole ones; "
+                    "choose a spacing that divides it"
+                )
+    for name in ("width", "height"):
+        share = getattr(scene.tank, name) / scene.numerics.spacing
+        if abs(share - round(share)) > 1e-6:
+            out.warn(f"tank.{name} is {share:.4g} spacings: the wall stands at {round(share)}")
+    if scene.numerics.kernel == "cubic" and scene.numerics.smoothing_ratio < 1.2:
+        out.warn("cubic spline with few partners: pressures are noisy and particles pair up; wendland at 1.3 does not")

@@ -1,0 +1,67 @@
+"""Smoothing kernels W(r, h) in two dimensions, support 2h, and their slopes, without branches.
+
+Cubic spline: eq. 8 of Maeda & Sakai 2004.  Wendland C2: Wendland, Adv. Comput. Math. 4 (1995) 389, in the form of
+Dehnen & Aly, MNRAS 425 (2012) 1068: no pairing instability at any number of neighbours.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from porescale.ground.jit import inline
+
+CUBIC, WENDLAND = 0, 1
+NAMES = ("cubic", "wendland")
+SUPPORT = 2.0  # smoothing lengths
+
+
+@inline
+def kernel_value(kind, q, h):
+    """W, 1/m², at q = r/h;  h smoothing length, m;  kind CUBIC or WENDLAND.
+
+    CUBIC: 15/(7 π h²) {(2-q)³/6 - 4(1-q)³/6}, brackets 0 where negative: eq. 8 in one line.
+    WENDLAND: 7/(4 π h²) (1 - q/2)⁴ (1 + 2q).
+    """
+    if kind == CUBIC:
+        outer = max(0.0, 2.0 - q)
+        inner = max(0.0, 1.0 - q)
+        return 5.0 / (14.0 * np.pi * h * h) * (outer * outer * outer - 4.0 * inner * inner * inner)
+    rest = max(0.0, 1.0 - 0.5 * q)
+    square = rest * rest
+    return 1.75 / (np.pi * h * h) * square * square * (1.0 + 2.0 * q)
+
+
+@inline
+def kernel_slope(kind, q, h):
+    """(1/r) dW/dr, 1/m⁴, at q = r/h: the gradient at i is this times (x_i - x_j).  Never positive.
+
+    CUBIC: 15/(7 π h⁴) {-(2-q)²/2 + 2(1-q)²}/q, brackets 0 where negative.
+    WENDLAND: -35/(4 π h⁴) (1 - q/2)³, without the division.
+    """
+    if kind == CUBIC:
+        q = max(q, 1e-9)  # centres that coincide: the limit -2 is reached to 1e-9
+        outer = max(0.0, 2.0 - q)
+        inner = max(0.0, 1.0 - q)
+        return 15.0 / (14.0 * np.pi * h * h * h * h) * (4.0 * inner * inner - outer * outer) / q
+    rest = max(0.0, 1.0 - 0.5 * q)
+    return -8.75 / (np.pi * h * h * h * h) * rest * rest * rest
+
+
+@dataclass(frozen=True)
+class Smoothing:
+    """name : "cubic" or "wendland";  length : h, m."""
+
+    name: str
+    length: float
+
+    @property
+    def kind(self) -> int:
+        """The number by which kernels know it."""
+        return NAMES.index(self.name)
+
+    @property
+    def support(self) -> float:
+        """Distance beyond which W vanishes, m."""
+        return SUPPORT * self.length
