@@ -32,7 +32,11 @@ def collide_saturated_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, first, 
     one, half, fx, fy = p[12], p[13], p[2], p[3]
     even, odd, two = p[0], p[1], p[12] + p[12]
     zero = one - one
-    for x in range(first, last):
+    # Cut to the range first: an index that might be negative keeps the loop from being vectorised.
+    a0, a1, a2, a3, a4 = a0[first:last], a1[first:last], a2[first:last], a3[first:last], a4[first:last]
+    a5, a6, a7, a8 = a5[first:last], a6[first:last], a7[first:last], a8[first:last]
+    s, sx, sy = s[first:last], sx[first:last], sy[first:last]
+    for x in range(s.shape[0]):
         f0, f1, f2, f3, f4 = a0[x], a1[x], a2[x], a3[x], a4[x]
         f5, f6, f7, f8 = a5[x], a6[x], a7[x], a8[x]
         e = s[x]

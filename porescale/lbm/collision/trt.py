@@ -116,7 +116,10 @@ def collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, first, last, p):
     p: ``parameters``.  Not checked: that density stays positive.
     """
     one, half, fx, fy = p[12], p[13], p[2], p[3]
-    for x in range(first, last):
+    # Cut to the range first: an index that might be negative keeps the loop from being vectorised.
+    a0, a1, a2, a3, a4 = a0[first:last], a1[first:last], a2[first:last], a3[first:last], a4[first:last]
+    a5, a6, a7, a8 = a5[first:last], a6[first:last], a7[first:last], a8[first:last]
+    for x in range(a0.shape[0]):
         f0, f1, f2, f3, f4 = a0[x], a1[x], a2[x], a3[x], a4[x]
         f5, f6, f7, f8 = a5[x], a6[x], a7[x], a8[x]
         d, jx, jy = moments(f0, f1, f2, f3, f4, f5, f6, f7, f8)
