@@ -94,7 +94,9 @@ def _grains(scene: Scene, derived: Derived) -> Grains:
         parts.append(_by_hand(scene))
     discs = Discs(*(np.concatenate([getattr(p, f) for p in parts]) for f in Discs.__dataclass_fields__))
     refuse_overlaps(discs, scene.domain, discs.count - len(scene.grains.grain))
-    return Grains(discs, law, box, wall_law=wall_law, plates=plates)
+    grains = Grains(discs, law, box, wall_law=wall_law, plates=plates)
+    grains.refresh()  # contacts count from the first row of the series on
+    return grains
 
 
 def prepared(scene: Scene, packing: Packing, box: Box, derived: Derived, plates: list[Plate]) -> Grains:

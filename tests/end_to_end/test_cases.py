@@ -28,7 +28,8 @@ def measured(columns: Columns, row: Mapping[str, Any]) -> float:
 
     at : "end", "max", "min", a time in s (interpolated), or a table with first_below or last_above and a value: the
     time in s at which the column falls to it for the first time, or is above it for the last; as a share of where it
-    goes with share_of = "fall" (1 at the start, 0 at the end) or "peak" (of its largest value).
+    goes with share_of = "fall" (1 at the start, 0 at the end) or "peak" (of its largest value).  Nan beyond the end of
+    the run, infinity where it never falls so low.
     """
     time, values, at = columns["time (s)"], columns[row["column"]], row["at"]
     if at == "end":
@@ -36,7 +37,7 @@ def measured(columns: Columns, row: Mapping[str, Any]) -> float:
     if at in ("max", "min"):
         return float(getattr(np, at)(values))
     if not isinstance(at, Mapping):
-        return float(np.interp(at, time, values))
+        return float(np.interp(at, time, values, right=np.nan))
     share = at.get("share_of")
     if share == "fall":
         values = (values - values[-1]) / (values[0] - values[-1])
@@ -45,9 +46,7 @@ def measured(columns: Columns, row: Mapping[str, Any]) -> float:
     else:
         assert share is None
     if "first_below" in at:
-        after = int(np.argmax(values <= at["first_below"]))
-        assert values[after] <= at["first_below"], f"{row['name']}: never so low"
-        return float(time[after])
+        return float(min(time[values <= at["first_below"]], default=np.inf))
     return float(time[np.flatnonzero(values > at["last_above"])[-1]])
 
 
@@ -87,11 +86,12 @@ def test_every_expectation_is_complete_and_reasoned(case):
         assert row["column"].endswith(f"({row['unit']})") or isinstance(row["at"], Mapping)
 
 
-def test_every_case_says_what_it_is():
-    for folder in (path.parent for path in CASES.glob("*/scene.toml")):
-        text = (folder / "README.md").read_text(encoding="utf-8")
-        assert text.startswith("# ")
-        assert f"porescale check cases/{folder.name}" in text or f"porescale run cases/{folder.name}" in text
+@pytest.mark.parametrize("case", ["column_collapse", "column_collapse_table1", "settling_disc"])
+def test_every_case_says_what_it_is_and_how_to_run_it(case):
+    text = (CASES / case / "README.md").read_text(encoding="utf-8")
+    assert text.startswith("# ")
+    assert "## Source" in text
+    assert f"porescale check cases/{case}" in text or f"porescale run cases/{case}" in text
 
 
 def test_numbers_are_read_from_the_series_as_stated():
@@ -105,21 +105,33 @@ def test_numbers_are_read_from_the_series_as_stated():
     assert at({"last_above": 4.0}) == 1.0
     assert at({"first_below": 0.5, "share_of": "fall"}) == 1.0  # (6 - 4)/(8 - 4)
     assert at({"last_above": 0.45, "share_of": "peak"}) == 3.0  # 4/8
-    with pytest.raises(AssertionError):
-        at({"first_below": 1.0})
+    assert at({"first_below": 1.0}) == np.inf
+    assert np.isnan(at(3.5))
     row = {"name": "y", "column": "y (m)", "at": "end", "value": 4.1, "tolerance": 0.05, "unit": "m"}
     assert missed(columns, [row]) == ["y: 4, expected 4.1 ± 0.05 m"]
     assert missed({**columns, "y (m)": columns["y (m)"] * np.nan}, [row])  # no number is not within tolerance
 
 
-def test_the_settling_disc_reaches_the_published_speed(porescale, tmp_path):
-    assert missed(run(porescale, "settling_disc", tmp_path / "out"), expected("settling_disc")) == []
+FEW = "output.snapshot_interval=0.45"
+"""Few frames: pictures take longer than the steps of a small case."""
+
+
+@pytest.mark.parametrize("quality", ["standard", "draft"])
+def test_the_settling_disc_reaches_the_published_speed(porescale, tmp_path, quality):
+    out = tmp_path / quality
+    words = ("--quality", quality, "--set", FEW, "--out", out, "--quiet", "--threads", 1)
+    assert porescale("run", CASES / "settling_disc", *words) == 0
+    assert missed(open_run(out).series, expected("settling_disc")) == []
 
 
 def test_a_disc_in_thicker_fluid_misses_it(porescale, tmp_path):
-    # The twin that must fail: a fifth more viscosity, and in a channel of viscous drag nearly a fifth less speed.
-    columns = run(porescale, "settling_disc", tmp_path / "out", "fluid.viscosity=1.2e-5", "time.end=0.55")
-    assert any(it.startswith("terminal speed: ") for it in missed(columns, expected("settling_disc")))
+    # The twin that must fail: a fifth more viscosity.  Were drag all inertial the speed would stay, were it all
+    # viscous it would fall by a fifth; at Re 14 it falls by a few per cent, and the tolerance is 2 %.
+    out = tmp_path / "thick"
+    words = ("--quality", "draft", "--set", FEW, "--set", "fluid.viscosity=1.2e-5", "--threads", 1)
+    assert porescale("run", CASES / "settling_disc", "--out", out, "--quiet", *words) == 0
+    names = [it.partition(":")[0] for it in missed(open_run(out).series, expected("settling_disc"))]
+    assert names == ["terminal speed", "largest speed"]
 
 
 @pytest.mark.slow
@@ -156,8 +168,8 @@ def eye(snapshot: Any) -> tuple[float, float, float]:
 
 @pytest.mark.slow
 def test_a_clockwise_vortex_stays_at_the_lower_left(collapse):
-    # The paper has it at the lower left, in experiment and simulation, once the column has collapsed.  From 0.5 s on the front is in the
-    # left half; two packings shift a vortex by centimetres, so no more is asked than the quarter of the box.
+    # The paper has it at the lower left, in experiment and simulation, once the column has collapsed.  From 0.5 s on
+    # the front is in the left half; two packings shift a vortex by centimetres, so a quarter of the box is asked for.
     seen = [eye(it) for it in collapse.snapshots() if it.time > 0.55]
     assert len(seen) > 30
     for x, y, strength in seen:

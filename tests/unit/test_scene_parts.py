@@ -19,6 +19,7 @@ import porescale.scene.build
 from porescale.scene.simulation import Simulation
 from tests.reference.scenes import column, dry, table, water
 
+pytestmark = pytest.mark.usefixtures("one_thread")
 build = porescale.scene.build.build
 STEPS = 60
 """Past the opening of the gate, a rebuild of the list and an odd and even step."""

@@ -1,0 +1,123 @@
+"""The package's face: its API, its commands' parts, and what they leave alone."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import porescale
+from porescale.app import bench, new, show, verify
+from porescale.app.main import PACKAGE
+from porescale.ground.check import InputError
+from porescale.runs.model import Model, Snapshot
+from porescale.scene.sections import Scene
+from porescale.workbench.sections import LEVELS, load, scene_as_dict
+from tests.reference.scenes import column, dry, table, write
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_the_api_does_what_the_package_says(tmp_path):
+    from porescale import Simulation, build, load, open_run
+
+    assert porescale.__doc__
+    assert "from porescale import build, load, open_run" in porescale.__doc__
+    file = write(tmp_path / "scene.toml", table(quality={"draft": {"time": {"end": 0.001}}}))
+    simulation = build(load(file, quality="draft"))
+    assert isinstance(simulation, Simulation)
+    assert isinstance(simulation, Model)
+    assert isinstance(simulation.scene, porescale.Scene)
+    simulation.advance(3)
+    assert simulation.step == 3
+    assert simulation.time == 3 * simulation.step_seconds
+    with pytest.raises(InputError, match="no run here"):
+        open_run(tmp_path)
+
+
+def test_every_name_of_the_api_is_there_and_no_other():
+    for name in porescale.__all__:
+        assert getattr(porescale, name) is not None
+    with pytest.raises(AttributeError, match="porescale has no 'sails'; it has Scene, Simulation"):
+        porescale.sails  # noqa: B018
+
+
+def test_the_package_and_its_help_wait_for_no_compiler():
+    watch = "import sys; {}; sys.exit('numba' in sys.modules)"
+    commands = (
+        "import porescale",
+        "from porescale.app.main import PACKAGE; from porescale.workbench.application import application, main; "
+        "main(application(PACKAGE), ['--help'])",
+    )
+    for command in commands:
+        words = [sys.executable, "-c", watch.format(command)]
+        assert subprocess.run(words, cwd=ROOT, check=False, capture_output=True).returncode == 0
+    compiled = [sys.executable, "-c", watch.format("import porescale.ground.jit")]  # the twin: it would be seen
+    assert subprocess.run(compiled, cwd=ROOT, check=False).returncode == 1
+
+
+def test_the_template_states_every_section_and_is_a_scene(tmp_path):
+    text = new.template()
+    (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
+    for level in (None, *LEVELS):
+        assert load(tmp_path, Scene, quality=level).grains.packing is not None
+    named = tomllib.loads(text)
+    assert set(scene_as_dict(column())) <= set(named)  # every section of a scene is shown
+    for section in ("domain", "time", "fluid", "gate"):
+        shown = set(named[section]) | set(named["quality"]["draft"].get(section, {}))
+        missing = set(scene_as_dict(column())[section]) - shown - {"relaxation_time"}
+        assert not missing, f"{section}: {missing}"
+
+
+def test_every_validation_and_benchmark_has_a_name_of_its_own():
+    names = [row.name for row in verify.validations()]
+    assert len(names) == len(set(names)) > 10
+    assert {name.partition(".")[0] for name in names} >= {"lbm", "dem"}
+    assert {"lbm", "psm", "dem", "column"} <= set(bench.benchmarks())
+
+
+def test_the_parts_of_the_package_are_those_of_its_modules():
+    assert PACKAGE.scene() is Scene
+    assert PACKAGE.template() == new.template()
+    assert PACKAGE.version == porescale.__version__
+
+
+def gate_at(time, step, **changes):
+    scene = scene_as_dict(column(**changes))
+    return show.gate_lines(scene)(Snapshot(time, step))
+
+
+def test_the_gate_is_drawn_where_it_stands():
+    # It opens at 2 ms and rises at 0.4 m/s through a box 8 mm high: at 7 ms it has risen by 2 mm, at 22 ms it is out.
+    assert gate_at(0.0, 0) == [((0.008, 0.0), (0.008, 0.008))]
+    ((low_x, low), high) = gate_at(0.007, 175)[0]
+    assert (low_x, high) == (0.008, (0.008, 0.008))
+    assert low == pytest.approx(0.002, rel=1e-12)
+    assert gate_at(0.0221, 552) == []
+    assert gate_at(0.003, 75, gate__lift_speed=None) == []
+    assert gate_at(0.001, 25, gate__lift_speed=None) != []
+    assert gate_at(0.0, 0, gate__lift_speed=None, gate__opens_at=0.0) != []  # the picture of the start shows it
+    assert gate_at(0.0, 0, gate=None) == []
+
+
+def test_a_dry_run_is_shown_without_a_fluid(tmp_path):
+    from porescale import build
+    from porescale.app.run import drive
+
+    scene = dry(time__end=0.002, output__snapshot_interval=0.001)
+    card = {"scene": scene_as_dict(scene), "name": "dry"}
+    outcome = drive(build(scene), tmp_path / "run", scene, card=card, resume=False, quiet=True)
+    assert outcome.outcome == "finished"
+    names = {path.name for path in (tmp_path / "run").iterdir()}
+    assert "grains.vtkhdf" in names
+    assert "fields.vtkhdf" not in names
+    assert "streamlines.png" not in names
+    run = porescale.open_run(tmp_path / "run")
+    fallen = run.snapshot(0).clouds["grains"].position - run.snapshot(-1).clouds["grains"].position
+    # Free fall from where they were placed, g t^2/2 at most: 2e-5 m; some rest on others.
+    assert 0 < np.max(fallen[:, 1]) < 1.01 * 0.5 * 9.81 * 0.002**2
