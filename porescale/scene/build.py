@@ -13,7 +13,7 @@ from porescale.dem.discs import Discs, make_discs
 from porescale.dem.settle import Pile, prepare
 from porescale.dem.system import Grains
 from porescale.dem.walls import Box, Plate
-from porescale.ground.check import Fault, InputError
+from porescale.ground.check import InputError
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.sides import Sides
 from porescale.particles.placement import place
@@ -103,11 +103,6 @@ def prepared(scene: Scene, packing: Packing, box: Box, derived: Derived, plates:
     """The packing settled dry, then at rest under the run's contact law and its weight in the fluid."""
     assert scene.grains
     assert derived.law
-    if scene.gravity[0] != 0 or scene.gravity[1] >= 0:
-        raise InputError(
-            Fault("gravity", str(scene.gravity), "a packing settles downwards", "m/s^2", "(0, g) with g < 0",
-                  "set grains.packing.settle = false")
-        )  # fmt: skip
     pile = Pile(
         corner=(packing.left, packing.bottom), width=packing.width, count=grain_count(scene) - len(scene.grains.grain),
         diameter=packing.diameter, density=scene.grains.density, spread=packing.size_spread,

@@ -23,6 +23,8 @@ def judge_places(scene: Scene, faults: list[Fault]) -> None:
         return
     if scene.grains.packing:
         _judge_packing(scene.grains.packing, scene.domain, scene.gate, faults)
+        if scene.grains.packing.settle:
+            _judge_settling(scene, faults)
     grains = scene.grains.grain
     if not grains:
         return
@@ -94,6 +96,18 @@ def _judge_packing(packing: Packing, domain: Domain, gate: Gate | None, faults: 
     if gate and packing.left * (1 + EDGE) < gate.x < right * (1 - EDGE):
         problem = f"stands in the packing, which reaches from {packing.left:g} to {right:g} m"
         faults.append(Fault("gate.x", gate.x, problem, "m", repair="move one of them"))
+
+
+def _judge_settling(scene: Scene, faults: list[Fault]) -> None:
+    assert scene.grains
+    (gx, gy), floor = scene.gravity, scene.fluid.density if scene.fluid else 0.0
+    left_in_place = "or set grains.packing.settle = false"
+    if gx != 0 or gy >= 0:
+        problem, repair = "a packing settles straight down", f"give [0, -9.81], {left_in_place}"
+        faults.append(Fault("gravity", f"[{gx:g}, {gy:g}]", problem, "m/s^2", "[0, below 0]", repair))
+    if scene.grains.density <= floor:
+        problem, repair = "the grains do not sink, so they do not settle", f"make them heavier, {left_in_place}"
+        faults.append(Fault("grains.density", scene.grains.density, problem, "kg/m^3", f"> {floor:g}", repair))
 
 
 def _judge_overlap(

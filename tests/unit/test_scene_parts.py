@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Iterator
 from typing import Any, NoReturn
@@ -17,7 +18,7 @@ import porescale.lbm.plate
 import porescale.particles.pairs
 import porescale.scene.build
 from porescale.scene.simulation import Simulation
-from tests.reference.scenes import column, dry, table, water
+from tests.reference.scenes import column, dry, grain, table, water
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 build = porescale.scene.build.build
@@ -177,3 +178,20 @@ def test_a_gate_holds_water_and_grains_until_it_opens():
     free = build(column(gate=None, grains__packing__settle=False))  # the twin: without the gate the water moves
     free.advance(100)
     assert free.series()["kinetic energy of fluid (J/m)"] > 100 * row["kinetic energy of fluid (J/m)"]
+
+
+def test_a_grain_leaves_through_a_periodic_side_and_is_recorded_inside():
+    sides = {"domain__left": "periodic", "domain__right": "periodic", "gate": None, "gravity": [0.0, 0.0]}
+    grains = {"density": 2500, "hydraulic_radius_ratio": 1.0, "grain": [grain(0.0118, 0.004, velocity=[0.5, 0.0])]}
+    simulation = build(column(**sides, grains=grains))
+    simulation.advance(60)
+    assert simulation.grains
+    own = simulation.grains.discs.position[0, 0]
+    assert own > 0.012  # the model's own position runs on, and with it the run-out
+    snapshot = simulation.snapshot()
+    assert snapshot.clouds["grains"].position[0, 0] == own % 0.012
+    solid = snapshot.grids["fields"].cells["solid_fraction"]
+    # The disc lies across the side and is all there: area to single precision.
+    assert solid[:, 0].max() > 0.5
+    assert solid[:, -1].max() > 0.5
+    assert solid.sum() * 0.0002**2 == pytest.approx(math.pi / 4 * 0.001**2, rel=1e-5)

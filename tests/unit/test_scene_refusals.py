@@ -311,12 +311,14 @@ def test_a_grain_across_the_gate_is_named():
     ]
 
 
-def test_a_packing_settles_downwards_only():
-    with pytest.raises(InputError) as caught:
-        build(dry(grains__packing__settle=True, gravity=[9.81, 0.0]))
-    assert caught.value.faults[0].line().startswith("gravity = '(9.81, 0.0)' m/s^2: a packing settles downwards") or (
-        "a packing settles downwards" in caught.value.faults[0].line()
-    )
+def test_a_packing_settles_straight_down_and_only_if_it_sinks():
+    (line,) = lines(gravity=[9.81, 0.0])
+    assert line.startswith("gravity = '[9.81, 0]': a packing settles straight down (allowed: [0, below 0] m/s^2)")
+    assert line.endswith("or set grains.packing.settle = false")
+    (line,) = lines(grains__density=1000.0)
+    assert line.startswith("grains.density = 1000.0 kg/m^3: the grains do not sink")
+    assert "(allowed: > 1000 kg/m^3)" in line
+    derive(column(grains__density=1000.0, gravity=[0.0, 0.0], grains__packing__settle=False))
 
 
 def test_a_lattice_beyond_the_memory_is_refused_with_a_spacing_that_fits(monkeypatch):
