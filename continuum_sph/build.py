@@ -55,9 +55,7 @@ def fluid_of(scene: Scene, law: Law) -> tuple[Floats, Floats, Floats]:
         if water.pressure == "hydrostatic":
             rho = tait.settled_density(depth, scene.gravity)
         elif water.pressure == "released":
-            p = released_pressure(
-                x[:, 0], x[:, 1], column.width, column.height, water.density, scene.gravity
-            )
+            p = released_pressure(x[:, 0], x[:, 1], column.width, column.height, water.density, scene.gravity)
             rho = tait.density * (1.0 + p / tait.stiffness) ** (1.0 / tait.exponent)
         else:
             rho = np.full(len(x), tait.density)

@@ -14,7 +14,8 @@ from continuum_sph.step import RULES, Flow
 from porescale.ground.check import Unstable
 from porescale.runs.model import Cloud, Snapshot
 
-DENSEST = 1.3  # of ρ0: Tait pressures of half B and more; sound at Mach 0.1 needs 1.01, the hardest impacts 1.15
+DENSEST = 1.3  # of ρ0: Tait pressures of half B and more; sound at Mach 0.1 needs 1.01, the hardest
+impacts 1.15
 
 
 class Simulation:

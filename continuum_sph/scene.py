@@ -10,7 +10,8 @@ from porescale.ground.check import Fault
 from porescale.ground.constants import GRAVITY
 from porescale.workbench.sections import Refused, Section, quantity
 
-CALM_MACH = 10.0  # sound speed over the speed of free fall from the highest water: Mach number 0.1 (spec §1.7)
+CALM_MACH = 10.0  # sound speed over the speed of free fall from the highest water: Mach number 0.1 (spec
+§1.7)
 
 
 class Tank(Section):
@@ -38,8 +39,8 @@ class Water(Section):
     """A weakly compressible liquid.
 
     pressure : at the start, "hydrostatic", that of a column whose right face is free ("released"), or "none"
-    (density ρ0 everywhere, as in the paper);  push : "face" gives the particles of the right face √(2g(H-y)) to
-    the right, as in figs 6 and 7 of the paper.
+    (density ρ0 everywhere, as in the paper);  push : "face" gives the particles of the right face
+    √(2g(H-y)) to the right, as in figs 6 and 7 of the paper.
     """
 
     density: float = quantity("kg/m^3", 1000.0, gt=0, help="density under the pressure of the air")
@@ -52,7 +53,9 @@ class Water(Section):
 
 
 class Numerics(Section):
-    """Particles and what corrects them.  The paper: kernel cubic, smoothing_ratio 1, no density diffusion, xsph."""
+    """Particles and what corrects them.  The paper: kernel cubic, smoothing_ratio 1, no density diffusion,
+    xsph.
+    """
 
     spacing: float = quantity("m", gt=0, help="spacing of the particles at the start")
     kernel: Literal["wendland", "cubic"] = "wendland"
@@ -62,7 +65,7 @@ class Numerics(Section):
     softening: float = quantity("", 0.1, gt=0, help="epsilon of eq. 36")
     density_diffusion: float = quantity("", 0.1, ge=0, le=0.2, help="delta of the density diffusion")
     xsph: float = quantity("", 0.0, ge=0, le=1, help="epsilon of eq. 53")
-    tension: Literal["cut", "kept"] = "cut"
+    tension: Literal["cut", "kept"] = "kept"
     courant: float = quantity("", 0.25, gt=0, le=0.5, help="share of the acoustic step of eq. 49")
     skin: float = quantity("", 0.25, gt=0, le=2, help="skin of the pair list over smoothing length")
 
@@ -140,7 +143,8 @@ class Scene(Section):
                       repair='use "hydrostatic", or one column with left = bottom = 0')
             )  # fmt: skip
         if self.gravity == 0.0 and self.water.sound_speed is None:
-            faults.append(Fault("water.sound_speed", None, "is needed when there is no gravity to take it from"))
+            faults.append(Fault("water.sound_speed", None, "is needed when there is no gravity to take it
+            from"))
         if faults:
             raise Refused(*faults)
         return self

@@ -4,12 +4,12 @@ v and x go by kick-drift-kick.  Density leaps over the velocity at mid-step:
 
     v½ = v + Δt/2 a,   x' = x + Δt v½,   ρ' = ρ + Δt D(x', v½),   v' = v½ + Δt/2 a(x', ρ*)
 
-Eq. 48 of Maeda & Sakai 2004 advances ρ with the divergence of the last step, forward Euler for sound, which grows
-at any step.  The exact leapfrog needs ρ' for a and so a second pass over the pairs.  One pass does when a takes
-ρ* = ρ + Δt (D + Δt-weighted (D - D_before)) instead: D extrapolated in a straight line from the last two steps.  For
-sound of frequency ω the amplification per step is then a root of z²(z - 1)² + (ωΔt)²(3z² - 3z + 1) = 0, inside the
-unit circle for ωΔt < 0.7, with damping 1 - (ωΔt)⁴/2; with D alone (no extrapolation) it is outside for every Δt.
-Only a sees ρ*; ρ itself is never extrapolated.
+Eq. 48 of Maeda & Sakai 2004 advances ρ with the divergence of the last step, forward Euler for sound,
+which grows at any step.  The exact leapfrog needs ρ' for a and so a second pass over the pairs.  One pass
+does when a takes ρ* = ρ + Δt (D + Δt-weighted (D - D_before)) instead: D extrapolated in a straight line
+from the last two steps.  For sound of frequency ω the amplification per step is then a root of z²(z - 1)²
++ (ωΔt)²(3z² - 3z + 1) = 0, inside the unit circle for ωΔt < 0.7, with damping 1 - (ωΔt)⁴/2; with D alone
+(no extrapolation) it is outside for every Δt. Only a sees ρ*; ρ itself is never extrapolated.
 """
 
 from __future__ import annotations
@@ -29,8 +29,7 @@ from porescale.particles import PairList
 
 Floats = NDArray[np.float64]
 
-THINNEST = 0.5  # of ρ0, where tension is cut
-DROP = 4  # partners; below a flat surface a particle has 10 to 14, inside 20 to 28
+THINNEST = 0.8  # of ρ0: least density, far below any that water at Mach 0.1 has
 RULES = ("sound", "acceleration", "viscosity")
 
 
@@ -40,9 +39,10 @@ def kick_drift(
 ):  # fmt: skip
     """First half kick, drift and prediction of density for fluid particles; overwrites x, v, predicted.
 
-    v += half a;  x += step (v + smoothed);  predicted = ρ + step {D + ratio (D - D_before)};  half, step in s.
-    lower, upper (2,) m: surfaces of the walls.  The pressure of wall particles keeps water out of walls, but spray
-    carries none: a particle that reaches a surface is put on it and loses its speed into it.  Returns how often.
+    v += half a;  x += step (v + smoothed);  predicted = ρ + step {D + ratio (D - D_before)};  half, step
+    in s. lower, upper (2,) m: surfaces of the walls.  The pressure of wall particles keeps water out of
+    walls, but spray carries none: a particle that reaches a surface is put on it and loses its speed into
+    it.  Returns how often.
     """
     stopped = 0
     for i in prange(density.shape[0]):
@@ -64,7 +64,8 @@ def kick_drift(
 
 @parallel_kernel
 def pressurise(x, v, mass, density, density0, sound_speed, stiffness, exponent, cut, pressure, record):
-    """Pressure (Pa) of fluid particles from ``density`` (fluid,); overwrites their ``pressure`` and ``record``.
+    """Pressure (Pa) of fluid particles from ``density`` (fluid,); overwrites their ``pressure`` and
+    ``record``.
 
     cut: pressures below that of the air count as none (particles of a free surface do not pull).
     """
@@ -85,13 +86,13 @@ def pressurise(x, v, mass, density, density0, sound_speed, stiffness, exponent, 
 
 
 @parallel_kernel
-def kick(start, v, acceleration, density, rate, half, step, least, few, density0):
+def kick(v, acceleration, density, rate, half, step, least):
     """Second half kick and density of fluid particles; overwrites ``v``, ``density``.
 
-    Continuity follows a particle that leaves its neighbours down to the density of a cloud, below zero if they were
-    crowded.  Densities therefore stop at ``least`` (kg/m³), and a particle with fewer than ``few`` partners in the
-    list (row lengths from ``start``) is a drop of density ``density0``.
-    Returns the largest |a|² (m²/s⁴) and density (kg/m³), which limit the next step; maxima are exact in any order.
+    Continuity follows a particle that leaves its neighbours down to the density of a cloud, below zero if
+    they were crowded: densities stop at ``least`` (kg/m³).
+    Returns the largest |a|² (m²/s⁴) and density (kg/m³), which limit the next step; maxima are exact in
+    any order.
     """
     fastest = 0.0
     densest = 0.0
@@ -101,8 +102,6 @@ def kick(start, v, acceleration, density, rate, half, step, least, few, density0
         v[i, 0] += half * ax
         v[i, 1] += half * ay
         rho = max(least, density[i] + step * rate[i])
-        if start[i + 1] - start[i] < few:
-            rho = density0
         density[i] = rho
         fastest = max(fastest, ax * ax + ay * ay)
         densest = max(densest, rho)
@@ -150,8 +149,8 @@ class Law:
 class Flow:
     """A layer, its law and its pairs, moving.
 
-    step, time (s), next_step (s);  limited : steps that each of `RULES` limited;  stopped : times a particle was
-    stopped at a wall's surface, ``lower`` and ``upper`` (2,) m, infinite unless set.
+    step, time (s), next_step (s);  limited : steps that each of `RULES` limited;  stopped : times a
+    particle was stopped at a wall's surface, ``lower`` and ``upper`` (2,) m, infinite unless set.
     """
 
     layer: Layer
@@ -222,11 +221,9 @@ class Flow:
     def finish(self, step: float) -> None:
         """Second half of a ``step`` (s), and length of the next from the largest |a| and density."""
         layer, law = self.layer, self.law
-        density = law.tait.density
-        least, few = (THINNEST * density, DROP) if law.cut else (0.0, 0)
+        least = THINNEST * law.tait.density
         fastest, densest = kick(
-            self.pairs.start, layer.v, layer.acceleration, layer.density, layer.rate, 0.5 * step, step,
-            least, few, density,
+            layer.v, layer.acceleration, layer.density, layer.rate, 0.5 * step, step, least
         )  # fmt: skip
         limits = law.limits(float(fastest) ** 0.5, float(densest))
         self.rule = int(np.argmin(limits))

@@ -20,8 +20,8 @@ VALIDATIONS = Validations()
 
 GRAVITY = 9.81
 LATTICE = 0.0261
-"""1 - Σ V (-1/r dW/dr) y² over a square lattice, Wendland C2 at h = 1.3 spacings (summed in the tests): what a
-lattice takes off viscosity, and off gradient and divergence each and so off the speed of sound."""
+"""1 - Σ V (-1/r dW/dr) y² over a square lattice, Wendland C2 at h = 1.3 spacings (summed in the tests):
+what a lattice takes off viscosity, and off gradient and divergence each and so off the speed of sound."""
 MARTIN_MOYCE = ("martin_moyce_1952_a1.125in", "martin_moyce_1952_a2.25in")
 KOSHIZUKA_OKA = ("koshizuka_oka_1996", "koshizuka_oka_1996_b")  # one experiment, digitised twice
 LATEST = 2.9  # of t √(2g/a): later the front meets the far wall of the trial's tank
@@ -62,7 +62,9 @@ def slope_row() -> Measured:
 
 
 def hydrostatic(seconds: float, gravity_assumed: float = GRAVITY) -> tuple[float, float]:
-    """A column of 1 m after ``seconds``: largest error of density over that at the floor, and fastest over c0."""
+    """A column of 1 m after ``seconds``: largest error of density over that at the floor, and fastest over
+    c0.
+    """
     scene = trials.column_scene(0.05, tank=(0.5, 1.2), column=(0.5, 1.0), artificial_viscosity=0.1)
     flow = trials.run_until(flow_of(scene), seconds)
     layer, tait = flow.layer, flow.law.tait
@@ -98,7 +100,9 @@ def rest_row() -> Measured:
 
 
 def channel_error(kind: str, across: int, viscosity_assumed: float = 1e-6) -> float:
-    """Largest error over five times, over the final speed, of plane flow starting up; gap 1 mm, ν 1e-6 m²/s."""
+    """Largest error over five times, over the final speed, of plane flow starting up; gap 1 mm, ν 1e-6
+    m²/s.
+    """
     gap, nu, speed = 1e-3, 1e-6, 1.25e-5
     if kind == "poiseuille":
         flow = trials.channel(gap, across, nu, 1e-3, force=1e-4)
@@ -179,7 +183,9 @@ def sound_amplitude_row() -> Measured:
 
 
 def momentum_drift(steps: int, force: float = 0.0) -> float:
-    """Change of momentum over the sum of |m v| of a box without walls; ``force`` (m/s²) acts on one particle."""
+    """Change of momentum over the sum of |m v| of a box without walls; ``force`` (m/s²) acts on one
+    particle.
+    """
     flow = trials.open_box(20, seed=1)
     layer = flow.layer
     scale = float((layer.mass[:, None] * np.abs(layer.v)).sum())
@@ -230,7 +236,9 @@ def computed_front(across: int) -> Floats:
 
 
 def front_error(front: Floats, series: Floats) -> tuple[float, float]:
-    """Smallest over delays of the largest relative error of a ``front`` against a ``series``, and that delay."""
+    """Smallest over delays of the largest relative error of a ``front`` against a ``series``, and that
+    delay.
+    """
     chosen = series[(series[:, 0] >= RELEASED) & (series[:, 0] <= LATEST)]
     best = (np.inf, 0.0)
     for delay in np.linspace(0.0, LONGEST_DELAY, 71):
@@ -243,8 +251,9 @@ def front_error(front: Floats, series: Floats) -> tuple[float, float]:
     "continuum.front_of_a_collapsing_column",
     source="Martin & Moyce 1952, figure 3, n² = 2; Koshizuka & Oka 1996",
     because=(
-        "the two digitisations of Koshizuka & Oka lie up to 7 % apart; their mean is taken, and since gate and "
-        "membrane let go over an unknown time (at most 0.35) one delay per experiment is fitted; t √(2g/a) 1 to 2.9"
+        "the two digitisations of Koshizuka & Oka lie up to 7 % apart; their mean is taken, and since gate
+        and " "membrane let go over an unknown time (at most 0.35) one delay per experiment is fitted; t
+        √(2g/a) 1 to 2.9"
     ),
     tolerance=0.07,
     slow=True,
@@ -252,8 +261,8 @@ def front_error(front: Floats, series: Floats) -> tuple[float, float]:
 def front_row() -> Measured:
     """Largest relative error of the front over three experiments; measured: delays fitted, then errors.
 
-    Without delays the front leads by 10 to 20 %, at any resolution, kernel or wall: water let go at once starts
-    with an acceleration that no gate allows.
+    Without delays the front leads by 10 to 20 %, at any resolution, kernel or wall: water let go at once
+    starts with an acceleration that no gate allows.
     """
     front = computed_front(40)
     found = [front_error(front, series) for series in published_fronts().values()]
