@@ -177,12 +177,6 @@ class Simulation:
             snapshot.clouds["grains"] = Cloud(inside, data, units)
         return snapshot
 
-    def _inside(self, position: Array) -> Array:
-        """Positions (n, 2) m brought back into the box through its periodic sides; the model's own run on."""
-        assert self.grains
-        period = np.array(self.grains.box.period)
-        return np.where(period > 0, position % np.where(period > 0, period, 1.0), position)
-
     def _grid(self) -> Grid:
         s = self.derived.scales
         assert s
