@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from importlib.resources import files
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -43,9 +44,7 @@ def build(scene: Scene) -> Simulation:
     return Simulation(scene)
 
 
-def drive(
-    model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any], resume: bool, quiet: bool
-) -> Outcome:
+def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any], resume: bool, quiet: bool) -> Outcome:
     """Run the model to the scene's end and write the run folder."""
     from porescale.runs.drive import drive as drive_model
 
@@ -91,7 +90,7 @@ def show(folder: Path) -> list[Path]:
         title=scene["title"] or run.card.get("name", ""),
         cloud="particles",
         colour="velocity",
-        lines=list(zip(corners[:-1], corners[1:], strict=True)),
+        lines=list(pairwise(corners)),
         dot=0.5 * scene["numerics"]["spacing"],
         view=(-margin, width + margin, -margin, height + margin),
     )

@@ -16,9 +16,7 @@ FALLEN = 200  # steps before timing: water in motion, list rebuilt at its usual 
 
 @BENCHMARKS.row("water")
 def bench_water(size: int | None, threads: int, dtype: Dtype) -> Work:
-    """Particle-steps of collapsing water, wall particles computed but not counted; InputError for
-    float32.
-    """
+    """Particle-steps of collapsing water, wall particles computed but not counted; InputError for float32."""
     if dtype != "float64":
         raise InputError(Fault("--dtype", dtype, "smoothed particles have", allowed="float64"))
     count = size or SIZE

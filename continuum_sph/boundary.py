@@ -1,9 +1,8 @@
 """Walls of dummy particles that carry the pressure of the fluid in front of them.
 
-Source: Adami, Hu & Adams, J. Comput. Phys. 231 (2012) 7057, eqs 22, 23, 27: pressure and velocity of a
-wall particle are kernel averages over the fluid, the pressure with the hydrostatic difference from fluid
-to wall particle.  It stands in for eqs 50, 51 of Maeda & Sakai 2004 (Morris' image velocities), which need
-a straight wall's distance.
+Source: Adami, Hu & Adams, J. Comput. Phys. 231 (2012) 7057, eqs 22, 23, 27: pressure and velocity of a wall particle
+are kernel averages over the fluid, the pressure with the hydrostatic difference from fluid to wall particle.  It
+stands in for eqs 50, 51 of Maeda & Sakai 2004 (Morris' image velocities), which need a straight wall's distance.
 """
 
 from __future__ import annotations
@@ -24,11 +23,9 @@ Floats = NDArray[np.float64]
 def wall_row(
     w, start, end, partner, x, v, record, pressure, kind, h, gx, gy, period_x, period_y
 ):  # fmt: skip
-    """Pressure (Pa) and mean fluid velocity (m/s) at wall particle w from fluid partners ``start`` …
-    ``end``-1.
+    """Pressure (Pa) and mean fluid velocity (m/s) at wall particle w from fluid partners ``start`` … ``end``-1.
 
-    p_w = Σ (p_f + ρ_f g · (x_w - x_f)) W / Σ W.  Not below zero: a wall does not pull on a free surface's
-    fluid.
+    p_w = Σ (p_f + ρ_f g · (x_w - x_f)) W / Σ W.  Not below zero: a wall does not pull on a free surface's fluid.
     """
     weight = 0.0
     p = 0.0
@@ -87,12 +84,13 @@ def tank_walls(
 ) -> Floats:
     """Positions (n, 2) m of the wall particles around the rectangle 0 … width, 0 … height, ``layers`` deep.
 
-    The wall's surface lies half a ``spacing`` before its first layer.  Without ``sides`` (periodic) floor
-    and lid are as long as the width; with them they reach round the corners.
+    The wall's surface lies half a ``spacing`` before its first layer.  Without ``sides`` (periodic) floor and lid
+    are as long as the width; with them they reach round the corners.
     """
     columns, rows = round(width / spacing), round(height / spacing)
     i = np.arange(-layers if sides else 0, columns + (layers if sides else 0))
     j = np.arange(-layers if floor else 0, rows + (layers if lid else 0))
     grid_i, grid_j = np.meshgrid(i, j)
     inside = (grid_i >= 0) & (grid_i < columns) & (grid_j >= 0) & (grid_j < rows)
-    return (np.column_stack((grid_i[~inside], grid_j[~inside])) + 0.5) * spacing
+    walls: Floats = (np.column_stack((grid_i[~inside], grid_j[~inside])) + 0.5) * spacing
+    return walls

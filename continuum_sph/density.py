@@ -12,9 +12,7 @@ from porescale.ground.jit import inline
 
 @inline
 def continuity(mass_j, approach, slope):
-    """dρ_i/dt of one partner, kg/(m³ s): m_j v_ij · ∇_i W;  approach v_ij · x_ij, m²/s;  slope (1/r)
-    dW/dr.
-    """
+    """dρ_i/dt of one partner, kg/(m³ s): m_j v_ij · ∇_i W;  approach v_ij · x_ij, m²/s;  slope (1/r) dW/dr."""
     return mass_j * approach * slope
 
 

@@ -1,8 +1,8 @@
 """Equation of state of a weakly compressible liquid.  p = B {(ρ/ρ0)^γ - 1},  B = ρ0 c0²/γ.
 
-Source: eq. 41 of Maeda & Sakai 2004 (Cole 1948, Monaghan 1994).  There B is the air pressure p0 = 100 kPa,
-which makes water as soft as c0 = √(γ p0/ρ0) = 26 m/s; here B follows from the speed of sound c0, which
-must exceed ten times the fastest flow for a Mach number below 0.1 and density changes below 1 %.
+Source: eq. 41 of Maeda & Sakai 2004 (Cole 1948, Monaghan 1994).  There B is the air pressure p0 = 100 kPa, which
+makes water as soft as c0 = √(γ p0/ρ0) = 26 m/s; here B follows from the speed of sound c0, which must exceed ten
+times the fastest flow for a Mach number below 0.1 and density changes below 1 %.
 """
 
 from __future__ import annotations
@@ -61,8 +61,6 @@ class Tait:
         return self.density * base ** (1.0 / self.exponent)
 
     def settled_density(self, depth: Floats, gravity: float) -> Floats:
-        """Density (kg/m³) at rest exactly: dp = ρ g d(depth) integrates to ρ0 (1 + (γ-1) g
-        depth/c0²)^(1/(γ-1)).
-        """
+        """Density (kg/m³) at rest exactly: dp = ρ g d(depth) integrates to ρ0 (1 + (γ-1) g depth/c0²)^(1/(γ-1))."""
         base = 1.0 + (self.exponent - 1.0) * gravity * depth / self.sound_speed**2
         return self.density * base ** (1.0 / (self.exponent - 1.0))

@@ -13,8 +13,8 @@ def released_pressure(
 ) -> Floats:
     """Pressure (Pa) in a column of incompressible water the instant its right face is set free.
 
-    ∇²p = 0 with p = 0 on the top y = H and the face x = a, ∂p/∂x = 0 on the wall x = 0, ∂p/∂y = -ρg on the
-    floor. With p = ρg{(H - y) - φ}: φ = Σ 2/(H k²) cos(k y) cosh(k x)/cosh(k a), k = (n + 1/2)π/H.
+    ∇²p = 0 with p = 0 on the top y = H and the face x = a, ∂p/∂x = 0 on the wall x = 0, ∂p/∂y = -ρg on the floor.
+    With p = ρg{(H - y) - φ}: φ = Σ 2/(H k²) cos(k y) cosh(k x)/cosh(k a), k = (n + 1/2)π/H.
     """
     head = height - y
     for n in range(terms):
@@ -52,8 +52,7 @@ def poiseuille(y: Floats, time: float, gap: float, force: float, viscosity: floa
 def leapfrog_growth(phase: float, extrapolated: bool) -> float:
     """Largest amplification of sound per step at ω Δt = ``phase`` in the scheme of `step`.
 
-    Unknowns v½, ρ, D, D_before: ρ* = ρ + Δt(2D - D_before) (or ρ + Δt D), D' = ω v½, ρ' = ρ + Δt D', v' =
-    v½ - ω Δt ρ*.
+    Unknowns v½, ρ, D, D_before: ρ* = ρ + Δt(2D - D_before) (or ρ + Δt D), D' = ω v½, ρ' = ρ + Δt D', v' = v½ - ω Δt ρ*.
     """
     v, rho, last, before = np.eye(4)
     predicted = rho + 2.0 * last - before if extrapolated else rho + last

@@ -34,8 +34,7 @@ class Layer:
     pressure: Floats = field(init=False)  # (n,) Pa
     record: Floats = field(init=False)  # (n, 8) all that a pair reads of a partner, in one cache line
     smoothed: Floats = field(init=False)  # (fluid, 2) m/s, what XSPH adds to the velocity of moving
-    ghost: Floats = field(init=False)  # (n, 2) m/s, velocity that makes fluid at a wall stick (rows of
-    walls)
+    ghost: Floats = field(init=False)  # (n, 2) m/s, velocity that makes fluid at a wall stick (rows of walls)
 
     def __post_init__(self) -> None:
         n = len(self.x)

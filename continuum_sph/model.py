@@ -14,8 +14,7 @@ from continuum_sph.step import RULES, Flow
 from porescale.ground.check import Unstable
 from porescale.runs.model import Cloud, Snapshot
 
-DENSEST = 1.3  # of ρ0: Tait pressures of half B and more; sound at Mach 0.1 needs 1.01, the hardest
-impacts 1.15
+DENSEST = 1.3  # of ρ0: Tait pressures of half B and more; sound at Mach 0.1 needs 1.01, the hardest impacts 1.15
 
 
 class Simulation:
@@ -26,21 +25,13 @@ class Simulation:
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
         self.flow: Flow = flow_of(scene)
+        self._refresh()
 
-    @property
-    def step(self) -> int:
-        """Steps done."""
-        return self.flow.step
-
-    @property
-    def time(self) -> float:
-        """Time reached, s."""
-        return self.flow.time
-
-    @property
-    def step_seconds(self) -> float:
-        """Length of the next step, s."""
-        return self.flow.next_step
+    def _refresh(self) -> None:
+        """Steps done, time reached (s) and length of the next step (s), for whoever drives."""
+        self.step: int = self.flow.step
+        self.time: float = self.flow.time
+        self.step_seconds: float = self.flow.next_step
 
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps; Unstable when a position is no number any more."""
@@ -52,6 +43,7 @@ class Simulation:
                     str(error), "position", float("nan"), "m", self.step, self.time,
                     "lower numerics.courant, or raise numerics.artificial_viscosity or water.sound_speed",
                 ) from error  # fmt: skip
+            self._refresh()
 
     def inside(self) -> NDArray[np.bool_]:
         """Which water particles are in the tank, (fluid,)."""
@@ -143,3 +135,4 @@ class Simulation:
         flow.last_steps = (first, second)
         flow.limited, flow.rule = list(state["limited"]), state["rule"]
         flow.stopped = state["stopped"]
+        self._refresh()

@@ -3,9 +3,8 @@
 dv_i/dt = -Σ m_j (p_i/ρ_i² + p_j/ρ_j² + Π_ij) ∇_i W + laminar viscosity + g   (eqs 34, 35)
 dρ_i/dt =  Σ m_j v_ij · ∇_i W + diffusion                                        (eq. 25)
 
-Every particle gathers from its full row of partners: each pair is computed twice, nothing is scattered, so
-threads never meet and the sums have one order.  Forces of a pair of equal masses are opposite to the last
-bit.
+Every particle gathers from its full row of partners: each pair is computed twice, nothing is scattered, so threads
+never meet and the sums have one order.  Forces of a pair of equal masses are opposite to the last bit.
 """
 
 from __future__ import annotations
@@ -22,9 +21,7 @@ from porescale.particles.cells import minimum_image
 
 @parallel_kernel
 def split_rows(fluid, start, partner, split):
-    """Where wall partners begin in each row of a full list: overwrites ``split`` (n,).  Fluid indices come
-    first.
-    """
+    """Where wall partners begin in each row of a full list: overwrites ``split`` (n,).  Fluid indices come first."""
     for i in prange(split.shape[0]):
         k = start[i + 1]
         while k > start[i] and partner[k - 1] >= fluid:
@@ -39,8 +36,7 @@ def rates(
     kind, h, gx, gy, viscosity, alpha, beta, softening, sound_speed, strength, sticky, smoothing,
     period_x, period_y,
 ):  # fmt: skip
-    """Overwrites ``acceleration`` (fluid, 2) m/s², ``rate`` (fluid,) kg/(m³ s), and ``smoothed`` (fluid,
-    2) m/s.
+    """Overwrites ``acceleration`` (fluid, 2) m/s², ``rate`` (fluid,) kg/(m³ s), and ``smoothed`` (fluid, 2) m/s.
 
     start, split, partner: full pair list, wall partners of row i from ``split[i]`` on;  record, ghost: see Layer;
     kind, h: smoothing;  gx, gy gravity, m/s²;  viscosity μ, Pa s;  alpha, beta, softening: artificial viscosity;
@@ -81,9 +77,7 @@ def rates(
             volume = record[j, VOLUME]
             mass = rho_j * volume
             change += continuity(mass, approach, slope)
-            change += diffusion(
-                rho, rho_j, stiff_i, record[j, STIFF], gx * dx + gy * dy, volume, slope, strength
-            )
+            change += diffusion(rho, rho_j, stiff_i, record[j, STIFF], gx * dx + gy * dy, volume, slope, strength)
             both = rho + rho_j
             thrust = own + record[j, PUSH]
             thrust += artificial(alpha, beta, sound_speed, h, softening, approach, distance2, both)

@@ -12,8 +12,8 @@ from porescale.ground.check import Fault, InputError
 from porescale.workbench.report import Report
 
 MACH_WARNED, MACH_REFUSED = 0.1, 0.3
-RATE = 3e6  # particle-steps per second and thread: measured on the two-core machine of the benchmarks,
-rounded down BYTES = 600  # per particle: state, record, and about 27 partners in two lists
+RATE = 3e6  # particle-steps per second and thread: measured on the two-core machine of the benchmarks, rounded down
+BYTES = 600  # per particle: state, record, and about 27 partners in two lists
 
 
 def report(scene: Scene) -> Report:
@@ -53,8 +53,8 @@ def report(scene: Scene) -> Report:
     steps = scene.time.end / step
     out.row("steps", round(steps))
     out.row("memory", BYTES * (water + walls) / 2**20, "MiB")
-    out.row("expected time", steps * (water + walls) / RATE, "s", f"at {RATE:.2g} particle-steps/s, one
-    thread") _judge(scene, mach, out)
+    out.row("expected time", steps * (water + walls) / RATE, "s", f"at {RATE:.2g} particle-steps/s, one thread")
+    _judge(scene, mach, out)
     return out
 
 
@@ -63,9 +63,13 @@ def _judge(scene: Scene, mach: float, out: Report) -> None:
     if mach > MACH_REFUSED:
         raise InputError(
             Fault(
-                "water.sound_speed", scene.sound_speed, f"makes the fall of the water Mach {mach:.2g}", "m/s",
-                f">= {scene.fall_speed / MACH_WARNED:.4g}", "raise it or leave it out",
-            )  # fmt: skip
+                "water.sound_speed",
+                scene.sound_speed,
+                f"makes the fall of the water Mach {mach:.2g}",
+                "m/s",
+                f">= {scene.fall_speed / MACH_WARNED:.4g}",
+                "raise it or leave it out",
+            )
         )
     if mach > MACH_WARNED * (1 + 1e-9):
         out.warn(
@@ -85,5 +89,4 @@ def _judge(scene: Scene, mach: float, out: Report) -> None:
         if abs(share - round(share)) > 1e-6:
             out.warn(f"tank.{name} is {share:.4g} spacings: the wall stands at {round(share)}")
     if scene.numerics.kernel == "cubic" and scene.numerics.smoothing_ratio < 1.2:
-        out.warn("cubic spline with few partners: pressures are noisy and particles pair up; wendland at
-        1.3 does not")
+        out.warn("cubic spline with few partners: pressures are noisy and particles pair up; wendland at 1.3 does not")

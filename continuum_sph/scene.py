@@ -10,8 +10,7 @@ from porescale.ground.check import Fault
 from porescale.ground.constants import GRAVITY
 from porescale.workbench.sections import Refused, Section, quantity
 
-CALM_MACH = 10.0  # sound speed over the speed of free fall from the highest water: Mach number 0.1 (spec
-§1.7)
+CALM_MACH = 10.0  # sound speed over the speed of free fall from the highest water: Mach number 0.1 (spec §1.7)
 
 
 class Tank(Section):
@@ -39,8 +38,8 @@ class Water(Section):
     """A weakly compressible liquid.
 
     pressure : at the start, "hydrostatic", that of a column whose right face is free ("released"), or "none"
-    (density ρ0 everywhere, as in the paper);  push : "face" gives the particles of the right face
-    √(2g(H-y)) to the right, as in figs 6 and 7 of the paper.
+    (density ρ0 everywhere, as in the paper);  push : "face" gives the particles of the right face √(2g(H-y)) to
+    the right, as in figs 6 and 7 of the paper.
     """
 
     density: float = quantity("kg/m^3", 1000.0, gt=0, help="density under the pressure of the air")
@@ -53,9 +52,7 @@ class Water(Section):
 
 
 class Numerics(Section):
-    """Particles and what corrects them.  The paper: kernel cubic, smoothing_ratio 1, no density diffusion,
-    xsph.
-    """
+    """Particles and what corrects them.  The paper: kernel cubic, smoothing_ratio 1, no density diffusion, xsph."""
 
     spacing: float = quantity("m", gt=0, help="spacing of the particles at the start")
     kernel: Literal["wendland", "cubic"] = "wendland"
@@ -135,16 +132,13 @@ class Scene(Section):
                           f"<= {finest:g}")
                 )  # fmt: skip
         first = self.water.column[0]
-        if self.water.pressure == "released" and (
-            len(self.water.column) > 1 or first.left > 0 or first.bottom > 0
-        ):
+        if self.water.pressure == "released" and (len(self.water.column) > 1 or first.left > 0 or first.bottom > 0):
             faults.append(
                 Fault("water.pressure", "released", "is known for one column in the left corner only",
                       repair='use "hydrostatic", or one column with left = bottom = 0')
             )  # fmt: skip
         if self.gravity == 0.0 and self.water.sound_speed is None:
-            faults.append(Fault("water.sound_speed", None, "is needed when there is no gravity to take it
-            from"))
+            faults.append(Fault("water.sound_speed", None, "is needed when there is no gravity to take it from"))
         if faults:
             raise Refused(*faults)
         return self

@@ -1,7 +1,7 @@
 """Smoothing kernels W(r, h) in two dimensions, support 2h, and their slopes, without branches.
 
-Cubic spline: eq. 8 of Maeda & Sakai 2004.  Wendland C2: Wendland, Adv. Comput. Math. 4 (1995) 389, in the
-form of Dehnen & Aly, MNRAS 425 (2012) 1068: no pairing instability at any number of neighbours.
+Cubic spline: eq. 8 of Maeda & Sakai 2004.  Wendland C2: Wendland, Adv. Comput. Math. 4 (1995) 389, in the form of
+Dehnen & Aly, MNRAS 425 (2012) 1068: no pairing instability at any number of neighbours.
 """
 
 from __future__ import annotations

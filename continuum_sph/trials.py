@@ -54,18 +54,11 @@ def run_until(flow: Flow, time: float) -> Flow:
 
 
 def channel(
-    gap: float,
-    across: int,
-    viscosity: float,
-    sound_speed: float,
-    *,
-    force: float = 0.0,
-    lid_speed: float = 0.0,
+    gap: float, across: int, viscosity: float, sound_speed: float, *, force: float = 0.0, lid_speed: float = 0.0
 ) -> Flow:
     """Liquid of density 1000 between two plates that hold it, periodic along them.
 
-    gap : m;  across : particles;  viscosity : ν, m²/s;  force : along the plates, m/s²;  lid_speed : of
-    the upper, m/s.
+    gap : m;  across : particles;  viscosity : ν, m²/s;  force : along the plates, m/s²;  lid_speed : of the upper, m/s.
     """
     spacing, density, layers = gap / across, 1000.0, 3
     length = 8 * spacing  # two cutoffs of 2h + skin and a little
@@ -79,13 +72,9 @@ def channel(
     v = np.zeros((len(x) + len(walls), 2))
     v[len(x) :, 0] = np.where(walls[:, 1] > gap, lid_speed, 0.0)
     count = len(v)
-    layer = Layer(
-        len(x), np.concatenate((x, walls)), v, np.full(count, density * spacing**2), np.full(len(x), density)
-    )
+    layer = Layer(len(x), np.concatenate((x, walls)), v, np.full(count, density * spacing**2), np.full(len(x), density))
     margin = layers * spacing
-    pairs = PairList(
-        count, 0.2 * smoothing.length, (0.0, -margin), (length, gap + margin), (True, False), full=True
-    )
+    pairs = PairList(count, 0.2 * smoothing.length, (0.0, -margin), (length, gap + margin), (True, False), full=True)
     flow = Flow(layer, law, pairs)
     flow.start()
     return flow
@@ -108,9 +97,7 @@ def open_box(across: int, seed: int, *, alpha: float = 0.05, xsph: float = 0.0) 
 
 
 def sound_wave(across: int, amplitude: float) -> Flow:
-    """A standing sound wave, density 1 + ``amplitude`` cos(2πx) of a period of 1 m, at 10 m/s; nothing
-    damps it.
-    """
+    """A standing sound wave, density 1 + ``amplitude`` cos(2πx) of a period of 1 m, at 10 m/s; nothing damps it."""
     spacing, density = 1.0 / across, 1000.0
     x = square_lattice((0.0, 0.0), (1.0, 8 * spacing), spacing)
     rho = density * (1.0 + amplitude * np.cos(2.0 * np.pi * x[:, 0]))

@@ -20,8 +20,8 @@ VALIDATIONS = Validations()
 
 GRAVITY = 9.81
 LATTICE = 0.0261
-"""1 - Σ V (-1/r dW/dr) y² over a square lattice, Wendland C2 at h = 1.3 spacings (summed in the tests):
-what a lattice takes off viscosity, and off gradient and divergence each and so off the speed of sound."""
+"""1 - Σ V (-1/r dW/dr) y² over a square lattice, Wendland C2 at h = 1.3 spacings (summed in the tests): what a
+lattice takes off viscosity, and off gradient and divergence each and so off the speed of sound."""
 MARTIN_MOYCE = ("martin_moyce_1952_a1.125in", "martin_moyce_1952_a2.25in")
 KOSHIZUKA_OKA = ("koshizuka_oka_1996", "koshizuka_oka_1996_b")  # one experiment, digitised twice
 LATEST = 2.9  # of t √(2g/a): later the front meets the far wall of the trial's tank
@@ -48,7 +48,7 @@ def kernel_integral() -> Measured:
 @VALIDATIONS.row(
     "continuum.kernel_slope",
     source="definition: (1/r) dW/dr against central differences of W",
-    because="differences over 2e-5 h: third derivative (below 10) times (1e-5)²/6 and round-off 1e-16/1e-5, over q >= 0.1",
+    because="differences over 2e-5 h: third derivative (below 10) times (1e-5)²/6, round-off 1e-16/1e-5, q >= 0.1",
     tolerance=1e-8,
 )
 def slope_row() -> Measured:
@@ -62,9 +62,7 @@ def slope_row() -> Measured:
 
 
 def hydrostatic(seconds: float, gravity_assumed: float = GRAVITY) -> tuple[float, float]:
-    """A column of 1 m after ``seconds``: largest error of density over that at the floor, and fastest over
-    c0.
-    """
+    """A column of 1 m after ``seconds``: largest error of density over that at the floor, and fastest over c0."""
     scene = trials.column_scene(0.05, tank=(0.5, 1.2), column=(0.5, 1.0), artificial_viscosity=0.1)
     flow = trials.run_until(flow_of(scene), seconds)
     layer, tait = flow.layer, flow.law.tait
@@ -78,7 +76,7 @@ def hydrostatic(seconds: float, gravity_assumed: float = GRAVITY) -> tuple[float
 @VALIDATIONS.row(
     "continuum.hydrostatic_density",
     source="Tait profile ρ0 (1 + ρ0 g (H-y)/B)^(1/7), spec §4 of Maeda & Sakai 2004's figure 6 at rest",
-    because="settling of the lattice by the kernel's lattice error, 2.6 % of half a spacing, and half a spacing of head at the walls (1/40)",
+    because="the lattice settles by its error of 2.6 %; half a spacing of head is not resolved at the floor, 1/40",
     tolerance=0.026 + 0.025,
 )
 def hydrostatic_row() -> Measured:
@@ -100,9 +98,7 @@ def rest_row() -> Measured:
 
 
 def channel_error(kind: str, across: int, viscosity_assumed: float = 1e-6) -> float:
-    """Largest error over five times, over the final speed, of plane flow starting up; gap 1 mm, ν 1e-6
-    m²/s.
-    """
+    """Largest error over five times, over the final speed, of plane flow starting up; gap 1 mm, ν 1e-6 m²/s."""
     gap, nu, speed = 1e-3, 1e-6, 1.25e-5
     if kind == "poiseuille":
         flow = trials.channel(gap, across, nu, 1e-3, force=1e-4)
@@ -123,7 +119,7 @@ def channel_error(kind: str, across: int, viscosity_assumed: float = 1e-6) -> fl
 @VALIDATIONS.row(
     "continuum.poiseuille_start_up",
     source="Morris, Fox & Zhu 1997, J. Comput. Phys. 136, 214, figure 1",
-    because="lattice viscosity 2.6 % low makes the flow as much too fast; walls half a spacing deep, (2/20)² of the rest",
+    because="lattice viscosity 2.6 % low makes the flow as much too fast; (2/20)² of truncation",
     tolerance=LATTICE + 0.01,
 )
 def poiseuille_row() -> Measured:
@@ -135,7 +131,7 @@ def poiseuille_row() -> Measured:
 @VALIDATIONS.row(
     "continuum.couette_start_up",
     source="Morris, Fox & Zhu 1997, J. Comput. Phys. 136, 214, figure 3",
-    because="lattice viscosity 2.6 % low delays the front by as much of its time: u t ∂u/∂t < 0.25 V there; walls (2/20)²",
+    because="lattice viscosity 2.6 % low delays the flow by as much of its time, t ∂u/∂t < V/4; (2/20)² of truncation",
     tolerance=0.25 * LATTICE + 0.01,
 )
 def couette_row() -> Measured:
@@ -183,9 +179,7 @@ def sound_amplitude_row() -> Measured:
 
 
 def momentum_drift(steps: int, force: float = 0.0) -> float:
-    """Change of momentum over the sum of |m v| of a box without walls; ``force`` (m/s²) acts on one
-    particle.
-    """
+    """Change of momentum over the sum of |m v| of a box without walls; ``force`` (m/s²) acts on one particle."""
     flow = trials.open_box(20, seed=1)
     layer = flow.layer
     scale = float((layer.mass[:, None] * np.abs(layer.v)).sum())
@@ -236,9 +230,7 @@ def computed_front(across: int) -> Floats:
 
 
 def front_error(front: Floats, series: Floats) -> tuple[float, float]:
-    """Smallest over delays of the largest relative error of a ``front`` against a ``series``, and that
-    delay.
-    """
+    """Smallest over delays of the largest relative error of a ``front`` against a ``series``, and that delay."""
     chosen = series[(series[:, 0] >= RELEASED) & (series[:, 0] <= LATEST)]
     best = (np.inf, 0.0)
     for delay in np.linspace(0.0, LONGEST_DELAY, 71):
@@ -251,9 +243,8 @@ def front_error(front: Floats, series: Floats) -> tuple[float, float]:
     "continuum.front_of_a_collapsing_column",
     source="Martin & Moyce 1952, figure 3, n² = 2; Koshizuka & Oka 1996",
     because=(
-        "the two digitisations of Koshizuka & Oka lie up to 7 % apart; their mean is taken, and since gate
-        and " "membrane let go over an unknown time (at most 0.35) one delay per experiment is fitted; t
-        √(2g/a) 1 to 2.9"
+        "the two digitisations of Koshizuka & Oka lie up to 7 % apart; their mean is taken, and since gate and "
+        "membrane let go over an unknown time (at most 0.35) one delay per experiment is fitted; t √(2g/a) 1 to 2.9"
     ),
     tolerance=0.07,
     slow=True,
@@ -261,8 +252,8 @@ def front_error(front: Floats, series: Floats) -> tuple[float, float]:
 def front_row() -> Measured:
     """Largest relative error of the front over three experiments; measured: delays fitted, then errors.
 
-    Without delays the front leads by 10 to 20 %, at any resolution, kernel or wall: water let go at once
-    starts with an acceleration that no gate allows.
+    Without delays the front leads by 10 to 20 %, at any resolution, kernel or wall: water let go at once starts
+    with an acceleration that no gate allows.
     """
     front = computed_front(40)
     found = [front_error(front, series) for series in published_fronts().values()]

@@ -13,8 +13,7 @@ from porescale.ground.jit import inline
 def laminar(viscosity, volume_j, specific_i, slope):
     """Factor of v_ij, 1/s: m_j (μ_i + μ_j)/(ρ_i ρ_j) (1/r) dW/dr for one liquid.
 
-    viscosity μ, Pa s;  volume_j m_j/ρ_j, m²;  specific_i 1/ρ_i, m³/kg;  slope (1/r) dW/dr.  Negative: it
-    brakes.
+    viscosity μ, Pa s;  volume_j m_j/ρ_j, m²;  specific_i 1/ρ_i, m³/kg;  slope (1/r) dW/dr.  Negative: it brakes.
     """
     return 2.0 * viscosity * volume_j * specific_i * slope
 

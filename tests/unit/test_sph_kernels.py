@@ -47,8 +47,8 @@ def test_plain_python_and_compiled_agree(kind):
 def test_lattice_weakness_of_the_gradient_is_the_number_the_validations_use():
     h = 1.3
     i, j = np.meshgrid(np.arange(-4, 5), np.arange(-4, 5))
-    total = sum(-kernel_slope(WENDLAND, np.hypot(a, b) / h, h) * b * b for a, b in zip(i.flat, j.flat,
-    strict=True)) assert 1.0 - total == pytest.approx(LATTICE, abs=5e-5)  # its last digit
+    total = sum(-kernel_slope(WENDLAND, np.hypot(a, b) / h, h) * b * b for a, b in zip(i.flat, j.flat, strict=True))
+    assert 1.0 - total == pytest.approx(LATTICE, abs=5e-5)  # its last digit
 
 
 def test_smoothing_knows_its_reach():
@@ -95,8 +95,7 @@ def test_sound_is_stable_with_extrapolated_density_and_grows_without(phase):
     assert leapfrog_growth(phase, extrapolated=True) <= 1.0 + 4 * eps
     assert leapfrog_growth(phase, extrapolated=False) > 1.0
     if phase in (0.1, 0.3):  # the leading term that `step` states; the next is of relative order phase²
-        assert 1.0 - leapfrog_growth(phase, extrapolated=True) == pytest.approx(0.5 * phase**4, rel=8 *
-        phase**2)
+        assert 1.0 - leapfrog_growth(phase, extrapolated=True) == pytest.approx(0.5 * phase**4, rel=8 * phase**2)
 
 
 def test_exact_solutions_meet_their_walls_and_starts():

@@ -32,8 +32,8 @@ def test_is_a_model():
     assert isinstance(model, Model)
     assert model.variable_step
     row, shot = model.series(), model.snapshot()
-    assert row["mass (kg/m)"] == pytest.approx(500.0, rel=0.01)  # 0.5 m² of water, compressed by less than
-    1 % assert len(shot.clouds["particles"].position) == 50
+    assert row["mass (kg/m)"] == pytest.approx(500.0, rel=0.01)  # 0.5 m² of water, compressed by less than 1 %
+    assert len(shot.clouds["particles"].position) == 50
 
 
 @pytest.mark.parametrize("xsph", [0.0, 0.3])
@@ -113,7 +113,7 @@ def test_soft_water_is_refused_and_springy_water_warned_of():
         return type(scene()).model_validate({**table, "water": {**table["water"], "sound_speed": speed}})
 
     assert "Mach" in report(with_sound(30.0)).warnings[0]
-    with pytest.raises(InputError, match="water.sound_speed"):
+    with pytest.raises(InputError, match=r"water\.sound_speed"):
         report(with_sound(5.0))
 
 
@@ -154,8 +154,8 @@ def test_pass_over_pairs_as_plain_python(monkeypatch):
     compiled = Simulation(scene(xsph=0.2))
     plain = Simulation(scene(xsph=0.2))
     for name in ("kick_drift", "pressurise", "kick", "load_walls", "rates", "split_rows"):
-        home = pass_over_pairs if name in ("rates", "split_rows") else boundary if name == "load_walls"
-        else step monkeypatch.setattr(step, name, getattr(home, name).py_func)
+        home = pass_over_pairs if name in ("rates", "split_rows") else boundary if name == "load_walls" else step
+        monkeypatch.setattr(step, name, getattr(home, name).py_func)
     plain.advance(2)
     monkeypatch.undo()
     compiled.advance(2)

@@ -47,8 +47,8 @@ def test_a_tenth_more_viscosity_is_told_apart(kind):
 
 
 def test_channel_walls_converge_up_to_the_lattice_error():
-    # All but the lattice's 2.6 % is of second order: halving the spacing takes three quarters of it,
-    # roughly. limit = verify.LATTICE / (1.0 - verify.LATTICE)
+    # All but the lattice's 2.6 % is of second order: halving the spacing takes three quarters of it, roughly.
+    limit = verify.LATTICE / (1.0 - verify.LATTICE)
     coarse, fine = (verify.channel_error("poiseuille", n) - limit for n in (10, 20))
     assert fine < 0.5 * coarse
 
