@@ -8,13 +8,12 @@ The area of a disc of radius r inside the corner rectangle [0, a] x [0, b] (a, b
 odd in a and in b.  A cell is four such terms, and G belongs to a grid line, not to a cell: a disc d cells wide
 needs 2 (d + 2) of them.  Derived from G being the area under the quarter circle up to a.
 
-Three passes: each disc fills its own patch of fractions; bands of rows add the patches up, disc by disc in index order
-(so sums do not depend on threads); each disc turns its fractions into its share of the cell's weight.
+Two passes: each disc fills its own patch of fractions; bands of rows add the patches up, disc by disc in index order
+(so sums do not depend on threads).
 """
 
 import math
 
-from porescale.coupling.weighting import saturation_weight
 from porescale.ground.jit import inline, kernel, parallel_kernel, prange
 
 
@@ -36,13 +35,36 @@ def corner_area(a, b, ga, gb, r):
     return math.copysign(ga + gb - 0.25 * math.pi * r * r, a * b)
 
 
+@inline
+def line_areas(first, count, centre, r, signed, area):
+    """Distances of ``count`` grid lines from ``first`` on to the centre, clamped to [-r, r], and G of each.
+
+    Overwrites signed and area (count,).
+    """
+    for i in range(count):
+        a = min(max(first + i - centre, -r), r)
+        signed[i] = a
+        area[i] = quarter_area(abs(a), r)
+
+
+@inline
+def chord(below, above, r):
+    """Half the longest and half the shortest chord of the disc between two lines; -1 where there is none."""
+    near = 0.0 if below < 0.0 < above else min(abs(below), abs(above))
+    far = max(abs(below), abs(above))
+    longest = math.sqrt((r - near) * (r + near)) if near < r else -1.0
+    shortest = math.sqrt((r - far) * (r + far)) if far < r else -1.0
+    return longest, shortest
+
+
 @parallel_kernel
-def cover(centre, radius, patch_start, patch_width, patch, corner, lines):
+def cover(centre, radius, patch_start, patch_width, patch, corner, reach, lines):
     """Exact solid fractions of the cells around every disc.
 
     centre (n, 2), radius (n,): cells;  patch_start (n,), patch_width (n,): where in ``patch`` a disc's width² fractions
-    lie;  lines (n, 2, largest width + 1): scratch.  Overwrites patch and corner (n, 2), the cell (x, y) at the patch's
-    lower left.
+    lie;  lines (n, 4, largest width + 1): scratch.  Overwrites patch; corner (n, 2), the cell (x, y) at the patch's
+    lower left; reach (n, largest width, 2), in each row of a patch the first cell that the disc may touch and one past
+    the last.  Fractions outside reach are left as they were.
     """
     for n in prange(centre.shape[0]):
         r = radius[n]
@@ -51,28 +73,35 @@ def cover(centre, radius, patch_start, patch_width, patch, corner, lines):
         y0 = math.floor(centre[n, 1] - r)
         corner[n, 0] = x0
         corner[n, 1] = y0
-        ga = lines[n, 0]
-        below = lines[n, 1]
-        for i in range(w + 1):
-            ga[i] = quarter_area(min(abs(x0 + i - centre[n, 0]), r), r)
-        for j in range(w + 1):
-            b = min(max(y0 + j - centre[n, 1], -r), r)
-            gb = quarter_area(abs(b), r)
-            left = 0.0
-            left_below = 0.0
-            for i in range(w + 1):
-                a = min(max(x0 + i - centre[n, 0], -r), r)
-                k = corner_area(a, b, ga[i], gb, r)
-                if i > 0 and j > 0:
-                    e = (k - left) - (below[i] - left_below)
+        a, ga, b, gb = lines[n, 0], lines[n, 1], lines[n, 2], lines[n, 3]
+        line_areas(x0, w + 1, centre[n, 0], r, a, ga)
+        line_areas(y0, w + 1, centre[n, 1], r, b, gb)
+        middle = centre[n, 0] - x0
+        for j in range(w):
+            longest, shortest = chord(b[j], b[j + 1], r)
+            first = 0
+            last = 0
+            if longest >= 0.0:
+                first = max(math.floor(middle - longest), 0)
+                last = min(math.floor(middle + longest) + 1, w)
+            full_from = w
+            full_to = 0
+            if shortest >= 0.0:
+                full_from = math.ceil(middle - shortest)
+                full_to = math.floor(middle + shortest)
+            reach[n, j, 0] = first
+            reach[n, j, 1] = last
+            for i in range(first, last):
+                e = 1.0
+                if i < full_from or i >= full_to:
+                    e = corner_area(a[i + 1], b[j + 1], ga[i + 1], gb[j + 1], r)
+                    e -= corner_area(a[i], b[j + 1], ga[i], gb[j + 1], r)
+                    e -= corner_area(a[i + 1], b[j], ga[i + 1], gb[j], r) - corner_area(a[i], b[j], ga[i], gb[j], r)
                     if e < 1e-12:
                         e = 0.0
                     elif e > 1.0 - 1e-12:
                         e = 1.0
-                    patch[patch_start[n] + (j - 1) * w + i - 1] = e
-                left = k
-                left_below = below[i]
-                below[i] = k
+                patch[patch_start[n] + j * w + i] = e
 
 
 @kernel
@@ -112,9 +141,17 @@ def list_bands(corner, patch_width, ny, height, periodic_y, band_start, band_dis
     return band_start[bands]
 
 
+@inline
+def inside_box(first, last, corner_x, nx, periodic_x):
+    """The part of a patch row's cells first to last - 1 that lies in the box, and the lattice column of its cell 0."""
+    if periodic_x:
+        return first, last, corner_x % nx
+    return max(first, -corner_x), min(last, nx - corner_x), corner_x
+
+
 @parallel_kernel
 def accumulate(
-    centre, velocity, spin, patch_start, patch_width, patch, corner, band_start, band_disc, height, periodic_x,
+    centre, velocity, spin, patch_start, patch_width, patch, corner, reach, band_start, band_disc, height, periodic_x,
     periodic_y, solid, solid_x, solid_y, span,
 ):  # fmt: skip
     """Sum of the solid fractions of each cell, and of fraction times solid velocity at the cell's centre.
@@ -143,39 +180,19 @@ def accumulate(
                     y %= ny
                 if y < bottom or y >= top:
                     continue
-                for i in range(w):
+                first, last, base = inside_box(reach[n, j, 0], reach[n, j, 1], corner[n, 0], nx, periodic_x)
+                vx = velocity[n, 0] - spin[n] * ry
+                leftmost = span[y, 0]
+                rightmost = span[y, 1]
+                for i in range(first, last):
                     e = patch[patch_start[n] + j * w + i]
-                    x = corner[n, 0] + i
-                    rx = x + 0.5 - centre[n, 0]
-                    if periodic_x:
-                        x %= nx
-                    elif x < 0 or x >= nx:
-                        continue
-                    if e > 0:
-                        solid[y, x] += e
-                        solid_x[y, x] += e * (velocity[n, 0] - spin[n] * ry)
-                        solid_y[y, x] += e * (velocity[n, 1] + spin[n] * rx)
-                        span[y, 0] = min(span[y, 0], x)
-                        span[y, 1] = max(span[y, 1], x + 1)
-
-
-@parallel_kernel
-def share(patch_start, patch_width, patch, corner, periodic_x, periodic_y, solid, k):
-    """Turn each disc's fractions e into its share of the cell's weight, B2(min(1, sum)) e / sum.  Overwrites patch."""
-    ny, nx = solid.shape
-    for n in prange(patch_start.shape[0]):
-        w = patch_width[n]
-        for j in range(w):
-            y = corner[n, 1] + j
-            if periodic_y:
-                y %= ny
-            for i in range(w):
-                x = corner[n, 0] + i
-                if periodic_x:
-                    x %= nx
-                at = patch_start[n] + j * w + i
-                if y < 0 or y >= ny or x < 0 or x >= nx:
-                    patch[at] = 0
-                elif patch[at] > 0:
-                    total = solid[y, x]
-                    patch[at] = saturation_weight(total, k, 1.0) * patch[at] / total
+                    x = base + i
+                    while x >= nx:
+                        x -= nx
+                    solid[y, x] += e
+                    solid_x[y, x] += e * vx
+                    solid_y[y, x] += e * (velocity[n, 1] + spin[n] * (corner[n, 0] + i + 0.5 - centre[n, 0]))
+                    leftmost = min(leftmost, x)
+                    rightmost = max(rightmost, x + 1)
+                span[y, 0] = leftmost
+                span[y, 1] = rightmost

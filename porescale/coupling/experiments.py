@@ -74,11 +74,12 @@ def without_inner_mass(coupled: Coupled) -> Coupled:
     return coupled
 
 
-def settling_disc(cells_per_diameter: int = 16, relaxation_time: float = 0.65) -> float:
+def settling_disc(cells_per_diameter: int = 16, relaxation_time: float = 0.65, ratio: float = 1.0) -> float:
     """Largest speed (m/s) of the disc of Glowinski et al. 2001 before it is within a diameter of the bottom.
 
     Box 2 x 6 cm, d 0.25 cm, density ratio 1.25, nu 0.1 cm²/s, g 9.81 m/s², released at (1, 4) cm.  The step follows
-    from the relaxation time; at 16 cells and 0.65 the disc falls at a Mach number of 0.075.
+    from the relaxation time; at 16 cells and 0.65 the disc falls at a Mach number of 0.075.  ratio: hydraulic over
+    mechanical radius.
     """
     diameter, nu = 0.0025, 1e-5
     spacing = diameter / cells_per_diameter
@@ -86,7 +87,7 @@ def settling_disc(cells_per_diameter: int = 16, relaxation_time: float = 0.65) -
     cells = round(0.02 / spacing), round(0.06 / spacing)
     coupled = immersed(
         cells, [(0.01, 0.04)], diameter / 2, 1250.0,
-        acceleration=(0.0, -9.81), scales=Scales(spacing, step, relaxation_time),
+        acceleration=(0.0, -9.81), ratio=ratio, scales=Scales(spacing, step, relaxation_time),
     )  # fmt: skip
     discs, fastest = coupled.grains.discs, 0.0
     while discs.position[0, 1] > 1.5 * diameter:

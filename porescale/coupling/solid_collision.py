@@ -26,8 +26,8 @@ def collide_saturated_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, first, 
     """Collide cells ``first`` to ``last`` - 1 of a row in which grains lie.
 
     a_i (nx,): slots, as in collide_row;  k (1,): tau - 1/2;  p: parameters.  s, sx, sy (nx,): sum of the solid
-    fractions and of fraction times solid velocity; in covered cells overwritten with density and with the first
-    moment less (1 - B) F/2, which is what loads are made of.
+    fractions e and of e times solid velocity; overwritten with what loads are made of, density and the first moment
+    less (1 - B) F/2, both times B/sum e.
     """
     one, half, fx, fy = p[12], p[13], p[2], p[3]
     even, odd, two = p[0], p[1], p[12] + p[12]
@@ -40,10 +40,9 @@ def collide_saturated_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, first, 
         f0, f1, f2, f3, f4 = a0[x], a1[x], a2[x], a3[x], a4[x]
         f5, f6, f7, f8 = a5[x], a6[x], a7[x], a8[x]
         e = s[x]
-        covered = e > zero
         b = saturation_weight(e, k[0], one)
         free = one - b
-        part = one / (e if covered else one)
+        part = one / (e if e > zero else one)
         vx, vy = sx[x] * part, sy[x] * part
         d, jx, jy = moments(f0, f1, f2, f3, f4, f5, f6, f7, f8)
         hx = half * free * fx
@@ -77,9 +76,10 @@ def collide_saturated_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, first, 
         )
         a0[x], a2[x], a1[x], a4[x], a3[x] = g0, g1, g2, g3, g4
         a6[x], a5[x], a8[x], a7[x] = g5, g6, g7, g8
-        s[x] = rho if covered else zero
-        sx[x] = jx - hx if covered else zero
-        sy[x] = jy - hy if covered else zero
+        part *= b
+        s[x] = part * rho
+        sx[x] = part * (jx - hx)
+        sy[x] = part * (jy - hy)
 
 
 @inline

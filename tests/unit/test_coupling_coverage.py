@@ -1,0 +1,188 @@
+"""Coverage is the exact common area of disc and cell, and a cell is never more than full."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from porescale.coupling import coverage
+from porescale.coupling.saturated import BAND_HEIGHT, Saturated
+from porescale.lbm.fluid import Fluid
+from porescale.lbm.sides import Sides
+from tests.reference import psm as twin
+
+EPS = np.finfo(float).eps
+
+
+def covered(discs, nx=20, ny=17, kinds=("wall", "wall"), motion=(0.0, 0.0, 0.0)):
+    """The saturated cells of discs (x, y, r)."""
+    fluid = Fluid(nx, ny, 0.7, sides=Sides(kinds[0], kinds[0], kinds[1], kinds[1]))
+    discs = np.array(discs, float)
+    wet = Saturated(fluid, discs[:, 2])
+    u, v, w = motion
+    wet.cover(discs[:, :2].copy(), np.tile((float(u), float(v)), (len(discs), 1)), np.full(len(discs), float(w)))
+    return wet
+
+
+def area_error(r):
+    """An area of r² known to a few roundings and, where it is cancelled to nothing, the 1e-12 below which it is."""
+    return 16 * EPS * max(r, 1) ** 2 + 1e-12
+
+
+PLACES = [
+    (8.3, 9.1, 4.2),  # anywhere
+    (8.0, 9.0, 4.0),  # tangent to grid lines on all sides
+    (8.5, 9.5, 4.0),  # centred in a cell
+    (8.3, 9.1, 0.3),  # inside one cell
+    (8.0, 9.0, 0.3),  # smaller than a cell, on a node
+    (8.3, 9.1, 0.5),
+    (8.0 + 1e-9, 9.0, 4.0),  # the least beyond a grid line
+    (8.0, 9.0, math.sqrt(13.0)),  # through nodes (3, 2)
+    (10.1, 8.3, 7.9),
+]
+
+
+@pytest.mark.parametrize("disc", PLACES)
+def test_coverage_is_the_common_area_of_disc_and_cell(disc):
+    e, _, _ = twin.coverage(*disc, 20, 17)
+    np.testing.assert_allclose(covered([disc]).solid, e, rtol=0, atol=area_error(disc[2]))
+
+
+@pytest.mark.parametrize("disc", PLACES)
+def test_coverage_adds_up_to_the_disc(disc):
+    cells = 4 * (disc[2] + 1) ** 2
+    assert covered([disc]).solid.sum() == pytest.approx(math.pi * disc[2] ** 2, abs=cells * area_error(disc[2]), rel=0)
+
+
+def test_the_linear_rule_does_not_add_up():
+    # clamp(1/2 + sqrt(r² - 1/12) - |x - X|): what spec section 1 point 6 offers as the cheap one
+    x, y, r = 8.3, 9.1, 4.2
+    cy, cx = np.mgrid[:17, :20] + 0.5
+    e = np.clip(0.5 + math.sqrt(r * r - 1 / 12) - np.hypot(cx - x, cy - y), 0, 1)
+    assert abs(e.sum() - math.pi * r * r) > 1e-3
+    assert np.abs(e - covered([(x, y, r)]).solid).max() > 0.01
+
+
+@pytest.mark.parametrize(
+    "kinds", [("periodic", "periodic"), ("periodic", "wall"), ("wall", "periodic"), ("wall", "wall")]
+)
+@pytest.mark.parametrize("at", [(0.2, 0.4), (19.9, 16.8), (-3.0, 8.0), (8.0, 16.9), (43.1, -20.3)])
+def test_coverage_wraps_on_periodic_sides_and_ends_at_walls(kinds, at):
+    periodic = kinds[0] == "periodic", kinds[1] == "periodic"
+    e, _, _ = twin.coverage(*at, 3.3, 20, 17, periodic)
+    np.testing.assert_allclose(
+        covered([(*at, 3.3)], kinds=kinds).solid, e, rtol=0, atol=area_error(3.3) + 50 * EPS * 50
+    )
+
+
+def test_a_disc_as_wide_as_the_periodic_box_touches_itself():
+    wet = covered([(3.3, 4.1, 5.0)], nx=10, ny=10, kinds=("periodic", "periodic"))
+    assert wet.solid.sum() == pytest.approx(25 * math.pi, abs=100 * area_error(5))
+    with pytest.raises(ValueError, match="wider"):
+        covered([(3.3, 4.1, 5.01)], nx=10, ny=10, kinds=("periodic", "periodic"))
+
+
+def test_cells_far_inside_are_full_and_far_outside_empty_to_the_bit():
+    wet = covered([(8.3, 9.1, 4.2)])
+    cy, cx = np.mgrid[:17, :20] + 0.5
+    distance = np.hypot(cx - 8.3, cy - 9.1)
+    assert np.all(wet.solid[distance < 4.2 - math.sqrt(0.5)] == 1.0)
+    assert np.all(wet.solid[distance > 4.2 + math.sqrt(0.5)] == 0.0)
+
+
+@pytest.mark.parametrize("gap", [0.0, 1e-3, -0.3])
+def test_shared_cells_are_never_more_than_full(gap):
+    wet = covered([(6.3, 8.2, 3.5), (13.3 + gap, 8.2, 3.5)])
+    assert wet.weights().max() <= 1.0
+    e = sum(twin.coverage(x, 8.2, 3.5, 20, 17)[0] for x in (6.3, 13.3 + gap))
+    full = e >= 1
+    np.testing.assert_allclose(wet.weights()[full], 1.0, rtol=0, atol=10 * area_error(3.5))  # dB/de = 1/k + 1 < 10
+
+
+def test_the_contact_of_two_discs_is_as_tight_as_one_solid():
+    # Two halves make a full cell: B = 1 for e = 1/2 + 1/2, where the sum of each one's own B would be 0.17 at tau 0.6.
+    k = 0.1
+    assert twin.weight(1.0, 0.6) == 1.0
+    assert 2 * twin.weight(0.5, 0.6) == pytest.approx(2 * 0.5 * k / (0.5 + k))
+    from porescale.coupling.weighting import saturation_weight
+
+    assert saturation_weight(0.5 + 0.5, k, 1.0) == 1.0
+    assert saturation_weight(1.7, k, 1.0) == 1.0
+    assert saturation_weight(0.0, k, 1.0) == 0.0
+
+
+def test_the_solid_moves_like_the_disc_in_every_cell():
+    u, v, w = 0.03, -0.02, 0.01
+    wet = covered([(8.3, 9.1, 4.2)], motion=(u, v, w))
+    e, rx, ry = twin.coverage(8.3, 9.1, 4.2, 20, 17)
+    np.testing.assert_allclose(wet.solid_x, e * (u - w * ry), rtol=0, atol=area_error(4.2))
+    np.testing.assert_allclose(wet.solid_y, e * (v + w * rx), rtol=0, atol=area_error(4.2))
+
+
+def test_a_disc_that_has_gone_leaves_nothing_behind():
+    wet = covered([(8.3, 9.1, 4.2)])
+    none = np.zeros((1, 2))
+    wet.cover(np.array([[15.2, 4.3]]), none, np.zeros(1))
+    np.testing.assert_array_equal(wet.solid, covered([(15.2, 4.3, 4.2)]).solid)
+    for y, (first, last) in enumerate(wet.span):
+        assert not wet.solid[y, :first].any()
+        assert not wet.solid[y, last:].any()
+
+
+def test_sums_do_not_depend_on_the_bands(monkeypatch):
+    discs = [(6.3, 8.2, 3.5), (13.1, 8.2, 3.6), (9.7, 12.9, 2.2)]
+    usual = covered(discs)
+    for height in (1, 3, 100):
+        monkeypatch.setattr("porescale.coupling.saturated.BAND_HEIGHT", height)
+        np.testing.assert_array_equal(covered(discs).solid, usual.solid)
+    assert BAND_HEIGHT not in (1, 3, 100)
+
+
+def test_a_crowded_band_grows_its_list():
+    discs = [(5 + 0.1 * k, 8.0, 1.2) for k in range(60)]  # each over two bands: more than the first guess of entries
+    wet = covered(discs, ny=200)
+    few = covered(discs)
+    np.testing.assert_array_equal(wet.solid[:17], few.solid)
+
+
+def test_coverage_kernels_are_the_same_uncompiled():
+    radius = np.array([1.3, 0.4])
+    centre = np.array([[2.3, 3.1], [4.9, 0.2]])
+    wet = covered([(*c, r) for c, r in zip(centre, radius, strict=True)], nx=6, ny=5)
+    made = []
+    for run in (coverage.cover, coverage.cover.py_func):
+        patch, corner = np.zeros_like(wet._patch), np.zeros_like(wet._corner)
+        reach, lines = np.zeros_like(wet._reach), np.zeros_like(wet._lines)
+        run(centre, radius, wet._start, wet._width, patch, corner, reach, lines)
+        made.append((patch, corner, reach))
+    np.testing.assert_allclose(made[0][0], made[1][0], rtol=0, atol=area_error(1.3))
+    np.testing.assert_array_equal(made[0][1], made[1][1])
+    np.testing.assert_array_equal(made[0][2], made[1][2])
+
+
+def test_loads_are_the_same_uncompiled():
+    from porescale.coupling.load import loads
+
+    wet = covered([(2.3, 3.1, 1.3), (4.9, 0.2, 0.4)], nx=6, ny=5, kinds=("periodic", "wall"))
+    random = np.random.default_rng(0)
+    fields = random.uniform(-1, 1, (3, 5, 6))
+    centre, velocity, spin = np.array([[2.3, 3.1], [4.9, 0.2]]), random.uniform(-1, 1, (2, 2)), np.array([0.1, -0.2])
+    made = []
+    for run in (loads, loads.py_func):
+        force, torque = np.zeros((2, 2)), np.zeros(2)
+        run(
+            centre, velocity, spin, wet._start, wet._width, wet._patch, wet._corner, wet._reach, True, False, *fields,
+            force, torque,
+        )  # fmt: skip
+        made.append(np.column_stack((force, torque)))
+    # a dozen cells, each with five roundings of numbers around 1
+    np.testing.assert_allclose(*made, rtol=0, atol=60 * EPS)
+
+
+def test_no_discs_cover_nothing():
+    fluid = Fluid(6, 5, 0.7)
+    wet = Saturated(fluid, np.zeros(0))
+    wet.advance(fluid, np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0))
+    assert not wet.solid.any()
