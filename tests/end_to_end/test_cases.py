@@ -140,14 +140,18 @@ def test_the_column_collapses_as_expected(collapse):
 
 
 @pytest.mark.slow
-def test_a_sealed_column_does_not(porescale, tmp_path):
-    # The twin that must fail: lambda = 1 seals the bed (spec 6.1: a fall of 0.06 cm in 0.3 s instead of 2.6 cm).
-    sealed = ("grains.hydraulic_radius_ratio=1", "time.end=0.3")
-    columns = run(porescale, "column_collapse", tmp_path / "out", *sealed)
-    names = [it.partition(":")[0] for it in missed(columns, expected("column_collapse"))]
-    assert "run-out" in names
-    fall = columns["centre of mass y (m)"][0] - columns["centre of mass y (m)"][-1]
-    assert fall < 0.3 * 0.026
+@pytest.mark.parametrize(
+    ("setting", "end", "names"),
+    [
+        ("fluid.viscosity=1e-3", 0.46, {"centre of mass at 0.45 s"}),
+        ("grains.hydraulic_radius_ratio=1", 0.32, {"lowest density", "highest density", "Mach number"}),
+    ],
+)
+def test_another_column_does_not(porescale, tmp_path, setting, end, names):
+    # The twins that must fail: in fluid ten times as thick the half of the fall comes later; with pores sealed the
+    # water in them is squeezed and torn instead of flowing.  Rows about later times are missed by both: not asked for.
+    columns = run(porescale, "column_collapse", tmp_path / "out", setting, f"time.end={end}")
+    assert names & {it.partition(":")[0] for it in missed(columns, expected("column_collapse"))}
 
 
 def stream_function(snapshot: Any) -> tuple[Any, float]:
