@@ -1,18 +1,20 @@
 """Partially saturated cells, slow and obvious, on the two-array lattice of tests/reference/lbm.py.
 
 Written from Noble & Torczynski 1998 and spec/fluid-grains.md section 1: dense coverage of every disc from the area a
-circle has in common with a square; collision  f + (1 - B)(Omega^f + S) + B Omega^s;  loads  -sum B_n sum_i Omega^s_n c_i.
+circle has in common with a square; collision  f + (1 - B)(Omega^f + S) + B Omega^s;  loads
+-sum B_n sum_i Omega^s_n c_i.
 The switches are the wrong ways that the tests must be able to tell from the right one.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from tests.reference.lbm import BACK, C, W, Lattice, equilibrium, guo, trt
+from tests.reference.lbm import BACK, C, Lattice, W, equilibrium, guo, trt
 
 
 def _under_edge(px, py, qx, qy, r):
@@ -25,7 +27,7 @@ def _under_edge(px, py, qx, qy, r):
         cuts += [t for t in ((-b - root) / a, (-b + root) / a) if 0 < t < 1]
     cuts.sort()
     area = 0.0
-    for s, t in zip(cuts, cuts[1:], strict=False):
+    for s, t in itertools.pairwise(cuts):
         ax, ay, bx, by = px + s * dx, py + s * dy, px + t * dx, py + t * dy
         mx, my = (ax + bx) / 2, (ay + by) / 2
         cross = ax * by - ay * bx
