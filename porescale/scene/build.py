@@ -17,6 +17,7 @@ from porescale.ground.check import InputError
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.sides import Sides
 from porescale.particles.placement import place
+from porescale.scene.cost import refuse_too_large
 from porescale.scene.derive import Derived, derive, grain_count
 from porescale.scene.geometry import refuse_overlaps
 from porescale.scene.sections import Domain, Packing, Scene
@@ -37,6 +38,7 @@ def build(scene: Scene) -> Simulation:
     A packing is settled first, or read from the cache; that can take seconds.
     """
     derived = derive(scene)
+    refuse_too_large(derived)
     grains = _grains(scene, derived) if scene.grains else None
     fluid = _fluid(scene, derived) if scene.fluid else None
     coupled = None

@@ -99,15 +99,40 @@ def _judge_packing(packing: Packing, domain: Domain, gate: Gate | None, faults: 
 
 
 def _judge_settling(scene: Scene, faults: list[Fault]) -> None:
+    """A packing settles straight down, only if it sinks, onto a floor, and held on both sides."""
     assert scene.grains
-    (gx, gy), floor = scene.gravity, scene.fluid.density if scene.fluid else 0.0
-    left_in_place = "or set grains.packing.settle = false"
+    assert scene.grains.packing
+    packing, domain = scene.grains.packing, scene.domain
+    (gx, gy), fluid_density = scene.gravity, scene.fluid.density if scene.fluid else 0.0
+    otherwise = "or set grains.packing.settle = false"
     if gx != 0 or gy >= 0:
-        problem, repair = "a packing settles straight down", f"give [0, -9.81], {left_in_place}"
+        problem, repair = "a packing settles straight down", f"give [0, -9.81], {otherwise}"
         faults.append(Fault("gravity", f"[{gx:g}, {gy:g}]", problem, "m/s^2", "[0, below 0]", repair))
-    if scene.grains.density <= floor:
-        problem, repair = "the grains do not sink, so they do not settle", f"make them heavier, {left_in_place}"
-        faults.append(Fault("grains.density", scene.grains.density, problem, "kg/m^3", f"> {floor:g}", repair))
+    if scene.grains.density <= fluid_density:
+        problem, repair = "the grains do not sink, so they do not settle", f"make them heavier, {otherwise}"
+        faults.append(Fault("grains.density", scene.grains.density, problem, "kg/m^3", f"> {fluid_density:g}", repair))
+    if domain.bottom == "periodic":
+        repair = f"give the box a bottom, {otherwise}"
+        faults.append(Fault("domain.bottom", domain.bottom, "there is no floor to settle on", repair=repair))
+    loose = _loose_sides(packing, domain, scene.gate)
+    if loose:
+        problem = f"nothing holds the packing on its {loose} while it settles"
+        repair = f"put it between walls and gate, {otherwise}"
+        faults.append(Fault("grains.packing.left", packing.left, problem, "m", repair=repair))
+
+
+def _loose_sides(packing: Packing, domain: Domain, gate: Gate | None) -> str:
+    """Sides on which no wall or gate stands within a diameter of the packing, in words; a full period holds itself."""
+    if domain.left == "periodic" and packing.width > domain.width - packing.diameter:
+        return ""
+    ends = {"left": (packing.left, 0.0), "right": (packing.left + packing.width, domain.width)}
+    loose = []
+    for side, (edge, wall) in ends.items():
+        near_wall = domain.left != "periodic" and abs(edge - wall) < packing.diameter
+        near_gate = gate is not None and abs(edge - gate.x) < packing.diameter
+        if not near_wall and not near_gate:
+            loose.append(side)
+    return " and ".join(loose)
 
 
 def _judge_overlap(

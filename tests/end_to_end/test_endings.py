@@ -102,6 +102,18 @@ def test_a_wrong_scene_is_one_line_and_leaves_nothing_behind(ends, tmp_path, com
     assert not out.exists()
 
 
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_a_lattice_beyond_the_memory_is_refused_before_anything_is_built(ends, scene, tmp_path, monkeypatch, command):
+    monkeypatch.setattr(Simulation, "__init__", None)
+    fine = ("--set", "fluid.spacing=1e-9", "--set", "fluid.step=1e-12", "--set", "fluid.viscosity=1e-7")
+    options = ("--out", tmp_path / "out", "--quiet") if command == "run" else ()
+    code, (line,) = ends(command, scene, *fine, *options)
+    assert code == 2
+    assert line.startswith("fluid.spacing = 1e-09 m: needs ")
+    assert line.endswith("takes half of the memory")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_every_fault_of_a_file_is_said_at_once(ends, tmp_path):
     wrong = table(fluid__viscsity=1e-5, domain__width="12 s", contact__stiffness=-1.0, time__end=0)
     code, said = ends("run", write(tmp_path / "wrong.toml", wrong), "--out", tmp_path / "out")

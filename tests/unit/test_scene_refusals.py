@@ -126,7 +126,7 @@ def test_a_gate_between_cells_is_refused_with_a_spacing_that_fits():
 
 
 def test_a_gate_in_a_periodic_box_is_refused():
-    (line,) = lines(domain__left="periodic", domain__right="periodic")
+    (line,) = lines(domain__left="periodic", domain__right="periodic", grains__packing__settle=False)
     assert line == "gate: stands in a periodic box; give the box walls"
 
 
@@ -272,12 +272,12 @@ def test_a_grain_placed_into_a_packing_is_named_by_its_own_number():
 
 
 def test_a_packing_outside_the_box_or_across_the_gate_is_refused():
-    (line,) = lines(grains__packing__left=0.009)
+    line, *_ = lines(grains__packing__left=0.009)
     assert line.startswith("grains.packing.left = 0.009 m: ")
     assert "0.012" in line
-    (line,) = lines(grains__packing__height=0.0085)
+    line, *_ = lines(grains__packing__height=0.0085)
     assert line.startswith("grains.packing.height = 0.0085 m: ")
-    (line,) = lines(gate__x=0.009)
+    line, *_ = lines(gate__x=0.009)
     assert line.startswith("gate.x = 0.009 m: stands in the packing, which reaches from 0.008 to 0.012 m")
 
 
@@ -319,6 +319,22 @@ def test_a_packing_settles_straight_down_and_only_if_it_sinks():
     assert line.startswith("grains.density = 1000.0 kg/m^3: the grains do not sink")
     assert "(allowed: > 1000 kg/m^3)" in line
     derive(column(grains__density=1000.0, gravity=[0.0, 0.0], grains__packing__settle=False))
+
+
+def test_a_packing_is_held_while_it_settles():
+    (line,) = lines(gate=None)
+    assert line.startswith("grains.packing.left = 0.008 m: nothing holds the packing on its left while it settles")
+    (line,) = lines(domain__width=0.02, gate=None)
+    assert "on its left and right while" in line
+    (line,) = lines(domain__bottom="periodic", domain__top="periodic", domain__left="wall", fluid=None)
+    assert line.startswith("domain.bottom = 'periodic': there is no floor to settle on")
+    alone = {"gate": None, "grains__packing__settle": False}
+    derive(column(domain__width=0.02, **alone))  # left where it is placed, it needs no hold
+    derive(column(gate=None, domain__width=0.004, grains__packing__left=0.0))  # between two walls
+    sides = {"domain__left": "periodic", "domain__right": "periodic"}
+    derive(column(gate=None, domain__width=0.004, grains__packing__left=0.0, **sides))  # a full period
+    (line,) = lines(gate=None, **sides)
+    assert "on its left and right" in line
 
 
 def test_a_lattice_beyond_the_memory_is_refused_with_a_spacing_that_fits(monkeypatch):
