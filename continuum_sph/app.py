@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib.resources import files
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -29,7 +28,7 @@ def scene_type() -> type[Scene]:
 
 def template() -> str:
     """The text of the scene that ``new`` writes."""
-    return files("continuum_sph").joinpath("template.toml").read_text(encoding="utf-8")
+    return Path(__file__).with_name("template.toml").read_text(encoding="utf-8")
 
 
 def build(scene: Scene) -> Simulation:

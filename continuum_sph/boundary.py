@@ -92,5 +92,5 @@ def tank_walls(
     j = np.arange(-layers if floor else 0, rows + (layers if lid else 0))
     grid_i, grid_j = np.meshgrid(i, j)
     inside = (grid_i >= 0) & (grid_i < columns) & (grid_j >= 0) & (grid_j < rows)
-    walls: Floats = (np.column_stack((grid_i[~inside], grid_j[~inside])) + 0.5) * spacing
-    return walls
+    centres: Floats = np.column_stack((grid_i[~inside], grid_j[~inside])).astype(np.float64)
+    return (centres + 0.5) * spacing

@@ -52,7 +52,10 @@ class Water(Section):
 
 
 class Numerics(Section):
-    """Particles and what corrects them.  The paper: kernel cubic, smoothing_ratio 1, no density diffusion, xsph."""
+    """Particles and what corrects them.  The paper: kernel cubic, smoothing_ratio 1, no density diffusion, xsph.
+
+    xsph moves particles with the smoothed velocity but continuity with their own: volume is lost where they differ.
+    """
 
     spacing: float = quantity("m", gt=0, help="spacing of the particles at the start")
     kernel: Literal["wendland", "cubic"] = "wendland"

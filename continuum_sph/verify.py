@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from importlib.resources import files
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -204,7 +204,7 @@ def momentum_row() -> Measured:
 
 def published_fronts() -> dict[str, Floats]:
     """Experiments of `dam_break.csv`: (k, 2) of t √(2g/a) and front/a; the mean where digitised twice."""
-    text = files("continuum_sph").joinpath("dam_break.csv").read_text(encoding="utf-8")
+    text = Path(__file__).with_name("dam_break.csv").read_text(encoding="utf-8")
     rows = list(csv.reader(line for line in text.splitlines() if not line.startswith("#")))[1:]
 
     def series(name: str) -> Floats:

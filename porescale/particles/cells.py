@@ -46,9 +46,7 @@ def cell_of(x, lower, inverse_size, number):
     return int(place)
 
 
-def grid_shape(
-    lower: tuple[float, float], upper: tuple[float, float], size: float, limit: int
-) -> tuple[int, int]:
+def grid_shape(lower: tuple[float, float], upper: tuple[float, float], size: float, limit: int) -> tuple[int, int]:
     """Columns and rows of cells at least ``size`` (m) wide that fill the box, at most about ``limit`` in all.
 
     A box far larger than its points need would otherwise cost more in empty cells than in points.
@@ -61,9 +59,7 @@ def grid_shape(
 
 
 @kernel
-def sort_into_cells(
-    x, lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y, cell, start, order
-):
+def sort_into_cells(x, lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y, cell, start, order):
     """Counting sort of points ``x`` (n, 2) m into ``rows`` × ``columns`` cells, row after row.
 
     Overwrites ``cell`` (n,) cell of each point, ``start`` (columns rows + 1,) first slot of each cell and

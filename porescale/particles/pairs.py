@@ -17,9 +17,7 @@ from porescale.particles.cells import grid_shape, sort_into_cells
 
 Floats = NDArray[np.float64]
 
-SERIAL_BELOW = (
-    20_000  # points; fewer cost less in one thread than a barrier costs (measured, spec/grains.md §4)
-)
+SERIAL_BELOW = 20_000  # points; fewer cost less in one thread than a barrier costs (measured, spec/grains.md §4)
 CELLS_PER_CUTOFF = 2  # half-cutoff cells: a window of 6.25 instead of 9 squared cutoffs to look through
 
 
@@ -155,9 +153,7 @@ class PairList:
     def _sort(self, x: Floats, reach: Floats, cutoff: float) -> tuple[float, float, int, int]:
         """Sort points into cells; returns cells per metre along x and y, columns, rows."""
         # Limit: a few cells per point keep the sort linear in points.
-        columns, rows = grid_shape(
-            self.lower, self.upper, cutoff / CELLS_PER_CUTOFF, limit=4 * self.count + 64
-        )
+        columns, rows = grid_shape(self.lower, self.upper, cutoff / CELLS_PER_CUTOFF, limit=4 * self.count + 64)
         if self._cell_start.shape[0] < columns * rows + 1:
             self._cell_start = np.zeros((columns * rows + 1) * 3 // 2, np.int64)
         inverse_x = columns / (self.upper[0] - self.lower[0])

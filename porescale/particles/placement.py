@@ -22,9 +22,7 @@ from porescale.particles.pairs import PairList
 Floats = NDArray[np.float64]
 
 DENSEST = 0.80  # packing fraction; above it random starts jam before their overlaps are gone
-INFLATED = (
-    0.81  # fraction with the radii that are slid apart, larger than the real ones so that these end clear
-)
+INFLATED = 0.81  # fraction with the radii that are slid apart, larger than the real ones so that these end clear
 ROOMIEST = 1.05  # most that radii are enlarged by
 MOST_SWEEPS = 20_000
 
@@ -84,9 +82,7 @@ def place(
         )
     largest = 2.0 * float(radius.max(initial=0.0))
     if largest > min(size):
-        raise InputError(
-            Fault("diameter", largest, "a disc is larger than the box", "m", f"<= {min(size):.6g}")
-        )
+        raise InputError(Fault("diameter", largest, "a disc is larger than the box", "m", f"<= {min(size):.6g}"))
     start = rng.uniform((0.0, 0.0), size, (len(radius), 2))
     position, sweeps = slide_apart(start, radius, size, periodic, fraction)
     return Placement(position + np.array(lower), radius, fraction, sweeps)

@@ -114,9 +114,7 @@ def search_row(
     xi = x[i, 0]
     yi = x[i, 1]
     range_ = reach[i] + largest + skin
-    first_column, width = window(
-        wrapped(xi, lower_x, period_x), range_, lower_x, inverse_x, columns, period_x
-    )
+    first_column, width = window(wrapped(xi, lower_x, period_x), range_, lower_x, inverse_x, columns, period_x)
     first_row, height = window(wrapped(yi, lower_y, period_y), range_, lower_y, inverse_y, rows, period_y)
     first_column %= columns  # like Python's, the modulo of a negative index counts from the end
     # Cells of one row follow each other in the sorted order, so a row of the window is one stretch, or two
@@ -138,9 +136,7 @@ def search_row(
                     i, k0, k1, xi, yi, reach[i], skin, sx, sy, sreach, order, period_x, period_y, full
                 )  # fmt: skip
     if write:
-        for slot in range(
-            begin + 1, min(begin + found, end)
-        ):  # insertion sort: rows come out nearly ascending
+        for slot in range(begin + 1, min(begin + found, end)):  # insertion sort: rows come out nearly ascending
             j = partner[slot]
             while slot > begin and partner[slot - 1] > j:
                 partner[slot] = partner[slot - 1]

@@ -142,9 +142,7 @@ def test_buffers_are_reused():
     held = {id(a) for a in (*listed._partners, *listed._carrieds, *listed._starts, listed._cell_start)}
     for _ in range(4):
         listed.build(x, reach)
-    assert held == {
-        id(a) for a in (*listed._partners, *listed._carrieds, *listed._starts, listed._cell_start)
-    }
+    assert held == {id(a) for a in (*listed._partners, *listed._carrieds, *listed._starts, listed._cell_start)}
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])

@@ -33,14 +33,10 @@ ROUNDING = 1e-12
 @pytest.mark.parametrize("fraction", [0.1, 0.6, 0.80])
 def test_a_thousand_discs_at_any_fraction_are_clear_of_each_other(fraction, periodic):
     size = (0.09, 0.06)
-    placed = place(
-        (0.0, 0.0), size, count=1000, packing_fraction=fraction, spread=0.2, periodic=periodic, seed=3
-    )
+    placed = place((0.0, 0.0), size, count=1000, packing_fraction=fraction, spread=0.2, periodic=periodic, seed=3)
     assert placed.position.shape == (1000, 2)
     assert smallest_gap(placed.position, placed.radius, size, periodic) > -ROUNDING
-    assert placed.fraction == pytest.approx(
-        fraction, rel=1e-9
-    )  # 1e-12 taken off the diameter, and sums of 1000
+    assert placed.fraction == pytest.approx(fraction, rel=1e-9)  # 1e-12 taken off the diameter, and sums of 1000
     assert np.all(placed.position >= 0.0)
     assert np.all(placed.position <= size)
 
@@ -53,9 +49,7 @@ def test_random_start_does_overlap():  # the twin that must fail
 
 def test_count_follows_from_the_fraction():
     placed = place((0.0, 0.0), (1.0, 1.0), diameter=0.05, spread=0.1, packing_fraction=0.5)
-    assert (
-        abs(placed.fraction - 0.5) <= 0.5 * np.pi * placed.radius.max() ** 2
-    )  # the nearest whole number of discs
+    assert abs(placed.fraction - 0.5) <= 0.5 * np.pi * placed.radius.max() ** 2  # the nearest whole number of discs
     assert placed.radius.min() >= 0.0225
     assert placed.radius.max() <= 0.0275
 
