@@ -8,8 +8,8 @@ The area of a disc of radius r inside the corner rectangle [0, a] x [0, b] (a, b
 odd in a and in b.  A cell is four such terms, and G belongs to a grid line, not to a cell: a disc d cells wide
 needs 2 (d + 2) of them.  Derived from G being the area under the quarter circle up to a.
 
-Two passes: each disc fills its own patch of fractions; bands of rows add the patches up, disc by disc in index order
-(so sums do not depend on threads).
+Each disc fills its own patch of fractions (``cover``); a list of the discs in every row (``list_rows``), in index order
+so that sums do not depend on threads, lets a row be laid out (``lay_row``) whenever it is needed.
 """
 
 import math
@@ -105,40 +105,32 @@ def cover(centre, radius, patch_start, patch_width, patch, corner, reach, lines)
 
 
 @kernel
-def list_bands(corner, patch_width, ny, height, periodic_y, band_start, band_disc, last):
-    """Which discs touch which band of ``height`` rows, in index order, by counting sort.
+def list_rows(corner, patch_width, reach, ny, periodic_y, row_start, row_disc, row_line):
+    """Which discs lie in which row of the lattice, and with which row of their patch, in index order: a counting sort.
 
-    Overwrites band_start (bands + 1,), band_disc (entries) and last (bands,).  Returns the entries needed; where that
-    is more than band_disc holds, the caller grows it and calls again.
+    Overwrites row_start (ny + 1,), row_disc and row_line (at least as many entries as patches have rows).
     """
-    bands = band_start.shape[0] - 1
-    band_start[:] = 0
+    row_start[:] = 0
     for turn in range(2):
-        last[:] = -1
         for n in range(corner.shape[0]):
             for j in range(patch_width[n]):
                 y = corner[n, 1] + j
                 if periodic_y:
                     y %= ny
-                elif y < 0 or y >= ny:
+                if y < 0 or y >= ny or reach[n, j, 0] >= reach[n, j, 1]:
                     continue
-                band = y // height
-                if last[band] != n:
-                    last[band] = n
-                    if turn == 0:
-                        band_start[band + 1] += 1
-                    else:
-                        band_disc[band_start[band]] = n
-                        band_start[band] += 1
+                if turn == 0:
+                    row_start[y + 1] += 1
+                else:
+                    row_disc[row_start[y]] = n
+                    row_line[row_start[y]] = j
+                    row_start[y] += 1
         if turn == 0:
-            for band in range(bands):
-                band_start[band + 1] += band_start[band]
-            if band_start[bands] > band_disc.shape[0]:
-                return band_start[bands]
-    for band in range(bands, 0, -1):
-        band_start[band] = band_start[band - 1]
-    band_start[0] = 0
-    return band_start[bands]
+            for y in range(ny):
+                row_start[y + 1] += row_start[y]
+    for y in range(ny, 0, -1):
+        row_start[y] = row_start[y - 1]
+    row_start[0] = 0
 
 
 @inline
@@ -149,50 +141,57 @@ def inside_box(first, last, corner_x, nx, periodic_x):
     return max(first, -corner_x), min(last, nx - corner_x), corner_x
 
 
-@parallel_kernel
-def accumulate(
-    centre, velocity, spin, patch_start, patch_width, patch, corner, reach, band_start, band_disc, height, periodic_x,
-    periodic_y, solid, solid_x, solid_y, span,
+@inline
+def lay_row(
+    begin, end, row_disc, row_line, centre, velocity, spin, patch_start, patch_width, patch, corner, reach, periodic_x,
+    s, sx, sy,
 ):  # fmt: skip
-    """Sum of the solid fractions of each cell, and of fraction times solid velocity at the cell's centre.
+    """Add up the solid fractions of one row, and fractions times solid velocity at the cells' centres.
 
-    velocity (n, 2), spin (n,): lattice units.  Overwrites solid, solid_x, solid_y (ny, nx), which are zero outside
-    ``span`` (ny, 2), first covered cell of a row and one past the last, and span itself.
+    Entries ``begin`` to ``end`` - 1 of row_disc and row_line are the row's;  centre (n, 2) cells, velocity (n, 2), spin
+    (n,): lattice units;  the rest as in ``cover``.  Adds to s, sx, sy (nx,); returns the first covered cell and one
+    past the last.
     """
-    ny, nx = solid.shape
-    for band in prange(band_start.shape[0] - 1):
-        bottom = band * height
-        top = min(bottom + height, ny)
-        for y in range(bottom, top):
-            for x in range(span[y, 0], span[y, 1]):
-                solid[y, x] = 0
-                solid_x[y, x] = 0
-                solid_y[y, x] = 0
-            span[y, 0] = nx
-            span[y, 1] = 0
-        for k in range(band_start[band], band_start[band + 1]):
-            n = band_disc[k]
-            w = patch_width[n]
-            for j in range(w):
-                y = corner[n, 1] + j
-                ry = y + 0.5 - centre[n, 1]
-                if periodic_y:
-                    y %= ny
-                if y < bottom or y >= top:
-                    continue
-                first, last, base = inside_box(reach[n, j, 0], reach[n, j, 1], corner[n, 0], nx, periodic_x)
-                vx = velocity[n, 0] - spin[n] * ry
-                leftmost = span[y, 0]
-                rightmost = span[y, 1]
-                for i in range(first, last):
-                    e = patch[patch_start[n] + j * w + i]
-                    x = base + i
-                    while x >= nx:
-                        x -= nx
-                    solid[y, x] += e
-                    solid_x[y, x] += e * vx
-                    solid_y[y, x] += e * (velocity[n, 1] + spin[n] * (corner[n, 0] + i + 0.5 - centre[n, 0]))
-                    leftmost = min(leftmost, x)
-                    rightmost = max(rightmost, x + 1)
-                span[y, 0] = leftmost
-                span[y, 1] = rightmost
+    nx = s.shape[0]
+    leftmost = nx
+    rightmost = 0
+    for k in range(begin, end):
+        n = row_disc[k]
+        j = row_line[k]
+        first, last, base = inside_box(reach[n, j, 0], reach[n, j, 1], corner[n, 0], nx, periodic_x)
+        at = patch_start[n] + j * patch_width[n]
+        turning = spin[n]
+        vx = velocity[n, 0] - turning * (corner[n, 1] + j + 0.5 - centre[n, 1])
+        vy = velocity[n, 1] + turning * (corner[n, 0] + 0.5 - centre[n, 0])
+        while first < last:  # once, or again for what lies beyond a periodic side
+            stop = min(last, nx - base)
+            if first < stop:
+                e = patch[at + first : at + stop]
+                t = s[base + first : base + stop]
+                tx = sx[base + first : base + stop]
+                ty = sy[base + first : base + stop]
+                for i in range(e.shape[0]):
+                    t[i] += e[i]
+                    tx[i] += e[i] * vx
+                    ty[i] += e[i] * (vy + turning * (first + i))
+                leftmost = min(leftmost, base + first)
+                rightmost = max(rightmost, base + stop)
+                first = stop
+            base -= nx
+    return leftmost, rightmost
+
+
+@parallel_kernel
+def lay_out(
+    row_start, row_disc, row_line, centre, velocity, spin, patch_start, patch_width, patch, corner, reach, periodic_x,
+    solid, solid_x, solid_y,
+):  # fmt: skip
+    """All rows at once, for output: overwrites solid, solid_x, solid_y (ny, nx) with what ``lay_row`` gives."""
+    for y in prange(solid.shape[0]):
+        solid[y, :] = 0
+        solid_x[y, :] = 0
+        solid_y[y, :] = 0
+        lay_row(
+            row_start[y], row_start[y + 1], row_disc, row_line, centre, velocity, spin, patch_start, patch_width, patch,
+            corner, reach, periodic_x, solid[y], solid_x[y], solid_y[y],
+        )  # fmt: skip

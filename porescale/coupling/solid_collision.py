@@ -15,6 +15,8 @@ the plain operator.  Grains that share a cell act with the mean velocity of the 
 their loads use each one's own velocity and add up to the same total (load.py).
 """
 
+from porescale.coupling.coverage import lay_row
+from porescale.coupling.load import take_row
 from porescale.coupling.weighting import saturation_weight
 from porescale.ground.jit import inline, parallel_kernel, prange
 from porescale.lbm.collision.trt import collide_row, moments, relax, targets
@@ -83,28 +85,70 @@ def collide_saturated_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, first, 
 
 
 @inline
-def _row(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, span, k, p):
-    """One row: plain fluid outside ``span`` (2,), saturated cells inside."""
+def saturated_row(
+    a0, a1, a2, a3, a4, a5, a6, a7, a8, begin, end, row_disc, row_line, centre, velocity, spin, patch_start,
+    patch_width, patch, corner, reach, periodic_x, row_load, s, sx, sy, k, p,
+):  # fmt: skip
+    """One row of the lattice: lay out its discs, collide, take their loads.
+
+    Plain fluid outside of what the discs cover.  s, sx, sy (nx,): scratch, zero before and after.
+    """
     n = s.shape[0]
-    if span[1] <= span[0]:
+    left = n
+    right = n
+    if begin < end:
+        left, right = lay_row(
+            begin, end, row_disc, row_line, centre, velocity, spin, patch_start, patch_width, patch, corner, reach,
+            periodic_x, s, sx, sy,
+        )  # fmt: skip
+    if left >= right:
         collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, 0, n, p)
-        return
-    collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, 0, span[0], p)
-    collide_saturated_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, span[0], span[1], k, p)
-    collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, span[1], n, p)
+        left = right
+    else:
+        collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, 0, left, p)
+        collide_saturated_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, left, right, k, p)
+        collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, right, n, p)
+    take_row(
+        begin, end, row_disc, row_line, centre, velocity, spin, patch_start, patch_width, patch, corner, reach,
+        periodic_x, s, sx, sy, row_load,
+    )  # fmt: skip
+    s[left:right] = 0
+    sx[left:right] = 0
+    sy[left:right] = 0
 
 
 @parallel_kernel
-def sweep_even(f, solid, solid_x, solid_y, span, k, p):
-    """Even step with grains; overwrites populations f and the solid fields as collide_saturated_row says."""
-    for y in prange(solid.shape[0]):
-        a0, a1, a2, a3, a4, a5, a6, a7, a8 = even_slots(f, y + 1)
-        _row(a0, a1, a2, a3, a4, a5, a6, a7, a8, solid[y], solid_x[y], solid_y[y], span[y], k, p)
+def sweep_even(
+    f, band_order, height, row_start, row_disc, row_line, centre, velocity, spin, patch_start, patch_width, patch,
+    corner, reach, periodic_x, row_load, scratch, k, p,
+):  # fmt: skip
+    """Even step with grains; overwrites populations f and row_load.
+
+    scratch (bands, 3, nx): zero before and after.  Bands of ``height`` rows are spread over the threads in ``band_order``; other arguments as in coverage.py, load.py.
+    """
+    for turn in prange(band_order.shape[0]):
+        band = band_order[turn]
+        for y in range(band * height, min((band + 1) * height, f.shape[1] - 2)):
+            a0, a1, a2, a3, a4, a5, a6, a7, a8 = even_slots(f, y + 1)
+            saturated_row(
+                a0, a1, a2, a3, a4, a5, a6, a7, a8, row_start[y], row_start[y + 1], row_disc, row_line, centre,
+                velocity, spin, patch_start, patch_width, patch, corner, reach, periodic_x, row_load, scratch[band, 0],
+                scratch[band, 1], scratch[band, 2], k, p,
+            )  # fmt: skip
 
 
 @parallel_kernel
-def sweep_odd(f, solid, solid_x, solid_y, span, k, p):
+def sweep_odd(
+    f, band_order, height, row_start, row_disc, row_line, centre, velocity, spin, patch_start, patch_width, patch,
+    corner, reach, periodic_x, row_load, scratch, k, p,
+):  # fmt: skip
     """Odd step with grains; the halo must have been filled."""
-    for y in prange(solid.shape[0]):
-        a0, a1, a2, a3, a4, a5, a6, a7, a8 = odd_slots(f, y + 1)
-        _row(a0, a1, a2, a3, a4, a5, a6, a7, a8, solid[y], solid_x[y], solid_y[y], span[y], k, p)
+    for turn in prange(band_order.shape[0]):
+        band = band_order[turn]
+        for y in range(band * height, min((band + 1) * height, f.shape[1] - 2)):
+            a0, a1, a2, a3, a4, a5, a6, a7, a8 = odd_slots(f, y + 1)
+            saturated_row(
+                a0, a1, a2, a3, a4, a5, a6, a7, a8, row_start[y], row_start[y + 1], row_disc, row_line, centre,
+                velocity, spin, patch_start, patch_width, patch, corner, reach, periodic_x, row_load, scratch[band, 0],
+                scratch[band, 1], scratch[band, 2], k, p,
+            )  # fmt: skip

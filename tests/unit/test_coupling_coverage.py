@@ -126,57 +126,83 @@ def test_a_disc_that_has_gone_leaves_nothing_behind():
     none = np.zeros((1, 2))
     wet.cover(np.array([[15.2, 4.3]]), none, np.zeros(1))
     np.testing.assert_array_equal(wet.solid, covered([(15.2, 4.3, 4.2)]).solid)
-    for y, (first, last) in enumerate(wet.span):
-        assert not wet.solid[y, :first].any()
-        assert not wet.solid[y, last:].any()
 
 
-def test_sums_do_not_depend_on_the_bands(monkeypatch):
-    discs = [(6.3, 8.2, 3.5), (13.1, 8.2, 3.6), (9.7, 12.9, 2.2)]
-    usual = covered(discs)
-    for height in (1, 3, 100):
-        monkeypatch.setattr("porescale.coupling.saturated.BAND_HEIGHT", height)
-        np.testing.assert_array_equal(covered(discs).solid, usual.solid)
-    assert BAND_HEIGHT not in (1, 3, 100)
+def stepped(monkeypatch, height):
+    """Flow and loads after three steps of discs that share cells and cross sides, in bands of ``height`` rows."""
+    monkeypatch.setattr("porescale.coupling.saturated.BAND_HEIGHT", height)
+    fluid = Fluid(20, 17, 0.7, sides=Sides("periodic", "periodic", "wall", "slip"))
+    fluid.set_flow(0.02, -0.01)
+    wet = Saturated(fluid, np.array([3.5, 3.6, 2.2]))
+    for _ in range(3):
+        wet.advance(fluid, np.array([(6.3, 8.2), (13.1, 8.2), (19.7, 16.9)]), np.full((3, 2), 0.01), np.full(3, 0.002))
+    return fluid.populations[:, 1:-1, 1:-1].copy(), wet.force, wet.torque
 
 
-def test_a_crowded_band_grows_its_list():
-    discs = [(5 + 0.1 * k, 8.0, 1.2) for k in range(60)]  # each over two bands: more than the first guess of entries
-    wet = covered(discs, ny=200)
-    few = covered(discs)
-    np.testing.assert_array_equal(wet.solid[:17], few.solid)
+@pytest.mark.parametrize("height", [1, 3, 100])
+def test_loads_and_flow_do_not_depend_on_the_bands(monkeypatch, height):
+    assert height != BAND_HEIGHT
+    for usual, other in zip(stepped(monkeypatch, BAND_HEIGHT), stepped(monkeypatch, height), strict=True):
+        np.testing.assert_array_equal(usual, other)
 
 
-def test_coverage_kernels_are_the_same_uncompiled():
-    radius = np.array([1.3, 0.4])
-    centre = np.array([[2.3, 3.1], [4.9, 0.2]])
-    wet = covered([(*c, r) for c, r in zip(centre, radius, strict=True)], nx=6, ny=5)
-    made = []
-    for run in (coverage.cover, coverage.cover.py_func):
-        patch, corner = np.zeros_like(wet._patch), np.zeros_like(wet._corner)
-        reach, lines = np.zeros_like(wet._reach), np.zeros_like(wet._lines)
-        run(centre, radius, wet._start, wet._width, patch, corner, reach, lines)
-        made.append((patch, corner, reach))
-    np.testing.assert_allclose(made[0][0], made[1][0], rtol=0, atol=area_error(1.3))
-    np.testing.assert_array_equal(made[0][1], made[1][1])
-    np.testing.assert_array_equal(made[0][2], made[1][2])
+def test_every_band_is_done_once():
+    for rows in (1, 8, 9, 64, 1000):
+        wet = Saturated(Fluid(4, rows, 0.7), np.zeros(0))
+        np.testing.assert_array_equal(np.sort(wet._band_order), np.arange(-(-rows // BAND_HEIGHT)))
+
+
+def test_bands_at_the_bottom_are_spread_over_the_threads():
+    # 16 of 64 bands hold grains; each of four threads takes a quarter of the order.
+    order = Saturated(Fluid(4, 64 * BAND_HEIGHT, 0.7), np.zeros(0))._band_order
+    share = [int(np.sum(part < 16)) for part in np.split(order, 4)]
+    assert max(share) <= 5
+    assert sorted(share) != [0, 0, 0, 16]  # in their natural order one thread would do it all
+
+
+def test_rows_list_discs_in_index_order():
+    wet = covered([(6.3, 8.2, 3.5), (13.1, 8.2, 3.6), (9.7, 15.9, 2.2), (3.0, -0.1, 1.5)], kinds=("wall", "periodic"))
+    start, disc, line = wet._rows
+    _, width, _, corner, reach = wet._patches
+    assert start[-1] == sum(int(reach[n, j, 0] < reach[n, j, 1]) for n in range(4) for j in range(width[n]))
+    for y in range(17):
+        here = disc[start[y] : start[y + 1]]
+        assert np.all(np.diff(here) >= 0)
+        assert np.all((corner[here, 1] + line[start[y] : start[y + 1]]) % 17 == y)
+
+
+def test_coverage_kernels_are_the_same_uncompiled(monkeypatch):
+    discs = [(2.3, 3.1, 1.3), (4.9, 0.2, 0.4)]
+    kinds = ("periodic", "wall")
+    compiled = covered(discs, nx=6, ny=5, kinds=kinds, motion=(0.1, 0.2, 0.3))
+    for name in ("quarter_area", "corner_area", "line_areas", "chord", "inside_box", "lay_row"):
+        monkeypatch.setattr(coverage, name, getattr(coverage, name).py_func)
+    for name in ("cover", "list_rows", "lay_out"):
+        monkeypatch.setattr(f"porescale.coupling.saturated.{name}", getattr(coverage, name).py_func)
+    plain = covered(discs, nx=6, ny=5, kinds=kinds, motion=(0.1, 0.2, 0.3))
+    for name in ("solid", "solid_x", "solid_y"):
+        np.testing.assert_allclose(getattr(plain, name), getattr(compiled, name), rtol=0, atol=area_error(1.3))
 
 
 def test_loads_are_the_same_uncompiled():
-    from porescale.coupling.load import loads
+    from porescale.coupling.load import add_rows, take_row
 
     wet = covered([(2.3, 3.1, 1.3), (4.9, 0.2, 0.4)], nx=6, ny=5, kinds=("periodic", "wall"))
     random = np.random.default_rng(0)
     fields = random.uniform(-1, 1, (3, 5, 6))
     centre, velocity, spin = np.array([[2.3, 3.1], [4.9, 0.2]]), random.uniform(-1, 1, (2, 2)), np.array([0.1, -0.2])
+    start, disc, line = wet._rows
+    _, width, _, corner, reach = wet._patches
     made = []
-    for run in (loads, loads.py_func):
-        force, torque = np.zeros((2, 2)), np.zeros(2)
-        run(
-            centre, velocity, spin, wet._start, wet._width, wet._patch, wet._corner, wet._reach, True, False, *fields,
-            force, torque,
-        )  # fmt: skip
+    for take, add in ((take_row, add_rows), (take_row.py_func, add_rows.py_func)):
+        row_load, force, torque = np.full_like(wet._row_load, np.nan), np.zeros((2, 2)), np.zeros(2)
+        for y in range(5):
+            take(
+                start[y], start[y + 1], disc, line, centre, velocity, spin, *wet._patches, True, *fields[:, y], row_load
+            )
+        add(corner, width, reach, 5, False, row_load, force, torque)
         made.append(np.column_stack((force, torque)))
+    assert np.all(np.isfinite(made[0]))
     # a dozen cells, each with five roundings of numbers around 1
     np.testing.assert_allclose(*made, rtol=0, atol=60 * EPS)
 

@@ -237,9 +237,8 @@ def test_no_kernel_of_a_step_allocates():
         coupled.fluid.advance()
         coupled.advance()
     used = [
-        coverage.cover, coverage.list_bands, coverage.accumulate, load.loads, step.to_lattice,
-        step.total_load, solid_collision.sweep_even, solid_collision.sweep_odd, sides.fill_halo, sides.empty_halo,
-        stream.sweep_even, stream.sweep_odd,
+        coverage.cover, coverage.list_rows, load.add_rows, step.to_lattice, step.total_load, sides.fill_halo,
+        sides.empty_halo, solid_collision.sweep_even, solid_collision.sweep_odd, stream.sweep_even, stream.sweep_odd,
     ]  # fmt: skip
     assert [kernel.__name__ for kernel in used if allocates(kernel)] == []
 
