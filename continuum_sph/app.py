@@ -11,8 +11,8 @@ from porescale.workbench import application
 from porescale.workbench.package import Package
 
 if TYPE_CHECKING:
-    from continuum_sph.model import Simulation
-    from continuum_sph.scene import Scene
+    from continuum_sph.scene.model import Simulation
+    from continuum_sph.scene.sections import Scene
     from porescale.runs.drive import Outcome
     from porescale.workbench.benchmarks import Benchmarks
     from porescale.workbench.report import Report
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 def scene_type() -> type[Scene]:
     """The type of a continuum scene."""
-    from continuum_sph.scene import Scene
+    from continuum_sph.scene.sections import Scene
 
     return Scene
 
@@ -35,8 +35,8 @@ def build(scene: Scene) -> Simulation:
     """The simulation of a scene; warnings about it go to stderr, refusals are InputErrors."""
     import sys
 
-    from continuum_sph.model import Simulation
-    from continuum_sph.report import report as scene_report
+    from continuum_sph.scene.model import Simulation
+    from continuum_sph.scene.report import report as scene_report
 
     for warning in scene_report(scene).warnings:
         print(f"warning: {warning}", file=sys.stderr)
@@ -66,7 +66,7 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
 
 def report(scene: Scene) -> Report:
     """Every derived number of a scene; raises InputError with all refusals."""
-    from continuum_sph.report import report as scene_report
+    from continuum_sph.scene.report import report as scene_report
 
     return scene_report(scene)
 
@@ -98,14 +98,14 @@ def show(folder: Path) -> list[Path]:
 
 def validations() -> Validations:
     """All rows of ``verify``."""
-    from continuum_sph.verify import VALIDATIONS
+    from continuum_sph.scene.verify import VALIDATIONS
 
     return VALIDATIONS
 
 
 def benchmarks() -> Benchmarks:
     """All rows of ``bench``."""
-    from continuum_sph.bench import BENCHMARKS
+    from continuum_sph.scene.bench import BENCHMARKS
 
     return BENCHMARKS
 

@@ -7,8 +7,8 @@ import pytest
 
 from continuum_sph.eos import Tait, tait, tait_density
 from continuum_sph.exact import couette, leapfrog_growth, poiseuille, released_pressure
+from continuum_sph.scene.verify import LATTICE
 from continuum_sph.smoothing import CUBIC, WENDLAND, Smoothing, kernel_slope, kernel_value
-from continuum_sph.verify import LATTICE
 from continuum_sph.viscosity import artificial, laminar
 
 eps = np.finfo(float).eps

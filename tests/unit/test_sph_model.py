@@ -7,11 +7,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph import boundary, step, trials
+from continuum_sph import boundary, step
 from continuum_sph import rates as pass_over_pairs
 from continuum_sph.boundary import tank_walls
-from continuum_sph.model import Simulation
-from continuum_sph.report import report
+from continuum_sph.scene import trials
+from continuum_sph.scene.model import Simulation
+from continuum_sph.scene.report import report
 from porescale.ground.check import InputError, Unstable
 from porescale.ground.jit import set_threads
 from porescale.runs.checkpoint import read_checkpoint, write_checkpoint

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from continuum_sph.model import Simulation
-from continuum_sph.scene import Scene
+from continuum_sph.scene.model import Simulation
+from continuum_sph.scene.sections import Scene
 from porescale.workbench.sections import load
 
 CASES = Path(__file__).resolve().parents[2] / "cases"

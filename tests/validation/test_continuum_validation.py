@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph import verify
+from continuum_sph.scene import verify
 from continuum_sph.smoothing import WENDLAND, kernel_value
 
 QUICK = [row.name for row in verify.VALIDATIONS if not row.slow]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from continuum_sph.boundary import tank_walls
 from continuum_sph.eos import Tait
 from continuum_sph.layers import Layer
-from continuum_sph.scene import Scene
+from continuum_sph.scene.sections import Scene
 from continuum_sph.smoothing import Smoothing
 from continuum_sph.step import Flow, Law
 from porescale.particles import PairList, square_lattice

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from continuum_sph.build import flow_of
-from continuum_sph.trials import column_scene
+from continuum_sph.scene.build import flow_of
+from continuum_sph.scene.trials import column_scene
 from porescale.ground.check import Fault, InputError
 from porescale.workbench.benchmarks import Benchmarks, Dtype, Work
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph import trials
-from continuum_sph.build import flow_of
 from continuum_sph.exact import couette, poiseuille
+from continuum_sph.scene import trials
+from continuum_sph.scene.build import flow_of
 from continuum_sph.smoothing import CUBIC, SUPPORT, WENDLAND, kernel_slope, kernel_value
 from porescale.workbench.validations import Measured, Validations
 

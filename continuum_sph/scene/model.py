@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.build import flow_of
 from continuum_sph.rates import split_rows
-from continuum_sph.scene import Scene
+from continuum_sph.scene.build import flow_of
+from continuum_sph.scene.sections import Scene
 from continuum_sph.step import RULES, Flow
 from porescale.ground.check import Unstable
 from porescale.runs.model import Cloud, Snapshot

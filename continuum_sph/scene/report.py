@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from continuum_sph.build import law_of, wall_layers
-from continuum_sph.scene import Scene
+from continuum_sph.scene.build import law_of, wall_layers
+from continuum_sph.scene.sections import Scene
 from continuum_sph.smoothing import SUPPORT
 from continuum_sph.step import RULES
 from porescale.ground.check import Fault, InputError
