@@ -124,7 +124,8 @@ def sweep_even(
 ):  # fmt: skip
     """Even step with grains; overwrites populations f and row_load.
 
-    scratch (bands, 3, nx): zero before and after.  Bands of ``height`` rows are spread over the threads in ``band_order``; other arguments as in coverage.py, load.py.
+    scratch (bands, 3, nx): zero before and after.  Bands of ``height`` rows are spread over the threads in
+    ``band_order``; other arguments as in coverage.py and load.py.
     """
     for turn in prange(band_order.shape[0]):
         band = band_order[turn]
