@@ -244,9 +244,9 @@ def front_against(front: Floats, series: Floats) -> tuple[float, float]:
     "continuum.front_speed_of_a_collapsing_column",
     source="Martin & Moyce 1952, figure 3, n² = 2; Koshizuka & Oka 1996",
     because=(
-        "two digitisations of Koshizuka & Oka differ by up to 10 % at 3.2 a, so their mean is good to 0.16 a, a tenth of "
-        "the 1.7 a travelled; at equal times the front leads by 15 to 20 % (listed second, not judged: gate and membrane "
-        "let go over an unknown time)"
+        "two digitisations of Koshizuka & Oka differ by up to 10 % at 3.2 a, so their mean is good to 0.16 a, a tenth "
+        "of the 1.7 a travelled; at equal times the front leads by 15 to 20 % (listed second, not judged: gate and "
+        "membrane let go over an unknown time)"
     ),
     tolerance=0.1,
     slow=True,

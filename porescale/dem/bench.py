@@ -18,9 +18,7 @@ from porescale.workbench.benchmarks import Benchmarks, Dtype, Work
 BENCHMARKS = Benchmarks()
 
 SIZE = 10_000  # discs
-TILE = (
-    1000  # most discs that are settled; larger piles are rows of copies, which must settle at their ends only
-)
+TILE = 1000  # most discs that are settled; larger piles are rows of copies, which must settle at their ends only
 LAYERS = 20  # height of the pile in diameters
 DIAMETER = 1.5e-3  # m, mean; radii 1:2
 DENSITY = 2500.0  # kg/m^3
@@ -60,9 +58,7 @@ def bench_dem(size: int | None, threads: int, dtype: Dtype) -> Work:
     float32.
     """
     if dtype != "float64":
-        raise InputError(
-            Fault("--dtype", dtype, "overlaps are 1e-3 of positions and less", allowed="float64 for dem")
-        )
+        raise InputError(Fault("--dtype", dtype, "overlaps are 1e-3 of positions and less", allowed="float64 for dem"))
     grains = settled_pile(SIZE if size is None else size)
     weights = weights_of(grains.discs, DENSITY)
     dt = grains.stable_step()

@@ -44,9 +44,7 @@ def free(discs_at: Any, law: Linear, radius: ArrayLike = RADIUS, floor: bool = F
 def row_on_floor(count: int, gaps: ArrayLike, law: Linear) -> Grains:
     """``count`` discs side by side, ``gaps`` (m) above a floor (below zero: pressed into it)."""
     x = APART * np.arange(count)
-    return free(
-        np.column_stack((x, RADIUS + np.broadcast_to(np.asarray(gaps, float), (count,)))), law, floor=True
-    )
+    return free(np.column_stack((x, RADIUS + np.broadcast_to(np.asarray(gaps, float), (count,)))), law, floor=True)
 
 
 def law_at(damping_ratio: float, release: str = "force", mass: float = MASS, **tangential: float) -> Linear:

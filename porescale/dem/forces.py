@@ -59,9 +59,7 @@ def add_pair_forces(
             du, dv = ui - velocity[j, 0], vi - velocity[j, 1]
             closing = du * nx + dv * ny
             slip = dv * nx - du * ny + wi * arm_i + spin[j] * arm_j
-            normal, tangential, spring = contact_force(
-                ri + rj - distance, closing, slip, carried[k, 0], dt, law
-            )
+            normal, tangential, spring = contact_force(ri + rj - distance, closing, slip, carried[k, 0], dt, law)
             carried[k, 0] = spring
             gx = -normal * nx - tangential * ny
             gy = -normal * ny + tangential * nx

@@ -77,9 +77,7 @@ def contact_steps(
             law,
             dt,
         )
-        add_wall_forces(
-            position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, wall_force, dt
-        )
+        add_wall_forces(position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, wall_force, dt)
         add_plate_forces(
             position, velocity, spin, radius, force, torque, plates, plate_laws, plate_spring, plate_force, dt
         )

@@ -82,9 +82,7 @@ def potential_energy(discs: Discs, acceleration: tuple[float, float]) -> float:
 def elastic_energy(grains: Grains) -> float:
     """Stored in the normal and tangential springs of pairs and walls, J/m (plates are not counted)."""
     pairs = _survey(grains)[3]
-    walls = survey_walls(
-        grains.discs.position, grains.discs.radius, grains.walls, grains.wall_laws, grains.wall_spring
-    )
+    walls = survey_walls(grains.discs.position, grains.discs.radius, grains.walls, grains.wall_laws, grains.wall_spring)
     return float(pairs + walls[3])
 
 

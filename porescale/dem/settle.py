@@ -72,9 +72,7 @@ class Pile:
 
     def discs(self) -> Discs:
         """The discs as placed, at rest, numbered column by column so that neighbours lie close in memory."""
-        placed = place(
-            self.corner, (self.corner[0] + self.width, self.top()), radii=self.radii(), seed=self.seed
-        )
+        placed = place(self.corner, (self.corner[0] + self.width, self.top()), radii=self.radii(), seed=self.seed)
         columns = np.floor(placed.position[:, 0] / (2.0 * self.diameter))
         order = np.lexsort((placed.position[:, 1], columns))
         return make_discs(placed.position[order], placed.radius[order], self.density)
@@ -156,9 +154,7 @@ def settle(grains: Grains, pile: Pile) -> None:
     for name, high in zip(grains.plate_names, plates[:, HIGH], strict=True):
         if high < settled_top:
             raise InputError(
-                Fault(
-                    f"{name}.y_high", float(high), "grains would spill over it", "m", f">= {settled_top:.4g}"
-                )
+                Fault(f"{name}.y_high", float(high), "grains would spill over it", "m", f">= {settled_top:.4g}")
             )
 
 
@@ -180,9 +176,7 @@ def scale_springs(grains: Grains, factor: float) -> None:
     grains.plate_spring *= factor
 
 
-def relax(
-    grains: Grains, law: Linear, weights: Array, gravity: float, *, wall_law: Linear | None = None
-) -> None:
+def relax(grains: Grains, law: Linear, weights: Array, gravity: float, *, wall_law: Linear | None = None) -> None:
     """From rest under one law and weight to rest under ``law`` and ``weights`` (n, 2) N/m.
 
     The friction forces are carried over in proportion to the weights, so that the packing does not forget

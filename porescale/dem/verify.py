@@ -105,9 +105,7 @@ def oblique() -> Measured:
     cm/s.
     """
     damped = lab.law_at(0.1)
-    law = lab.law_at(
-        0.1, tangential_stiffness=0.25 * lab.STIFFNESS, friction=0.3, tangential_damping=damped.damping
-    )
+    law = lab.law_at(0.1, tangential_stiffness=0.25 * lab.STIFFNESS, friction=0.3, tangential_damping=damped.damping)
     fall, slide = 0.01, 0.05
     unit = 0.3 * (1.0 + law.restitution(lab.MASS)) * fall
     _, along, spin = lab.impact(law, fall, [slide, 0.0], [0.0, slide / lab.RADIUS])

@@ -55,9 +55,7 @@ class Box:
                 )  # fmt: skip
         if not (self.lower[0] < self.upper[0] and self.lower[1] < self.upper[1]):
             faults.append(
-                Fault(
-                    "box.upper", self.upper, "must lie right of and above box.lower", "m", f"> {self.lower}"
-                )
+                Fault("box.upper", self.upper, "must lie right of and above box.lower", "m", f"> {self.lower}")
             )
         if faults:
             raise InputError(faults)
@@ -103,9 +101,7 @@ class Plate:
     def __post_init__(self) -> None:
         numbers = (self.x, self.y_low, self.y_high, self.velocity)
         if not all(math.isfinite(value) for value in numbers) or self.y_low >= self.y_high:
-            raise InputError(
-                Fault(f"{self.name}.y_high", self.y_high, "must lie above y_low", "m", f"> {self.y_low}")
-            )
+            raise InputError(Fault(f"{self.name}.y_high", self.y_high, "must lie above y_low", "m", f"> {self.y_low}"))
         if self.friction is not None and not self.friction >= 0.0:
             raise InputError(Fault(f"{self.name}.friction", self.friction, allowed=">= 0"))
 

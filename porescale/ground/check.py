@@ -68,9 +68,7 @@ class Unstable(PorescaleError):
 
     code = 3
 
-    def __init__(
-        self, where: str, quantity: str, value: float, unit: str, step: int, time: float, cause: str
-    ) -> None:
+    def __init__(self, where: str, quantity: str, value: float, unit: str, step: int, time: float, cause: str) -> None:
         self.where, self.quantity, self.value, self.unit = where, quantity, value, unit
         self.step, self.time, self.cause = step, time, cause
         super().__init__(

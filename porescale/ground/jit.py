@@ -39,7 +39,8 @@ def cache_folder() -> Path:
 
 os.environ.setdefault("NUMBA_CACHE_DIR", str(cache_folder()))
 # Threads that wait at the end of a loop spin for milliseconds by default.  On a machine with other work that costs a
-# factor of 20 (measured, two threads beside eight busy processes); this many turns, some 10 us, cost a quiet one nothing.
+# factor of 20 (measured, two threads beside eight busy processes); this many turns, some 10 us, cost a quiet one
+# nothing.
 os.environ.setdefault("GOMP_SPINCOUNT", "3000")
 
 import llvmlite.binding as llvm  # noqa: E402  (after the cache folder is set)

@@ -51,9 +51,7 @@ def _factor_and_offset(source: str, unit: str) -> tuple[Decimal, Decimal]:
         zero = registry.Quantity(Decimal(0), given).to(wanted).magnitude
         one = registry.Quantity(Decimal(1), given).to(wanted).magnitude
     except pint.DimensionalityError:
-        raise ValueError(
-            f"{source!r} does not measure the same thing as {unit or 'a plain number'}"
-        ) from None
+        raise ValueError(f"{source!r} does not measure the same thing as {unit or 'a plain number'}") from None
     return one - zero, zero
 
 

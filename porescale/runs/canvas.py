@@ -95,11 +95,7 @@ class Canvas:
 
     def _cloud(self, image: Array, cloud: Cloud) -> None:
         discs = "radius" in cloud.data
-        radius = (
-            np.asarray(cloud.data["radius"], float)
-            if discs
-            else np.full(len(cloud.position), self.survey.dot)
-        )
+        radius = np.asarray(cloud.data["radius"], float) if discs else np.full(len(cloud.position), self.survey.dot)
         at = self.pixels(cloud.position)
         size = radius * self.per_x if discs else np.maximum(radius * self.per_x, 1.0)
         seen = np.isfinite(at).all(1) & (at > -size[:, None]).all(1)
@@ -112,9 +108,7 @@ class Canvas:
             np.rint((radii - rim) * ONE).astype(int).tolist(),
         )
         rimmed = discs & (radii >= 2.5)
-        for centre, outer, core, edge, colour in zip(
-            centres, whole, inner, rimmed.tolist(), colours, strict=True
-        ):
+        for centre, outer, core, edge, colour in zip(centres, whole, inner, rimmed.tolist(), colours, strict=True):
             if edge:
                 cv2.circle(image, centre, outer, rim_colour, -1, cv2.LINE_AA, SHIFT)
                 cv2.circle(image, centre, core, colour, -1, cv2.LINE_AA, SHIFT)
@@ -151,9 +145,7 @@ class Canvas:
         rows, columns = self._inside(grid)
         down = np.arange(rows.start + pitch / 2, min(rows.stop, self.height), pitch).astype(int)
         across = np.arange(columns.start + pitch / 2, min(columns.stop, self.width), pitch).astype(int)
-        along = np.stack(
-            [self._resampled(grid, velocity[..., axis])[np.ix_(down, across)] for axis in (0, 1)], -1
-        )
+        along = np.stack([self._resampled(grid, velocity[..., axis])[np.ix_(down, across)] for axis in (0, 1)], -1)
         along *= [0.9 * pitch / self.survey.field.high, -0.9 * pitch / self.survey.field.high]
         length = np.hypot(along[..., 0], along[..., 1])
         where = np.nonzero(length > SPECK)

@@ -96,9 +96,7 @@ def commit() -> dict[str, Any] | None:
 
 
 def _git(root: Path, *words: str) -> str:
-    done = subprocess.run(
-        ["git", "-C", str(root), *words], capture_output=True, text=True, timeout=10, check=True
-    )
+    done = subprocess.run(["git", "-C", str(root), *words], capture_output=True, text=True, timeout=10, check=True)
     return done.stdout.strip()
 
 
@@ -138,9 +136,7 @@ def plain(value: Any) -> Any:
     return str(value)
 
 
-def changed_keys(
-    old: Any, new: Any, free: Collection[str] = FREE, place: str = ""
-) -> dict[str, tuple[Any, Any]]:
+def changed_keys(old: Any, new: Any, free: Collection[str] = FREE, place: str = "") -> dict[str, tuple[Any, Any]]:
     """Dotted keys in which two scenes differ, with both values, but for ``free`` ones and below."""
     if place and (place in free or place.rpartition(".")[2] in free):
         return {}

@@ -113,6 +113,4 @@ def _join(folder: Path) -> None:
 def _damaged(folder: Path, error: Exception) -> InputError:
     reason = " ".join(str(error).split())[:120]
     repair = "run it again, or take the file from a backup"
-    return InputError(
-        Fault("run folder", str(folder), f"a snapshot file is damaged ({reason})", repair=repair)
-    )
+    return InputError(Fault("run folder", str(folder), f"a snapshot file is damaged ({reason})", repair=repair))

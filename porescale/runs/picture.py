@@ -47,9 +47,7 @@ class Painter:
         left, right, bottom, top = found.view
         self.scales = [scale for scale in (found.field, found.cloud) if scale is not None]
         aside = RIGHT + BAR * (len(self.scales) + bool(found.look.kinds))
-        free = np.array(
-            [found.look.size - (LEFT + aside) * self.unit, found.look.size - (TOP + BOTTOM) * self.unit]
-        )
+        free = np.array([found.look.size - (LEFT + aside) * self.unit, found.look.size - (TOP + BOTTOM) * self.unit])
         per_metre = (free / [right - left, top - bottom]).min()
         self.width = max(48, round((right - left) * per_metre))
         self.height = max(48, round((top - bottom) * per_metre))
@@ -220,9 +218,7 @@ def _dress(axes: Axes, found: Survey, font: float, *, x_label: bool = True, y_la
         axes.set_ylabel(f"y ({unit})", fontsize=font)
 
 
-def _bar(
-    figure: Figure, scale: Scale, where: tuple[tuple[int, int], float, float, float, float], font: float
-) -> None:
+def _bar(figure: Figure, scale: Scale, where: tuple[tuple[int, int], float, float, float, float], font: float) -> None:
     """A colour bar at pixels; arrows at its ends say that values beyond have the last colour."""
     axes = _place(figure, *where)
     norm = Normalize(scale.low * scale.factor, scale.high * scale.factor)
@@ -235,9 +231,7 @@ def _bar(
 
 def _legend(figure: Figure, look: Look, corner: tuple[float, float], font: float) -> None:
     """The kinds and their colours."""
-    patches = [
-        Patch(facecolor=colour, edgecolor="none", label=label) for label, colour in look.kinds.values()
-    ]
+    patches = [Patch(facecolor=colour, edgecolor="none", label=label) for label, colour in look.kinds.values()]
     figure.legend(
         handles=patches,
         loc="upper left",

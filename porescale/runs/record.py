@@ -59,9 +59,7 @@ class Record:
         return cls(folder, card)
 
     @classmethod
-    def resumed(
-        cls, folder: Path, given: dict[str, Any], model: Model, schedules: dict[str, Schedule]
-    ) -> Record:
+    def resumed(cls, folder: Path, given: dict[str, Any], model: Model, schedules: dict[str, Schedule]) -> Record:
         """Go on from the checkpoint: the model, the schedules and the files as they were then."""
         content = read_checkpoint(folder / CHECKPOINT)
         card = {**cards.read_card(folder), **cards.plain(given)}
@@ -149,9 +147,7 @@ class Record:
 
     def conclude(self, model: Model, outcome: str, problem: str = "") -> None:
         """Say in the card how the run ended."""
-        self.card.update(
-            outcome=outcome, ended=cards.now(), seconds=self.seconds(), step=model.step, time=model.time
-        )
+        self.card.update(outcome=outcome, ended=cards.now(), seconds=self.seconds(), step=model.step, time=model.time)
         if problem:
             self.card["problem"] = problem
         cards.write_card(self.folder, self.card)
@@ -163,9 +159,7 @@ def refuse_changes(folder: Path, given: dict[str, Any], free: Collection[str]) -
     faults = []
     for key, (was, now) in cards.changed_keys(old, new, free).items():
         repair = f"resume with {was!r}, or start another run"
-        faults.append(
-            Fault(key or "scene", now if now is not None else "absent", f"was {was!r}", repair=repair)
-        )
+        faults.append(Fault(key or "scene", now if now is not None else "absent", f"was {was!r}", repair=repair))
     if faults:
         raise InputError(faults)
 

@@ -49,9 +49,7 @@ class Series:
             self.names = list(row)
             self._write(_line(self.names))
         if list(row) != self.names:
-            raise ValueError(
-                f"series row has {sorted(set(row) ^ set(self.names))} other than the rows before"
-            )
+            raise ValueError(f"series row has {sorted(set(row) ^ set(self.names))} other than the rows before")
         self._write(_line([repr(_plain(value)) for value in row.values()]))
 
     def sync(self) -> None:

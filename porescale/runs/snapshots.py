@@ -102,9 +102,7 @@ def _rewrite(folder: Path, entries: dict[int, dict[str, Frame]]) -> None:
     """Write each joined file anew from the catalogue's ``entries``."""
     names = {name for entry in entries.values() for name in entry}
     for name in sorted(names):
-        vtkhdf.join(
-            Path(folder) / f"{name}.vtkhdf", [entry[name] for entry in entries.values() if name in entry]
-        )
+        vtkhdf.join(Path(folder) / f"{name}.vtkhdf", [entry[name] for entry in entries.values() if name in entry])
 
 
 def clear(folder: Path) -> None:

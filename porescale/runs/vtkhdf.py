@@ -167,9 +167,7 @@ def _points(
     return points, data
 
 
-def _root(
-    file: h5py.File, kind: str, ours: str, name: str, steps: Sequence[int], times: Sequence[float]
-) -> h5py.Group:
+def _root(file: h5py.File, kind: str, ours: str, name: str, steps: Sequence[int], times: Sequence[float]) -> h5py.Group:
     """What both kinds share: type, time values, and our own group."""
     root = file.create_group("VTKHDF", track_order=True)
     root.attrs["Version"] = np.array([2, 0])

@@ -18,6 +18,8 @@ TAU_COARSE = 1.5
 """Relaxation time above which the drag at 10 cells per diameter is more than a tenth too small."""
 CELLS_COARSE = 4.0
 """Cells per hydraulic diameter below which drag is off by a tenth or more."""
+LIGHT, LIGHT_CELLS = 0.5, 16.0
+"""Density ratio below which free grains need so many cells: 0.3 is stable at 16 and diverges at 10 (measured)."""
 BLUNT = 1.2
 """Drag coefficient of a cylinder in cross flow at Reynolds numbers of 10² to 10⁵."""
 
@@ -92,6 +94,12 @@ def judge(
     if across < CELLS_COARSE:
         warnings.append(
             f"the fluid sees {across:.3g} cells per grain: below {CELLS_COARSE:g} the drag is off by a tenth"
+        )
+    lightness = scene.grains.density / scales.density
+    if lightness < LIGHT and sizes[0] * ratio / scales.spacing < LIGHT_CELLS:
+        warnings.append(
+            f"density ratio {lightness:.3g} with {sizes[0] * ratio / scales.spacing:.3g} cells per grain: grains below "
+            f"{LIGHT} were unstable with fewer than {LIGHT_CELLS:g} cells; refine the spacing"
         )
     if scales.relaxation_time > TAU_COARSE:
         warnings.append(

@@ -58,11 +58,7 @@ def main(app: App, tokens: Sequence[str] | None = None) -> int:
         _say("interrupted")
         return INTERRUPTED
     except MemoryError as error:
-        _say(
-            f"not enough memory ({error}); make the scene coarser or smaller"
-            if str(error)
-            else "not enough memory"
-        )
+        _say(f"not enough memory ({error}); make the scene coarser or smaller" if str(error) else "not enough memory")
         return PorescaleError.code
     except BrokenPipeError:  # the reader of our output left, as `| head` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

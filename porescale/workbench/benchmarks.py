@@ -129,9 +129,7 @@ class Benchmarks:
         for name in names:
             made = self._known[name](size, count, dtype)
             for work in [made] if isinstance(made, Work) else made:
-                yield _measured(
-                    f"{name}.{work.variant}" if work.variant else name, work, count, dtype, min_seconds
-                )
+                yield _measured(f"{name}.{work.variant}" if work.variant else name, work, count, dtype, min_seconds)
 
 
 def _measured(name: str, work: Work, threads: int, dtype: Dtype, min_seconds: float) -> Row:

@@ -33,9 +33,7 @@ def nearest(name: str, known: Iterable[str], what: str = "keys") -> str:
     return f"known {what}: {', '.join(names)}" if names else f"there are no {what} here"
 
 
-def translate(
-    error: ValidationError, scene_type: type[BaseModel], data: Mapping[str, Any]
-) -> list[tuple[Key, Fault]]:
+def translate(error: ValidationError, scene_type: type[BaseModel], data: Mapping[str, Any]) -> list[tuple[Key, Fault]]:
     """Every error of validating ``data`` as ``scene_type``: faults with their keys, in the fields' order."""
     found: list[tuple[Key, Fault]] = []
     branches: dict[Key, int] = {}  # where the first branch of a union was reported
@@ -105,9 +103,7 @@ def _fault(
         return Fault(f"{name}.{discriminator}", context["tag"], "unknown choice", "", ", ".join(tags), repair)
     if kind == "union_tag_not_found":
         discriminator = str(context["discriminator"]).strip("'")
-        tags = (
-            sorted({tag for inner in sections_in(field.annotation) for tag in _tags(inner)}) if field else []
-        )
+        tags = sorted({tag for inner in sections_in(field.annotation) for tag in _tags(inner)}) if field else []
         repair = f"add {discriminator} = …"
         return Fault(f"{name}.{discriminator}", None, "is missing", "", ", ".join(tags), repair)
     if kind in ("model_type", "model_attributes_type", "dict_type"):
@@ -174,12 +170,7 @@ def _fields(owner: type[BaseModel]) -> dict[str, FieldInfo]:
 
 def _tags(owner: type[BaseModel]) -> set[Any]:
     """Words that choose this section among others of a union."""
-    return {
-        tag
-        for field in owner.model_fields.values()
-        for tag in get_args(field.annotation)
-        if isinstance(tag, str)
-    }
+    return {tag for field in owner.model_fields.values() for tag in get_args(field.annotation) if isinstance(tag, str)}
 
 
 def sections_in(annotation: Any) -> Iterator[type[BaseModel]]:

@@ -15,9 +15,7 @@ def choose(asked: Sequence[str], known: Iterable[str], what: str) -> list[str]:
     fault for each name that asks for nothing.
     """
     names = list(known)
-    below = {
-        name: [other for other in names if other == name or other.startswith(f"{name}.")] for name in asked
-    }
+    below = {name: [other for other in names if other == name or other.startswith(f"{name}.")] for name in asked}
     rooms = {name.partition(".")[0] for name in names}
     unknown = [name for name, found in below.items() if not found]
     if unknown:

@@ -60,9 +60,7 @@ class Report:
         console = console or Console()
         console.print(Text(self.title, style="bold"))
         for name, rows in self.groups.items():
-            table = Table(
-                title=name or None, title_justify="left", box=None, show_header=False, pad_edge=False
-            )
+            table = Table(title=name or None, title_justify="left", box=None, show_header=False, pad_edge=False)
             table.add_column()
             table.add_column(justify="right")
             table.add_column()

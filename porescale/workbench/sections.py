@@ -88,9 +88,7 @@ class Opened(Generic[S]):
     settings: tuple[str, ...]
 
 
-def validate(
-    scene_type: type[S], table: Mapping[str, Any], *, file: str = "", folder: Path | None = None
-) -> S:
+def validate(scene_type: type[S], table: Mapping[str, Any], *, file: str = "", folder: Path | None = None) -> S:
     """``table`` as a scene; InputError with all its faults, each naming ``file``.
 
     Validators find ``folder`` as ``info.context["folder"]``: paths in a scene are relative to its file.
@@ -101,9 +99,7 @@ def validate(
     return scene
 
 
-def load(
-    path: str | Path, scene_type: type[S], *, quality: str | None = None, overrides: Sequence[str] = ()
-) -> S:
+def load(path: str | Path, scene_type: type[S], *, quality: str | None = None, overrides: Sequence[str] = ()) -> S:
     """The scene at ``path``, a TOML file or a folder with scene.toml.
 
     quality : level, None for the file's ``quality_default`` or none;  overrides : ``section.key=value``.
@@ -175,9 +171,7 @@ def _try(
         return None, translate(error, scene_type, table)
 
 
-def _levels(
-    table: Mapping[str, Any], asked: str | None
-) -> tuple[dict[str, dict[str, Any]], str | None, list[Fault]]:
+def _levels(table: Mapping[str, Any], asked: str | None) -> tuple[dict[str, dict[str, Any]], str | None, list[Fault]]:
     """Quality levels of a scene file, the one to use (None: none), and what is wrong with them."""
     given, default = table.get("quality", {}), table.get("quality_default")
     if not isinstance(given, Mapping):
@@ -200,18 +194,12 @@ def _levels(
                 )
             )
         elif not isinstance(entries, Mapping):
-            faults.append(
-                Fault(f"quality.{name}", entries, "is not a table", repair=f"write [quality.{name}.section]")
-            )
+            faults.append(Fault(f"quality.{name}", entries, "is not a table", repair=f"write [quality.{name}.section]"))
     levels = {name: dict(given[name]) for name in LEVELS if isinstance(given.get(name), Mapping)}
     level, key = (asked, "--quality") if asked is not None else (default, "quality_default")
     if level is not None and level not in levels:
         has = ", ".join(levels)
-        repair = (
-            f"choose one of these or add [quality.{level}]"
-            if has
-            else f"add [quality.{level}] or leave it out"
-        )
+        repair = f"choose one of these or add [quality.{level}]" if has else f"add [quality.{level}] or leave it out"
         faults.append(Fault(key, level, "this scene has no such level", "", has or "none", repair))
         level = None
     return levels, level, faults

@@ -86,9 +86,7 @@ class Validation:
         seconds = time.perf_counter() - start
         passed = error <= self.tolerance
         row_error = None if math.isnan(error) else error
-        return Row(
-            self.name, self.source, reference, measured, row_error, self.tolerance, because, seconds, passed
-        )
+        return Row(self.name, self.source, reference, measured, row_error, self.tolerance, because, seconds, passed)
 
 
 class Validations:
@@ -137,17 +135,23 @@ class Validations:
 
 
 def table(rows: Sequence[Row]) -> Table:
-    """Rows as a table for people."""
+    """Rows as a table for people: numbers in one line, below it where they come from and why the tolerance."""
     from rich.table import Table
     from rich.text import Text
 
-    made = Table(box=None, pad_edge=False, header_style="bold")
-    for heading in ("", "name", "reference", "measured", "error", "tolerance", "because", "source"):
-        made.add_column(heading, overflow="fold")
+    made = Table(box=None, pad_edge=False, show_header=False)
+    made.add_column()
+    made.add_column(overflow="fold")
     for row in rows:
         verdict = Text("pass", style="green") if row.passed else Text("FAIL", style="bold red")
-        cells = (row.name, row.reference, row.measured, row.error, row.tolerance, row.because, row.source)
-        made.add_row(verdict, *(Text(shown(cell)) for cell in cells))
+        text = Text(row.name, style="bold")
+        text.append(
+            f"\nreference {shown(row.reference)}, measured {shown(row.measured)}, "
+            f"error {shown(row.error)}, tolerance {shown(row.tolerance)}",
+            style="not bold",
+        )
+        text.append(f"\n{row.source}; {row.because}", style="not bold dim")
+        made.add_row(verdict, text)
     return made
 
 

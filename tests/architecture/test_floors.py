@@ -62,9 +62,7 @@ def _asks_for_the_version(source: Source, name: str) -> bool:
         return True
     if name != "porescale":
         return False
-    uses = [
-        n for n in ast.walk(source.tree) if isinstance(n, ast.Attribute) and isinstance(n.value, ast.Name)
-    ]
+    uses = [n for n in ast.walk(source.tree) if isinstance(n, ast.Attribute) and isinstance(n.value, ast.Name)]
     return all(use.attr == "__version__" for use in uses if use.value.id == "porescale")
 
 

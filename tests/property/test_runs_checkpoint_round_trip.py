@@ -24,9 +24,7 @@ DTYPES = st.one_of(
 )
 ARRAYS = hnp.arrays(DTYPES, hnp.array_shapes(min_dims=0, max_dims=3, min_side=0, max_side=4))
 NUMBERS = st.one_of(st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=8))
-SCALARS = st.one_of(
-    st.floats().map(np.float64), st.integers(-9, 9).map(np.int32), st.booleans().map(np.bool_)
-)
+SCALARS = st.one_of(st.floats().map(np.float64), st.integers(-9, 9).map(np.int32), st.booleans().map(np.bool_))
 VALUES = st.recursive(
     st.one_of(NUMBERS, SCALARS, ARRAYS),
     lambda inner: st.one_of(

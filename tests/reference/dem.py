@@ -41,9 +41,7 @@ class World:
     arms: str = "lever"
     springs: dict[tuple[str, int, int], float] = field(default_factory=dict)
 
-    def law(
-        self, key: tuple[str, int, int], overlap: float, closing: float, slip: float, dt: float, mu: float
-    ):
+    def law(self, key: tuple[str, int, int], overlap: float, closing: float, slip: float, dt: float, mu: float):
         """Normal and tangential force of one contact with its spring."""
         normal = self.k * overlap + self.c * closing
         if not self.pulls and normal < 0:

@@ -23,9 +23,7 @@ class Toy:
 
     step_seconds = 1e-3
 
-    def __init__(
-        self, beads: int = 7, pause: float = 0.0, breaks_at: int = 1 << 60, varying: bool = False
-    ) -> None:
+    def __init__(self, beads: int = 7, pause: float = 0.0, breaks_at: int = 1 << 60, varying: bool = False) -> None:
         self.random = np.random.default_rng(1)
         self.x = self.random.random((beads, 2))
         self.v = np.zeros((beads, 2))

@@ -39,8 +39,7 @@ def grains_in_a_box(seed=0, count=24, law=LAW, plates=None, skin=None):
 def twin_of(grains):
     d, law = grains.discs, grains.law
     bodies = [
-        Body(*d.position[i], d.radius[i], d.mass[i], *d.velocity[i], d.spin[i], d.angle[i])
-        for i in range(d.count)
+        Body(*d.position[i], d.radius[i], d.mass[i], *d.velocity[i], d.spin[i], d.angle[i]) for i in range(d.count)
     ]
     return World(
         bodies, law.stiffness, law.damping, law.tangential_stiffness, law.tangential_damping, law.friction,
@@ -220,9 +219,7 @@ def test_a_plate_holds_until_it_is_removed_and_then_is_nothing():
     held, freed = column(), column()
     held.step(1e-5, count=2000)
     assert held.discs.velocity[0, 0] > 0.0
-    assert held.discs.velocity[0, 0] == pytest.approx(
-        LAW.restitution(held.discs.mass[0]), abs=1e-2
-    )  # T_c/1000
+    assert held.discs.velocity[0, 0] == pytest.approx(LAW.restitution(held.discs.mass[0]), abs=1e-2)  # T_c/1000
     freed.remove_plate("gate")
     freed.step(1e-5, count=2000)
     assert freed.discs.velocity[0, 0] == -1.0

@@ -221,8 +221,6 @@ def test_a_run_without_snapshots_is_told_so(tmp_path):
 
 
 def test_painting_needs_no_display():
-    words = (
-        "from porescale.runs.picture import Painter; import sys; print('matplotlib.pyplot' in sys.modules)"
-    )
+    words = "from porescale.runs.picture import Painter; import sys; print('matplotlib.pyplot' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", words], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"

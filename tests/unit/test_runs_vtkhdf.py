@@ -107,9 +107,7 @@ def assert_is(loaded, expected):
             assert loaded.grids[name].cells[key].tobytes() == array.tobytes()
     for name, cloud in expected.clouds.items():
         assert loaded.clouds[name].position.tobytes() == cloud.position.tobytes()
-        assert all(
-            loaded.clouds[name].data[key].tobytes() == array.tobytes() for key, array in cloud.data.items()
-        )
+        assert all(loaded.clouds[name].data[key].tobytes() == array.tobytes() for key, array in cloud.data.items())
 
 
 def assert_holds(folder, steps):

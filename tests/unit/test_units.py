@@ -31,9 +31,7 @@ def test_scaling_in_binary_would_miss_the_last_bit() -> None:  # the twin: what 
 @given(st.floats(min_value=-1e6, max_value=1e6, allow_nan=False))
 def test_degrees_and_back(degrees: float) -> None:
     # pi to 28 digits, one rounding here and one in math.degrees: 2 eps.
-    assert math.degrees(to_si(f"{degrees!r} deg", "rad")) == pytest.approx(
-        degrees, rel=2 * sys.float_info.epsilon
-    )
+    assert math.degrees(to_si(f"{degrees!r} deg", "rad")) == pytest.approx(degrees, rel=2 * sys.float_info.epsilon)
 
 
 @pytest.mark.parametrize(
@@ -84,8 +82,6 @@ def test_what_is_no_quantity_is_refused_in_words(value: object, unit: str, words
 
 
 def test_numbers_never_load_pint() -> None:
-    code = (
-        "import sys; from porescale.ground.units import to_si; to_si(1.0, 'm'); print('pint' in sys.modules)"
-    )
+    code = "import sys; from porescale.ground.units import to_si; to_si(1.0, 'm'); print('pint' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"

@@ -50,9 +50,7 @@ class ToyModel:
         self.scene = scene
 
 
-def drive(
-    model: ToyModel, folder: Path, scene: ToyScene, *, card: dict[str, Any], resume: bool, quiet: bool
-) -> Ended:
+def drive(model: ToyModel, folder: Path, scene: ToyScene, *, card: dict[str, Any], resume: bool, quiet: bool) -> Ended:
     troubles = {
         "unstable": lambda: Unstable("cell (1, 2)", "speed", 9.0, "m/s", 7, 0.5, "a smaller step helps"),
         "failed": lambda: PorescaleError("the film\ncould not be made"),
@@ -165,14 +163,10 @@ def test_new_never_overwrites(toy) -> None:
 
 def test_options_reach_the_run(toy) -> None:
     toy("new", "decay")
-    tokens = (
-        "run decay --out elsewhere --quality fine --set decay.rate=7 --set duration='5 s' --threads 1 --quiet"
-    )
+    tokens = "run decay --out elsewhere --quality fine --set decay.rate=7 --set duration='5 s' --threads 1 --quiet"
     code, out, err = toy(*tokens.replace("'", "").replace("5 s", "5_s").split())
     assert code == 2  # 5_s is no quantity
-    assert err == [
-        "--set: duration = '5_s': unknown unit '_s' (allowed: > 0 s); give it in s, as 1.5 or \"1.5 s\""
-    ]
+    assert err == ["--set: duration = '5_s': unknown unit '_s' (allowed: > 0 s); give it in s, as 1.5 or \"1.5 s\""]
     code, out, err = toy(*tokens.replace("'5 s'", "5").split())
     assert (code, out, err) == (0, "", [])
     made = card("elsewhere")

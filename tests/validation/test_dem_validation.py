@@ -61,14 +61,10 @@ def test_too_steep_a_slope_does_not_roll():
 def test_a_slow_tangential_approach_does_not_slide_through():
     # v_t/v_n = 0.5 < 3 mu (1 + e) = 1.6: it sticks on the way, and the formula of gross sliding is far off.
     damped = lab.law_at(0.1)
-    law = lab.law_at(
-        0.1, tangential_stiffness=0.25 * lab.STIFFNESS, friction=0.3, tangential_damping=damped.damping
-    )
+    law = lab.law_at(0.1, tangential_stiffness=0.25 * lab.STIFFNESS, friction=0.3, tangential_damping=damped.damping)
     unit = 0.3 * (1.0 + law.restitution(lab.MASS)) * 0.01
     _, along, _ = lab.impact(law, 0.01, 0.005, 0.0)
-    assert abs((0.005 - float(along[0])) / unit - 1.0) > 100 * tolerance(
-        "dem.oblique_impact_in_gross_sliding"
-    )
+    assert abs((0.005 - float(along[0])) / unit - 1.0) > 100 * tolerance("dem.oblique_impact_in_gross_sliding")
 
 
 def test_drifting_with_the_old_velocity_gains_energy():

@@ -18,9 +18,7 @@ def command(package: Package) -> Callable[..., int]:
 
     def bench(
         *names: Annotated[str, Parameter(help="benchmarks; all if not given")],
-        size: Annotated[
-            int | None, Parameter(help="cells along a side, discs, …; each one's own if not given")
-        ] = None,
+        size: Annotated[int | None, Parameter(help="cells along a side, discs, …; each one's own if not given")] = None,
         threads: Threads = None,
         dtype: Annotated[Literal["float32", "float64"], Parameter(help="type of the fields")] = "float64",
         list_: Annotated[bool, Parameter(name="--list", help="only say which there are")] = False,

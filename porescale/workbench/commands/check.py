@@ -12,9 +12,7 @@ from porescale.workbench.package import Package
 def command(package: Package) -> Callable[..., int]:
     """The `check` command of a package."""
 
-    def check(
-        scene: Scene, /, *, quality: Quality = None, settings: Settings = None, json: Json = False
-    ) -> int:
+    def check(scene: Scene, /, *, quality: Quality = None, settings: Settings = None, json: Json = False) -> int:
         """Say what a scene means (resolution, stability, cost) without running it; warn or refuse."""
         from porescale.workbench.sections import open_scene
 

@@ -20,9 +20,7 @@ def command(package: Package) -> Callable[..., int]:
         file = name / "scene.toml"
         if file.exists() or (name.exists() and not name.is_dir()):
             taken = file if file.exists() else name
-            raise InputError(
-                Fault(str(taken), None, "exists already", repair="choose another name or remove it")
-            )
+            raise InputError(Fault(str(taken), None, "exists already", repair="choose another name or remove it"))
         name.mkdir(parents=True, exist_ok=True)
         with file.open("x", encoding="utf-8") as stream:  # "x": never over a file that came in between
             stream.write(package.template())

@@ -25,9 +25,7 @@ def command(package: Package) -> Callable[..., int]:
         scene: Scene,
         /,
         *,
-        out: Annotated[
-            Path | None, Parameter(help="run folder; runs/ and the name of the scene if not given")
-        ] = None,
+        out: Annotated[Path | None, Parameter(help="run folder; runs/ and the name of the scene if not given")] = None,
         quality: Quality = None,
         settings: Settings = None,
         threads: Threads = None,
