@@ -6,10 +6,14 @@ v and x go by kick-drift-kick.  Density leaps over the velocity at mid-step:
 
 Eq. 48 of Maeda & Sakai 2004 advances ρ with the divergence of the last step, forward Euler for sound,
 which grows at any step.  The exact leapfrog needs ρ' for a and so a second pass over the pairs.  One pass
-does when a takes ρ* = ρ + Δt (D + Δt-weighted (D - D_before)) instead: D extrapolated in a straight line
-from the last two steps.  For sound of frequency ω the amplification per step is then a root of z²(z - 1)²
-+ (ωΔt)²(3z² - 3z + 1) = 0, inside the unit circle for ωΔt < 0.7, with damping 1 - (ωΔt)⁴/2; with D alone
-(no extrapolation) it is outside for every Δt. Only a sees ρ*; ρ itself is never extrapolated.
+does when a takes
+
+    ρ* = ρ + Δt {D + r (D - D_before)},   r = (Δt + Δt_last)/(Δt_last + Δt_before)
+
+instead: D extrapolated in a straight line from the last two mid-steps to this one (r = 1 at equal steps).  For sound
+of frequency ω the amplification per step is then a root of z²(z - 1)² + (ωΔt)²(3z² - 3z + 1) = 0, inside the unit
+circle for ωΔt < 0.7, with damping 1 - (ωΔt)⁴/2; with D alone (no extrapolation) it is outside for every Δt.  Only a
+sees ρ*; ρ itself is never extrapolated.
 """
 
 from __future__ import annotations
@@ -39,10 +43,9 @@ def kick_drift(
 ):  # fmt: skip
     """First half kick, drift and prediction of density for fluid particles; overwrites x, v, predicted.
 
-    v += half a;  x += step (v + smoothed);  predicted = ρ + step {D + ratio (D - D_before)};  half, step
-    in s. lower, upper (2,) m: surfaces of the walls.  The pressure of wall particles keeps water out of
-    walls, but spray carries none: a particle that reaches a surface is put on it and loses its speed into
-    it.  Returns how often.
+    v += half a;  x += step (v + smoothed);  predicted = ρ + step {D + ratio (D - D_before)}.  half, step: s;
+    lower, upper (2,) m: surfaces of the walls.  The pressure of wall particles keeps water out of walls, but spray
+    carries none: a particle that reaches a surface is put on it and loses its speed into it.  Returns how often.
     """
     stopped = 0
     for i in prange(density.shape[0]):
@@ -64,8 +67,7 @@ def kick_drift(
 
 @parallel_kernel
 def pressurise(x, v, mass, density, density0, sound_speed, stiffness, exponent, cut, pressure, record):
-    """Pressure (Pa) of fluid particles from ``density`` (fluid,); overwrites their ``pressure`` and
-    ``record``.
+    """Pressure (Pa) of fluid particles from ``density`` (fluid,); overwrites their ``pressure`` and ``record``.
 
     cut: pressures below that of the air count as none (particles of a free surface do not pull).
     """
@@ -89,10 +91,9 @@ def pressurise(x, v, mass, density, density0, sound_speed, stiffness, exponent, 
 def kick(v, acceleration, density, rate, half, step, least):
     """Second half kick and density of fluid particles; overwrites ``v``, ``density``.
 
-    Continuity follows a particle that leaves its neighbours down to the density of a cloud, below zero if
-    they were crowded: densities stop at ``least`` (kg/m³).
-    Returns the largest |a|² (m²/s⁴) and density (kg/m³), which limit the next step; maxima are exact in
-    any order.
+    Continuity follows a particle that leaves its neighbours down to the density of a cloud, below zero if they were
+    crowded: densities stop at ``least`` (kg/m³).  Returns the largest |a|² (m²/s⁴) and density (kg/m³), which limit
+    the next step; maxima are exact in any order.
     """
     fastest = 0.0
     densest = 0.0
@@ -149,8 +150,9 @@ class Law:
 class Flow:
     """A layer, its law and its pairs, moving.
 
-    step, time (s), next_step (s);  limited : steps that each of `RULES` limited;  stopped : times a
-    particle was stopped at a wall's surface, ``lower`` and ``upper`` (2,) m, infinite unless set.
+    step : steps done;  time, next_step : s;  last_steps : lengths (s) of the last step and the one before;
+    limited : steps that each of `RULES` limited, rule : the one that limits the next;  stopped : times a particle was
+    stopped at a wall's surface, ``lower`` and ``upper`` (2,) m, infinite unless set.
     """
 
     layer: Layer

@@ -86,8 +86,7 @@ class PairList:
             self._carrieds[which] = np.zeros((size, self._carrieds[which].shape[1]))
 
     def update(self, x: Floats, reach: Floats) -> bool:
-        """Build if some point of ``x`` (n, 2) m moved, or its reach (n,) m grew, by skin/2 since the last
-        build.
+        """Build if some point of ``x`` (n, 2) m moved, or its reach (n,) m grew, by skin/2 since the last build.
 
         Two points that stay within skin/2 of their anchors cannot have come within reach unlisted.
         True if built; the arrays are then new.  Raises ValueError at a position or reach that is no number.

@@ -1,5 +1,4 @@
-"""Seeded placement of discs in a rectangle without overlap, and lattices.  Pure geometry: no forces of
-nature.
+"""Seeded placement of discs in a rectangle without overlap, and lattices.  Pure geometry: no forces of nature.
 
 Discs start at random and slide apart: overlaps are the energy of a fictitious spring and FIRE (Bitzek et al.,
 Phys. Rev. Lett. 97 (2006) 170201) brings it to zero, which it can reach below random close packing (0.84 in
@@ -29,9 +28,7 @@ MOST_SWEEPS = 20_000
 
 @dataclass(frozen=True)
 class Placement:
-    """position (n, 2) m; radius (n,) m; fraction: disc area over box area; sweeps: steps of overlap
-    removal.
-    """
+    """position (n, 2) m; radius (n,) m; fraction: disc area over box area; sweeps: steps of overlap removal."""
 
     position: Floats
     radius: Floats
@@ -51,8 +48,7 @@ def place(
     periodic: tuple[bool, bool] = (False, False),
     seed: int = 0,
 ) -> Placement:
-    """Discs wholly inside the box (or across a periodic side), none touching another; the same for the same
-    seed.
+    """Discs wholly inside the box (or across a periodic side), none touching another; the same for the same seed.
 
     Either ``radii`` (n,) m, or two of mean ``diameter`` (m), ``count`` and ``packing_fraction`` (disc area
     over box area, at most 0.80): the third follows.  Diameters are uniform in diameter (1 ± spread), 0 <=
@@ -96,9 +92,7 @@ def draw_radii(
     packing_fraction: float | None,
     rng: np.random.Generator,
 ) -> Floats:
-    """Radii (n,) m of discs of mean ``diameter`` (1 ± spread, uniform) in a box of ``area`` m²; two of three
-    given.
-    """
+    """Radii (n,) m of discs of mean ``diameter`` (1 ± spread, uniform) in a box of ``area`` m²; two of three given."""
     given = {"diameter": diameter, "count": count, "packing_fraction": packing_fraction}
     if sum(value is not None for value in given.values()) != 2:
         raise InputError(
@@ -145,9 +139,7 @@ def slide_apart(
     periodic: tuple[bool, bool],
     fraction: float,
 ) -> tuple[Floats, int]:
-    """Positions (n, 2) m in a box from the origin to ``size`` without overlap, near ``start``; sweeps it
-    took.
-    """
+    """Positions (n, 2) m in a box from the origin to ``size`` without overlap, near ``start``; sweeps it took."""
     n = len(radius)
     if n == 0:
         return start, 0
@@ -191,8 +183,7 @@ def slide_apart(
 
 @kernel
 def repel(x, grown, real, start, partner, width, height, period_x, period_y, velocity, force):
-    """Unit springs between discs of radius ``grown`` (n,) and at walls without period: overwrites ``force``
-    (n, 2).
+    """Unit springs between discs of radius ``grown`` (n,) and at walls without period: overwrites ``force`` (n, 2).
 
     Returns the largest overlap of discs of radius ``real`` with each other or a wall (negative: clear), and
     the power force · ``velocity``.  Centres that coincide are parted along x.
@@ -231,9 +222,7 @@ def repel(x, grown, real, start, partner, width, height, period_x, period_y, vel
 
 @kernel
 def glide(x, velocity, force, step, mixing):
-    """One FIRE step: kick, turn the velocity towards the force, drift.  Overwrites ``x`` and ``velocity`` (n,
-    2).
-    """
+    """One FIRE step: kick, turn the velocity towards the force, drift.  Overwrites ``x`` and ``velocity`` (n, 2)."""
     speed2 = 0.0
     force2 = 0.0
     for i in range(x.shape[0]):
@@ -249,9 +238,7 @@ def glide(x, velocity, force, step, mixing):
 
 
 def square_lattice(lower: tuple[float, float], upper: tuple[float, float], spacing: float) -> Floats:
-    """Positions (n, 2) m of a square lattice, half a ``spacing`` (m) inside the lower corner, row after
-    row.
-    """
+    """Positions (n, 2) m of a square lattice, half a ``spacing`` (m) inside the lower corner, row after row."""
     columns, rows = (round((upper[a] - lower[a]) / spacing) for a in (0, 1))
     xs = lower[0] + (np.arange(columns) + 0.5) * spacing
     ys = lower[1] + (np.arange(rows) + 0.5) * spacing
@@ -260,9 +247,7 @@ def square_lattice(lower: tuple[float, float], upper: tuple[float, float], spaci
 
 
 def triangular_lattice(lower: tuple[float, float], upper: tuple[float, float], spacing: float) -> Floats:
-    """Positions (n, 2) m of a triangular lattice of discs of diameter ``spacing`` (m) that fit inside the
-    box.
-    """
+    """Positions (n, 2) m of a triangular lattice of discs of diameter ``spacing`` (m) that fit inside the box."""
     rise = 0.5 * np.sqrt(3.0) * spacing
     width, height = upper[0] - lower[0], upper[1] - lower[1]
     fit = 1e-9  # of a spacing: a box of exactly n spacings holds n discs whatever its corners round to

@@ -10,9 +10,7 @@ from porescale.particles.cells import cell_of, minimum_image, wrapped
 
 @kernel
 def first_unusable(x, reach):
-    """First i whose ``x`` (n, 2) is not finite, or whose ``reach`` (n,) is not finite or negative; else
-    -1.
-    """
+    """First i whose ``x`` (n, 2) is not finite, or whose ``reach`` (n,) is not finite or negative; else -1."""
     for i in range(x.shape[0]):
         if not (np.isfinite(x[i, 0]) and np.isfinite(x[i, 1]) and np.isfinite(reach[i]) and reach[i] >= 0.0):
             return i
@@ -21,8 +19,7 @@ def first_unusable(x, reach):
 
 @kernel
 def strayed(x, anchor, reach, anchor_reach, half_skin, period_x, period_y):
-    """True if some point left its ``anchor`` (n, 2) m by more than ``half_skin`` less the growth of its
-    reach.
+    """True if some point left its ``anchor`` (n, 2) m by more than ``half_skin`` less the growth of its reach.
 
     Positions that are no numbers count as strayed.  No early exit, so that the loop vectorises.
     """
@@ -64,9 +61,7 @@ def window(at, range_, lower, inverse_size, number, period):
 
 @inline
 def count_stretch(i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, period_x, period_y, full):
-    """Number of partners of point i among slots k0 … k1-1 of the cell order.  Without writing, so it
-    vectorises.
-    """
+    """Number of partners of point i among slots k0 … k1-1 of the cell order.  Without writing, so it vectorises."""
     found = 0
     for k in range(np.uint64(k0), np.uint64(k1)):  # unsigned: no wraparound of negative indices
         dx = minimum_image(xi - sx[k], period_x)
@@ -81,8 +76,7 @@ def count_stretch(i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, perio
 def fill_stretch(
     i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, period_x, period_y, full, partner, slot, end
 ):  # fmt: skip
-    """As count_stretch, writing partners from ``partner[slot]`` on, never at ``end`` or beyond; returns
-    their number.
+    """As count_stretch, writing partners from ``partner[slot]`` on, never at ``end`` or beyond; returns their number.
 
     Every candidate is written and only a partner moves on to the next slot: half the candidates are partners,
     and a branch on that would be guessed wrong every other time.
@@ -173,9 +167,7 @@ def count_parallel(
     lower_x, lower_y, inverse_x, inverse_y, columns, rows,
     period_x, period_y, largest, skin, full,
 ):  # fmt: skip
-    """Row lengths over threads, summed in order: overwrites ``start`` (n + 1,); returns the number of
-    pairs.
-    """
+    """Row lengths over threads, summed in order: overwrites ``start`` (n + 1,); returns the number of pairs."""
     n = x.shape[0]
     for i in prange(n):
         start[i + 1] = search_row(
