@@ -16,6 +16,9 @@ from porescale.workbench.package import Package
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as shells have it: 128 + SIGINT."""
 
+OF_THE_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EPERM, errno.EROFS, errno.EIO, errno.EFBIG)
+"""What the system may answer to any call, even where it names no file."""
+
 
 def application(package: Package) -> App:
     """The package's app with run, check, show, new, verify and bench; more commands may be added to it."""
@@ -64,9 +67,9 @@ def main(app: App, tokens: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return PorescaleError.code
     except OSError as error:
-        if error.errno not in (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EROFS):
+        if error.filename is None and error.errno not in OF_THE_MACHINE:
             raise
-        _say(f"{error.filename or 'writing'}: {error.strerror}")
+        _say(f"{error.filename if error.filename is not None else 'writing'}: {error.strerror or error}")
         return PorescaleError.code
 
 

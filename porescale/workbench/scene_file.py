@@ -16,10 +16,14 @@ SCENE_FILE = "scene.toml"
 
 def find(path: Path) -> Path:
     """The scene file that ``path`` (a file, or a folder with scene.toml) names; InputError if none."""
-    file = path / SCENE_FILE if path.is_dir() else path
-    if file.is_file():
-        return file
-    looked = f"looked for the file {file}" if path.is_dir() else f"looked for a file or folder {path}"
+    try:
+        folder = path.is_dir()
+        file = path / SCENE_FILE if folder else path
+        if file.is_file():
+            return file
+    except OSError as error:  # a name too long, a folder that may not be looked into
+        raise InputError(Fault("SCENE", problem=f"cannot be read ({error.strerror})", repair="name another")) from None
+    looked = f"looked for the file {file}" if folder else f"looked for a file or folder {path}"
     raise InputError(
         Fault(
             str(path),

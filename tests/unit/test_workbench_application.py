@@ -58,7 +58,8 @@ def drive(model: ToyModel, folder: Path, scene: ToyScene, *, card: dict[str, Any
         "bug": lambda: ZeroDivisionError("ours"),
         "memory": lambda: MemoryError("12 GiB"),
         "disk": lambda: OSError(28, "No space left on device", "fields.vtkhdf"),
-        "lost": lambda: FileNotFoundError(2, "No such file", "ours"),
+        "lost": lambda: FileNotFoundError(2, "No such file", "fields.vtkhdf"),
+        "nameless": lambda: OSError(22, "Invalid argument"),
     }
     if scene.trouble:
         raise troubles[scene.trouble]()
@@ -182,6 +183,51 @@ def test_options_may_stand_anywhere_and_values_may_be_negative(toy) -> None:
     assert card()["scene"]["decay"] == {"rate": 1.0, "start": -1.0}
 
 
+LONG = "a" * 300
+
+
+@pytest.mark.parametrize(
+    ("folder", "words"),
+    [
+        ("/proc/foo", "'/proc/foo': cannot be written (No such file or directory)"),
+        ("/proc/foo/deep", "'/proc/foo/deep': cannot be written"),
+        ("decay/scene.toml/sub", "Not a directory"),
+        (LONG, "File name too long"),
+        (f"{LONG}/sub", "File name too long"),
+        ("", "is empty"),
+    ],
+)
+def test_a_folder_that_cannot_be_written_is_wrong_input_found_before_the_model_is_built(
+    toy, monkeypatch, folder: str, words: str
+) -> None:
+    toy("new", "decay")
+    monkeypatch.setattr(ToyModel, "__init__", None)
+    for command in (("run", "decay", "--out", folder), ("new", folder)):
+        code, out, err = toy(*command)
+        assert (code, out, len(err)) == (2, "", 1)
+        assert words in err[0]
+        assert len(err[0]) < 250
+    assert [path.name for path in Path().iterdir()] == ["decay"]
+    Path("odd/card.json").mkdir(parents=True)
+    for option in ("--overwrite", "--resume"):
+        assert "card.json there is a folder" in toy("run", "decay", "--out", "odd", option)[2][0]
+    assert toy("check", LONG)[::2] == (2, ["SCENE: cannot be read (File name too long); name another"])
+
+
+def test_a_folder_that_the_system_withholds_is_wrong_input_and_nothing_is_left(toy, monkeypatch) -> None:
+    toy("new", "decay")
+
+    def withheld(path: Path, **_: Any) -> None:
+        raise PermissionError(1, "Operation not permitted", str(path))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "touch", withheld)
+        code, _, err = toy("run", "decay", "--out", "deep/er")
+    assert (code, err) == (2, ["--out = 'deep/er': cannot be written (Operation not permitted); name another folder"])
+    assert not Path("deep").exists()
+    assert toy("run", "decay", "--out", "deep/er")[0] == 0  # the twin
+
+
 def test_an_existing_run_is_refused_resumed_or_overwritten(toy) -> None:
     toy("new", "decay")
     assert "holds no run to resume" in toy("run", "decay", "--resume")[2][0]
@@ -207,6 +253,7 @@ def test_an_existing_run_is_refused_resumed_or_overwritten(toy) -> None:
         ("stopped", 130, "interrupted"),
         ("memory", 1, "not enough memory (12 GiB)"),
         ("disk", 1, "fields.vtkhdf: No space left"),
+        ("lost", 1, "fields.vtkhdf: No such file"),
     ],
 )
 def test_every_end_has_its_code_and_one_line(toy, trouble: str, code: int, words: str) -> None:
@@ -217,7 +264,7 @@ def test_every_end_has_its_code_and_one_line(toy, trouble: str, code: int, words
     assert words in err[0]
 
 
-@pytest.mark.parametrize(("trouble", "kind"), [("bug", ZeroDivisionError), ("lost", FileNotFoundError)])
+@pytest.mark.parametrize(("trouble", "kind"), [("bug", ZeroDivisionError), ("nameless", OSError)])
 def test_our_own_bugs_keep_their_traceback(toy, trouble: str, kind: type[Exception]) -> None:
     toy("new", "decay")
     with pytest.raises(kind):

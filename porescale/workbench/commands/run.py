@@ -12,6 +12,7 @@ from cyclopts import Parameter
 
 from porescale.ground.check import Fault, InputError
 from porescale.workbench.commands.options import Quality, Scene, Settings, Threads, use_threads
+from porescale.workbench.folders import refuse_unwritable, unusable
 from porescale.workbench.package import Outcome, Package
 
 CARD = "card.json"
@@ -25,7 +26,7 @@ def command(package: Package) -> Callable[..., int]:
         scene: Scene,
         /,
         *,
-        out: Annotated[Path | None, Parameter(help="run folder; runs/ and the name of the scene if not given")] = None,
+        out: Annotated[str | None, Parameter(help="run folder; runs/ and the name of the scene if not given")] = None,
         quality: Quality = None,
         settings: Settings = None,
         threads: Threads = None,
@@ -37,7 +38,9 @@ def command(package: Package) -> Callable[..., int]:
         from porescale.workbench.sections import open_scene, scene_as_dict
 
         opened = open_scene(scene, package.scene(), quality=quality, overrides=settings or ())
-        folder = out if out is not None else Path("runs") / opened.name
+        if out == "":
+            raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
+        folder = Path(out) if out is not None else Path("runs") / opened.name
         refuse_folder(folder, resume=resume, overwrite=overwrite)
         use_threads(threads)
         card = {
@@ -58,11 +61,22 @@ def command(package: Package) -> Callable[..., int]:
 
 
 def refuse_folder(folder: Path, *, resume: bool, overwrite: bool) -> None:
-    """InputError unless a run may be written to ``folder``: nothing that is there is lost by accident."""
+    """InputError unless a run may and can be written to ``folder``: nothing that is there is lost by accident."""
     if resume and overwrite:
         raise InputError(Fault("--resume", None, "contradicts --overwrite", repair="give one of them"))
+    try:
+        _refuse_content(folder, resume=resume, overwrite=overwrite)
+    except OSError as error:  # a name too long, a folder that may not be looked into
+        raise unusable(folder, "--out", error) from error
+    refuse_unwritable(folder, "--out")
+
+
+def _refuse_content(folder: Path, *, resume: bool, overwrite: bool) -> None:
+    """InputError when what is in ``folder`` does not go with what is asked."""
     if folder.exists() and not folder.is_dir():
         raise InputError(Fault("--out", str(folder), "is a file", repair="name a folder"))
+    if (folder / CARD).is_dir():
+        raise InputError(Fault("--out", str(folder), f"{CARD} there is a folder", repair="name another folder"))
     if resume:
         if not (folder / CARD).is_file():
             repair = f"no {CARD} there; name the run's folder with --out, or leave --resume out"
