@@ -8,36 +8,35 @@ Fast-math is off: results must not depend on how a loop was cut into vectors.
 
 from __future__ import annotations
 
-import hashlib
 import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
+from porescale.ground.cache import cache_root, hash_of, keep_only_used
+
 PACKAGES = ("porescale", "continuum_sph")
 
 
 def source_hash() -> str:
-    """Hash (12 hex digits) of every Python source of both packages, in a fixed order."""
+    """Hash (12 hex digits) of every Python source of both packages."""
     root = Path(__file__).resolve().parents[2]
-    digest = hashlib.sha256()
-    for package in PACKAGES:
-        for path in sorted((root / package).rglob("*.py")):
-            digest.update(path.relative_to(root).as_posix().encode())
-            digest.update(path.read_bytes())
-    return digest.hexdigest()[:12]
+    return hash_of(root / package for package in PACKAGES)
 
 
 def cache_folder() -> Path:
     """Folder for compiled kernels: ``$NUMBA_CACHE_DIR`` if set, else one named after the sources' hash."""
-    if "NUMBA_CACHE_DIR" in os.environ:
-        return Path(os.environ["NUMBA_CACHE_DIR"])
-    base = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
-    return base / "porescale" / f"kernels-{source_hash()}-py{sys.version_info.major}{sys.version_info.minor}"
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    if given:
+        return Path(given)
+    return cache_root() / f"kernels-{source_hash()}-py{sys.version_info.major}{sys.version_info.minor}"
 
 
-os.environ.setdefault("NUMBA_CACHE_DIR", str(cache_folder()))
+if not os.environ.get("NUMBA_CACHE_DIR"):
+    KERNELS = cache_folder()
+    os.environ["NUMBA_CACHE_DIR"] = str(KERNELS)
+    keep_only_used(KERNELS, "kernels-*")
 # Threads that wait at the end of a loop spin for milliseconds by default.  On a machine with other work that costs a
 # factor of 20 (measured, two threads beside eight busy processes); this many turns, some 10 us, cost a quiet one
 # nothing.

@@ -1,0 +1,46 @@
+"""What may be lost at any time and made again: the folder for it, and hashes that say what it was made from."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import time
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+
+DAY = 86400.0
+"""s."""
+
+
+def cache_root() -> Path:
+    """``$XDG_CACHE_HOME/porescale``, or ``~/.cache/porescale`` where the variable is unset or empty.  Not made here."""
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "porescale"
+
+
+def hash_of(folders: Iterable[Path]) -> str:
+    """Hash (12 hex digits) of every Python source in ``folders``: names, from each folder's own on, and contents.
+
+    The order of the folders counts; where they lie does not.
+    """
+    digest = hashlib.sha256()
+    for folder in folders:
+        for path in sorted(folder.rglob("*.py")):
+            content = path.read_bytes()
+            digest.update(f"{path.relative_to(folder.parent).as_posix()}\0{len(content)}\0".encode())
+            digest.update(content)
+    return digest.hexdigest()[:12]
+
+
+def keep_only_used(current: Path, pattern: str, days: float = 30.0) -> None:
+    """Mark the folder ``current`` as used now and remove its neighbours matching ``pattern`` unused for ``days``.
+
+    Best effort: what cannot be marked or removed stays as it is.  ``current`` need not exist and is never removed.
+    """
+    with suppress(OSError):
+        if current.is_dir():
+            os.utime(current)
+        for folder in current.parent.glob(pattern):
+            if folder != current and folder.is_dir() and folder.stat().st_mtime < time.time() - days * DAY:
+                shutil.rmtree(folder, ignore_errors=True)
