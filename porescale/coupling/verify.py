@@ -14,6 +14,7 @@ EPS = float(np.finfo(float).eps)
 TIMES = (0.05, 0.1, 0.2, 0.5)  # nu t/a²
 RATIOS = (1.5, 2.5, 7.8)
 ARRAY_DRAG = 51.53  # F/(mu U), square array, solid fraction 0.2
+ARRAY_DEFICIT = 0.049  # share of it that is missing at tau 0.6 and 10 cells per diameter: spec section 1.7
 FALL = (1e-5, -5e-5)  # acceleration of a handful, cells per step²
 STEPS = 500
 
@@ -60,13 +61,15 @@ def spin_down() -> Measured:
 @VALIDATIONS.row(
     "coupling.square_array_drag",
     source="Stokes drag on a square array of cylinders, solid fraction 0.2: 51.53 mu U",
-    because="the deficit measured in spec section 1.7 at tau 0.6, d = 10: -4.9 %, and 1 % for the place in the cell",
-    tolerance=0.06,
+    because="the reference is less the 4.9 % by which this method is known to miss it at tau 0.6, d = 10 (spec section"
+    " 1.7); 1 %: the place in the cell moves that deficit by up to a fifth",
+    tolerance=0.01,
 )
 def array() -> Measured:
-    """Drag F/(mu U) at about ten cells per diameter, tau 0.6; relative error."""
+    """Drag F/(mu U) at about ten cells per diameter, tau 0.6, against the known one; error over the exact drag."""
+    expected = (1 - ARRAY_DEFICIT) * ARRAY_DRAG
     found = lab.array_drag(20, relaxation_time=0.6)
-    return Measured(ARRAY_DRAG, found, abs(found / ARRAY_DRAG - 1))
+    return Measured(expected, found, abs(found - expected) / ARRAY_DRAG)
 
 
 @VALIDATIONS.row(
