@@ -10,6 +10,7 @@ import numpy as np
 
 from porescale.coupling.step import Coupled, buoyant_weight
 from porescale.dem.discs import Discs, make_discs
+from porescale.dem.join import joined, together
 from porescale.dem.settle import Pile, prepare
 from porescale.dem.system import Grains
 from porescale.dem.walls import Box, Plate
@@ -86,18 +87,19 @@ def _grains(scene: Scene, derived: Derived) -> Grains:
         [Plate(scene.gate.x, 0.0, scene.domain.height, friction=scene.gate.friction, name=GATE)] if scene.gate else []
     )
     packing = scene.grains.packing
-    settled = prepared(scene, packing, box, derived, plates) if packing and packing.settle else None
-    if settled and not scene.grains.grain:
-        return settled
-    parts = [settled.discs] if settled else []
-    if packing and not packing.settle:
-        parts.append(_placed(scene, packing))
-    if scene.grains.grain:
-        parts.append(_by_hand(scene))
-    discs = Discs(*(np.concatenate([getattr(p, f) for p in parts]) for f in Discs.__dataclass_fields__))
-    refuse_overlaps(discs, scene.domain, discs.count - len(scene.grains.grain))
-    grains = Grains(discs, law, box, wall_law=wall_law, plates=plates)
-    grains.refresh()  # contacts count from the first row of the series on
+    by_hand = len(scene.grains.grain)
+    if packing and packing.settle:
+        grains = prepared(scene, packing, box, derived, plates)
+        if by_hand:
+            grains = joined(grains, _by_hand(scene))
+    else:
+        parts = [_placed(scene, packing)] if packing else []
+        if by_hand:
+            parts.append(_by_hand(scene))
+        grains = Grains(together(*parts), law, box, wall_law=wall_law, plates=plates)
+        grains.refresh()  # contacts count from the first row of the series on
+    if by_hand:
+        refuse_overlaps(grains.discs, scene.domain, grains.discs.count - by_hand)
     return grains
 
 

@@ -46,8 +46,10 @@ def derive(scene: Scene) -> Derived:
     faults: list[Fault] = []
     warnings: list[str] = []
     scales, cells, column = _lattice(scene, faults) if scene.fluid else (None, None, None)
-    judge_places(scene, faults)
+    if scene.gate and "periodic" in (scene.domain.bottom, scene.domain.left):
+        faults.append(Fault("gate", None, "stands in a periodic box", repair="give the box walls"))
     sizes = diameters(scene)
+    judge_places(scene, sizes, faults)
     law = wall_law = limit = step = steps = None
     model_step, mean_mass = scales.step if scales else 0.0, 0.0
     if scene.grains and scene.contact and sizes:
@@ -121,8 +123,6 @@ def _lattice(scene: Scene, faults: list[Fault]) -> tuple[Scales, tuple[int, int]
     if scene.gate:
         _whole("gate.x", scene.gate.x, h, faults)
         column = round(scene.gate.x / h)
-        if "periodic" in (scene.domain.bottom, scene.domain.left):
-            faults.append(Fault("gate", None, "stands in a periodic box", repair="give the box walls"))
     return scales, (round(scene.domain.width / h), round(scene.domain.height / h)), column
 
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from porescale.dem.discs import Discs
 from porescale.dem.settle import Pile
+from porescale.dem.system import SKIN
 from porescale.ground.check import Fault, InputError
 from porescale.particles.placement import DENSEST
 from porescale.scene.sections import Domain, Gate, Packing, Scene
@@ -17,9 +18,15 @@ EDGE = 1e-9
 """Relative slack of a packing's edges: 8 mm + 4 mm is 12 mm whatever its last bit."""
 
 
-def judge_places(scene: Scene, faults: list[Fault]) -> None:
-    """Add a fault for a packing beyond the box or across the gate, and for the first misplaced grain of each kind."""
-    if scene.grains is None:
+def judge_places(scene: Scene, sizes: tuple[float, float, float] | None, faults: list[Fault]) -> None:
+    """Add a fault for a packing beyond the box or across the gate, and for the first misplaced grain of each kind.
+
+    sizes : smallest, mean and largest diameter, m; None without grains.  A periodic side too short for them is the
+    only fault named then: places mean nothing across it.
+    """
+    if scene.grains is None or sizes is None:
+        return
+    if _judge_periods(scene, sizes, faults):
         return
     if scene.grains.packing:
         _judge_packing(scene.grains.packing, scene.domain, scene.gate, faults)
@@ -41,15 +48,20 @@ def judge_places(scene: Scene, faults: list[Fault]) -> None:
 
 
 def refuse_overlaps(discs: Discs, domain: Domain, packed: int) -> None:
-    """InputError naming the deepest overlap among discs, the first ``packed`` of which are the packing's."""
+    """InputError naming the deepest overlap of a disc placed by hand; the first ``packed`` are the packing's.
+
+    What the packing's own contacts are is for its settling to say.
+    """
     faults: list[Fault] = []
     _judge_overlap(discs.position, discs.radius, domain, packed, faults)
     if faults:
         raise InputError(faults)
 
 
-def deepest(x: NDArray[np.float64], r: NDArray[np.float64], domain: Domain) -> tuple[int, int, float] | None:
-    """(i, j, overlap in m) of the deepest overlap, i > j, or None; also through periodic sides.
+def deepest(
+    x: NDArray[np.float64], r: NDArray[np.float64], domain: Domain, first: int = 0
+) -> tuple[int, int, float] | None:
+    """(i, j, overlap in m) of the deepest overlap, i > j and i >= ``first``, or None; also through periodic sides.
 
     x : (n, 2) m;  r : (n,) m.  Grid search by scipy, outside the time loop.
     """
@@ -62,15 +74,34 @@ def deepest(x: NDArray[np.float64], r: NDArray[np.float64], domain: Domain) -> t
     pairs = cKDTree(inside - low, boxsize=np.where(periodic, box, 0.0)).query_pairs(
         2 * float(r.max()), output_type="ndarray"
     )
+    pairs.sort(axis=1)
+    pairs = pairs[pairs[:, 1] >= first]
     if len(pairs) == 0:
         return None
-    pairs.sort(axis=1)
     j, i = pairs.T
     apart = x[i] - x[j]
     apart -= np.where(periodic, box * np.round(apart / box), 0.0)
     depth = r[i] + r[j] - np.hypot(*apart.T)
     worst = int(depth.argmax())
     return int(i[worst]), int(j[worst]), float(depth[worst])
+
+
+def _judge_periods(scene: Scene, sizes: tuple[float, float, float], faults: list[Fault]) -> bool:
+    """Whether a periodic side is shorter than two cutoffs of the pair search, where a grain meets another twice."""
+    assert scene.grains
+    _, mean, largest = sizes
+    # The skin follows the mean radius; that of a packing is drawn, so its upper bound counts.
+    skin = SKIN * (largest if scene.grains.packing else mean) / 2
+    least = 2 * (largest + skin)
+    sides = (("width", scene.domain.width, "wide"), ("height", scene.domain.height, "high"))
+    short = [
+        side for side, periodic in zip(sides, _periodic(scene.domain), strict=True) if periodic and side[1] < least
+    ]
+    for name, length, word in short:
+        problem = "is periodic and so short that a grain would meet another twice"
+        repair = f"make the box {least:.4g} m {word}, or the grains smaller"
+        faults.append(Fault(f"domain.{name}", length, problem, "m", f">= {least:.4g}", repair))
+    return bool(short)
 
 
 def _judge_packing(packing: Packing, domain: Domain, gate: Gate | None, faults: list[Fault]) -> None:
@@ -138,7 +169,7 @@ def _loose_sides(packing: Packing, domain: Domain, gate: Gate | None) -> str:
 def _judge_overlap(
     x: NDArray[np.float64], r: NDArray[np.float64], domain: Domain, packed: int, faults: list[Fault]
 ) -> None:
-    found = deepest(x, r, domain)
+    found = deepest(x, r, domain, packed)
     if found is None or found[2] <= TOUCH * 2 * min(r[found[0]], r[found[1]]):
         return
     i, j, depth = found

@@ -1,0 +1,80 @@
+"""A settled packing and grains placed by hand go together: what rested goes on resting."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from importlib.resources import files
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from porescale.dem.measure import elastic_energy
+from porescale.ground.check import InputError
+from porescale.scene.build import build, load_scene
+from porescale.scene.report import report
+from tests.reference.scenes import dry, grain
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+BED = {"left": 0.008, "width": 0.004, "height": 0.0055, "diameter": 0.0008, "packing_fraction": 0.7}
+GATE = {"x": 0.008, "opens_at": 0.01, "lift_speed": 0.4}
+STEPS = 200
+
+
+def bed(*grains):
+    """A dry, settled bed behind its gate, with grains placed by hand."""
+    placed = {"grain": list(grains)} if grains else {}
+    return build(dry(grains={"density": 2500, "packing": BED, **placed}, gate=GATE))
+
+
+def moved(simulation, count):
+    """How far the first ``count`` grains have come in STEPS steps, (count, 2) m."""
+    start = simulation.grains.discs.position[:count].copy()
+    simulation.advance(STEPS)
+    return simulation.grains.discs.position[:count] - start
+
+
+def test_a_bed_rests_as_it_would_alone_when_a_grain_falls_far_from_it():
+    alone, joined = bed(), bed(grain(0.003, 0.005))
+    count = alone.grains.discs.count
+    assert joined.grains.discs.count == count + 1
+    assert elastic_energy(joined.grains) == pytest.approx(elastic_energy(alone.grains), rel=1e-12)
+    # The same contacts in the same order: the bed's path has the same bits.
+    np.testing.assert_array_equal(moved(joined, count), moved(alone, count))
+    assert joined.grains.discs.position[count, 1] < 0.005
+
+
+def test_a_bed_that_forgets_its_springs_moves():
+    # The twin that must fail: friction held part of the weight.
+    alone, forgetful = bed(), bed(grain(0.003, 0.005))
+    forgetful.grains.pairs.carried[:] = 0.0
+    forgetful.grains.wall_spring[:] = 0.0
+    count = alone.grains.discs.count
+    assert np.abs(moved(forgetful, count)).max() > 10 * np.abs(moved(alone, count)).max()
+
+
+def test_a_grain_placed_into_a_settled_bed_is_named():
+    with pytest.raises(InputError) as caught:
+        bed(grain(0.003, 0.005), grain(0.01, 0.002))
+    (fault,) = caught.value.faults
+    assert fault.line().startswith("grains.grain[1]: overlaps a grain of the packing by ")
+
+
+def test_the_template_with_its_grain_uncommented_is_checked_and_built(tmp_path: Path):
+    text = files("porescale.app").joinpath("template.toml").read_text()
+    block = text[text.index("# [[grains.grain]]") : text.index("[contact]")]
+    whole = text.replace(block, re.sub(r"^# ", "", block, flags=re.MULTILINE))
+    assert len(tomllib.loads(whole)["grains"]["grain"]) == 1
+    path = tmp_path / "scene.toml"
+    path.write_text(whole)
+    scene = load_scene(path)
+    report(scene)
+    simulation = build(scene)
+    assert simulation.grains is not None
+    assert simulation.grains.discs.radius[-1] == 0.00075
+    start = simulation.grains.discs.position.copy()
+    simulation.advance(20)
+    # The gate is shut; at rest is a kinetic energy of 1e-8 m g d per grain, with g' = 0.6 g in water: at most
+    # sqrt(2e-8 N g' d) in one of N = 150 grains, 1.3e-4 m/s, for 20 steps of 4e-5 s.
+    assert np.abs(simulation.grains.discs.position - start)[:-1].max() < 1.3e-4 * 20 * 4e-5
