@@ -6,6 +6,7 @@ import random
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ import numpy as np
 from porescale import build, load, open_run
 from porescale.runs.checkpoint import read_checkpoint
 from tests.reference.same_run import contents, differences, state_of
-from tests.reference.scenes import COLUMN, STEPS
+from tests.reference.scenes import STEPS
 
 ROOT = Path(__file__).resolve().parents[2]
 KILLED = """
@@ -32,6 +33,24 @@ Coupled.advance = advance
 sys.exit(main())
 """
 """`porescale` in a process that is killed when ``last`` steps are done, wherever its files stand then."""
+SLOWED = """
+import sys, time
+from porescale.app.main import main
+from porescale.coupling.step import Coupled
+
+step, done = Coupled.advance, []
+
+def advance(self):
+    if not done:
+        print("first step", flush=True)
+    done.append(1)
+    time.sleep(0.002)
+    step(self)
+
+Coupled.advance = advance
+sys.exit(main())
+"""
+"""`porescale` that says when it begins and takes 1.2 s or more for its 600 steps, more than both delays together."""
 GATE = (55, 500)
 """Steps between which the gate rises through the box, the grains behind it falling."""
 
@@ -43,19 +62,30 @@ def killed(last: int, *words: object) -> int:
 
 
 def sliding(scene: Path, state: dict) -> int:
-    """Number of contacts between grains whose spring is at the Coulomb limit, from a checkpoint's state."""
+    """Number of contacts between grains that slide in the contact step after a checkpoint, from its state.
+
+    A spring that slides is left at the Coulomb limit mu max(0, k d + c d'), with overlap d and closing speed d' of
+    where the step begins.
+    """
     simulation = build(load(scene))
     simulation.restore(state)
     grains = simulation.grains
-    count, x, r = 0, grains.discs.position, grains.discs.radius
+    law, pairs, r = grains.law, grains.pairs, grains.discs.radius
+    grains.refresh()  # now, so that the step keeps the list
+    x, v = grains.discs.position.copy(), grains.discs.velocity.copy()
+    grains.step(grains.last_dt, grains.external_force.copy(), grains.external_torque.copy())
+    count = 0
     for i in range(len(r)):
-        for slot in range(grains.pairs.start[i], grains.pairs.start[i + 1]):
-            j = grains.pairs.partner[slot]
-            overlap = r[i] + r[j] - np.hypot(*(x[i] - x[j]))
-            tangential = COLUMN["contact"]["tangential_stiffness"] * abs(grains.pairs.carried[slot, 0])
-            # The normal force also holds a damping share, so "at the limit" is to within it: half suffices to slide.
-            if overlap > 0 and tangential > 0.5 * COLUMN["contact"]["friction"] * 2e5 * overlap:
-                count += 1
+        for slot in range(pairs.start[i], pairs.start[i + 1]):
+            j = pairs.partner[slot]
+            distance = np.hypot(*(x[j] - x[i]))
+            closing = (v[i] - v[j]) @ (x[j] - x[i]) / distance
+            overlap = r[i] + r[j] - distance
+            limit = law.friction * max(0.0, law.stiffness * overlap + law.damping * closing) if overlap > 0 else 0.0
+            spring = law.tangential_stiffness * abs(pairs.carried[slot, 0])
+            # Never above the limit, but for the rounding of a distance of 1 mm in an overlap of 0.1 um: 1e-12.
+            assert spring <= (1 + 1e-9) * limit
+            count += bool(limit > 0 and spring >= 0.999 * limit)
     return count
 
 
@@ -84,6 +114,36 @@ def test_killed_five_times_it_ends_bit_for_bit_as_untouched(folder, scene, tmp_p
     assert len(open_run(out).card["resumed"]) == 5
     names = {path.name for path in folder.iterdir()}
     assert {path.name for path in out.iterdir()} == names
+
+
+def killed_by_the_clock(delay: float, *words: object) -> int:
+    """Exit code of the command line ``words`` in a process killed ``delay`` seconds after its first step."""
+    command = [sys.executable, "-c", SLOWED, *map(str, words)]
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"first step\n"
+        time.sleep(delay)
+        process.kill()
+        return process.wait()
+
+
+def test_killed_at_any_moment_it_ends_bit_for_bit_as_untouched(folder, scene, tmp_path):
+    # Between two steps, as above, no file is half written; by the clock one may be: in this run, which saves after
+    # every step, most of the time goes into files.
+    out, dice = tmp_path / "killed", random.Random(3)
+    save = ("--set", "output.checkpoint_seconds=0.001")
+    reached = []
+    for number in range(2):
+        resume = ("--resume",) if number else ()
+        words = ("run", scene, "--out", out, "--quiet", "--threads", 1, *save, *resume)
+        assert killed_by_the_clock(dice.uniform(0.1, 0.5), *words) == -signal.SIGKILL
+        reached.append(read_checkpoint(out / "checkpoint.h5")["step"])  # whole, whenever it was
+        assert all(np.isfinite(it.clouds["grains"].position).all() for it in open_run(out).snapshots())
+    assert 0 < reached[0] < reached[1] < STEPS
+    resumed = [sys.executable, "-m", "porescale", "run", str(scene), "--out", str(out), "--resume", "--quiet"]
+    subprocess.run([*resumed, "--threads", "1"], cwd=ROOT, check=True, capture_output=True)
+    assert differences(folder, out) == []
+    assert not list(out.rglob(".*writing*"))  # what was half written is gone
 
 
 def test_two_threads_give_the_bits_of_one(folder, scene, porescale, tmp_path):
