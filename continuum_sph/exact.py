@@ -47,16 +47,3 @@ def poiseuille(y: Floats, time: float, gap: float, force: float, viscosity: floa
         k = (2 * n + 1) * np.pi / gap
         u = u - 4.0 * force / (viscosity * gap * k**3) * np.sin(k * y) * np.exp(-viscosity * k * k * time)
     return u
-
-
-def leapfrog_growth(phase: float, extrapolated: bool) -> float:
-    """Largest amplification of sound per step at ω Δt = ``phase`` in the scheme of `step`.
-
-    Unknowns v½, ρ, D, D_before: ρ* = ρ + Δt(2D - D_before) (or ρ + Δt D), D' = ω v½, ρ' = ρ + Δt D', v' = v½ - ω Δt ρ*.
-    """
-    v, rho, last, before = np.eye(4)
-    predicted = rho + 2.0 * last - before if extrapolated else rho + last
-    rate = phase * v
-    matrix = np.array([v - phase * (predicted), rho + rate, rate, last])
-    # v here is v½ at the step's middle: its kick uses ρ* at the step's end
-    return float(np.abs(np.linalg.eigvals(matrix)).max())

@@ -91,9 +91,9 @@ class Simulation:
             "fastest (m/s)": float(np.sqrt(speed2[inside].max())) if inside.any() else 0.0,
             "densest (kg/m3)": float(layer.density.max()) if n else tait.density,
             "mass (kg/m)": float(mass.sum()),
-            "particles outside (1)": float(n - int(inside.sum())),
-            "stops at walls (1)": float(self.flow.stopped),
-            **{f"steps limited by {rule} (1)": float(k) for rule, k in zip(RULES, self.flow.limited, strict=True)},
+            "particles outside ()": float(n - int(inside.sum())),
+            "stops at walls ()": float(self.flow.stopped),
+            **{f"steps limited by {rule} ()": float(k) for rule, k in zip(RULES, self.flow.limited, strict=True)},
         }
 
     def snapshot(self) -> Snapshot:

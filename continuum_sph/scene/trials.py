@@ -11,6 +11,7 @@ from continuum_sph.layers import Layer
 from continuum_sph.scene.sections import Scene
 from continuum_sph.smoothing import Smoothing
 from continuum_sph.step import Flow, Law
+from porescale.ground.constants import GRAVITY
 from porescale.particles import PairList, square_lattice
 from porescale.workbench.sections import validate
 
@@ -25,7 +26,7 @@ def column_scene(
     end: float = 1.0,
     pressure: str = "hydrostatic",
     viscosity: float = 1.002e-3,
-    gravity: float = 9.81,
+    gravity: float = GRAVITY,
     **numerics: float | str,
 ) -> Scene:
     """A tank (width, height) with one column (width, height) of water in its left corner; lengths in m."""
