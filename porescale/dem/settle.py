@@ -8,12 +8,13 @@ that made it.
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import hashlib
 import io
 import json
 import math
-import os
+import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,9 +28,11 @@ from porescale.dem.discs import Discs, make_discs
 from porescale.dem.measure import kinetic_energy, max_overlap, unbalanced
 from porescale.dem.system import Grains
 from porescale.dem.walls import HIGH, LOW, VELOCITY, Box, Plate
+from porescale.ground.cache import cache_root, hash_of
 from porescale.ground.check import Fault, InputError, PorescaleError
 from porescale.ground.constants import GRAVITY
 from porescale.particles import place
+from porescale.runs.atomic import write_bytes
 
 Array = NDArray[np.float64]
 
@@ -43,6 +46,8 @@ ENERGY = 1e-8  # kinetic energy per grain over m g d that counts as rest
 BALANCE = 3e-3  # mean net force over mean weight that counts as rest
 CHUNK = 500  # steps between looks
 PATIENCE = 400  # chunks before settling gives up
+UNREADABLE = (OSError, EOFError, ValueError, KeyError, TypeError, NotImplementedError, zipfile.BadZipFile, InputError)
+"""What reading a packing from disk raises when it is absent, cut short, not an archive, or lacks a part."""
 
 
 @dataclass(frozen=True)
@@ -210,8 +215,9 @@ def prepare(
 
     weight_density (kg/m^3): weights are weight_density * area * gravity, downwards; the density of the
     grains by default, density difference to a fluid for buoyant ones.  folder: of the cache, default
-    $XDG_CACHE_HOME/porescale/packings.  What is loaded has the bits of what was made.  Raises InputError
-    when the weight is not downwards, or when no side or plate holds the pile.
+    $XDG_CACHE_HOME/porescale/packings.  What is loaded has the bits of what was made; a damaged file is made
+    anew, and a folder that cannot be written is done without.  Raises InputError when the weight is not
+    downwards, or when no side or plate holds the pile.
     """
     weighs = pile.density if weight_density is None else weight_density
     if not weighs > 0.0:
@@ -224,9 +230,13 @@ def prepare(
     described = json.dumps([dataclasses.asdict(part) for part in made_of] + [weighs, sources()])
     name = hashlib.sha256(described.encode()).hexdigest()[:16]
     path = (folder or cache_folder()) / f"{name}.npz"
-    if cache and path.exists():
-        grains.restore(unpack(path))
-        return grains
+    if cache:
+        try:
+            grains.restore(unpack(path))
+        except UNREADABLE:
+            grains = Grains(pile.discs(), law, box, wall_law=wall_law, plates=plates)  # some of it may be overwritten
+        else:
+            return grains
     settle(grains, pile)
     relax(
         grains, law, weights_of(grains.discs, weighs, pile.gravity), pile.gravity * weighs / pile.density,
@@ -234,7 +244,8 @@ def prepare(
     )  # fmt: skip
     grains.reset_clock()
     if cache:
-        pack(path, grains.state())
+        with contextlib.suppress(OSError):  # no room or no right to write: the next run settles again
+            pack(path, grains.state())
     return grains
 
 
@@ -246,42 +257,29 @@ def weights_of(discs: Discs, density: float, gravity: float = GRAVITY) -> Array:
 
 
 def cache_folder() -> Path:
-    """Where packings are kept: porescale/packings under $XDG_CACHE_HOME or ~/.cache."""
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "porescale" / "packings"
+    """Where packings are kept."""
+    return cache_root() / "packings"
 
 
 def sources() -> str:
     """Hash (12 hex digits) of the sources a packing depends on: grains, particles and ground."""
     root = Path(__file__).resolve().parents[1]
-    digest = hashlib.sha256()
-    for room in ("dem", "particles", "ground"):
-        for path in sorted((root / room).rglob("*.py")):
-            digest.update(path.relative_to(root).as_posix().encode())
-            digest.update(path.read_bytes())
-    return digest.hexdigest()[:12]
+    return hash_of(root / room for room in ("dem", "particles", "ground"))
 
 
 def pack(path: Path, state: dict[str, Any]) -> None:
-    """Write a nested ``state`` of arrays and numbers to ``path``, beside first, then renamed: whole or
-    absent.
-    """
+    """Write a nested ``state`` of arrays and numbers to ``path``: whole or absent.  Raises OSError."""
     flat: dict[str, Any] = {}
     for key, value in state.items():
         for inner, part in value.items() if isinstance(value, dict) else [("", value)]:
             flat[f"{key}/{inner}" if inner else key] = np.asarray(part)
-    path.parent.mkdir(parents=True, exist_ok=True)
     buffer = io.BytesIO()
     np.savez(buffer, **flat)
-    beside = path.with_name(f"{path.name}.{os.getpid()}")
-    with beside.open("wb") as file:
-        file.write(buffer.getvalue())
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(beside, path)
+    write_bytes(path, buffer.getvalue())
 
 
 def unpack(path: Path) -> dict[str, Any]:
-    """Read what ``pack`` wrote."""
+    """Read what ``pack`` wrote; raises one of UNREADABLE where it is not that."""
     state: dict[str, Any] = {}
     with np.load(path, allow_pickle=False) as stored:
         for name in stored.files:

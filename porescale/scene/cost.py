@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 import os
 from pathlib import Path
 
+from porescale.ground.cache import cache_root
 from porescale.ground.check import Fault, InputError
+from porescale.runs.atomic import write_bytes
 from porescale.scene.derive import Derived
 
 CELLS_PER_SECOND, DISCS_PER_SECOND = 150e6, 15e6
@@ -44,13 +47,11 @@ def expected_seconds(derived: Derived, steps: int) -> tuple[float, bool]:
 
 
 def remember(derived: Derived, steps_per_second: float) -> None:
-    """Note how this machine compares to the nominal rates, for the next ``check``."""
+    """Note how this machine compares to the nominal rates, for the next ``check``, if the cache can be written."""
     if steps_per_second > 0:
-        path = _file()
-        path.parent.mkdir(parents=True, exist_ok=True)
-        beside = path.with_name(f"{path.name}.{os.getpid()}")
-        beside.write_text(json.dumps({"slowness": 1 / (steps_per_second * step_seconds(derived))}))
-        os.replace(beside, path)
+        slowness = 1 / (steps_per_second * step_seconds(derived))
+        with contextlib.suppress(OSError):  # no room or no right to write: the next check guesses again
+            write_bytes(_file(), json.dumps({"slowness": slowness}).encode())
 
 
 def refuse_too_large(derived: Derived) -> None:
@@ -66,7 +67,7 @@ def refuse_too_large(derived: Derived) -> None:
 
 
 def _file() -> Path:
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "porescale" / "rate.json"
+    return cache_root() / "rate.json"
 
 
 def _slowness() -> float | None:

@@ -41,12 +41,12 @@ def test_relaxed_grains_stay_where_they_are_under_the_law_of_the_run():
     )
     start = grains.discs.position.copy()
     weights = weights_of(grains.discs, 1500.0)
-    grains.step(grains.stable_step(), weights, count=2000)
+    grains.step(grains.stable_step(), weights, count=3000)
     # Rest is called at a kinetic energy of 1e-8 m g d per grain: sqrt(2e-8 g d) = 1.7e-5 m/s, for 0.1 s at
     # most. assert np.abs(grains.discs.position - start).max() < 1.7e-5 * 0.1
     # Without the gate it flows: the twin that must fail.
     grains.remove_plate("gate")
-    grains.step(grains.stable_step(), weights, count=2000)
+    grains.step(grains.stable_step(), weights, count=3000)
     assert np.abs(grains.discs.position - start).max() > 0.1 * PILE.diameter
 
 
@@ -62,6 +62,57 @@ def test_a_packing_from_disk_has_the_bits_it_was_made_with(tmp_path):
             np.testing.assert_array_equal(value, other, err_msg=f"{key}/{name}")
     prepare(dataclasses.replace(small, seed=5), BOX, LAW, plates=[GATE], folder=tmp_path)
     assert len(list(tmp_path.iterdir())) == 2
+
+
+def cut_short(path):
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+
+
+def flip_a_bit(path):
+    content = bytearray(path.read_bytes())
+    content[len(content) // 3] ^= 1
+    path.write_bytes(bytes(content))
+
+
+def leave_out_a_part(path):
+    state = settle.unpack(path)
+    del state["pairs"]["anchor"]
+    settle.pack(path, state)
+
+
+def give_another_shape(path):
+    state = settle.unpack(path)
+    settle.pack(path, {**state, "discs": {name: part[:-1] for name, part in state["discs"].items()}})
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        cut_short, flip_a_bit, leave_out_a_part, give_another_shape,
+        lambda path: path.write_bytes(b"PK no archive"), lambda path: path.write_bytes(b""),
+        lambda path: (path.unlink(), path.mkdir()),
+    ],
+    ids=["cut", "bit", "part", "shape", "garbage", "empty", "folder"],
+)  # fmt: skip
+def test_a_damaged_packing_is_settled_anew_and_replaced(tmp_path, damage):
+    small = dataclasses.replace(PILE, count=30)
+    made = prepare(small, BOX, LAW, plates=[GATE], folder=tmp_path)
+    (path,) = tmp_path.iterdir()
+    good = path.read_bytes()
+    damage(path)
+    again = prepare(small, BOX, LAW, plates=[GATE], folder=tmp_path)
+    np.testing.assert_array_equal(again.discs.position, made.discs.position)
+    np.testing.assert_array_equal(again.pairs.carried, made.pairs.carried)
+    if not path.is_dir():  # a folder in its place is somebody's: it is left alone
+        assert path.read_bytes() == good
+
+
+def test_a_cache_that_cannot_be_written_is_done_without(tmp_path):
+    (tmp_path / "file").write_text("not a folder")
+    small = dataclasses.replace(PILE, count=30)
+    made = prepare(small, BOX, LAW, plates=[GATE], folder=tmp_path / "file" / "packings")
+    assert made.discs.count == 30
+    assert [it.name for it in tmp_path.iterdir()] == ["file"]
 
 
 def test_a_gate_lower_than_the_pile_is_refused():

@@ -126,8 +126,27 @@ def test_a_gate_between_cells_is_refused_with_a_spacing_that_fits():
 
 
 def test_a_gate_in_a_periodic_box_is_refused():
-    (line,) = lines(domain__left="periodic", domain__right="periodic", grains__packing__settle=False)
+    sides = {"domain__left": "periodic", "domain__right": "periodic", "grains__packing__settle": False}
+    (line,) = lines(**sides)
     assert line == "gate: stands in a periodic box; give the box walls"
+    assert lines(fluid=None, grains__hydraulic_radius_ratio=None, **sides) == [line]
+    derive(column(gate=None, **sides))  # the box itself is fine
+
+
+@pytest.mark.parametrize(("side", "ends", "word"), [("width", "left right", "wide"), ("height", "bottom top", "high")])
+@pytest.mark.parametrize("wet", [True, False], ids=["wet", "dry"])
+def test_a_periodic_box_in_which_a_grain_meets_another_twice_is_refused(side, ends, word, wet):
+    # Twice the cutoff d + skin, with a skin of half the radius: 2.5 d = 4 mm for equal grains of 1.6 mm.
+    grains = {"density": 2500, "hydraulic_radius_ratio": 0.8, "grain": [grain(0.0019, 0.0019, 0.0016)]}
+    narrow = {"grains": grains, "gate": None} | {f"domain__{end}": "periodic" for end in ends.split()}
+    if not wet:
+        narrow |= {"fluid": None, "grains__hydraulic_radius_ratio": None}
+    line = f"domain.{side} = 0.0038 m: is periodic and so short that a grain would meet another twice "
+    line += f"(allowed: >= 0.004 m); make the box 0.004 m {word}, or the grains smaller"
+    assert lines(**narrow, **{f"domain__{side}": 0.0038}) == [line]
+    assert build(validate(Scene, table(**narrow, **{f"domain__{side}": 0.004}))).grains.discs.count == 1
+    for width in (0.001, 0.002):  # narrower than a disc, and than two
+        assert lines(**narrow, **{f"domain__{side}": width}) == [line.replace("0.0038", str(width))]
 
 
 @pytest.mark.parametrize("side", ["width", "height"])
@@ -326,7 +345,7 @@ def test_a_packing_is_held_while_it_settles():
     assert line.startswith("grains.packing.left = 0.008 m: nothing holds the packing on its left while it settles")
     (line,) = lines(domain__width=0.02, gate=None)
     assert "on its left and right while" in line
-    (line,) = lines(domain__bottom="periodic", domain__top="periodic", domain__left="wall", fluid=None)
+    _, line = lines(domain__bottom="periodic", domain__top="periodic", domain__left="wall", fluid=None)  # and the gate
     assert line.startswith("domain.bottom = 'periodic': there is no floor to settle on")
     alone = {"gate": None, "grains__packing__settle": False}
     derive(column(domain__width=0.02, **alone))  # left where it is placed, it needs no hold
