@@ -21,7 +21,7 @@ class Saturated:
     """Discs of given radii (cells) as the fluid sees them.
 
     force (n, 2), torque (n,): loads of the last step, lattice units;  solid, solid_x, solid_y (ny, nx): sum of the
-    solid fractions, and of fraction times velocity, right after ``cover``.  A step allocates nothing.
+    solid fractions, and of fraction times velocity, right after ``cover``.  A step allocates no array.
     """
 
     def __init__(self, fluid: Fluid, radius: Array) -> None:

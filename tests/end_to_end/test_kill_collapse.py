@@ -128,8 +128,7 @@ def killed_by_the_clock(delay: float, *words: object) -> int:
 
 
 def test_killed_at_any_moment_it_ends_bit_for_bit_as_untouched(folder, scene, tmp_path):
-    # Between two steps, as above, no file is half written; by the clock one may be: in this run, which saves after
-    # every step, most of the time goes into files.
+    # Between two steps, as above, no file is half written; by the clock one may be: this run saves with every row.
     out, dice = tmp_path / "killed", random.Random(3)
     save = ("--set", "output.checkpoint_seconds=0.001")
     reached = []
