@@ -74,7 +74,8 @@ def flow_of(scene: Scene) -> Flow:
     law, spacing, tank = law_of(scene), scene.numerics.spacing, scene.tank
     x, v, rho = fluid_of(scene, law)
     layers = wall_layers(law, spacing)
-    walls = tank_walls(tank.width, tank.height, spacing, layers, lid=tank.lid)
+    width, height = scene.inner
+    walls = tank_walls(width, height, spacing, layers, lid=tank.lid)
     area = spacing * spacing
     layer = Layer(
         fluid=len(x),
@@ -88,11 +89,11 @@ def flow_of(scene: Scene) -> Flow:
         layer.count,
         scene.numerics.skin * law.smoothing.length,
         (-margin, -margin),
-        (tank.width + margin, tank.height + margin),
+        (width + margin, height + margin),
         full=True,
     )
     flow = Flow(layer, law, pairs)
     flow.lower[:] = 0.0
-    flow.upper[:] = tank.width, tank.height if tank.lid else np.inf
+    flow.upper[:] = width, height if tank.lid else np.inf
     flow.start()
     return flow

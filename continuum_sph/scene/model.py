@@ -47,9 +47,9 @@ class Simulation:
 
     def inside(self) -> NDArray[np.bool_]:
         """Which water particles are in the tank, (fluid,)."""
-        tank, x = self.scene.tank, self.flow.layer.x[: self.flow.layer.fluid]
+        (width, height), x = self.scene.inner, self.flow.layer.x[: self.flow.layer.fluid]
         low = (x >= 0.0).all(axis=1)
-        inside: NDArray[np.bool_] = low & (x[:, 0] <= tank.width) & (x[:, 1] <= tank.height)
+        inside: NDArray[np.bool_] = low & (x[:, 0] <= width) & (x[:, 1] <= height)
         return inside
 
     def check(self) -> None:

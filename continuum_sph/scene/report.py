@@ -76,17 +76,5 @@ def _judge(scene: Scene, mach: float, out: Report) -> None:
             f"Mach number {mach:.2g}: the water compresses by more than 1 %; "
             f"raise water.sound_speed to {scene.fall_speed / MACH_WARNED:.4g} m/s or leave it out"
         )
-    for index, column in enumerate(scene.water.column):
-        for name in ("left", "bottom", "width", "height"):
-            share = getattr(column, name) / scene.numerics.spacing
-            if abs(share - round(share)) > 1e-6:
-                out.warn(
-                    f"water.column[{index}].{name} is {share:.4g} spacings: taken as whole ones; "
-                    "choose a spacing that divides it"
-                )
-    for name in ("width", "height"):
-        share = getattr(scene.tank, name) / scene.numerics.spacing
-        if abs(share - round(share)) > 1e-6:
-            out.warn(f"tank.{name} is {share:.4g} spacings: the wall stands at {round(share)}")
     if scene.numerics.kernel == "cubic" and scene.numerics.smoothing_ratio < 1.2:
         out.warn("cubic spline with few partners: pressures are noisy and particles pair up; wendland at 1.3 does not")

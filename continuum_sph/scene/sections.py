@@ -12,6 +12,17 @@ from porescale.workbench.sections import Refused, Section, quantity
 
 CALM_MACH = 10.0  # sound speed over the speed of free fall from the highest water: Mach number 0.1 (spec §1.7)
 
+# Bounds of sections: no flow of water that anyone computes lies outside, and inside every product stays a number.
+SMALLEST, LARGEST = 1e-6, 1e5  # m
+WEAKEST = 1e-6  # m/s², other than none
+MOST = 100_000_000  # particles: 60 GB
+WHOLE = 1e-6  # share of a spacing by which a length may miss a whole number of them
+
+
+def spacings(length: float, spacing: float) -> int:
+    """The whole number (1 at least) of spacings nearest to a length, both in m."""
+    return max(1, round(length / spacing))
+
 
 class Tank(Section):
     """A rectangular tank, lower left inner corner at the origin.
@@ -19,8 +30,8 @@ class Tank(Section):
     "slip" walls carry pressure only, "stick" walls hold the water as well.
     """
 
-    width: float = quantity("m", gt=0, help="inner width of the tank")
-    height: float = quantity("m", gt=0, help="inner height of the tank")
+    width: float = quantity("m", ge=SMALLEST, le=LARGEST, help="inner width of the tank")
+    height: float = quantity("m", ge=SMALLEST, le=LARGEST, help="inner height of the tank")
     walls: Literal["slip", "stick"] = "slip"
     lid: bool = pydantic.Field(True, description="close the tank, so that no splash is lost")
 
@@ -28,10 +39,10 @@ class Tank(Section):
 class Column(Section):
     """A rectangle of water at the start."""
 
-    left: float = quantity("m", 0.0, ge=0, help="left edge of the water")
-    bottom: float = quantity("m", 0.0, ge=0, help="lower edge of the water")
-    width: float = quantity("m", gt=0, help="width of the water")
-    height: float = quantity("m", gt=0, help="height of the water")
+    left: float = quantity("m", 0.0, ge=0, le=LARGEST, help="left edge of the water")
+    bottom: float = quantity("m", 0.0, ge=0, le=LARGEST, help="lower edge of the water")
+    width: float = quantity("m", ge=SMALLEST, le=LARGEST, help="width of the water")
+    height: float = quantity("m", ge=SMALLEST, le=LARGEST, help="height of the water")
 
 
 class Water(Section):
@@ -42,10 +53,10 @@ class Water(Section):
     the right, as in figs 6 and 7 of the paper.
     """
 
-    density: float = quantity("kg/m^3", 1000.0, gt=0, help="density under the pressure of the air")
-    viscosity: float = quantity("Pa s", 1.002e-3, ge=0, help="viscosity")
-    sound_speed: float | None = quantity("m/s", None, gt=0, help="speed of sound, at least 10 sqrt(2 g H)")
-    exponent: float = quantity("", 7.0, ge=1.5, help="exponent of the equation of state")
+    density: float = quantity("kg/m^3", 1000.0, ge=1e-2, le=1e5, help="density under the pressure of the air")
+    viscosity: float = quantity("Pa s", 1.002e-3, ge=0, le=1e9, help="viscosity")
+    sound_speed: float | None = quantity("m/s", None, ge=1e-3, le=1e6, help="speed of sound, at least 10 sqrt(2 g H)")
+    exponent: float = quantity("", 7.0, ge=1.5, le=20, help="exponent of the equation of state")
     pressure: Literal["hydrostatic", "released", "none"] = "hydrostatic"
     push: Literal["none", "face"] = "none"
     column: tuple[Column, ...] = pydantic.Field(min_length=1, description="rectangles of water")
@@ -57,38 +68,38 @@ class Numerics(Section):
     xsph moves particles with the smoothed velocity but continuity with their own: volume is lost where they differ.
     """
 
-    spacing: float = quantity("m", gt=0, help="spacing of the particles at the start")
+    spacing: float = quantity("m", ge=1e-6, le=1e3, help="spacing of the particles at the start")
     kernel: Literal["wendland", "cubic"] = "wendland"
     smoothing_ratio: float = quantity("", 1.3, ge=1, le=3, help="smoothing length over spacing")
-    artificial_viscosity: float = quantity("", 0.05, ge=0, help="alpha of eq. 36")
-    artificial_viscosity_2: float = quantity("", 0.0, ge=0, help="beta of eq. 36")
-    softening: float = quantity("", 0.1, gt=0, help="epsilon of eq. 36")
+    artificial_viscosity: float = quantity("", 0.05, ge=0, le=10, help="alpha of eq. 36")
+    artificial_viscosity_2: float = quantity("", 0.0, ge=0, le=10, help="beta of eq. 36")
+    softening: float = quantity("", 0.1, ge=1e-6, le=10, help="epsilon of eq. 36")
     density_diffusion: float = quantity("", 0.1, ge=0, le=0.2, help="delta of the density diffusion")
     xsph: float = quantity("", 0.0, ge=0, le=1, help="epsilon of eq. 53")
     tension: Literal["cut", "kept"] = "kept"
-    courant: float = quantity("", 0.25, gt=0, le=0.5, help="share of the acoustic step of eq. 49")
-    skin: float = quantity("", 0.25, gt=0, le=2, help="skin of the pair list over smoothing length")
+    courant: float = quantity("", 0.25, ge=1e-3, le=0.5, help="share of the acoustic step of eq. 49")
+    skin: float = quantity("", 0.25, ge=1e-3, le=2, help="skin of the pair list over smoothing length")
 
 
 class Time(Section):
     """How long a run lasts."""
 
-    end: float = quantity("s", gt=0, help="physical time to simulate")
+    end: float = quantity("s", ge=1e-9, le=1e9, help="physical time to simulate")
 
 
 class Output(Section):
     """What is recorded when; recording never changes the physics."""
 
-    snapshot_interval: float = quantity("s", gt=0, help="time between snapshots (frames of the film)")
-    series_interval: float = quantity("s", gt=0, help="time between rows of series.csv")
-    checkpoint_seconds: float = quantity("s", 30.0, gt=0, help="wall-clock time between checkpoints")
+    snapshot_interval: float = quantity("s", ge=1e-9, le=1e9, help="time between snapshots (frames of the film)")
+    series_interval: float = quantity("s", ge=1e-9, le=1e9, help="time between rows of series.csv")
+    checkpoint_seconds: float = quantity("s", 30.0, ge=1e-3, le=1e9, help="wall-clock time between checkpoints")
 
 
 class Scene(Section):
     """A tank and its water."""
 
     title: str = ""
-    gravity: float = quantity("m/s^2", GRAVITY, ge=0, help="acceleration of free fall, downwards")
+    gravity: float = quantity("m/s^2", GRAVITY, ge=0, le=1e6, help="acceleration of free fall, downwards")
     tank: Tank
     water: Water
     numerics: Numerics
@@ -111,13 +122,19 @@ class Scene(Section):
         given = self.water.sound_speed
         return given if given is not None else CALM_MACH * self.fall_speed
 
+    @property
+    def inner(self) -> tuple[float, float]:
+        """Inner width and height of the tank, m, in whole spacings, from which those given may differ by round-off."""
+        spacing = self.numerics.spacing
+        return spacings(self.tank.width, spacing) * spacing, spacings(self.tank.height, spacing) * spacing
+
     @pydantic.model_validator(mode="after")
     def _fits(self) -> Scene:
         tank, spacing = self.tank, self.numerics.spacing
-        faults = []
+        faults = self._unresolved()
         for index, column in enumerate(self.water.column):
             key = f"water.column[{index}]"
-            slack = 1e-9 * tank.width
+            slack = WHOLE * spacing
             if column.left + column.width > tank.width + slack:
                 faults.append(
                     Fault(f"{key}.width", column.width, "reaches beyond the tank", "m",
@@ -140,8 +157,35 @@ class Scene(Section):
                 Fault("water.pressure", "released", "is known for one column in the left corner only",
                       repair='use "hydrostatic", or one column with left = bottom = 0')
             )  # fmt: skip
+        if 0.0 < self.gravity < WEAKEST:
+            faults.append(Fault("gravity", self.gravity, "is too weak to move water", "m/s^2", f"0 or >= {WEAKEST:g}"))
         if self.gravity == 0.0 and self.water.sound_speed is None:
             faults.append(Fault("water.sound_speed", None, "is needed when there is no gravity to take it from"))
         if faults:
             raise Refused(*faults)
         return self
+
+    def _unresolved(self) -> list[Fault]:
+        """Lengths of tank and water that are not whole spacings, and a spacing that makes too many particles."""
+        spacing, tank, faults = self.numerics.spacing, self.tank, []
+        count = tank.width * tank.height / spacing**2
+        if count > MOST:
+            finest = (tank.width * tank.height / MOST) ** 0.5
+            faults.append(
+                Fault(
+                    "numerics.spacing", spacing, f"fills the tank with {count:.2g} particles", "m", f">= {finest:.3g}"
+                )
+            )
+        held: list[tuple[str, Tank | Column]] = [("tank", tank)]
+        held += [(f"water.column[{index}]", column) for index, column in enumerate(self.water.column)]
+        for key, body in held:
+            for name in ("left", "bottom", "width", "height") if isinstance(body, Column) else ("width", "height"):
+                length = getattr(body, name)
+                share, whole = length / spacing, spacings(length, spacing)
+                if length > 0.0 and abs(share - whole) > WHOLE * max(1.0, share):
+                    problem = f"is {share:.6g} spacings of {spacing:.6g} m, not whole ones"
+                    faults.append(
+                        Fault(f"{key}.{name}", length, problem, "m",
+                              repair=f"{whole * spacing:.9g} m or a spacing of {length / whole:.9g} m would be")
+                    )  # fmt: skip
+        return faults
