@@ -43,7 +43,16 @@ def build(scene: Scene) -> Simulation:
     return Simulation(scene)
 
 
-def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any], resume: bool, quiet: bool) -> Outcome:
+def drive(
+    model: Simulation,
+    folder: Path,
+    scene: Scene,
+    *,
+    card: dict[str, Any],
+    resume: bool,
+    quiet: bool,
+    overwrite: bool = False,
+) -> Outcome:
     """Run the model to the scene's end and write the run folder."""
     from porescale.runs.drive import drive as drive_model
 
@@ -59,6 +68,7 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
         checkpoint_seconds=scene.output.checkpoint_seconds,
         card=card,
         resume=resume,
+        overwrite=overwrite,
         quiet=quiet,
         after=after,
     )

@@ -31,7 +31,16 @@ def build(scene: Scene) -> Simulation:
     return build_scene(scene)
 
 
-def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any], resume: bool, quiet: bool) -> Outcome:
+def drive(
+    model: Simulation,
+    folder: Path,
+    scene: Scene,
+    *,
+    card: dict[str, Any],
+    resume: bool,
+    quiet: bool,
+    overwrite: bool = False,
+) -> Outcome:
     """Run the model to the scene's end, write the run folder, and note how fast this machine is."""
     from porescale.app.show import show
     from porescale.runs.drive import drive as drive_model
@@ -48,6 +57,7 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
         checkpoint_seconds=scene.output.checkpoint_seconds,
         card={**card, "seeds": {"grains.packing.seed": packing.seed} if packing else {}},
         resume=resume,
+        overwrite=overwrite,
         quiet=quiet,
         after=after,
     )

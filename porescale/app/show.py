@@ -25,12 +25,12 @@ def show(folder: Path) -> list[Path]:
         title=scene.get("title") or run.card.get("name", ""),
         label="speed of the fluid",
         lines=gate_lines(scene),
-        streamlines=scene["fluid"] is not None,
-        colour="speed" if scene["fluid"] is None else None,
+        streamlines=scene.get("fluid") is not None,
+        colour="speed" if scene.get("fluid") is None else None,
         view=(0.0, scene["domain"]["width"], 0.0, scene["domain"]["height"]),
     )
     written = [*pictures(folder, look), film(folder, look)]
-    if scene["grains"] is not None:
+    if scene.get("grains") is not None:
         written.append(write_surface(run, folder))
     return written
 

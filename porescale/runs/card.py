@@ -18,9 +18,10 @@ import numpy as np
 
 import porescale
 from porescale.ground import jit
+from porescale.ground.card import NAME as NAME
+from porescale.ground.card import read_card as read_card
 from porescale.runs.atomic import write_text
 
-NAME = "card.json"
 RUNNING, FINISHED, INTERRUPTED, UNSTABLE, FAILED = "running", "finished", "interrupted", "unstable", "failed"
 FREE = (
     "time.end",
@@ -33,16 +34,15 @@ FREE = (
 )
 """Scene keys, dotted or by their last name, and sections that may change when a run is resumed: no physics."""
 
+DECIDING = ("numpy", "numba", "llvmlite")
+"""Packages whose version may change the bits of a run."""
+
 
 def new_card(given: dict[str, Any]) -> dict[str, Any]:
     """A card for a run that starts now: ``given`` ("scene", "seeds", ...) and the circumstances."""
     return {
         **plain(given),
-        "versions": versions(),
-        "sources": jit.source_hash(),
-        "commit": commit(),
-        "threads": jit.threads(),
-        "machine": machine(),
+        **circumstances(),
         "command": list(sys.argv),
         "started": now(),
         "ended": None,
@@ -58,12 +58,25 @@ def write_card(folder: Path, card: dict[str, Any]) -> None:
     write_text(Path(folder) / NAME, json.dumps(plain(card), indent=2, ensure_ascii=False) + "\n")
 
 
-def read_card(folder: Path) -> dict[str, Any]:
-    """The card of a run; FileNotFoundError or ValueError when there is none."""
-    card = json.loads((Path(folder) / NAME).read_text(encoding="utf-8"))
-    if not isinstance(card, dict):
-        raise ValueError("not a card")
-    return card
+def circumstances() -> dict[str, Any]:
+    """What the bits of a run depend on besides its scene, and where it runs."""
+    return {
+        "versions": versions(),
+        "sources": jit.source_hash(),
+        "commit": commit(),
+        "threads": jit.threads(),
+        "machine": machine(),
+    }
+
+
+def changed_circumstances(card: dict[str, Any], now: dict[str, Any]) -> list[str]:
+    """What the run on ``card`` went on with last that differs in ``now`` (`circumstances`) and may change its bits."""
+    last = {**card, **(card["resumed"][-1] if card.get("resumed") else {})}
+    old, new = last.get("versions") or {}, now["versions"]
+    changed = [f"{name} {old.get(name)} -> {new[name]}" for name in DECIDING if old.get(name) != new[name]]
+    if last.get("sources") != now["sources"]:
+        changed.insert(0, f"sources {last.get('sources')} -> {now['sources']}")
+    return changed
 
 
 def now() -> str:

@@ -51,6 +51,7 @@ def drive(
     card: dict[str, Any],
     checkpoint_seconds: float = 300.0,
     resume: bool = False,
+    overwrite: bool = False,
     quiet: bool = False,
     after: Callable[[Path], object] | None = None,
     free: Collection[str] = cards.FREE,
@@ -64,7 +65,11 @@ def drive(
 
     resume : go on from the checkpoint, bit for bit as the uninterrupted run; without a checkpoint it starts
     from the beginning, and a finished run is left alone.  The scene must be the same but for keys named in
-    ``free``: the duration may grow, intervals may change (they count from time 0).
+    ``free``: the duration may grow, intervals may change (they count from time 0).  Other sources or versions than
+    the run had are warned of on stderr.
+
+    overwrite : replace the run in the folder even if it is unfinished and took long (without: InputError); a
+    finished one is replaced anyway, and files that no run makes are left alone.
 
     Raises InputError (wrong numbers, folder in use, changed scene, damaged checkpoint), Interrupted (after
     SIGINT or SIGTERM, checkpoint written), Unstable (from the model; the last good checkpoint stays and is
@@ -94,7 +99,7 @@ def drive(
                 return done
             record = Record.resumed(folder, card, model, schedules)
         else:
-            record = Record.fresh(folder, card)
+            record = Record.fresh(folder, card, overwrite=overwrite)
         with Watch(name, model.time, duration, quiet=quiet) as watch:
             return _watched(run, record, watch, after)
 

@@ -85,13 +85,7 @@ def open_run(folder: Path | str) -> Run:
     InputError when the folder holds no run or its files are damaged.
     """
     folder = Path(folder)
-    try:
-        card = cards.read_card(folder)
-    except (OSError, ValueError) as error:
-        missing = isinstance(error, OSError)
-        problem = "no run here (card.json is missing)" if missing else "card.json is damaged"
-        repair = "name a folder that `run` has written"
-        raise InputError(Fault("run folder", str(folder), problem, repair=repair)) from error
+    card = cards.read_card(folder)
     try:
         if snapshots.parts(folder):
             _join(folder)

@@ -8,6 +8,7 @@ start.
 
 from __future__ import annotations
 
+import sys
 import time as clock
 from collections.abc import Collection
 from pathlib import Path
@@ -23,7 +24,8 @@ from porescale.runs.series import NAME as SERIES
 from porescale.runs.series import Series
 
 CHECKPOINT = "checkpoint.h5"
-MADE_LATER = ("final.png", "montage.png", "streamlines.png", "film.mp4", "film.webm")
+MADE_LATER = ("final.png", "montage.png", "streamlines.png", "film.mp4", "film.webm", "profile.csv")
+"""What packages make of a finished run: an older run's must not lie beside a new one that makes none."""
 ABANDONED = (cards.RUNNING, cards.INTERRUPTED, cards.FAILED)
 WORTH_KEEPING = 60.0
 """An unfinished run that cost more than this many seconds is not overwritten without being asked."""
@@ -47,13 +49,17 @@ class Record:
         self.scheduled_row_step = self.scheduled_snapshot_step = -1
 
     @classmethod
-    def fresh(cls, folder: Path, given: dict[str, Any]) -> Record:
-        """Start in ``folder``; an older run there is removed, unless it is unfinished and was dear."""
+    def fresh(cls, folder: Path, given: dict[str, Any], *, overwrite: bool = False) -> Record:
+        """Start in ``folder``; an older run there is removed, unless it is unfinished, was dear, and not ``overwrite``.
+
+        Its card goes last: a kill before that leaves a folder that is still known as a run's.
+        """
         if (folder / cards.NAME).exists():
-            _refuse_to_lose(folder)
-            for name in (SERIES, CHECKPOINT, cards.NAME, *MADE_LATER):
-                (folder / name).unlink(missing_ok=True)
+            if not overwrite:
+                _refuse_to_lose(folder)
             snapshots.clear(folder)
+            for name in (SERIES, CHECKPOINT, *MADE_LATER, cards.NAME):
+                (folder / name).unlink(missing_ok=True)
         card = cards.new_card(given)
         cards.write_card(folder, card)
         return cls(folder, card)
@@ -62,7 +68,9 @@ class Record:
     def resumed(cls, folder: Path, given: dict[str, Any], model: Model, schedules: dict[str, Schedule]) -> Record:
         """Go on from the checkpoint: the model, the schedules and the files as they were then."""
         content = read_checkpoint(folder / CHECKPOINT)
-        card = {**cards.read_card(folder), **cards.plain(given)}
+        card, now = cards.read_card(folder), cards.circumstances()
+        changed = cards.changed_circumstances(card, now)
+        card |= cards.plain(given)
         try:
             model.restore(content["state"])
             meta = content["record"]
@@ -79,8 +87,11 @@ class Record:
         card["seconds"] = content["seconds"]
         card["resumed"] = [
             *card.get("resumed", []),
-            {"at": cards.now(), "step": model.step, "time": model.time},
+            {"at": cards.now(), "step": model.step, "time": model.time, **now},
         ]
+        if changed:
+            what = ", ".join(changed)
+            print(f"warning: resumed with other {what}: not promised to go on bit for bit", file=sys.stderr)
         card.update(outcome=cards.RUNNING, ended=None)
         card.pop("problem", None)
         cards.write_card(folder, card)
@@ -154,8 +165,8 @@ class Record:
 
 
 def refuse_changes(folder: Path, given: dict[str, Any], free: Collection[str]) -> None:
-    """InputError naming every scene key that differs from the run in ``folder`` and may not."""
-    old, new = cards.read_card(folder).get("scene"), cards.plain(given).get("scene")
+    """InputError naming every scene key that must not differ from the run in ``folder``; or whose run that is."""
+    old, new = cards.read_card(folder, given.get("package"))["scene"], cards.plain(given).get("scene")
     faults = []
     for key, (was, now) in cards.changed_keys(old, new, free).items():
         repair = f"resume with {was!r}, or start another run"
@@ -169,9 +180,9 @@ def _refuse_to_lose(folder: Path) -> None:
     try:
         outcome = cards.read_card(folder).get("outcome")
         header = read_header(folder / CHECKPOINT)
-    except (ValueError, InputError):
+    except InputError:  # nothing there that could be resumed
         return
     if outcome in ABANDONED and header["seconds"] > WORTH_KEEPING:
         problem = f"holds an unfinished run of {header['seconds']:.0f} s, saved at t = {header['time']:.4g} s"
-        repair = "resume it, remove the folder, or name another one"
+        repair = "resume it (--resume), replace it (--overwrite), or name another folder"
         raise InputError(Fault("run folder", str(folder), problem, repair=repair))

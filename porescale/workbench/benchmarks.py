@@ -111,21 +111,20 @@ class Benchmarks:
     ) -> Iterator[Row]:
         """Time the benchmarks named (all without names), one after another, giving each row as it is known.
 
-        Raises InputError on unknown names and on sizes or thread counts below 1.
+        Raises InputError on unknown names, sizes below 1 and threads that this machine does not have, before anything
+        is timed; a benchmark may refuse more.
         """
-        chosen = choose(names, self._known, "benchmark")
-        for key, value in (("--size", size), ("--threads", threads)):
-            if value is not None and value < 1:
-                raise InputError(Fault(key, value, "is out of range", "", ">= 1"))
-        return self._rows(chosen, size, threads, dtype, min_seconds)
-
-    def _rows(
-        self, names: Sequence[str], size: int | None, threads: int | None, dtype: Dtype, min_seconds: float
-    ) -> Iterator[Row]:
-        """Prepare and time each benchmark."""
         from porescale.ground.jit import set_threads
 
-        count = set_threads(threads)
+        chosen = choose(names, self._known, "benchmark")
+        if size is not None and size < 1:
+            raise InputError(Fault("--size", size, "is out of range", "", ">= 1"))
+        return self._rows(chosen, size, set_threads(threads), dtype, min_seconds)
+
+    def _rows(
+        self, names: Sequence[str], size: int | None, count: int, dtype: Dtype, min_seconds: float
+    ) -> Iterator[Row]:
+        """Prepare and time each benchmark."""
         for name in names:
             made = self._known[name](size, count, dtype)
             for work in [made] if isinstance(made, Work) else made:

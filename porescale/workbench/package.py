@@ -48,12 +48,20 @@ class Drive(Protocol):
     """Takes a model through the time its scene asks for, keeping the record in a run folder."""
 
     def __call__(
-        self, model: Any, folder: Path, scene: Any, *, card: dict[str, Any], resume: bool, quiet: bool
+        self,
+        model: Any,
+        folder: Path,
+        scene: Any,
+        *,
+        card: dict[str, Any],
+        resume: bool,
+        quiet: bool,
+        overwrite: bool = False,
     ) -> Outcome:
         """Run, or go on with the run in ``folder``.
 
         card : what card.json must hold of the request: package, name, scene (full, with defaults), scene_file,
-        quality, settings;  quiet : no progress.
+        quality, settings;  quiet : no progress;  overwrite : replace the run there, whatever it cost.
         """
 
 

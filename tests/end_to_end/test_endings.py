@@ -135,7 +135,7 @@ def test_every_fault_of_a_file_is_said_at_once(ends, tmp_path):
         (("run", "SCENE", "--out", "SCENE"), "is a file"),
         (("run", "SCENE", "--resume", "--out", "nowhere"), "holds no run to resume"),
         (("run", "SCENE", "--speed", "3"), "--speed"),
-        (("show", "nowhere"), "is no run folder"),
+        (("show", "nowhere"), "no run here (card.json is missing)"),
         (("swim", "SCENE"), "swim"),
     ],
 )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 
@@ -16,3 +17,19 @@ def one_thread() -> Iterator[None]:
     set_threads(1)
     yield
     set_threads(before)
+
+
+@pytest.fixture
+def toy(tmp_path: Path, monkeypatch, capsys) -> Callable[..., tuple[int, str, list[str]]]:
+    """Runs a command line in an empty folder; gives exit code, stdout, stderr lines."""
+    from porescale.workbench.application import application, main
+    from tests.reference.toy_package import TOY
+
+    monkeypatch.chdir(tmp_path)
+
+    def _toy(*tokens: str) -> tuple[int, str, list[str]]:
+        code = main(application(TOY), tokens)
+        said = capsys.readouterr()
+        return code, said.out, said.err.splitlines()
+
+    return _toy

@@ -121,3 +121,18 @@ def test_a_dry_run_is_shown_without_a_fluid(tmp_path):
     fallen = run.snapshot(0).clouds["grains"].position - run.snapshot(-1).clouds["grains"].position
     # Free fall from where they were placed, g t^2/2 at most: 2e-5 m; some rest on others.
     assert 0 < np.max(fallen[:, 1]) < 1.01 * 0.5 * 9.81 * 0.002**2
+
+
+def test_a_cache_that_cannot_be_written_fails_no_run(tmp_path, monkeypatch):
+    from porescale import build
+    from porescale.app.run import drive
+
+    (tmp_path / "file").write_text("in the way")
+    (tmp_path / "folder").mkdir()
+    scene = dry(time__end=0.001, output__snapshot_interval=0.001)
+    for place in ("file", "folder"):
+        monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / place))
+        out = tmp_path / f"run with a {place}"
+        ended = drive(build(scene), out, scene, card={"scene": scene_as_dict(scene)}, resume=False, quiet=True)
+        assert ended.outcome == porescale.open_run(out).card["outcome"] == "finished"
+    assert list((tmp_path / "folder" / "porescale").glob("rate.json"))  # the twin: where it can be written, it is

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import threading
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 from porescale.ground.check import InputError, Unstable
+from porescale.runs import card as cards
 from porescale.runs import snapshots
 from porescale.runs.atomic import owned
 from porescale.runs.checkpoint import read_checkpoint
@@ -179,9 +181,69 @@ def test_a_dear_unfinished_run_is_not_overwritten(tmp_path, monkeypatch):
     assert card["outcome"] == "failed"
     assert card["problem"] == "OSError: disk full"
     monkeypatch.setattr("porescale.runs.record.WORTH_KEEPING", 0.0)
-    with pytest.raises(InputError, match="unfinished run"):
+    with pytest.raises(InputError, match=r"unfinished run.*--overwrite"):
         run_toy(tmp_path)
     assert run_toy(tmp_path, resume=True).outcome == "finished"
+
+
+def test_a_dear_unfinished_run_is_overwritten_on_request_and_nothing_of_it_stays(tmp_path, monkeypatch):
+    monkeypatch.setattr("porescale.runs.record.WORTH_KEEPING", 0.0)
+    with pytest.raises(Unstable):
+        run_toy(tmp_path, model=Toy(breaks_at=75), checkpoint_seconds=0.0)
+    card = json.loads((tmp_path / "card.json").read_text()) | {"outcome": "running"}  # as a kill leaves it
+    (tmp_path / "card.json").write_text(json.dumps(card))
+    for name in ("profile.csv", "streamlines.png", "film.webm", "notes.txt"):
+        (tmp_path / name).write_text("old")
+    with pytest.raises(InputError, match="unfinished run"):
+        run_toy(tmp_path)
+    run_toy(tmp_path, overwrite=True)
+    run_toy(tmp_path / "fresh")
+    assert files(tmp_path) == files(tmp_path / "fresh")
+    names = {path.name for path in tmp_path.iterdir()} - {"fresh"}
+    assert names == {path.name for path in (tmp_path / "fresh").iterdir()} | {"notes.txt"}
+
+
+@pytest.mark.parametrize("content", ["{", "[]", "{}", '{"scene": []}'])
+def test_a_damaged_card_is_one_clear_line_for_all_who_read_it(tmp_path, content):
+    run_toy(tmp_path)
+    (tmp_path / "card.json").write_text(content)
+    for read in (lambda: open_run(tmp_path), lambda: run_toy(tmp_path, duration=0.4, resume=True)):
+        with pytest.raises(InputError, match=r"card\.json is damaged") as caught:
+            read()
+        assert len(str(caught.value).splitlines()) == 1
+    assert run_toy(tmp_path).outcome == "finished"  # nothing that could be resumed is lost
+
+
+def test_a_run_of_another_package_is_not_resumed_and_named(tmp_path):
+    scene = {"toy": {"beads": 7}}
+    run_toy(tmp_path, card={"package": "toys", "scene": scene})
+    with pytest.raises(InputError, match="holds a run of toys, not of games") as caught:
+        run_toy(tmp_path, duration=0.4, card={"package": "games", "scene": {"game": 1}}, resume=True)
+    assert len(caught.value.faults) == 1
+    assert run_toy(tmp_path, duration=0.2, card={"package": "toys", "scene": scene}, resume=True).step == 200
+
+
+def test_going_on_with_other_sources_or_versions_is_warned_of_and_every_session_is_on_the_card(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setattr("porescale.ground.jit.source_hash", lambda: "aaa")
+    run_toy(tmp_path, duration=0.05)
+    run_toy(tmp_path, duration=0.1, resume=True)
+    assert capsys.readouterr().err == ""  # the twin: nothing changed
+    monkeypatch.setattr("porescale.ground.jit.source_hash", lambda: "bbb")
+    versions = {**cards.versions(), "numpy": "0.1", "h5py": "0.2"}  # h5py moves bits, it does not make them
+    monkeypatch.setattr("porescale.runs.card.versions", lambda: versions)
+    run_toy(tmp_path, duration=0.15, resume=True)
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("warning: resumed with other sources aaa -> bbb, numpy ")
+    assert line.endswith("-> 0.1: not promised to go on bit for bit")
+    run_toy(tmp_path, duration=0.2, resume=True)
+    assert capsys.readouterr().err == ""  # said once: it is the last session that counts
+    card = open_run(tmp_path).card
+    assert card["sources"] == "aaa"
+    assert [entry["sources"] for entry in card["resumed"]] == ["aaa", "bbb", "bbb"]
+    assert card["resumed"][1]["versions"]["numpy"] == "0.1"
+    assert {"at", "step", "time", "threads", "versions", "commit", "sources", "machine"} == set(card["resumed"][0])
 
 
 def test_a_folder_in_use_is_refused(tmp_path):

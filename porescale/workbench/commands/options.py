@@ -7,8 +7,6 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from porescale.ground.check import Fault, InputError
-
 Scene = Annotated[Path, Parameter(help="TOML file, or folder with scene.toml")]
 Quality = Annotated[
     Literal["draft", "standard", "fine"] | None,
@@ -23,9 +21,7 @@ Json = Annotated[bool, Parameter(name="--json", help="print JSON instead of tabl
 
 
 def use_threads(count: int | None) -> int:
-    """Set the number of kernel threads and give the one in use; InputError below 1."""
+    """Set the number of kernel threads and give it; InputError when this machine has no such number."""
     from porescale.ground.jit import set_threads
 
-    if count is not None and count < 1:
-        raise InputError(Fault("--threads", count, "is out of range", "", ">= 1"))
     return set_threads(count)

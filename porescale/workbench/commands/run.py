@@ -10,13 +10,12 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from porescale.ground.card import NAME as CARD
+from porescale.ground.card import read_card
 from porescale.ground.check import Fault, InputError
 from porescale.workbench.commands.options import Quality, Scene, Settings, Threads, use_threads
 from porescale.workbench.folders import refuse_unwritable, unusable
 from porescale.workbench.package import Outcome, Package
-
-CARD = "card.json"
-"""Every run folder has one from its first moment on."""
 
 
 def command(package: Package) -> Callable[..., int]:
@@ -41,7 +40,7 @@ def command(package: Package) -> Callable[..., int]:
         if out == "":
             raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
         folder = Path(out) if out is not None else Path("runs") / opened.name
-        refuse_folder(folder, resume=resume, overwrite=overwrite)
+        refuse_folder(folder, package.name, resume=resume, overwrite=overwrite)
         use_threads(threads)
         card = {
             "package": package.name,
@@ -52,7 +51,7 @@ def command(package: Package) -> Callable[..., int]:
             "settings": list(opened.settings),
         }
         model = package.build(opened.scene)
-        outcome = package.drive(model, folder, opened.scene, card=card, resume=resume, quiet=quiet)
+        outcome = package.drive(model, folder, opened.scene, card=card, resume=resume, quiet=quiet, overwrite=overwrite)
         if not quiet:
             print(summary(package.name, opened.name, folder, outcome))
         return 0
@@ -60,18 +59,18 @@ def command(package: Package) -> Callable[..., int]:
     return run
 
 
-def refuse_folder(folder: Path, *, resume: bool, overwrite: bool) -> None:
+def refuse_folder(folder: Path, package: str, *, resume: bool, overwrite: bool) -> None:
     """InputError unless a run may and can be written to ``folder``: nothing that is there is lost by accident."""
     if resume and overwrite:
         raise InputError(Fault("--resume", None, "contradicts --overwrite", repair="give one of them"))
     try:
-        _refuse_content(folder, resume=resume, overwrite=overwrite)
+        _refuse_content(folder, package, resume=resume, overwrite=overwrite)
     except OSError as error:  # a name too long, a folder that may not be looked into
         raise unusable(folder, "--out", error) from error
     refuse_unwritable(folder, "--out")
 
 
-def _refuse_content(folder: Path, *, resume: bool, overwrite: bool) -> None:
+def _refuse_content(folder: Path, package: str, *, resume: bool, overwrite: bool) -> None:
     """InputError when what is in ``folder`` does not go with what is asked."""
     if folder.exists() and not folder.is_dir():
         raise InputError(Fault("--out", str(folder), "is a file", repair="name a folder"))
@@ -81,6 +80,7 @@ def _refuse_content(folder: Path, *, resume: bool, overwrite: bool) -> None:
         if not (folder / CARD).is_file():
             repair = f"no {CARD} there; name the run's folder with --out, or leave --resume out"
             raise InputError(Fault("--out", str(folder), "holds no run to resume", repair=repair))
+        read_card(folder, package)
     elif folder.is_dir() and any(folder.iterdir()) and not overwrite:
         problem = "already holds a run" if (folder / CARD).is_file() else "is not empty"
         repair = "choose another --out, --resume the run, or --overwrite it"

@@ -8,8 +8,9 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from porescale.ground.card import NAME as CARD
+from porescale.ground.card import read_card
 from porescale.ground.check import Fault, InputError
-from porescale.workbench.commands.run import CARD
 from porescale.workbench.package import Package
 
 
@@ -18,9 +19,11 @@ def command(package: Package) -> Callable[..., int]:
 
     def show(run: Annotated[Path, Parameter(help="run folder")], /) -> int:
         """Make pictures and a film of a run, finished or not."""
-        if not (run / CARD).is_file():
-            repair = f"no {CARD} there; name the folder that `{package.name} run` wrote"
-            raise InputError(Fault(str(run), None, "is no run folder", repair=repair))
+        scene, needed = read_card(run, package.name)["scene"], package.scene().model_fields
+        missing = [name for name, field in needed.items() if field.is_required() and name not in scene]
+        if missing:
+            problem = f"{CARD} is damaged or not that of {package.name} (its scene has no {', '.join(missing)})"
+            raise InputError(Fault("run folder", str(run), problem, repair="name another folder"))
         for path in package.show(run):
             print(path)
         return 0

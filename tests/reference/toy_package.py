@@ -1,0 +1,115 @@
+"""A package for the workbench that simulates nothing: what its commands do is up to the scene."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from porescale.ground.check import Fault, InputError, PorescaleError, Unstable
+from porescale.workbench.benchmarks import Benchmarks, Work
+from porescale.workbench.package import Package
+from porescale.workbench.report import Report
+from porescale.workbench.sections import Section, quantity
+from porescale.workbench.validations import Measured, Validations
+
+
+class Decay(Section):
+    rate: float = quantity("1/s", gt=0, help="rate of decay")
+    start: float = quantity("m", 1.0)
+
+
+class ToyScene(Section):
+    decay: Decay
+    duration: float = quantity("s", 1.0, gt=0)
+    trouble: str = ""
+
+
+TEMPLATE = '# How fast it goes.\nduration = "2 s"\n[decay]\nrate = 3\n[quality.fine.decay]\nstart = 2\n'
+
+
+@dataclass
+class Ended:
+    outcome: str
+    step: int
+    time: float
+    seconds: float
+    snapshots: int
+    steps_per_second: float
+
+
+class ToyModel:
+    def __init__(self, scene: ToyScene) -> None:
+        self.scene = scene
+
+
+def drive(
+    model: ToyModel, folder: Path, scene: ToyScene, *, card: dict, resume: bool, quiet: bool, overwrite: bool = False
+) -> Ended:
+    troubles = {
+        "unstable": lambda: Unstable("cell (1, 2)", "speed", 9.0, "m/s", 7, 0.5, "a smaller step helps"),
+        "failed": lambda: PorescaleError("the film\ncould not be made"),
+        "stopped": KeyboardInterrupt,
+        "bug": lambda: ZeroDivisionError("ours"),
+        "memory": lambda: MemoryError("12 GiB"),
+        "disk": lambda: OSError(28, "No space left on device", "fields.vtkhdf"),
+        "lost": lambda: FileNotFoundError(2, "No such file", "fields.vtkhdf"),
+        "nameless": lambda: OSError(22, "Invalid argument"),
+    }
+    if scene.trouble:
+        raise troubles[scene.trouble]()
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "card.json").write_text(json.dumps({**card, "resumed": resume, "overwrite": overwrite}))
+    return Ended("finished", 10, scene.duration, 0.5, 3, 20.0)
+
+
+def report(scene: ToyScene) -> Report:
+    if scene.decay.rate > 100:
+        raise InputError(Fault("decay.rate", scene.decay.rate, "is beyond the stable limit", "1/s", "<= 100"))
+    made = Report("toy")
+    made.heading("time")
+    made.row("steps", 10, "", "of 0.1 s")
+    return made
+
+
+def picture(folder: Path) -> list[Path]:
+    return [folder / "end.png"]
+
+
+def validations() -> Validations:
+    made = Validations()
+
+    @made.row("toy.good", source="exact", because="exact", tolerance=0.0)
+    def _() -> Measured:
+        return Measured(1.0, 1.0, 0.0)
+
+    @made.row("toy.bad", source="exact", because="exact", tolerance=0.0, slow=True)
+    def _() -> Measured:
+        return Measured(1.0, 2.0, 1.0)
+
+    return made
+
+
+def benchmarks() -> Benchmarks:
+    made = Benchmarks()
+
+    @made.row("toy")
+    def _(size: int | None, threads: int, dtype: str) -> Work:
+        return Work(lambda: sum(range(1000)), 1.0, "toys/s", size or 1)
+
+    return made
+
+
+TOY = Package(
+    name="toy",
+    summary="A toy.",
+    version="1.2.3",
+    scene=lambda: ToyScene,
+    template=lambda: TEMPLATE,
+    build=ToyModel,
+    drive=drive,
+    report=report,
+    show=picture,
+    validations=validations,
+    benchmarks=benchmarks,
+)
