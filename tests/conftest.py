@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
+
+# Tests compare one thread with two, on machines with one core too; read by numba when it is first imported.
+os.environ.setdefault("NUMBA_NUM_THREADS", str(max(2, os.cpu_count() or 1)))
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

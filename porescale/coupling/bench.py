@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from porescale.coupling.saturated import Saturated
-from porescale.lbm.bench import RELAXATION_TIME, SIZE, bytes_of, steps_of
+from porescale.lbm.bench import RELAXATION_TIME, bytes_of, side_of, steps_of
 from porescale.lbm.fluid import Fluid
 from porescale.workbench.benchmarks import Benchmarks, Dtype, Work
 
@@ -63,7 +63,7 @@ def bench_psm(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
 
     Both are measured in turns with the machine's bandwidth: the ratio of their shares is the price of the discs.
     """
-    side = SIZE if size is None else size
+    side = side_of(size)
     steps = steps_of(side**2)
     wet, dry = stirred(side, dtype), plain(side, dtype)
     updates, moved = float(steps * side**2), bytes_of(dtype)

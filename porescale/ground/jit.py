@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from porescale.ground.cache import cache_root, hash_of, keep_only_used
+from porescale.ground.check import Fault, InputError
 
 PACKAGES = ("porescale", "continuum_sph")
 
@@ -75,9 +76,11 @@ prange = numba.prange
 
 
 def set_threads(count: int | None) -> int:
-    """Use ``count`` threads (None: all cores) in parallel kernels; returns the number in use."""
+    """Use ``count`` threads (None: all cores) in parallel kernels; returns it.  InputError unless there are as many."""
     limit = int(vars(numba.config)["NUMBA_NUM_THREADS"])
-    chosen = limit if count is None else max(1, min(count, limit))
+    chosen = limit if count is None else count
+    if not 1 <= chosen <= limit:
+        raise InputError(Fault("--threads", count, "is out of range", allowed=f"1 to {limit}"))
     numba.set_num_threads(chosen)
     return chosen
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from porescale.ground.check import Fault, InputError
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX
 from porescale.workbench.benchmarks import Benchmarks, Dtype, Work
@@ -12,12 +13,21 @@ BENCHMARKS = Benchmarks()
 
 SIZE = 1024  # cells along a side: nine populations of float64 are 75 MB, beyond the caches
 RELAXATION_TIME = 0.8
+SMALLEST = 16  # a side that holds a disc, and rows to share among threads
 CELLS_A_CALL = 4e6  # long enough that two steps of a small box are not all that is timed
+MOST_STEPS = 2000  # of a call: a step of a few cells takes what starting its kernels takes, some 0.1 ms
 
 
 def steps_of(cells: int) -> int:
     """Steps of one call, an even number: even and odd steps cost differently."""
-    return 2 * max(1, round(CELLS_A_CALL / (2 * cells)))
+    return 2 * max(1, round(min(CELLS_A_CALL / cells, MOST_STEPS) / 2))
+
+
+def side_of(size: int | None) -> int:
+    """Cells along a side; InputError when the box is too small to time anything but the start of a kernel."""
+    if size is not None and size < SMALLEST:
+        raise InputError(Fault("--size", size, "is too small to be timed", allowed=f">= {SMALLEST}"))
+    return SIZE if size is None else size
 
 
 def bytes_of(dtype: Dtype) -> float:
@@ -28,7 +38,7 @@ def bytes_of(dtype: Dtype) -> float:
 @BENCHMARKS.row("lbm")
 def bench_lbm(size: int | None, threads: int, dtype: Dtype) -> Work:
     """A box of ``size`` by ``size`` cells of moving fluid between walls, TRT."""
-    side = SIZE if size is None else size
+    side = side_of(size)
     fluid = Fluid(side, side, RELAXATION_TIME, dtype=dtype)
     fluid.set_flow(0.01, 0.005)
     steps = steps_of(side**2)

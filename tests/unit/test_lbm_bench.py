@@ -1,0 +1,36 @@
+"""The rates of the lattice: steps that a call takes, and boxes too small to time."""
+
+from __future__ import annotations
+
+import pytest
+
+from porescale.coupling.bench import bench_psm
+from porescale.ground.check import InputError
+from porescale.lbm.bench import CELLS_A_CALL, MOST_STEPS, SIZE, SMALLEST, bench_lbm, bytes_of, side_of, steps_of
+
+
+@pytest.mark.parametrize("bench", [bench_lbm, bench_psm])
+@pytest.mark.parametrize("size", [1, SMALLEST - 1])
+def test_a_box_too_small_to_time_is_refused_with_the_bound(bench, size):
+    with pytest.raises(InputError, match=rf"--size = {size}: is too small to be timed \(allowed: >= {SMALLEST}\)"):
+        bench(size, 1, "float64")
+
+
+def test_a_call_takes_an_even_number_of_steps_and_never_more_than_an_end_can_be_awaited_for():
+    for side in (1, SMALLEST, 100, SIZE, 10 * SIZE):
+        steps = steps_of(side**2)
+        assert steps % 2 == 0
+        assert 2 <= steps <= MOST_STEPS
+    assert steps_of(1) == steps_of(SMALLEST**2) == MOST_STEPS
+    # Where neither bound holds a call is CELLS_A_CALL cell steps, to the even number of steps: half of two of 100^2.
+    assert abs(steps_of(100**2) * 100**2 - CELLS_A_CALL) <= 100**2
+    assert side_of(None) == SIZE
+
+
+@pytest.mark.usefixtures("one_thread")
+def test_the_smallest_box_counts_its_cell_steps(monkeypatch):
+    monkeypatch.setattr("porescale.lbm.bench.MOST_STEPS", 2)
+    works = [bench_lbm(SMALLEST, 1, "float32"), *bench_psm(SMALLEST, 1, "float32")]
+    for work in works:
+        work.call()
+        assert (work.updates, work.size, work.bytes) == (2 * SMALLEST**2, SMALLEST, bytes_of("float32"))
