@@ -58,12 +58,16 @@ def refuse_too_large(derived: Derived) -> None:
     """Raise InputError when the arrays would not fit into this machine's memory."""
     have = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     need = memory(derived)
-    if need > 0.9 * have and derived.scales:
+    if need <= 0.9 * have:
+        return
+    problem = f"needs {need / 2**30:.1f} of {have / 2**30:.1f} GiB"
+    if derived.scales:
         coarser = derived.scales.spacing * math.sqrt(need / (0.5 * have))
-        raise InputError(
-            Fault("fluid.spacing", derived.scales.spacing, f"needs {need / 2**30:.1f} of {have / 2**30:.1f} GiB", "m",
-                  repair=f"a spacing of {coarser:.2g} m takes half of the memory")
-        )  # fmt: skip
+        repair = f"a spacing of {coarser:.2g} m takes half of the memory"
+        raise InputError(Fault("fluid.spacing", derived.scales.spacing, problem, "m", repair=repair))
+    raise InputError(
+        Fault("grains", None, f"{derived.grain_count:.3g} of them: {problem}", repair="take fewer or larger ones")
+    )
 
 
 def _file() -> Path:

@@ -13,11 +13,12 @@ from porescale.dem.integrate import packing_limit, stable_step
 from porescale.ground.check import Fault, InputError
 from porescale.lbm.scales import NAMES, Scales, implied
 from porescale.scene.geometry import judge_places
+from porescale.scene.lattice import is_whole
 from porescale.scene.regime import expected_speed, judge
 from porescale.scene.sections import Contact, Fluid, Scene
 
-WHOLE = 1e-6
-"""A length is a whole number of cells if it misses by less than this share of a cell."""
+MANY = 1e6
+"""Contact steps in a step of the fluid beyond which somebody slipped in a unit."""
 
 
 @dataclass(frozen=True)
@@ -128,7 +129,7 @@ def _lattice(scene: Scene, faults: list[Fault]) -> tuple[Scales, tuple[int, int]
 
 def _whole(key: str, length: float, spacing: float, faults: list[Fault]) -> None:
     cells = length / spacing
-    if round(cells) < 1 or abs(cells - round(cells)) > WHOLE * max(1.0, cells):
+    if not is_whole(length, spacing):
         better = length / max(1, round(cells))
         faults.append(
             Fault(key, length, f"is {cells:.6g} cells of {spacing:.6g} m, not a whole number", "m",
@@ -143,6 +144,12 @@ def _contact_step(
     wanted = contact.step or safe
     steps = 1 if scales is None else max(1, math.ceil(scales.step / wanted * (1 - 1e-9)))
     step = wanted if scales is None else scales.step / steps
+    if steps > MANY:
+        problem = f"takes {steps:.3g} contact steps of {wanted:.3g} s"
+        repair = "lower contact.stiffness, give the grains a size in metres, or shorten the step of the fluid"
+        faults.append(
+            Fault("contact.stiffness", contact.stiffness, f"{problem} in a step of the fluid", "N/m", repair=repair)
+        )
     if step > limit:
         faults.append(
             Fault("contact.step", step, "is beyond the stability limit of a packing", "s", f"< {limit:.3g}",

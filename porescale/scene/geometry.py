@@ -14,6 +14,8 @@ from porescale.scene.sections import Domain, Gate, Packing, Scene
 
 TOUCH = 1e-3
 """Overlap, over the smaller diameter, up to which grains placed by hand may start."""
+WEAK = 1e-6
+"""Gravity, m/s², below which nothing settles in a lifetime."""
 EDGE = 1e-9
 """Relative slack of a packing's edges: 8 mm + 4 mm is 12 mm whatever its last bit."""
 
@@ -136,9 +138,10 @@ def _judge_settling(scene: Scene, faults: list[Fault]) -> None:
     packing, domain = scene.grains.packing, scene.domain
     (gx, gy), fluid_density = scene.gravity, scene.fluid.density if scene.fluid else 0.0
     otherwise = "or set grains.packing.settle = false"
-    if gx != 0 or gy >= 0:
+    if gx != 0 or gy > -WEAK:
         problem, repair = "a packing settles straight down", f"give [0, -9.81], {otherwise}"
-        faults.append(Fault("gravity", f"[{gx:g}, {gy:g}]", problem, "m/s^2", "[0, below 0]", repair))
+        allowed = f"[0, {-WEAK:g} or below]"
+        faults.append(Fault("gravity", f"[{gx:g}, {gy:g}]", problem, "m/s^2", allowed, repair))
     if scene.grains.density <= fluid_density:
         problem, repair = "the grains do not sink, so they do not settle", f"make them heavier, {otherwise}"
         faults.append(Fault("grains.density", scene.grains.density, problem, "kg/m^3", f"> {fluid_density:g}", repair))

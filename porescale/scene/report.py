@@ -9,6 +9,9 @@ from porescale.scene.derive import Derived, derive
 from porescale.scene.sections import Scene
 from porescale.workbench.report import Report
 
+WEEK = 7 * 86400.0
+"""s."""
+
 
 def report(scene: Scene) -> Report:
     """All of the above; raises InputError with every refusal."""
@@ -117,5 +120,10 @@ def _cost(scene: Scene, derived: Derived, out: Report) -> None:
     out.row(
         "time", seconds, "s", "by this machine's last run" if measured else "a guess until this machine has done a run"
     )
+    if seconds > WEEK:
+        out.warn(
+            f"the run is expected to take {seconds / 86400:.3g} days, more than a week; a coarser spacing, "
+            "longer steps, softer contacts or an earlier end shorten it"
+        )
     snapshots = scene.time.end / scene.output.snapshot_interval
     out.row("snapshots", math.floor(snapshots + 1e-9) + 1)

@@ -84,7 +84,7 @@ def broken(path: Path, name: str) -> Path:
     [
         ("unknown", "fluid.viscsity", "viscosity"),
         ("unit", "domain.width", "m"),
-        ("range", "contact.stiffness = -1.0 N/m", "> 0"),
+        ("range", "contact.stiffness = -1.0 N/m", ">= 1e-06"),
         ("overlap", "grains.grain[1]", "overlaps grain 0 by 0.0005 m"),
         ("cells", "domain.width = 0.0121 m", "not a whole number"),
     ],

@@ -150,3 +150,11 @@ def test_a_small_run_does_not_make_the_machine_look_slow(tmp_path, monkeypatch):
     before, _ = cost.expected_seconds(large, 1000)
     cost.remember(small, 15900.0)
     assert 0.5 < cost.expected_seconds(large, 1000)[0] / before < 2
+
+
+def test_a_rate_that_cannot_be_noted_fails_no_run(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("not a folder")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    derived = derive(column())
+    cost.remember(derived, 500.0)
+    assert not cost.expected_seconds(derived, 1000)[1]
