@@ -173,7 +173,11 @@ class Scene(Section):
             finest = (tank.width * tank.height / MOST) ** 0.5
             faults.append(
                 Fault(
-                    "numerics.spacing", spacing, f"fills the tank with {count:.2g} particles", "m", f">= {finest:.3g}"
+                    "numerics.spacing",
+                    spacing,
+                    f"makes room for {count:.2g} particles in the tank",
+                    "m",
+                    f">= {finest:.3g}",
                 )
             )
         held: list[tuple[str, Tank | Column]] = [("tank", tank)]
