@@ -136,3 +136,22 @@ def test_a_cache_that_cannot_be_written_fails_no_run(tmp_path, monkeypatch):
         ended = drive(build(scene), out, scene, card={"scene": scene_as_dict(scene)}, resume=False, quiet=True)
         assert ended.outcome == porescale.open_run(out).card["outcome"] == "finished"
     assert list((tmp_path / "folder" / "porescale").glob("rate.json"))  # the twin: where it can be written, it is
+
+
+@pytest.mark.parametrize("overwrite", [False, True])
+def test_both_packages_hand_on_that_a_run_may_be_replaced(tmp_path, monkeypatch, overwrite):
+    import continuum_sph.app
+    from porescale.app import run
+
+    class Asked(Exception):
+        pass
+
+    def asked(*_, **options):
+        raise Asked(options["overwrite"])
+
+    monkeypatch.setattr("porescale.runs.drive.drive", asked)
+    for part, text in ((run, new.template()), (continuum_sph.app, continuum_sph.app.template())):
+        (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
+        scene = load(tmp_path, part.scene_type())
+        with pytest.raises(Asked, match=str(overwrite)):
+            part.drive(None, tmp_path, scene, card={}, resume=False, quiet=True, overwrite=overwrite)
