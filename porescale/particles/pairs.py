@@ -25,9 +25,8 @@ class PairList:
     """Pairs (i, j) with |x_i - x_j| < reach_i + reach_j + skin at the last build.
 
     count : points;  skin : m, >= 0;  lower, upper : corners of the box, m (points may lie outside);
-    periodic : per axis, distances are then between nearest images;  full : list every pair from both ends,
-    else only partner > i;  carried : numbers that each listed pair keeps over rebuilds (new pairs start at
-    0).
+    periodic : per axis, distances are then between nearest images;  full : list every pair from both ends, else only
+    partner > i;  carried : numbers that each listed pair keeps over rebuilds (new pairs start at 0).
 
     After a build (all replaced by the next one: fetch them again after ``update`` returns True)
 
@@ -102,8 +101,7 @@ class PairList:
         """List the pairs of ``x`` (n, 2) m with ``reach`` (n,) m now; data of pairs listed before is kept.
 
         Raises ValueError naming the point whose position or reach is not finite (or reach negative),
-        InputError when a periodic side is shorter than two cutoffs: a point would then meet two images of
-        another.
+        InputError when a periodic side is shorter than two cutoffs: a point would then meet two images of another.
         """
         assert x.shape == (self.count, 2)
         assert reach.shape == (self.count,)
