@@ -33,6 +33,15 @@ def hash_of(folders: Iterable[Path]) -> str:
     return digest.hexdigest()[:12]
 
 
+def writable(folder: Path) -> bool:
+    """Whether files may be put into ``folder``, which is made if it does not exist."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return os.access(folder, os.W_OK | os.X_OK)
+
+
 def keep_only_used(current: Path, pattern: str, days: float = 30.0) -> None:
     """Mark the folder ``current`` as used now and remove its neighbours matching ``pattern`` unused for ``days``.
 

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
-from porescale.ground.cache import cache_root, hash_of, keep_only_used
+from porescale.ground.cache import cache_root, hash_of, keep_only_used, writable
 from porescale.ground.check import Fault, InputError
 
 PACKAGES = ("porescale", "continuum_sph")
@@ -51,7 +51,8 @@ import numba  # noqa: E402
 llvm.set_option("porescale", "-runtime-memory-check-threshold=256")
 
 F = TypeVar("F", bound=Callable[..., Any])
-_FLAGS: dict[str, Any] = {"error_model": "numpy", "cache": True, "nogil": True}
+# Where the folder cannot be written numba would cache beside the sources, or give up: compile anew then.
+_FLAGS: dict[str, Any] = {"error_model": "numpy", "cache": writable(cache_folder()), "nogil": True}
 
 
 def kernel(function: F) -> F:

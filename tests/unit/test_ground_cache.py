@@ -78,3 +78,17 @@ def test_kernels_are_kept_below_the_cache_unless_a_folder_is_named(tmp_path):
             old.mkdir()
             os.utime(old, (0, 0))
     assert old.exists()  # the twin: who names a folder of their own looks after it
+
+
+def test_kernels_work_where_no_cache_can_be_written(tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    ask = "from porescale.particles.cells import minimum_image as k; print(k(0.9, 1.0), type(k._cache).__name__)"
+    root = Path(jit.__file__).resolve().parents[2]
+    for place, cache in (("file", "NullCache"), ("folder", "FunctionCache")):  # the second is the twin
+        environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / place), "NUMBA_CACHE_DIR": ""}
+        words = [sys.executable, "-c", ask]
+        done = subprocess.run(words, env=environment, capture_output=True, text=True, check=True, cwd=root)
+        value, kind = done.stdout.split()
+        assert abs(float(value) + 0.1) < 1e-15  # one rounding of 0.9 - 1
+        assert kind == cache
+    assert (tmp_path / "file").read_text() == "in the way"
