@@ -10,6 +10,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from porescale.dem.contact.linear import Linear
 from porescale.dem.forces import add_pair_forces, start_forces
 from porescale.dem.walls import add_plate_forces, add_wall_forces, move_plates
@@ -46,6 +48,23 @@ def kick_drift(
         if not (dx * dx + dy * dy <= limit_square):  # also true for nan
             moved = True
     return moved
+
+
+@kernel
+def first_without_number(position, velocity, spin):
+    """(disc, column) of the first disc with a position (column 0) that is not finite, or else a velocity (1), or a
+    spin (2); (-1, -1) if all are.  position, velocity (n, 2) m, m/s;  spin (n,) rad/s.
+    """
+    for i in range(spin.shape[0]):
+        if not (np.isfinite(position[i, 0]) and np.isfinite(position[i, 1])):
+            return i, 0
+    for i in range(spin.shape[0]):
+        if not (np.isfinite(velocity[i, 0]) and np.isfinite(velocity[i, 1])):
+            return i, 1
+    for i in range(spin.shape[0]):
+        if not np.isfinite(spin[i]):
+            return i, 2
+    return -1, -1
 
 
 @kernel

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from porescale.dem.contact.linear import KN, KT
 from porescale.dem.discs import Discs
 from porescale.dem.system import Grains
-from porescale.dem.walls import NX, NY, PX, PY
+from porescale.dem.walls import HIGH, LOW, NX, NY, PRESENT, PX, PY, X
 from porescale.ground.jit import kernel
 from porescale.particles.cells import minimum_image
 
@@ -60,6 +60,23 @@ def survey_walls(position, radius, walls, laws, spring):
     return worst, worst_i, worst_w, energy
 
 
+@kernel
+def survey_plates(position, radius, plates, laws, spring):
+    """(largest overlap over the radius, its disc, its plate, elastic energy J/m) over the plates (p, 5) present."""
+    worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
+    for w in range(plates.shape[0]):
+        if plates[w, PRESENT] != 0.0:
+            for i in range(radius.shape[0]):
+                dx = plates[w, X] - position[i, 0]
+                dy = min(max(position[i, 1], plates[w, LOW]), plates[w, HIGH]) - position[i, 1]
+                overlap = radius[i] - np.sqrt(dx * dx + dy * dy)
+                if overlap > 0.0:
+                    energy += 0.5 * laws[w, KN] * overlap**2 + 0.5 * laws[w, KT] * spring[w, i] ** 2
+                    if overlap / radius[i] > worst:
+                        worst, worst_i, worst_w = overlap / radius[i], i, w
+    return worst, worst_i, worst_w, energy
+
+
 class Overlap(NamedTuple):
     """The deepest contact: overlap over the (smaller) radius, the disc, and what it is pressed against."""
 
@@ -80,10 +97,8 @@ def potential_energy(discs: Discs, acceleration: tuple[float, float]) -> float:
 
 
 def elastic_energy(grains: Grains) -> float:
-    """Stored in the normal and tangential springs of pairs and walls, J/m (plates are not counted)."""
-    pairs = _survey(grains)[3]
-    walls = survey_walls(grains.discs.position, grains.discs.radius, grains.walls, grains.wall_laws, grains.wall_spring)
-    return float(pairs + walls[3])
+    """Stored in the normal and tangential springs of pairs, walls and plates, J/m."""
+    return float(_survey(grains)[3] + _survey_walls(grains)[3] + _survey_plates(grains)[3])
 
 
 def momentum(discs: Discs) -> Array:
@@ -106,14 +121,15 @@ def centre_of_mass(discs: Discs) -> Array:
 
 
 def max_overlap(grains: Grains) -> Overlap:
-    """The deepest overlap of all pairs and walls, as a share of the (smaller) radius."""
+    """The deepest overlap of all pairs, walls and plates, as a share of the (smaller) radius."""
     share, i, j, _ = _survey(grains)
     deepest = Overlap(float(share), int(i), f"grain {j}")
-    share, i, w, _ = survey_walls(
-        grains.discs.position, grains.discs.radius, grains.walls, grains.wall_laws, grains.wall_spring
-    )
+    share, i, w, _ = _survey_walls(grains)
     if share > deepest.share:
         deepest = Overlap(float(share), int(i), f"the {grains.wall_names[w]} wall")
+    share, i, w, _ = _survey_plates(grains)
+    if share > deepest.share:
+        deepest = Overlap(float(share), int(i), f"the {grains.plate_names[w]}")
     return deepest
 
 
@@ -136,4 +152,20 @@ def _survey(grains: Grains) -> tuple[float, int, int, float]:
         grains.discs.position, grains.discs.radius, grains.pairs.start, grains.pairs.partner,
         grains.pairs.carried, *grains.box.period, grains.law_row, grains.touching,
     )  # fmt: skip
+    return result
+
+
+def _survey_walls(grains: Grains) -> tuple[float, int, int, float]:
+    d = grains.discs
+    result: tuple[float, int, int, float] = survey_walls(
+        d.position, d.radius, grains.walls, grains.wall_laws, grains.wall_spring
+    )
+    return result
+
+
+def _survey_plates(grains: Grains) -> tuple[float, int, int, float]:
+    d = grains.discs
+    result: tuple[float, int, int, float] = survey_plates(
+        d.position, d.radius, grains.plates, grains.plate_laws, grains.plate_spring
+    )
     return result

@@ -46,7 +46,7 @@ ENERGY = 1e-8  # kinetic energy per grain over m g d that counts as rest
 BALANCE = 3e-3  # mean net force over mean weight that counts as rest
 CHUNK = 500  # steps between looks
 PATIENCE = 400  # chunks before settling gives up
-UNREADABLE = (OSError, EOFError, ValueError, KeyError, TypeError, NotImplementedError, zipfile.BadZipFile, InputError)
+UNREADABLE = (OSError, EOFError, ValueError, KeyError, TypeError, RuntimeError, zipfile.BadZipFile, InputError)
 """What reading a packing from disk raises when it is absent, cut short, not an archive, or lacks a part."""
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from porescale.dem.contact.linear import COLUMNS, Linear
 from porescale.dem.discs import Discs
-from porescale.dem.integrate import contact_steps, stable_step
+from porescale.dem.integrate import contact_steps, first_without_number, stable_step
 from porescale.dem.walls import HIGH, LOW, PRESENT, VELOCITY, Box, Plate, X
 from porescale.ground.check import Fault, InputError, Unstable
 from porescale.particles.pairs import PairList
@@ -66,6 +66,8 @@ class Grains:
         self.touching = np.zeros(count, np.int64)
         self.steps, self.last_dt = 0, 0.0
         self._time, self._steps_of_dt = 0.0, 0  # seconds before dt last changed, steps since
+        self._seen = np.zeros((len(self.plates), 3, count))  # right of the plate, beside it, height: at the last check
+        self._looked = False  # that there was one since the discs were last moved by hand
         self._stale = True  # the pair list must be looked at before the next step
         self._smallest = float(discs.radius.min()) if count else 0.0
 
@@ -108,7 +110,8 @@ class Grains:
         held.
 
         None: zero.  drag (1/s): background damping, for settling only.  Raises Unstable when the list must
-        be rebuilt and a position is no number.
+        be rebuilt and a position is no number.  No array is allocated, but a rebuild may grow the list's
+        buffers.
         """
         if external_force is None:
             self.external_force[:] = 0.0
@@ -123,7 +126,7 @@ class Grains:
             self._time, self._steps_of_dt, self.last_dt = self.time, 0, dt
         while left > 0:
             if self._stale:
-                self.refresh()
+                self._rebuild()
             pairs = self.pairs
             done, self._stale = contact_steps(
                 left, dt, drag,
@@ -140,6 +143,10 @@ class Grains:
 
     def refresh(self) -> None:
         """Bring the pair list up to date; call it after moving or resizing discs by hand."""
+        self._looked = False
+        self._rebuild()
+
+    def _rebuild(self) -> None:
         self._check_finite()
         self.pairs.update(self.discs.position, self.discs.radius)
         self._stale = False
@@ -169,7 +176,7 @@ class Grains:
         """Raise Unstable, naming grain, quantity and step, when the state is beyond sense.
 
         That is: a number that is none; a speed beyond 0.1 smallest radii per step; an overlap beyond 30 %
-        of the radius; a centre behind a solid side.
+        of the radius; a centre behind a solid side, or through a plate since the last check.
         """
         from porescale.dem.measure import max_overlap
 
@@ -193,7 +200,8 @@ class Grains:
                     "it went through the wall: raise the stiffness or shorten the contact step",
                 )  # fmt: skip
         if self._stale:
-            self.refresh()  # as the next step would
+            self._rebuild()  # as the next step would
+        self._check_plates()
         deepest = max_overlap(self)
         if deepest.share > WORST_OVERLAP:
             raise self._unstable(
@@ -203,15 +211,33 @@ class Grains:
 
     def _check_finite(self) -> None:
         d = self.discs
-        for quantity, values, unit in (
-            ("position", d.position, "m"), ("velocity", d.velocity, "m/s"), ("spin", d.spin, "rad/s"),
-        ):  # fmt: skip
-            if not np.isfinite(values).all():
-                bad = int(np.flatnonzero(~np.isfinite(values).reshape(d.count, -1).all(axis=1))[0])
-                raise self._unstable(
-                    f"grain {bad}", quantity, float("nan"), unit,
-                    "two centres met or the contact step is beyond its stability limit",
-                )  # fmt: skip
+        bad, column = first_without_number(d.position, d.velocity, d.spin)
+        if bad >= 0:
+            quantity, unit = (("position", "m"), ("velocity", "m/s"), ("spin", "rad/s"))[column]
+            raise self._unstable(
+                f"grain {bad}", quantity, float("nan"), unit,
+                "two centres met or the contact step is beyond its stability limit",
+            )  # fmt: skip
+
+    def _check_plates(self) -> None:
+        """Raise Unstable when a centre that was beside a plate at the last check is now on its other side.
+
+        Only for discs that are wholly above the present lower end, then and now: the others may have gone below.
+        """
+        at, radius = self.discs.position, self.discs.radius
+        for name, plate, seen in zip(self.plate_names, self.plates, self._seen, strict=True):
+            right = at[:, 0] > plate[X]
+            beside = (at[:, 1] - radius > plate[LOW]) & (at[:, 1] < plate[HIGH]) & (plate[PRESENT] != 0.0)
+            if self._looked:
+                through = beside & (seen[2] - radius > plate[LOW]) & (seen[1] != 0.0) & (right != (seen[0] != 0.0))
+                if through.any():
+                    out = int(through.argmax())
+                    raise self._unstable(
+                        f"grain {out}", f"distance to the {name}", -abs(float(at[out, 0] - plate[X])), "m",
+                        "it went through: raise the stiffness or shorten the contact step",
+                    )  # fmt: skip
+            seen[0], seen[1], seen[2] = right, beside, at[:, 1]
+        self._looked = True
 
     def _unstable(self, where: str, quantity: str, value: float, unit: str, cause: str) -> Unstable:
         return Unstable(where, quantity, value, unit, self.steps, self.time, cause)
@@ -250,4 +276,5 @@ class Grains:
         self.steps, self._time = int(state["steps"]), float(state["time"])
         self._steps_of_dt = int(state["steps_of_dt"])
         self.last_dt, self._stale = float(state["last_dt"]), bool(state["stale"])
+        self._looked = False
         self._smallest = float(self.discs.radius.min()) if self.discs.count else 0.0
