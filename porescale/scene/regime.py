@@ -29,31 +29,57 @@ Sizes = tuple[float, float, float]
 def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None) -> float:
     """The largest speed to expect, m/s: an upper estimate from energy, drag and what the scene starts with.
 
-    Grains: free fall over the height they can fall, reduced by buoyancy; in fluid the terminal speed of a grain if that
-    is less, and for a packing that of the gravity current it can become, sqrt(g' H)/2 with g' = phi |s - 1| g (Benjamin
-    1968): grains that fall together fall faster than each alone.  Fluid under a body force, without grains: the
-    parabola between the walls across it.
+    Grains: free fall over the distance they can fall along gravity (rise against it, where they are lighter than the
+    fluid), reduced by buoyancy; over a periodic side, which has no end, for as long as the run lasts.  In fluid the
+    terminal speed of a grain if that is less, and for a packing that of the gravity current it can become,
+    sqrt(g' H)/2 with g' = phi |s - 1| g (Benjamin 1968): grains that fall together fall faster than each alone.
+    Fluid under a body force: the parabola between the walls across it, which grains in its way only slow down.
     """
     g, speed = math.hypot(*scene.gravity), 0.0
     if scene.grains and sizes:
         for grain in scene.grains.grain:
             speed = max(speed, math.hypot(*grain.velocity) + abs(grain.spin) * grain.diameter / 2)
         packing = scene.grains.packing
-        heights = [grain.y for grain in scene.grains.grain]
-        fall = max([packing.bottom + packing.height, *heights] if packing else heights)
         lighter = 1 - scales.density / scene.grains.density if scales else 1.0
-        free = math.sqrt(2 * abs(lighter) * g * max(fall, 0.0))
+        reach, unending = fall(scene, -1.0 if lighter < 0 else 1.0)
+        free = abs(lighter) * g * scene.time.end if unending else math.sqrt(2 * abs(lighter) * g * reach)
         if scales:
             driving = abs(scene.grains.density / scales.density - 1) * g
             free = min(free, terminal_speed(sizes[2], driving, scales.viscosity))
             if packing:
-                free = max(free, 0.5 * math.sqrt(packing.packing_fraction * driving * packing.height))
+                free = max(free, 0.5 * math.sqrt(packing.packing_fraction * driving * column_height(scene)))
         speed = max(speed, free)
-    if scene.fluid and scales and not scene.grains:
+    if scene.fluid and scales:
         push = math.hypot(*scene.fluid.body_force) / scales.density
         across = min(scene.domain.width, scene.domain.height)
         speed = max(speed, push * across**2 / (8 * scales.viscosity))
     return speed
+
+
+def fall(scene: Scene, sense: float) -> tuple[float, bool]:
+    """How far (m) a grain can go along gravity (``sense`` 1) or against it (-1), and whether a periodic side makes
+    that endless.  From a grain's centre, or the far edge of the packing, to the last corner of the box.
+    """
+    g = math.hypot(*scene.gravity)
+    if g == 0 or scene.grains is None:
+        return 0.0, False
+    along = [sense * component / g for component in scene.gravity]
+    d = scene.domain
+    unending = (along[0] != 0 and d.left == "periodic") or (along[1] != 0 and d.bottom == "periodic")
+    starts = [(grain.x, grain.y) for grain in scene.grains.grain]
+    if packing := scene.grains.packing:
+        right, top = packing.left + packing.width, packing.bottom + packing.height
+        starts += [(x, y) for x in (packing.left, right) for y in (packing.bottom, top)]
+    last = sum(max(0.0, component * size) for component, size in zip(along, (d.width, d.height), strict=True))
+    return max(0.0, *(last - (along[0] * x + along[1] * y) for x, y in starts)), unending
+
+
+def column_height(scene: Scene) -> float:
+    """Extent of the packing along gravity, m; 0 without one."""
+    packing, g = scene.grains.packing if scene.grains else None, math.hypot(*scene.gravity)
+    if packing is None or g == 0:
+        return 0.0
+    return (abs(scene.gravity[0]) * packing.width + abs(scene.gravity[1]) * packing.height) / g
 
 
 def terminal_speed(diameter: float, reduced_gravity: float, viscosity: float) -> float:
@@ -134,7 +160,7 @@ def _judge_pore_pressure(scene: Scene, scales: Scales, faults: list[Fault], warn
     packing = scene.grains.packing
     assert packing is not None
     weight = abs(scene.grains.density - scales.density) * math.hypot(*scene.gravity) * packing.packing_fraction
-    variation = 3 * weight * packing.height / (scales.density * scales.velocity**2)
+    variation = 3 * weight * column_height(scene) / (scales.density * scales.velocity**2)
     if variation <= DENSITY_WARN:
         return variation
     problem = f"pore pressure under the packing can change the fluid's density by {variation:.2g}"

@@ -1,4 +1,4 @@
-"""The pile's surface over time, from the snapshots of a run: profile.csv and a picture of it."""
+"""The pile's surface over time, from the snapshots of a run: profile.csv."""
 
 from __future__ import annotations
 
