@@ -57,7 +57,7 @@ class Coupled:
 
     hydraulic_ratio : lambda, radius the fluid sees over mechanical radius;  contact_steps : per fluid step;
     acceleration : of free fall, m/s².  A step allocates no array but for a rebuild of the pair list, which looks for
-    numbers that are none and may grow its buffers, and for a gate that stands in the fluid, whose rows are looked up.
+    numbers that are none and may grow its buffers.
     """
 
     def __init__(

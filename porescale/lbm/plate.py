@@ -6,6 +6,8 @@ and the plate can rise or vanish between two steps.  A plate that rises with spe
 leaves it (Ladd 1994); over the two links of a crossing that sums to zero.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
@@ -61,7 +63,7 @@ class Plate:
 
     def links_from(self) -> int:
         """Number of the first link that the plate, at its present height, still cuts."""
-        return int(np.searchsorted(self.row, np.ceil(self.lower_edge - 0.5)))
+        return int(np.searchsorted(self.row, math.ceil(self.lower_edge - 0.5)))
 
 
 @kernel

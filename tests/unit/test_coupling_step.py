@@ -220,12 +220,7 @@ def test_a_step_allocates_no_array_but_for_a_rebuild():
     assert grains.plate_spring.any()
     assert grains.wall_spring.any()
     assert rebuilt.sum() >= 2
-    # What Python itself needs for its calls stays below 4 kB; looking up the first link that a rising gate still cuts,
-    # numpy makes floats of the links' rows.
-    assert sizes[~rebuilt].max() < 4096 + coupled.fluid.plates[0].row.nbytes
-    assert sizes[~rebuilt].min() < 4096
-    coupled.fluid.plates.clear()
-    sizes, rebuilt = grown(coupled, coupled.advance, steps=20)
+    # What Python itself needs for its calls stays below 4 kB.
     assert sizes[~rebuilt].max() < 4096
 
 
