@@ -52,7 +52,7 @@ class Tait:
         return self.stiffness * ((density / self.density) ** self.exponent - 1.0)
 
     def hydrostatic_density(self, depth: Floats, gravity: float) -> Floats:
-        """Density (kg/m³) as the spec writes it, ρ0 (1 + ρ0 g depth/B)^(1/γ).
+        """Density (kg/m³) of water at rest, ρ0 (1 + ρ0 g depth/B)^(1/γ).
 
         It takes the pressure as ρ0 g depth, without the weight of what the compression adds (a part
         g depth/2c0² of it, 0.25 % at c0 = 10 √(2 g depth)).

@@ -84,7 +84,7 @@ def hydrostatic(seconds: float, gravity_assumed: float = GRAVITY) -> tuple[float
 
 @VALIDATIONS.row(
     "continuum.hydrostatic_density",
-    source="Tait profile ρ0 (1 + ρ0 g (H-y)/B)^(1/7), spec §4 of Maeda & Sakai 2004's figure 6 at rest",
+    source="Tait profile ρ0 (1 + ρ0 g (H-y)/B)^(1/7): Maeda & Sakai 2004's figure 6 at rest",
     because="the gradient on a lattice is 2.6 % weak, so pressure balances gravity with as much too steep a slope "
     "until it settles; the profile leaves out the weight of the compression, g H/2c0² = 1/400",
     tolerance=LATTICE / (1.0 - LATTICE) + 1 / 400,

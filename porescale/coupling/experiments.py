@@ -168,7 +168,7 @@ def array_drag(
     """Drag F/(mu U) of a square array of fixed discs, one in a periodic box of ``cells``², in Stokes flow.
 
     Driven by a body force G on the fluid: the drag is G times the box, U the conserved flux sum f c/N
-    (spec/fluid-grains.md section 1, point 8).
+    (the superficial velocity is that of the conserved flux, without half the force).
     """
     nu = viscosity(relaxation_time)
     force = 1e-6 * nu  # so that U is 1e-4 or less, and Reynolds numbers too

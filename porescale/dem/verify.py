@@ -1,6 +1,4 @@
-"""Validations of the grains: exact answers of spec/grains.md sections 1 and 3, and the tolerance each
-allows.
-"""
+"""Validations of the grains: exact answers, and the tolerance each allows."""
 
 from __future__ import annotations
 
@@ -119,7 +117,7 @@ def oblique() -> Measured:
 
 @VALIDATIONS.row(
     "dem.no_impact_gains_energy",
-    source="second law; grazing angles after spec/grains.md section 1",
+    source="second law, at grazing angles",
     because="leap-frog errs at touch by (w0 dt)^3 = 3e-8 of the energy at T_c/1000, nothing else may be gained",
     tolerance=1e-7,
 )

@@ -1,4 +1,4 @@
-"""Validations of the fluid: flows with exact answers (spec/fluid-grains.md section 5)."""
+"""Validations of the fluid: flows with exact answers."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from porescale.particles.cells import grid_shape, sort_into_cells
 
 Floats = NDArray[np.float64]
 
-SERIAL_BELOW = 20_000  # points; fewer cost less in one thread than a barrier costs (measured, spec/grains.md §4)
+SERIAL_BELOW = 20_000  # points; fewer cost less in one thread than a barrier costs (measured)
 CELLS_PER_CUTOFF = 2  # half-cutoff cells: a window of 6.25 instead of 9 squared cutoffs to look through
 
 

@@ -1,7 +1,7 @@
 """Files that are whole or absent: written beside, synced to disk, renamed.
 
 A killed process leaves at most a temporary file (``.<stem>.<process>.writing<suffix>``), which :func:`clean`
-removes at the next start.  Measured: 100 of 100 files good after a SIGKILL (spec/files.md).
+removes at the next start.  Measured: 100 of 100 files good after a SIGKILL.
 """
 
 from __future__ import annotations

@@ -3,8 +3,8 @@
 A grid becomes an ImageData file: ``CellData/<name>`` of shape (nt, ny, nx[, 3]), one chunk a frame.  A
 cloud becomes a PolyData file whose points are vertices, with ``PointData/<name>`` of shape (sum of n, ...).
 Every dataset is compressed, protected by Fletcher-32 and carries its unit as attribute ``units``.  Steps,
-kind and name of the frames lie in the group ``/porescale``, which VTK ignores.  Layout: spec/files.md,
-found by removing one item at a time, and the VTKHDF specification (docs.vtk.org, "VTKHDF file format").
+kind and name of the frames lie in the group ``/porescale``, which VTK ignores.  Layout: the VTKHDF
+specification (docs.vtk.org, "VTKHDF file format"), and what the reader needs, found by removing one item at a time.
 
 Files are written in one go, all frame counts known beforehand; :func:`join` copies grids as compressed
 chunks, so that no more than one frame is ever in memory and nothing is compressed twice.

@@ -11,7 +11,7 @@ from porescale.coupling.verify import ARRAY_DRAG
 
 @pytest.mark.parametrize("tau", [0.6, 0.8])
 def test_the_drag_converges_at_second_order(tau):
-    # spec section 1 point 7: the deficit in radius is C h²/d.  1.7: the place in the cell moves the coarse error
+    # The deficit in radius is C h²/d.  1.7: the place in the cell moves the coarse error
     # by up to a fifth, log2(1.2) = 0.26 of the order, either way.
     errors = [abs(lab.array_drag(cells, relaxation_time=tau) / ARRAY_DRAG - 1) for cells in (20, 40)]
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.3)
@@ -19,7 +19,7 @@ def test_the_drag_converges_at_second_order(tau):
 
 @pytest.mark.parametrize("centre", [(0.3, 0.1), (0.5, 0.5), (0.0, 0.0)])
 def test_the_leak_of_touching_discs_falls_at_second_order(centre):
-    # Second order at least: spec section 5; the square array closes the plane, all that passes is error.  At most: the
+    # Second order at least; the square array closes the plane, all that passes is error.  At most: the
     # skin of the discs leaves an opening of some share of a cell between them, and what flows through it goes as its
     # width over R to the power 5/2 (Gebart 1992); that share differs with the place in the cell by up to a fifth, as
     # the deficit of the drag does, 5/2 log2(1.2) = 0.66 of the order.

@@ -1,4 +1,4 @@
-"""Discs in contact, slow and obvious, written from spec/grains.md section 1: every pair, every step, plain
+"""Discs in contact, slow and obvious, written from Cundall & Strack 1979: every pair, every step, plain
 Python.
 
 One dictionary holds the springs.  ``arms="radius"`` uses the radii as lever arms, as many codes do: the

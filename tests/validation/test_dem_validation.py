@@ -35,7 +35,7 @@ def test_restitution_converges_at_first_order():
     law = lab.law_at(0.2155)
     coarse, fine = (np.abs(lab.bounce(law, n) - law.restitution(lab.MASS)).max() for n in (100.0, 1000.0))
     assert coarse / fine == pytest.approx(10.0, rel=0.05)
-    assert coarse < 1e-2  # spec/grains.md section 3
+    assert coarse < 1e-2  # first order at contact switching: ten times the error at a tenth of the steps
     assert coarse > 1e-3  # so the resolution of the validation is needed
 
 
