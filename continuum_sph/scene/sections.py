@@ -10,7 +10,8 @@ from porescale.ground.check import Fault
 from porescale.ground.constants import GRAVITY
 from porescale.workbench.sections import Refused, Section, quantity
 
-CALM_MACH = 10.0  # sound speed over the speed of free fall from the highest water: Mach number 0.1, so that density changes by 1 %
+# Sound speed over the speed of free fall from the highest water: Mach number 0.1, so that density changes by 1 %.
+CALM_MACH = 10.0
 
 # Bounds of sections: no flow of water that anyone computes lies outside, and inside every product stays a number.
 SMALLEST, LARGEST = 1e-6, 1e5  # m
