@@ -18,7 +18,7 @@ FOURS = st.builds(
         "spacing": spacing, "step": step, "relaxation_time": tau, "viscosity": (tau - 0.5) / 3 * spacing**2 / step,
     },
     st.floats(1e-6, 1e-2), st.floats(1e-7, 1e-2), st.floats(0.501, 3.0),
-)  # fmt: skip
+).filter(lambda four: 1e-11 < four["viscosity"] < 1e2)  # fmt: skip
 
 
 @given(FOURS, st.sampled_from(NAMES))
@@ -52,7 +52,7 @@ def test_four_that_disagree_are_refused_with_values_that_would_agree(four, wrong
     assert repairs.keys() <= set(NAMES)
     assert wrong in repairs
     # The repair named for the wrong one is the right one, in the six digits printed.
-    assert float(repairs[wrong].repair.rpartition("give ")[2]) == pytest.approx(four[wrong], rel=1e-5)
+    assert float(repairs[wrong].repair.rpartition("or give ")[2].split()[0]) == pytest.approx(four[wrong], rel=1e-5)
     assert implied(**given_four).keys() == set(NAMES)
 
 

@@ -158,7 +158,7 @@ def test_axes_and_times_have_handy_units():
 
 
 def a_run(folder, frames=12):
-    card.write_card(folder, {"name": "half a channel", "outcome": "finished"})
+    card.write_card(folder, {"name": "half a channel", "scene": {}, "outcome": "finished"})
     for k in range(frames):
         at = grain(0.01 + 0.002 * k, 0.01, 0.003, 0.1 * k)
         snapshots.write_part(folder, flow(0.1 * k, 0.05 * k, k, grains=at))
@@ -215,7 +215,7 @@ def test_pictures_are_whole_png_files(tmp_path):
 
 
 def test_a_run_without_snapshots_is_told_so(tmp_path):
-    card.write_card(tmp_path, {"name": "empty"})
+    card.write_card(tmp_path, {"name": "empty", "scene": {}})
     with pytest.raises(InputError, match="no snapshots"):
         pictures(tmp_path)
 
