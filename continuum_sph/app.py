@@ -56,9 +56,6 @@ def drive(
     """Run the model to the scene's end and write the run folder."""
     from porescale.runs.drive import drive as drive_model
 
-    def after(folder: Path) -> None:
-        show(folder)
-
     return drive_model(
         model,
         folder,
@@ -70,7 +67,7 @@ def drive(
         resume=resume,
         overwrite=overwrite,
         quiet=quiet,
-        after=after,
+        after=show,
     )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -47,7 +46,6 @@ def drive(
     from porescale.scene.cost import remember
 
     packing = scene.grains.packing if scene.grains else None
-    after: Callable[[Path], None] = show  # type: ignore[assignment]
     outcome = drive_model(
         model,
         folder,
@@ -59,7 +57,7 @@ def drive(
         resume=resume,
         overwrite=overwrite,
         quiet=quiet,
-        after=after,
+        after=show,
     )
     remember(model.derived, outcome.steps_per_second)
     return outcome

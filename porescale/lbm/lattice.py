@@ -20,7 +20,6 @@ CX = np.array([0, 1, -1, 0, 0, 1, -1, -1, 1])
 CY = np.array([0, 0, 0, 1, -1, 1, -1, 1, -1])
 OPPOSITE = np.array([0, 2, 1, 4, 3, 6, 5, 8, 7])
 WEIGHTS = np.array([4 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 36, 1 / 36, 1 / 36, 1 / 36])
-SOUND_SPEED_SQUARED = 1 / 3
 
 
 def relaxation_time(viscosity: float) -> float:

@@ -184,7 +184,7 @@ class Simulation:
         excess, ux, uy, solid = self.fields()
         velocity = np.zeros((*ux.shape, 3), np.float32)
         velocity[..., 0], velocity[..., 1] = ux, uy
-        reduced = excess * s.velocity**2 / 3
+        reduced = excess / s.density * s.pressure
         depth = (self.fluid.ny - 0.5 - np.arange(self.fluid.ny)) * s.spacing
         along = (np.arange(self.fluid.nx) + 0.5) * s.spacing
         hydrostatic = s.density * (-self.scene.gravity[1] * depth[:, None] + self.scene.gravity[0] * along[None, :])

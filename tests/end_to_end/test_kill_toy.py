@@ -10,12 +10,12 @@ import sys
 import time
 from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
 
 from porescale.runs.checkpoint import read_checkpoint
 from porescale.runs.open_run import open_run
+from tests.reference.same_run import contents
 from tests.reference.toy_model import run_toy
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -40,21 +40,6 @@ def kill_in_the_middle(process: subprocess.Popen[bytes], folder: Path, delay: fl
     if process.poll() is None:
         os.kill(process.pid, signal.SIGKILL)
     process.communicate()
-
-
-def contents(path: Path) -> dict[str, bytes]:
-    """Every dataset and attribute of a file."""
-    found: dict[str, bytes] = {}
-
-    def note(name: str, item: h5py.Dataset | h5py.Group) -> None:
-        if isinstance(item, h5py.Dataset):
-            found[name] = str((item.dtype, item.shape)).encode() + np.ascontiguousarray(item[...]).tobytes()
-        for key, value in item.attrs.items():
-            found[f"{name}@{key}"] = repr(value).encode()
-
-    with h5py.File(path, "r") as file:
-        file.visititems(note)
-    return found
 
 
 def assert_same(one: Path, other: Path) -> None:

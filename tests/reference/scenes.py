@@ -50,7 +50,7 @@ def column(**changes: Any) -> Scene:
 
 
 def dry(**changes: Any) -> Scene:
-    """The column without water: vanishing gate, and the grains left where they were placed."""
+    """The column without water and gate, and the grains left where they were placed."""
     given = {"fluid": None, "gate": None, "grains__hydraulic_radius_ratio": None, "grains__packing__settle": False}
     return column(**{**given, **changes})
 
