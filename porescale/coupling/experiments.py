@@ -18,6 +18,7 @@ from porescale.dem.discs import make_discs
 from porescale.dem.system import Grains
 from porescale.dem.walls import Box
 from porescale.dem.walls import Plate as GrainPlate
+from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL, odd_rate
 from porescale.lbm.experiments import one_thread
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
@@ -226,7 +227,7 @@ def weighing(relaxation_time: float, cells: int = 40, radius: float = 5.0, steps
     load = float(wet.force[0, 1]) / force
     wet.cover(place, rest, no_spin)
     b = wet.weights()
-    held = float(np.sum(b + fluid.parameters[1] * b * (1 - b) / 2))
+    held = float(np.sum(b + odd_rate(relaxation_time, MAGIC_MIDWAY_WALL) * b * (1 - b) / 2))
     return load, held - faxen(2 * radius / cells) * viscosity(relaxation_time) / 2
 
 

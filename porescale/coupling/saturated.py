@@ -5,7 +5,9 @@ from numpy.typing import NDArray
 
 from porescale.coupling.coverage import cover, lay_out, list_rows
 from porescale.coupling.load import add_rows
+from porescale.coupling.solid.choose import choose_solid
 from porescale.coupling.solid_collision import sweep_even, sweep_odd
+from porescale.coupling.weighting import choose_weight, weights_of
 from porescale.lbm.fluid import Fluid
 
 BAND_HEIGHT = 8
@@ -24,7 +26,7 @@ class Saturated:
     solid fractions, and of fraction times velocity, right after ``cover``.  A step allocates no array.
     """
 
-    def __init__(self, fluid: Fluid, radius: Array) -> None:
+    def __init__(self, fluid: Fluid, radius: Array, *, solid_operator: str = "odd-SC1", weighting: str = "B2") -> None:
         count, ny, nx = len(radius), fluid.ny, fluid.nx
         dtype = fluid.populations.dtype
         self.radius = np.ascontiguousarray(radius, float)
@@ -46,7 +48,9 @@ class Saturated:
         self._band_order = np.argsort(np.arange(bands) * SPREAD % 1).astype(np.int64)
         self._scratch = np.zeros((bands, 3, nx), dtype)
         self.solid, self.solid_x, self.solid_y = (np.zeros((ny, nx), dtype) for _ in range(3))
-        self._k = np.array([fluid.relaxation_time - 0.5], dtype)
+        self._laws = (
+            choose_weight(weighting, fluid.relaxation_time, dtype), choose_solid(solid_operator, dtype)
+        )  # fmt: skip
         self.force, self.torque = np.zeros((count, 2)), np.zeros(count)
 
     def _place(self, centre: Array) -> None:
@@ -63,16 +67,15 @@ class Saturated:
 
     def weights(self) -> Array:
         """Weight B of every cell (ny, nx), right after ``cover``."""
-        e = np.minimum(self.solid, 1)
-        k = self._k[0]
-        return np.asarray(e * k / ((1 - e) + k))
+        zero = type(self._laws[0].k)(0)
+        return weights_of(self.solid, zero, zero, self._laws[0])
 
     def advance(self, fluid: Fluid, centre: Array, velocity: Array, spin: Array) -> None:
         """One fluid step with the discs where they are; fills ``force`` and ``torque``."""
         self._place(centre)
         fluid.advance(
             sweep_even, sweep_odd, self._band_order, BAND_HEIGHT, *self._rows, centre, velocity, spin, *self._patches,
-            self.periodic_x, self._row_load, self._scratch, self._k,
+            self.periodic_x, self._row_load, self._scratch, *self._laws,
         )  # fmt: skip
         _, width, _, corner, reach = self._patches
         add_rows(corner, width, reach, fluid.ny, self.periodic_y, self._row_load, self.force, self.torque)

@@ -1,15 +1,76 @@
-"""Weight B of a partially saturated cell from its solid area fraction.
+"""Weight B of a partially saturated cell from its solid area fraction e (Noble & Torczynski 1998).
 
-B2(e) = e k / ((1 - e) + k),  k = tau - 1/2  (Noble & Torczynski 1998).  tau is the molecular relaxation time: with an
-eddy viscosity the geometry must not breathe with the flow.  Grains that share a cell: B = B2(min(1, sum of e)), split
-in proportion to e, since summing B2(e) would make contacts porous.
+B1 = e.   B2 = e k / ((1 - e) + k),  k = tau - 1/2,  which makes the position of a wall independent of tau to first
+order.  tau is the molecular relaxation time: with an eddy viscosity the geometry must not breathe with the flow.
+Grains that share a cell: B of min(1, sum of e), split in proportion to e; summing B(e) would make contacts porous.
 """
 
-from porescale.ground.jit import inline
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from porescale.ground.jit import by_law, kernel
+from porescale.lbm.collision.law import numbers
 
 
-@inline
-def saturation_weight(solid, k, one):
-    """B2 of the summed solid fraction ``solid`` >= 0 of a cell;  k = tau - 1/2;  one: 1 in the dtype of the fields."""
+class B1(NamedTuple):
+    """k : tau - 1/2, not used."""
+
+    k: np.floating
+
+
+class B2(NamedTuple):
+    """k : tau - 1/2."""
+
+    k: np.floating
+
+
+@by_law
+def weight(solid, slip_x, slip_y, law):
+    """B of a cell with summed solid fraction ``solid`` >= 0, in which fluid slips past solid at (slip_x, slip_y)."""
+
+
+@weight.of(B1)
+def _solid_fraction(solid, slip_x, slip_y, law):
+    """The solid fraction itself."""
+    return min(numbers(solid).one, solid)
+
+
+@weight.of(B2)
+def _viscous(solid, slip_x, slip_y, law):
+    """Noble & Torczynski's weight."""
+    one = numbers(solid).one
     e = min(one, solid)
-    return e * k / ((one - e) + k)
+    return e * law.k / ((one - e) + law.k)
+
+
+@kernel
+def _weights(solid, slip_x, slip_y, law, out):
+    """B of cells (ny, nx) into ``out``, at one slip for all."""
+    for y in range(solid.shape[0]):
+        for x in range(solid.shape[1]):
+            out[y, x] = weight(solid[y, x], slip_x, slip_y, law)
+
+
+def weights_of(solid: NDArray[np.floating], slip_x: Any, slip_y: Any, law: Any) -> NDArray[np.floating]:
+    """B of cells with summed solid fractions (ny, nx), at one slip for all, in the precision of ``solid``."""
+    out = np.empty_like(solid)
+    _weights(solid, slip_x, slip_y, law, out)
+    return out
+
+
+WEIGHTINGS = {
+    "B2": "depends on the viscosity so that walls stay where they are",
+    "B1": "the solid fraction: walls move with the viscosity",
+}
+"""Name of each weight and what it is good for."""
+
+
+def choose_weight(name: str, relaxation_time: float, dtype: DTypeLike) -> Any:
+    """The law of a weight by name; ValueError if there is none of that name."""
+    laws: dict[str, Any] = {"B1": B1, "B2": B2}
+    if name not in laws:
+        raise ValueError(f"unknown weight {name!r}: choose from {', '.join(WEIGHTINGS)}")
+    real: Any = np.dtype(dtype).type
+    return laws[name](real(relaxation_time - 0.5))

@@ -45,6 +45,8 @@ os.environ.setdefault("GOMP_SPINCOUNT", "3000")
 
 import llvmlite.binding as llvm  # noqa: E402  (after the cache folder is set)
 import numba  # noqa: E402
+import numpy as np  # noqa: E402
+from numba.extending import overload  # noqa: E402
 
 # A row kernel reads and writes nine population rows: LLVM must compare 36 pairs of them before it vectorises,
 # and gives up at 8 by default.
@@ -69,8 +71,59 @@ def parallel_kernel(function: F) -> F:
 
 def inline(function: F) -> F:
     """Compile a small function that LLVM merges into the kernels that call it."""
-    compiled: F = numba.njit(**_FLAGS)(function)
+    compiled: F = numba.njit(forceinline=True, **_FLAGS)(function)
     return compiled
+
+
+def by_law(signature: F) -> Any:
+    """Make an inline kernel whose body depends on the type of its last argument, the law: a NamedTuple of numbers.
+
+    A sweep that takes a law and hands it on is compiled once for each law in use, and kept on disk, which it is not for
+    functions as arguments.  ``signature`` lends name and docstring; ``@name.of(Law, ...)`` adds a body.  A law must be
+    flat: loops over threads take no tuples within tuples.
+    """
+    bodies: dict[type, Any] = {}
+
+    def chosen(*arguments: Any) -> Any:
+        return bodies[type(arguments[-1])](*arguments)
+
+    def plain(*arguments: Any) -> Any:
+        return bodies[type(arguments[-1])].py_func(*arguments)
+
+    def choose(*types: Any) -> Any:
+        body = bodies.get(getattr(types[-1], "instance_class", type(None)))
+        return None if body is None else body.py_func
+
+    def of(*laws: type) -> Callable[[F], F]:
+        def add(body: F) -> F:
+            compiled = body if hasattr(body, "py_func") else inline(body)
+            bodies.update(dict.fromkeys(laws, compiled))
+            return compiled
+
+        return add
+
+    vars(chosen).update(__name__=signature.__name__, __doc__=signature.__doc__, of=of, py_func=plain)
+    overload(chosen, strict=False, jit_options={"error_model": "numpy", "nogil": True, "forceinline": True})(choose)
+    return chosen
+
+
+def by_precision(build: Callable[[type], Any]) -> Any:
+    """Make an inline kernel of one number that returns ``build(np.float32)`` or ``build(np.float64)`` as constants.
+
+    A float64 literal promotes a float32 kernel; what this returns for a number of the kernel's own precision does not.
+    """
+    constants = {32: build(np.float32), 64: build(np.float64)}
+
+    def chosen(number: Any) -> Any:
+        return constants[8 * np.dtype(type(number)).itemsize]
+
+    def choose(number: Any) -> Any:
+        known = constants.get(getattr(number, "bitwidth", 0))
+        return None if known is None else lambda number: known
+
+    vars(chosen).update(__name__=build.__name__, __doc__=build.__doc__)
+    overload(chosen, strict=False, jit_options={"error_model": "numpy", "nogil": True, "forceinline": True})(choose)
+    return chosen
 
 
 prange = numba.prange

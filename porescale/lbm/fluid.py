@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL, parameters
+from porescale.lbm.collision.choose import choose
+from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
 from porescale.lbm.equilibrium import equilibrium
 from porescale.lbm.moments import moment_fields
 from porescale.lbm.plate import Plate, exchange
@@ -32,7 +33,9 @@ class Fluid:
         ny: int,
         relaxation_time: float,
         *,
+        operator: str = "trt",
         magic: float = MAGIC_MIDWAY_WALL,
+        smagorinsky: float = 0.0,
         force: tuple[float, float] = (0.0, 0.0),
         sides: Sides | None = None,
         dtype: DTypeLike = np.float64,
@@ -41,7 +44,7 @@ class Fluid:
             raise ValueError(f"relaxation time {relaxation_time} must be above 1/2")
         self.nx, self.ny, self.relaxation_time = nx, ny, relaxation_time
         self.sides = sides or Sides()
-        self.parameters = parameters(relaxation_time, magic, force, dtype)
+        self.law = choose(operator, relaxation_time, force, dtype, magic=magic, smagorinsky=smagorinsky)
         self.force = force
         self.populations: NDArray[np.floating] = np.zeros((9, ny + 2, nx + 2), dtype)
         self._flat = self.populations.reshape(-1)
@@ -62,12 +65,12 @@ class Fluid:
         self.step = 0
 
     def advance(self, even: Sweep = sweep_even, odd: Sweep = sweep_odd, *extra: Any) -> None:
-        """One step.  ``even`` and ``odd`` sweep the cells, given populations, ``extra`` and parameters."""
+        """One step.  ``even`` and ``odd`` sweep the cells, given populations, ``extra`` and the law."""
         if self.step % 2 == 0:
-            even(self.populations, *extra, self.parameters)
+            even(self.populations, *extra, self.law)
         else:
             self._cut()
-            odd(self.populations, *extra, self.parameters)
+            odd(self.populations, *extra, self.law)
             self._join()
         self.step += 1
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.ground.jit import inline, parallel_kernel, prange
-from porescale.lbm.collision.trt import moments
+from porescale.lbm.collision.law import moments
 from porescale.lbm.stream import even_slots, odd_slots
 
 

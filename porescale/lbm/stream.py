@@ -1,7 +1,7 @@
 """Sweeps over the lattice: the slots of each row, handed to a row kernel.  See lattice.py for the in-place pattern."""
 
 from porescale.ground.jit import inline, parallel_kernel, prange
-from porescale.lbm.collision.trt import collide_row
+from porescale.lbm.collision.law import collide_row
 
 
 @inline
@@ -39,18 +39,18 @@ def odd_slots(f, y):
 
 
 @parallel_kernel
-def sweep_even(f, p):
-    """Even step of plain fluid on every cell; overwrites populations f (9, ny + 2, nx + 2).  p: ``parameters``."""
+def sweep_even(f, law):
+    """Even step of plain fluid on every cell; overwrites populations f (9, ny + 2, nx + 2).  law: of the operator."""
     n = f.shape[2] - 2
     for y in prange(1, f.shape[1] - 1):
         a0, a1, a2, a3, a4, a5, a6, a7, a8 = even_slots(f, y)
-        collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, 0, n, p)
+        collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, 0, n, law)
 
 
 @parallel_kernel
-def sweep_odd(f, p):
+def sweep_odd(f, law):
     """Odd step of plain fluid on every cell; the halo must have been filled.  Overwrites f, halo included."""
     n = f.shape[2] - 2
     for y in prange(1, f.shape[1] - 1):
         a0, a1, a2, a3, a4, a5, a6, a7, a8 = odd_slots(f, y)
-        collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, 0, n, p)
+        collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, 0, n, law)

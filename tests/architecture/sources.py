@@ -10,7 +10,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("porescale", "continuum_sph")
-KERNELS = {"kernel", "parallel_kernel", "inline"}
+KERNELS = {"kernel", "parallel_kernel", "inline", "by_law"}
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -66,8 +66,12 @@ def written(module: str, text: str) -> Source:
 
 
 def is_kernel(node: Function) -> bool:
-    """Whether a function is compiled: decorated by one of ground.jit's decorators."""
-    return any(isinstance(it, ast.Name) and it.id in KERNELS for it in node.decorator_list)
+    """Whether a function is compiled: decorated by one of ground.jit's decorators, or a body ``@name.of(Law)``."""
+    return any(
+        (isinstance(it, ast.Name) and it.id in KERNELS)
+        or (isinstance(it, ast.Call) and isinstance(it.func, ast.Attribute) and it.func.attr == "of")
+        for it in node.decorator_list
+    )
 
 
 def functions(tree: ast.AST, inside_kernels: bool = False) -> Iterator[Function]:

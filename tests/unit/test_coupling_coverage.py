@@ -106,11 +106,12 @@ def test_the_contact_of_two_discs_is_as_tight_as_one_solid():
     k = 0.1
     assert twin.weight(1.0, 0.6) == 1.0
     assert 2 * twin.weight(0.5, 0.6) == pytest.approx(2 * 0.5 * k / (0.5 + k))
-    from porescale.coupling.weighting import saturation_weight
+    from porescale.coupling.weighting import choose_weight, weight
 
-    assert saturation_weight(0.5 + 0.5, k, 1.0) == 1.0
-    assert saturation_weight(1.7, k, 1.0) == 1.0
-    assert saturation_weight(0.0, k, 1.0) == 0.0
+    law = choose_weight("B2", 0.6, float)
+    assert weight(0.5 + 0.5, 0.0, 0.0, law) == 1.0
+    assert weight(1.7, 0.0, 0.0, law) == 1.0
+    assert weight(0.0, 0.0, 0.0, law) == 0.0
 
 
 def test_the_solid_moves_like_the_disc_in_every_cell():

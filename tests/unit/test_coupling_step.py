@@ -12,6 +12,8 @@ import pytest
 from porescale.coupling import experiments as lab
 from porescale.coupling import solid_collision
 from porescale.coupling.saturated import Saturated
+from porescale.coupling.solid.choose import choose_solid
+from porescale.coupling.weighting import choose_weight
 from porescale.ground.jit import set_threads, threads
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.sides import Sides
@@ -102,26 +104,27 @@ def test_a_row_of_saturated_cells_is_the_same_uncompiled():
     rows = 0.01 * random.uniform(-1, 1, (9, 5))
     s = np.array([0.0, 0.3, 1.0, 1.4, 0.999])
     sx, sy = s * 0.02, s * -0.03
-    k = np.array([0.2])
+    laws = choose_weight("B2", 0.7, float), choose_solid("odd-SC1", float), fluid.law
     made = []
     for run in (solid_collision.collide_saturated_row, solid_collision.collide_saturated_row.py_func):
         copies = [row.copy() for row in rows], s.copy(), sx.copy(), sy.copy()
-        run(*copies[0], *copies[1:], 0, 5, k, fluid.parameters)
+        run(*copies[0], *copies[1:], 0, 5, *laws)
         made.append(np.array([*copies[0], *copies[1:]]))
     # the same operations but for fused multiply-adds: 30 roundings of numbers up to 1.4
     np.testing.assert_allclose(*made, rtol=0, atol=30 * 1.4 * EPS)
 
 
 def test_an_empty_saturated_row_is_a_plain_one():
-    from porescale.lbm.collision.trt import collide_row
+    from porescale.lbm.collision.law import collide_row
 
     random = np.random.default_rng(2)
     fluid = Fluid(5, 1, 0.7, force=(1e-4, 2e-4))
     rows = 0.01 * random.uniform(-1, 1, (9, 5))
     wet, dry, none = [row.copy() for row in rows], [row.copy() for row in rows], np.zeros(5)
     solid = none.copy(), none.copy(), none.copy()
-    solid_collision.collide_saturated_row(*wet, *solid, 0, 5, np.array([0.2]), fluid.parameters)
-    collide_row(*dry, 0, 5, fluid.parameters)
+    laws = choose_weight("B2", 0.7, float), choose_solid("odd-SC1", float), fluid.law
+    solid_collision.collide_saturated_row(*wet, *solid, 0, 5, *laws)
+    collide_row(*dry, 0, 5, fluid.law)
     np.testing.assert_allclose(wet, dry, rtol=0, atol=30 * EPS)
 
 

@@ -248,7 +248,7 @@ def test_a_step_of_plain_python_is_the_compiled_one(monkeypatch):
     # Rows of 4 cells; the same operations but for fused multiply-adds: 60 eps a step, as above.
     from porescale.lbm import fluid as room
     from porescale.lbm import moments, stream
-    from porescale.lbm.collision import trt
+    from porescale.lbm.collision import law, trt
 
     def made():
         fluid, _ = pair(box("wall", "slip", "wall", "wall", speed=0.01), nx=4, ny=3)
@@ -259,8 +259,9 @@ def test_a_step_of_plain_python_is_the_compiled_one(monkeypatch):
     for _ in range(2):
         compiled.advance()
     for module, name in (
-        (stream, "collide_row"), (stream, "even_slots"), (stream, "odd_slots"), (trt, "moments"), (trt, "targets"),
-        (trt, "relax"), (room, "fill_halo"), (room, "empty_halo"), (room, "exchange"), (moments, "_moment_row"),
+        (stream, "collide_row"), (stream, "even_slots"), (stream, "odd_slots"), (law, "moments"), (moments, "moments"),
+        (law, "shear_rate"), (law, "collide"), (trt, "relax_halves"), (room, "fill_halo"), (room, "empty_halo"),
+        (room, "exchange"), (moments, "_moment_row"),
     ):  # fmt: skip
         monkeypatch.setattr(module, name, getattr(module, name).py_func)
     plain = made()

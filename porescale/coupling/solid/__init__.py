@@ -1,0 +1,1 @@
+"""Solid operators of partially saturated cells, one a file."""

@@ -1,0 +1,45 @@
+"""Collision operators by name."""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike
+
+from porescale.lbm.collision.bgk import Bgk, EddyBgk
+from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL, EddyTrt, Trt
+
+OPERATORS = {
+    "trt": "two relaxation times: walls stay where they are at every viscosity",
+    "bgk": "one relaxation time: the textbook's, for comparison",
+}
+"""Name of each operator and what it is good for."""
+
+
+def choose(
+    operator: str,
+    relaxation_time: float,
+    force: tuple[float, float],
+    dtype: DTypeLike,
+    *,
+    magic: float = MAGIC_MIDWAY_WALL,
+    smagorinsky: float = 0.0,
+) -> Any:
+    """The law of an operator;  magic: of those that have it;  smagorinsky: constant of an eddy viscosity, 0 for none.
+
+    ValueError if there is no operator of that name.
+    """
+    plain: dict[str, Any] = {"trt": Trt, "bgk": Bgk}
+    eddy: dict[str, Any] = {"trt": EddyTrt, "bgk": EddyBgk}
+    if operator not in OPERATORS:
+        raise ValueError(f"unknown collision operator {operator!r}: choose from {', '.join(OPERATORS)}")
+    kind = eddy[operator] if smagorinsky > 0 else plain[operator]
+    values = {
+        "rate": 1 / relaxation_time,
+        "fx": force[0],
+        "fy": force[1],
+        "magic": magic,
+        "strain_factor": 18 * math.sqrt(2) * smagorinsky**2,
+    }
+    real: Any = np.dtype(dtype).type
+    return kind(**{name: real(values[name]) for name in kind._fields})
