@@ -69,7 +69,7 @@ class Enclosed:
         return (self.centres[:, None] + arm).reshape(-1, 2), arm.reshape(-1, 2)
 
     def loads(self, velocity, spin):
-        """Force (n, 2) and torque (n,) of the fluid per mu on discs with velocity (n, 2) and spin (n,); the slip left."""
+        """Force (n, 2), torque (n,) per mu on discs with velocity (n, 2) and spin (n,), and the slip left."""
         n, velocity, spin = len(self.radii), np.asarray(velocity, float), np.asarray(spin, float)
         inside, lever = self.ring(self.inner, self.forces)
         sources = np.concatenate([inside, self.wall.points(self.wall_forces, True)])
