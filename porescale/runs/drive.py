@@ -157,7 +157,7 @@ def _watched(run: _Run, record: Record, watch: Watch, after: Callable[[Path], ob
         raise
     except BaseException as error:
         with suppress(OSError):
-            record.series.close()
+            record.close_series()
             stopped = isinstance(error, KeyboardInterrupt)
             outcome = cards.INTERRUPTED if stopped else cards.FAILED
             record.conclude(model, outcome, f"{type(error).__name__}: {error}")

@@ -91,6 +91,9 @@ class Model(Protocol):
     A model whose step varies in time sets the class attribute ``variable_step = True`` (absent means
     False): it is then advanced one step at a time, ``time`` is the authority, and events are recorded at
     the first step at or after their time.
+
+    A model that measures more than its series says has a method ``tables()`` that gives a row for each further
+    file: {"loads": {"time (s)": …, …}} goes to loads.csv, at the same times as the series and cut back like it.
     """
 
     step: int
@@ -122,6 +125,12 @@ class Model(Protocol):
 def variable_step(model: Model) -> bool:
     """Whether the length of the model's step varies in time."""
     return bool(getattr(model, "variable_step", False))
+
+
+def tables_of(model: Model) -> dict[str, dict[str, float]]:
+    """Rows of the model's further time series by file name without suffix; none if it has no ``tables``."""
+    rows: dict[str, dict[str, float]] = getattr(model, "tables", dict)()
+    return rows
 
 
 def with_depth(points: Array) -> Array:

@@ -36,6 +36,10 @@ class Run:
         """Columns of series.csv by name ("time (s)", ...), each (rows,)."""
         return read_series(self.folder / SERIES)
 
+    def table(self, name: str) -> dict[str, Array]:
+        """Columns of <name>.csv, a further time series, by name, each (rows,); {} when there is none."""
+        return read_series(self.folder / f"{name}.csv")
+
     @property
     def times(self) -> Array:
         """(snapshots,) s."""

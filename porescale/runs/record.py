@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import sys
 import time as clock
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -18,14 +18,19 @@ from porescale.ground.check import Fault, InputError
 from porescale.runs import card as cards
 from porescale.runs import snapshots
 from porescale.runs.checkpoint import read_checkpoint, read_header, write_checkpoint
-from porescale.runs.model import Model
+from porescale.runs.model import Model, tables_of
 from porescale.runs.schedule import Schedule
 from porescale.runs.series import NAME as SERIES
 from porescale.runs.series import Series
 
 CHECKPOINT = "checkpoint.h5"
-MADE_LATER = ("final.png", "montage.png", "streamlines.png", "film.mp4", "film.webm", "profile.csv")
+MADE_LATER = (
+    "final.png", "montage.png", "streamlines.png", "vorticity.png", "stream_function.png", "film.mp4", "film.webm",
+    "profile.csv", "lines.csv", "permeability.csv",
+)  # fmt: skip
 """What packages make of a finished run: an older run's must not lie beside a new one that makes none."""
+TABLES = "tables"
+"""Key of a run card: names of the run's further time series, without suffix."""
 ABANDONED = (cards.RUNNING, cards.INTERRUPTED, cards.FAILED)
 WORTH_KEEPING = 60.0
 """An unfinished run that cost more than this many seconds is not overwritten without being asked."""
@@ -34,10 +39,14 @@ WORTH_KEEPING = 60.0
 class Record:
     """Open files of a run.  Made by :meth:`fresh` or :meth:`resumed`."""
 
-    def __init__(self, folder: Path, card: dict[str, Any], keep: int = 0) -> None:
+    def __init__(
+        self, folder: Path, card: dict[str, Any], keep: int = 0, tables: Mapping[str, int] | None = None
+    ) -> None:
         self.folder, self.card = folder, card
         self.series = Series(folder / SERIES, keep)
         self.scheduled_bytes = keep
+        self.table_bytes = dict(tables or {})
+        self.tables = {name: Series(_table(folder, name), size) for name, size in self.table_bytes.items()}
         self.row_step = self.snapshot_step = -1
         self.before = float(card["seconds"])
         self.began = clock.perf_counter()
@@ -58,7 +67,8 @@ class Record:
             if not overwrite:
                 _refuse_to_lose(folder)
             snapshots.clear(folder)
-            for name in (SERIES, CHECKPOINT, *MADE_LATER, cards.NAME):
+            older = [f"{name}.csv" for name in _tables_of_run(folder)]
+            for name in (SERIES, *older, CHECKPOINT, *MADE_LATER, cards.NAME):
                 (folder / name).unlink(missing_ok=True)
         card = cards.new_card(given)
         cards.write_card(folder, card)
@@ -75,6 +85,7 @@ class Record:
             model.restore(content["state"])
             meta = content["record"]
             keep = int(meta["series_bytes"])
+            tables = {name: int(size) for name, size in meta.get("table_bytes", {}).items()}
             extra = meta["snapshot_step"] != meta["last_snapshot_step"]
         except (KeyError, ValueError, TypeError, IndexError) as error:
             reason = f"does not fit this model ({' '.join(str(error).split())[:120]})"
@@ -95,7 +106,7 @@ class Record:
         card.update(outcome=cards.RUNNING, ended=None)
         card.pop("problem", None)
         cards.write_card(folder, card)
-        record = cls(folder, card, keep)
+        record = cls(folder, card, keep, tables)
         record.row_step = record.scheduled_row_step = int(meta["row_step"])
         record.snapshot_step = record.scheduled_snapshot_step = int(meta["snapshot_step"])
         record.saved_step, record.saved_time = model.step, model.time
@@ -106,11 +117,27 @@ class Record:
         return self.before + clock.perf_counter() - self.began
 
     def row(self, model: Model, *, scheduled: bool) -> None:
-        """Append a row of the series."""
+        """Append a row of the series and of every table."""
         self.series.append(model.series())
+        for name, row in tables_of(model).items():
+            self._open(name).append(row)
         self.row_step = model.step
         if scheduled:
             self.scheduled_row_step, self.scheduled_bytes = model.step, self.series.length
+            self.table_bytes = {name: table.length for name, table in self.tables.items()}
+
+    def _open(self, name: str) -> Series:
+        """The table of that name; the card names it before its file is there, so that it is never left over."""
+        if name not in self.tables:
+            self.card[TABLES] = sorted({*self.card.get(TABLES, []), name})
+            cards.write_card(self.folder, self.card)
+            self.tables[name] = Series(_table(self.folder, name))
+        return self.tables[name]
+
+    def close_series(self) -> None:
+        """Sync and close the series and the tables."""
+        for series in (self.series, *self.tables.values()):
+            series.close()
 
     def snapshot(self, model: Model, *, scheduled: bool) -> None:
         """Put a snapshot on disk."""
@@ -123,13 +150,15 @@ class Record:
     def save(self, model: Model, schedules: dict[str, Schedule]) -> None:
         """Write the checkpoint."""
         start = clock.perf_counter()
-        self.series.sync()
+        for series in (self.series, *self.tables.values()):
+            series.sync()
         content = {
             "step": model.step,
             "time": model.time,
             "seconds": self.seconds(),
             "record": {
                 "series_bytes": self.scheduled_bytes,
+                "table_bytes": self.table_bytes,
                 "row_step": self.scheduled_row_step,
                 "snapshot_step": self.scheduled_snapshot_step,
                 "last_snapshot_step": self.snapshot_step,
@@ -152,7 +181,7 @@ class Record:
 
     def close(self, model: Model, outcome: str, problem: str = "") -> None:
         """Join the parts and say in the card how the run ended."""
-        self.series.close()
+        self.close_series()
         snapshots.assemble(self.folder)
         self.conclude(model, outcome, problem)
 
@@ -173,6 +202,18 @@ def refuse_changes(folder: Path, given: dict[str, Any], free: Collection[str]) -
         faults.append(Fault(key or "scene", now if now is not None else "absent", f"was {was!r}", repair=repair))
     if faults:
         raise InputError(faults)
+
+
+def _table(folder: Path, name: str) -> Path:
+    return folder / f"{name}.csv"
+
+
+def _tables_of_run(folder: Path) -> list[str]:
+    """Names of the tables of the run in ``folder``, as its card has them; none where the card is damaged."""
+    try:
+        return [str(name) for name in cards.read_card(folder).get(TABLES, []) if Path(str(name)).name == str(name)]
+    except InputError:
+        return []
 
 
 def _refuse_to_lose(folder: Path) -> None:

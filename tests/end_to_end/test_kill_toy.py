@@ -43,7 +43,8 @@ def kill_in_the_middle(process: subprocess.Popen[bytes], folder: Path, delay: fl
 
 
 def assert_same(one: Path, other: Path) -> None:
-    assert (one / "series.csv").read_bytes() == (other / "series.csv").read_bytes()
+    for name in ("series.csv", "beads.csv"):
+        assert (one / name).read_bytes() == (other / name).read_bytes()
     first, second = (read_checkpoint(folder / "checkpoint.h5") for folder in (one, other))
     assert first["state"]["random"] == second["state"]["random"]
     for key in ("x", "v"):

@@ -48,11 +48,14 @@ def state_of(folder: Path) -> dict[str, bytes]:
     return dict(leaves(read_checkpoint(folder / "checkpoint.h5")["state"]))
 
 
+def _bytes(path: Path) -> bytes | None:
+    return path.read_bytes() if path.exists() else None
+
+
 def differences(one: Path, other: Path) -> list[str]:
     """What differs between the runs in two folders: rows, places in the state, arrays of snapshots."""
-    found = []
-    if (one / "series.csv").read_bytes() != (other / "series.csv").read_bytes():
-        found.append("series.csv")
+    series = sorted({path.name for folder in (one, other) for path in folder.glob("*.csv")})
+    found = [name for name in series if _bytes(one / name) != _bytes(other / name)]
     pairs = [("checkpoint.h5", state_of(one), state_of(other))]
     names = {path.name for folder in (one, other) for path in folder.glob("*.vtkhdf")}
     pairs += [(name, contents(one / name), contents(other / name)) for name in sorted(names)]

@@ -55,6 +55,9 @@ class Toy:
         energy = float((self.v**2).sum())
         return {"time (s)": self.time, "energy (J)": energy, "mean (1)": float(self.field.mean())}
 
+    def tables(self) -> dict[str, dict[str, float]]:
+        return {"beads": {"time (s)": self.time, "x of bead 0 (m)": float(self.x[0, 0])}}
+
     def snapshot(self) -> Snapshot:
         velocity = np.zeros((*self.field.shape, 3), np.float32)
         velocity[..., 0] = self.field
