@@ -7,10 +7,14 @@ import numpy as np
 from numpy.typing import DTypeLike
 
 from porescale.lbm.collision.bgk import Bgk, EddyBgk
+from porescale.lbm.collision.central import Central, EddyCentral
+from porescale.lbm.collision.mrt import ENERGY_RATE, SQUARE_RATE, EddyMrt, Mrt
 from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL, EddyTrt, Trt
 
 OPERATORS = {
     "trt": "two relaxation times: walls stay where they are at every viscosity",
+    "mrt": "multiple relaxation times: walls as with trt, and sound is damped faster",
+    "central": "central moments: stable as the viscosity goes to zero, and the same in every moving frame",
     "bgk": "one relaxation time: the textbook's, for comparison",
 }
 """Name of each operator and what it is good for."""
@@ -29,8 +33,8 @@ def choose(
 
     ValueError if there is no operator of that name.
     """
-    plain: dict[str, Any] = {"trt": Trt, "bgk": Bgk}
-    eddy: dict[str, Any] = {"trt": EddyTrt, "bgk": EddyBgk}
+    plain: dict[str, Any] = {"trt": Trt, "mrt": Mrt, "central": Central, "bgk": Bgk}
+    eddy: dict[str, Any] = {"trt": EddyTrt, "mrt": EddyMrt, "central": EddyCentral, "bgk": EddyBgk}
     if operator not in OPERATORS:
         raise ValueError(f"unknown collision operator {operator!r}: choose from {', '.join(OPERATORS)}")
     kind = eddy[operator] if smagorinsky > 0 else plain[operator]
@@ -39,6 +43,8 @@ def choose(
         "fx": force[0],
         "fy": force[1],
         "magic": magic,
+        "energy": ENERGY_RATE,
+        "square": SQUARE_RATE,
         "strain_factor": 18 * math.sqrt(2) * smagorinsky**2,
     }
     real: Any = np.dtype(dtype).type

@@ -1,0 +1,93 @@
+"""Multiple relaxation times in the moments of Lallemand & Luo 2000, with body force (Guo, Zheng & Shi 2002).
+
+Even moments, in the order of their paper: energy e, its square eps, the stresses p_xx and p_xy; odd ones: momentum j
+and energy flux q.  The stresses relax with 1/tau, e and eps with their own rates: e carries the bulk viscosity and
+damps sound.  The odd moments share the rate that holds the magic parameter (trt.py; for 3/16 it is the 8(2 - s)/(8 - s)
+of Ginzburg & d'Humieres 2003), so walls stay where they are.  Equilibria and sources of the force, per moment:
+
+    e  -2 rho + 3 j²/rho,  6 u.F      eps  rho - 3 j²/rho,  -6 u.F      p_xx  (jx² - jy²)/rho,  2 (ux Fx - uy Fy)
+    p_xy  jx jy/rho,  ux Fy + uy Fx   q  -j,  -F                         j  j,  F
+
+each source times 1 - s/2 of its moment.  Weighted with 1 - B in partially saturated cells this is the PS-MRT of
+Fukumoto & Ohtsuka 2016.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from porescale.ground.jit import inline
+from porescale.lbm.collision.law import collide, numbers, shear_rate
+from porescale.lbm.collision.smagorinsky import eddy_version
+
+ENERGY_RATE = 1.64
+"""Rate of e (Lallemand & Luo 2000, section V)."""
+SQUARE_RATE = 1.54
+"""Rate of eps (the same)."""
+
+
+class Mrt(NamedTuple):
+    """rate : 1/tau;  fx, fy : body force density;  magic : L;  energy, square : rates of e and eps."""
+
+    rate: np.floating
+    fx: np.floating
+    fy: np.floating
+    magic: np.floating
+    energy: np.floating
+    square: np.floating
+
+
+EddyMrt = eddy_version(Mrt)
+
+
+@shear_rate.of(Mrt)
+def _molecular(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, law):
+    """Rate of the molecular viscosity, the same everywhere."""
+    return law.rate
+
+
+@collide.of(Mrt, EddyMrt)
+def _collide(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, law):
+    """Each moment relaxes with its own rate."""
+    c = numbers(rate)
+    odd = c.one / (c.half + law.magic / (c.one / rate - c.half))
+    return relax_moments(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, odd, law)
+
+
+@inline
+def relax_moments(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, odd, law):
+    """The nine collided populations: changes of e, eps, p_xx and p_xy over their norms 36, 36, 4, 4, and of the odd
+    half of each pair."""
+    c, fx, fy = numbers(rate), law.fx, law.fy
+    half, two, three = c.half, c.two, c.three
+    energy, square = law.energy, law.square
+    a, b, p, q = f1 + f2, f3 + f4, f5 + f6, f7 + f8
+    sides, corners = a + b, p + q
+    rest = two * two * f0
+    uf = two * three * (ux * fx + uy * fy)
+    jj = three * (jx * ux + jy * uy)
+    size = c.one / (two * two * c.nine)
+    e = size * (energy * (rest + sides - two * corners - two * d + jj) + (c.one - half * energy) * uf)
+    s = size * (square * (two * sides - rest - corners + d - jj) - (c.one - half * square) * uf)
+    source = c.one - half * rate
+    xx = c.quarter * (rate * (jx * ux - jy * uy - (a - b)) + source * two * (ux * fx - uy * fy))
+    xy = c.quarter * (rate * (jx * uy - (p - q)) + source * (ux * fy + uy * fx))
+    so = c.one - half * odd
+    mx, my = odd * jx + so * fx, odd * jy + so * fy
+    t1, t2 = three * c.w1, three * c.w2
+    ho = half * odd
+    side, corner = -e - two * s, two * e + s
+    g0 = f0 + two * two * (s - e)
+    even, m = side + xx, t1 * mx - ho * (f1 - f2)
+    g1 = f1 + even + m
+    g2 = f2 + even - m
+    even, m = side - xx, t1 * my - ho * (f3 - f4)
+    g3 = f3 + even + m
+    g4 = f4 + even - m
+    even, m = corner + xy, t2 * (mx + my) - ho * (f5 - f6)
+    g5 = f5 + even + m
+    g6 = f6 + even - m
+    even, m = corner - xy, t2 * (my - mx) - ho * (f7 - f8)
+    g7 = f7 + even + m
+    g8 = f8 + even - m
+    return g0, g1, g2, g3, g4, g5, g6, g7, g8
