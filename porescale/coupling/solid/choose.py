@@ -6,17 +6,21 @@ import numpy as np
 from numpy.typing import DTypeLike
 
 from porescale.coupling.solid.sc1 import OddSc1, Sc1
+from porescale.coupling.solid.sc2 import Sc2
+from porescale.coupling.solid.sc3 import Sc3
 
 SOLID_OPERATORS = {
     "odd-SC1": "the odd half of SC1: as accurate, and nothing drifts inside grains",
     "SC1": "bounce-back of the non-equilibrium part, as published: drifts where grains stay",
+    "SC2": "superposition: smooth inside grains, but converges at first order only; for comparison",
+    "SC3": "bounce-back from the grain: for grains that are held still; moving ones are noisy, and free ones run away",
 }
 """Name of each solid operator and what it is good for."""
 
 
 def choose_solid(name: str, dtype: DTypeLike) -> Any:
     """The law of a solid operator by name; ValueError if there is none of that name."""
-    laws: dict[str, Any] = {"odd-SC1": OddSc1, "SC1": Sc1}
+    laws: dict[str, Any] = {"odd-SC1": OddSc1, "SC1": Sc1, "SC2": Sc2, "SC3": Sc3}
     if name not in laws:
         raise ValueError(f"unknown solid operator {name!r}: choose from {', '.join(SOLID_OPERATORS)}")
     return laws[name](np.dtype(dtype).type(1))
