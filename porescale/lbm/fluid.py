@@ -14,7 +14,8 @@ from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
 from porescale.lbm.equilibrium import equilibrium
 from porescale.lbm.moments import moment_fields
 from porescale.lbm.plate import Plate, exchange
-from porescale.lbm.sides import Sides, empty_halo, fill_halo, slot_pairs
+from porescale.lbm.rim import Rim
+from porescale.lbm.sides import Sides
 from porescale.lbm.stream import sweep_even, sweep_odd
 
 Sweep = Callable[..., None]
@@ -48,7 +49,7 @@ class Fluid:
         self.force = force
         self.populations: NDArray[np.floating] = np.zeros((9, ny + 2, nx + 2), dtype)
         self._flat = self.populations.reshape(-1)
-        self.pairs = slot_pairs(nx, ny, self.sides, dtype)
+        self.rim = Rim(nx, ny, self.sides, dtype)
         self.plates: list[Plate] = []
         self.step = 0
 
@@ -66,25 +67,29 @@ class Fluid:
 
     def advance(self, even: Sweep = sweep_even, odd: Sweep = sweep_odd, *extra: Any) -> None:
         """One step.  ``even`` and ``odd`` sweep the cells, given populations, ``extra`` and the law."""
-        if self.step % 2 == 0:
-            even(self.populations, *extra, self.law)
-        else:
-            self._cut()
-            odd(self.populations, *extra, self.law)
-            self._join()
+        parity = self.step % 2
+        if parity:
+            self._exchange(+1.0)
+        (odd if parity else even)(self.populations, *extra, self.law)
+        if parity:
+            self._exchange(-1.0)
+        self.rim.close(self._flat, parity, (self.law.fx, self.law.fy))
         self.step += 1
-
-    def _cut(self) -> None:
-        fill_halo(self._flat, self.pairs.halo, self.pairs.inner, self.pairs.added)
-        self._exchange(+1.0)
 
     def _exchange(self, sign: float) -> None:
         for p in self.plates:
             exchange(self._flat, p.first, p.second, p.pull, p.links_from(), p.signed_speed(sign))
 
-    def _join(self) -> None:
-        self._exchange(-1.0)
-        empty_halo(self._flat, self.pairs.halo, self.pairs.inner, self.pairs.added)
+    def set_side_velocity(self, side: str, velocity: Any) -> None:
+        """Give a velocity side another velocity, (ux, uy) or (n, 2), from the next step on.
+
+        ValueError if the side is of another kind or the shape does not fit.
+        """
+        self.rim.set_velocity(side, velocity)
+
+    def set_side_density(self, side: str, density: float) -> None:
+        """Give a pressure side another density from the next step on; ValueError if the side is of another kind."""
+        self.rim.open.set(side, density)
 
     @contextmanager
     def readable(self) -> Iterator[None]:
@@ -93,7 +98,7 @@ class Fluid:
             yield
             return
         kept = [(p, self._flat[p.first].copy(), self._flat[p.second].copy()) for p in self.plates]
-        self._cut()
+        self._exchange(+1.0)
         try:
             yield
         finally:
@@ -122,17 +127,22 @@ class Fluid:
         return float(np.sum(jx)), float(np.sum(jy))
 
     def state(self) -> dict[str, Any]:
-        """Everything needed to go on bit for bit (plates' heights included; the list of plates is the owner's)."""
+        """Everything needed to go on bit for bit (plates' heights included; the list of plates is the owner's).
+
+        Arrays are those of the fluid, not copies.
+        """
         return {
             "populations": self.populations,
             "step": self.step,
             "plates": {str(k): {"edge": p.lower_edge, "speed": p.speed} for k, p in enumerate(self.plates)},
+            **({"rim": rim} if (rim := self.rim.state()) else {}),
         }
 
     def restore(self, state: dict[str, Any]) -> None:
         """Take up a state; the same number of plates must be in place."""
         self.populations[...] = state["populations"]
         self.step = int(state["step"])
+        self.rim.restore(state.get("rim", {}))
         for k, plate in enumerate(self.plates):
             plate.lower_edge = float(state["plates"][str(k)]["edge"])
             plate.speed = float(state["plates"][str(k)]["speed"])

@@ -32,8 +32,10 @@ class Plate:
     def __init__(self, nx: int, ny: int, column: int, sides: Sides, dtype: DTypeLike) -> None:
         if not 0 < column < nx:
             raise ValueError(f"a plate stands between two columns: column {column} is not in 1 … {nx - 1}")
-        if "periodic" in (sides.bottom, sides.top):
-            raise ValueError("a plate needs a bottom and a top that are not periodic")
+        for kind in {"periodic", "pressure"} & {sides.bottom, sides.top}:
+            raise ValueError(f"a plate needs a bottom and a top that turn the fluid back: {kind} does not")
+        if (sides.left == "pressure" and column == 1) or (sides.right == "pressure" and column == nx - 1):
+            raise ValueError(f"a plate stands two cells or more from a pressure side: column {column} does not")
         first, second, pull, row = [], [], [], []
         for y in range(1, ny + 1):
             for out in _CROSSING:

@@ -3,6 +3,8 @@
 Populations f (9, ny, nx) are whole (not shifted), in the order of Qian, d'Humieres & Lallemand 1992.  Collision: two
 relaxation times (Ginzburg, Verhaeghe & d'Humieres 2008), force by Guo, Zheng & Shi 2002.  Sides: half-way bounce-back,
 Ladd's moving wall (density at rest 1), free slip, periodic; a plate between two columns turns back the links it cuts.
+Velocity sides: Ladd's wall with any velocity.  Pressure sides: equilibrium at the density of a mirror image, the rest
+extrapolated (Guo, Zheng & Shi 2002, Phys. Fluids 14).
 """
 
 from __future__ import annotations
@@ -42,7 +44,8 @@ def trt(f, feq, even, odd):
 
 @dataclass
 class Lattice:
-    """A box of nx by ny cells; ``sides``: kind and speed along itself of left, right, bottom, top."""
+    """A box of nx by ny cells; ``sides``: kind of left, right, bottom, top, and its number: speed of a wall along
+    itself, velocity (ux, uy) or one for each cell, density of a pressure side."""
 
     nx: int
     ny: int
@@ -79,7 +82,7 @@ class Lattice:
         )
 
     def stream(self, g):
-        key = (self.plate, self.plate_edge, self.plate_speed)
+        key = (self.plate, self.plate_edge, self.plate_speed, repr(self.sides))
         if key not in self.tables:
             links = [(i, y, x) for i in range(9) for y in range(self.ny) for x in range(self.nx)]
             arrivals = [self.arrival(x, y, *C[i]) for i, y, x in links]
@@ -87,7 +90,54 @@ class Lattice:
         out = np.full_like(g, np.nan)
         tx, ty, j, added = self.tables[key]
         out[j, ty, tx] = g.reshape(-1) + added
+        self.through_pressure_sides(g, out)
         self.f = out
+
+    def through_pressure_sides(self, g, out):
+        for i, (cx, cy) in enumerate(C):
+            for y, x in np.ndindex(self.ny, self.nx):
+                owners = self.owners(self.crossed(x, y, cx, cy))
+                if not owners or self.side(owners[0])[0] != "pressure":
+                    continue
+                (tx, ty), j = self.continued(x, y, cx, cy)
+                f = self.f[:, ty, tx]
+                rho = f.sum()
+                ux = (f @ np.array(C)[:, 0] + self.force[0] / 2) / rho
+                uy = (f @ np.array(C)[:, 1] + self.force[1] / 2) / rho
+
+                def even(density, j=j, ux=ux, uy=uy):
+                    e = equilibrium(density, ux, uy)
+                    return (e[j] + e[BACK[j]]) / 2
+
+                outside = 2 * np.mean([self.side(name)[1] for name in owners]) - rho
+                out[BACK[i], y, x] = g[j, ty, tx] + even(outside) - even(rho)
+
+    def continued(self, x, y, cx, cy):
+        """Cell and direction that a link through a pressure side goes on from, as if the outside were like the inside:
+        the cell next to the one outside where the link starts, if there is one; if not, its image."""
+        sides = {name: self.side(name)[0] for name in self.crossed(x, y, cx, cy)}
+        if list(sides.values()) == ["pressure", "pressure"]:
+            return (x, y), C.index((-cx, -cy))
+        tx = x if "pressure" in (sides.get("left"), sides.get("right")) else x + cx
+        ty = y if "pressure" in (sides.get("bottom"), sides.get("top")) else y + cy
+        for name, kind in sides.items():
+            if kind == "slip":
+                flip = (-cx, cy) if name in ("bottom", "top") else (cx, -cy)
+                return (x, y), C.index(flip)
+        return (tx % self.nx, ty % self.ny), C.index((-cx, -cy))
+
+    def crossed(self, x, y, cx, cy):
+        """The sides that a link crosses: left or right, bottom or top."""
+        across = ["left"] if x + cx < 0 else ["right"] if x + cx >= self.nx else []
+        return across + (["bottom"] if y + cy < 0 else ["top"] if y + cy >= self.ny else [])
+
+    def owners(self, crossed):
+        """Of those sides the ones of the kind that comes first."""
+        for kind in ("velocity", "wall", "pressure", "slip", "periodic"):
+            found = [name for name in crossed if self.side(name)[0] == kind]
+            if found:
+                return found
+        return []
 
     def step(self):
         self.stream(self.collided())
@@ -104,6 +154,16 @@ class Lattice:
             ty %= self.ny
         solid = [name for name in kinds if kinds[name] != "periodic"]
         back = C.index((-cx, -cy))
+        owners = self.owners(self.crossed(x, y, cx, cy))
+        kind = self.side(owners[0])[0] if owners else None
+        if kind == "velocity":
+            each = [np.broadcast_to(self.side(n)[1], (y + x + 1, 2)) if np.ndim(self.side(n)[1]) == 1 else
+                    np.asarray(self.side(n)[1]) for n in owners]  # fmt: skip
+            cell = [y if name in ("left", "right") else x for name in owners]
+            ux, uy = np.mean([velocity[at] for velocity, at in zip(each, cell, strict=True)], 0)
+            return x, y, back, 6 * W[back] * (-cx * ux - cy * uy)
+        if kind == "pressure":
+            return x, y, back, 0.0  # overwritten
         if not solid:
             if self.cuts(x, x + cx, min(y, ty)):
                 return x, y, back, 6 * W[back] * -cy * self.plate_speed

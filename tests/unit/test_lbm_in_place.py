@@ -247,7 +247,7 @@ def test_sides_are_periodic_together():
 def test_a_step_of_plain_python_is_the_compiled_one(monkeypatch):
     # Rows of 4 cells; the same operations but for fused multiply-adds: 60 eps a step, as above.
     from porescale.lbm import fluid as room
-    from porescale.lbm import moments, stream
+    from porescale.lbm import moments, rim, stream
     from porescale.lbm.collision import law, trt
 
     def made():
@@ -260,7 +260,7 @@ def test_a_step_of_plain_python_is_the_compiled_one(monkeypatch):
         compiled.advance()
     for module, name in (
         (stream, "collide_row"), (stream, "even_slots"), (stream, "odd_slots"), (law, "moments"), (moments, "moments"),
-        (law, "shear_rate"), (law, "collide"), (trt, "relax_halves"), (room, "fill_halo"), (room, "empty_halo"),
+        (law, "shear_rate"), (law, "collide"), (trt, "relax_halves"), (rim, "fill_halo"), (rim, "empty_halo"),
         (room, "exchange"), (moments, "_moment_row"),
     ):  # fmt: skip
         monkeypatch.setattr(module, name, getattr(module, name).py_func)
