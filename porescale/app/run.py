@@ -43,7 +43,13 @@ def drive(
     """Run the model to the scene's end, write the run folder, and note how fast this machine is."""
     from porescale.app.show import show
     from porescale.runs.drive import drive as drive_model
+    from porescale.runs.open_run import open_run
+    from porescale.scene.bed import write_permeability
     from porescale.scene.cost import remember
+
+    def after(finished: Path) -> None:
+        show(finished)
+        write_permeability(open_run(finished), finished)
 
     packing = scene.grains.packing if scene.grains else None
     outcome = drive_model(
@@ -57,7 +63,7 @@ def drive(
         resume=resume,
         overwrite=overwrite,
         quiet=quiet,
-        after=show,
+        after=after,
     )
     remember(model.derived, outcome.steps_per_second)
     return outcome

@@ -1,8 +1,9 @@
-"""``porescale show``: pictures, a film and the pile's surface of a run."""
+"""``porescale show``: pictures, a film, the pile's surface and the profiles of a run."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,17 +13,18 @@ if TYPE_CHECKING:
 
 
 def show(folder: Path) -> list[Path]:
-    """Write pictures, film and surface of the run in ``folder``; returns their paths."""
+    """Write pictures, film, surface and profiles of the run in ``folder``; returns their paths."""
     from porescale.runs.film import film
     from porescale.runs.look import Look
     from porescale.runs.open_run import open_run
-    from porescale.runs.picture import pictures
+    from porescale.runs.picture import paint_last, pictures
+    from porescale.scene.lines import write_lines
     from porescale.scene.surface import write_surface
 
     run = open_run(folder)
     scene = run.card["scene"]
     look = Look(
-        title=scene.get("title") or run.card.get("name", ""),
+        title=title(scene, run.name),
         label="speed of the fluid",
         lines=gate_lines(scene),
         streamlines=scene.get("fluid") is not None,
@@ -30,9 +32,18 @@ def show(folder: Path) -> list[Path]:
         view=(0.0, scene["domain"]["width"], 0.0, scene["domain"]["height"]),
     )
     written = [*pictures(folder, look), film(folder, look)]
+    for name in scene["output"].get("fields", ()):
+        written.append(paint_last(folder, name, replace(look, field=name, label="")))
     if scene.get("grains") is not None:
         written.append(write_surface(run, folder))
-    return written
+    return [*written, *write_lines(run, folder)]
+
+
+def title(scene: dict[str, Any], name: str) -> str:
+    """The scene's title, and lambda where grains lie in fluid: every picture carries it."""
+    words = scene.get("title") or name
+    ratio = (scene.get("grains") or {}).get("hydraulic_radius_ratio")
+    return f"{words}, λ = {ratio:g}" if ratio else words
 
 
 def gate_lines(scene: dict[str, Any]) -> Callable[[Snapshot], list[Line]]:

@@ -155,6 +155,15 @@ def pictures(folder: Path | str, look: Look | None = None, **changes: Any) -> li
     return [run.folder / name for name in made]
 
 
+def paint_last(folder: Path | str, name: str, look: Look) -> Path:
+    """Write <name>.png, the last snapshot of a run as ``look`` shows it, in colours that suit the whole run."""
+    run = open_run(folder)
+    painter = painter_of(run, look)
+    path = run.folder / f"{name}.png"
+    write_bytes(path, png(painter.paint(run.snapshot(-1, painter.survey.look.cells))))
+    return path
+
+
 def montage(painter: Painter, shown: Sequence[Snapshot]) -> Array:
     """Several times side by side with one colour bar, (height, width, 3) uint8 RGB."""
     found = painter.survey

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from porescale.coupling.step import Coupled, buoyant_weight
+from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import Discs, make_discs
 from porescale.dem.join import joined, together
 from porescale.dem.settle import Pile, prepare
@@ -16,16 +18,20 @@ from porescale.dem.system import Grains
 from porescale.dem.walls import Box, Plate
 from porescale.ground.check import InputError
 from porescale.lbm.fluid import Fluid
+from porescale.lbm.scales import Scales
 from porescale.lbm.sides import Sides
 from porescale.particles.placement import place
 from porescale.scene.cost import refuse_too_large
 from porescale.scene.derive import Derived, derive, grain_count
 from porescale.scene.geometry import refuse_overlaps
-from porescale.scene.sections import Domain, Packing, Scene
+from porescale.scene.sections import Packing, Scene
+from porescale.scene.sides import Domain
 from porescale.scene.simulation import Gatekeeper, Simulation
 from porescale.workbench.sections import load
 
 GATE = "gate"
+UNTOUCHED = Linear(1.0, 0.0)
+"""Contact law where all discs are held: nothing comes of it."""
 
 
 def load_scene(path: str | Path, *, quality: str | None = None, settings: Sequence[str] = ()) -> Scene:
@@ -40,17 +46,9 @@ def build(scene: Scene) -> Simulation:
     """
     derived = derive(scene)
     refuse_too_large(derived)
-    grains = _grains(scene, derived) if scene.grains else None
+    grains = _grains(scene, derived) if scene.grains or scene.disc else None
     fluid = _fluid(scene, derived) if scene.fluid else None
-    coupled = None
-    if fluid and grains and scene.grains:
-        assert derived.scales
-        assert derived.contact_steps
-        assert scene.grains.hydraulic_radius_ratio
-        coupled = Coupled(
-            fluid, grains, derived.scales, hydraulic_ratio=scene.grains.hydraulic_radius_ratio,
-            contact_steps=derived.contact_steps, acceleration=scene.gravity,
-        )  # fmt: skip
+    coupled = _coupled(scene, derived, fluid, grains) if fluid and grains else None
     weight = buoyant_weight(grains, 0.0, scene.gravity) if grains and not fluid else None
     gate = None
     if scene.gate:
@@ -59,56 +57,100 @@ def build(scene: Scene) -> Simulation:
     return Simulation(scene, derived, fluid=fluid, grains=grains, coupled=coupled, weight=weight, gate=gate)
 
 
+def _coupled(scene: Scene, derived: Derived, fluid: Fluid, grains: Grains) -> Coupled:
+    """Fluid and grains, each as large to the other as the scene says: grains by lambda, held discs as they are."""
+    assert scene.fluid
+    assert derived.scales
+    ratio = np.ones(grains.discs.count)
+    if scene.grains and scene.grains.hydraulic_radius_ratio:
+        ratio[: grains.discs.count - len(scene.disc)] = scene.grains.hydraulic_radius_ratio
+    size: Any = ratio
+    films = scene.lubrication
+    return Coupled(
+        fluid, grains, derived.scales, hydraulic_ratio=size, contact_steps=derived.contact_steps or 1,
+        acceleration=scene.gravity, solid_operator=scene.fluid.solid_operator, weighting=scene.fluid.weighting,
+        lubrication=films is not None, film_gap=films.gap if films else 1.0,
+    )  # fmt: skip
+
+
 def _fluid(scene: Scene, derived: Derived) -> Fluid:
     assert scene.fluid
     assert derived.cells
     assert derived.scales
-    fx, fy = (component / derived.scales.body_force for component in scene.fluid.body_force)
-    d = scene.domain
-    return Fluid(
-        *derived.cells, derived.scales.relaxation_time, magic=scene.fluid.magic, force=(fx, fy),
-        sides=Sides(d.left, d.right, d.bottom, d.top),
+    unit = derived.scales.body_force
+    fx, fy = (component / unit for component in scene.fluid.body_force)
+    fluid = Fluid(
+        *derived.cells, derived.scales.relaxation_time, **scene.fluid.laws, force=(fx, fy),
+        sides=lattice_sides(scene.domain, derived.scales, derived.cells), dtype=scene.fluid.precision,
     )  # fmt: skip
+    if scene.fluid.velocity != (0.0, 0.0):
+        fluid.set_flow(*(component / derived.scales.velocity for component in scene.fluid.velocity))
+    return fluid
+
+
+def lattice_sides(domain: Domain, scales: Scales, cells: tuple[int, int]) -> Sides:
+    """The sides in lattice units: speeds of walls, velocity in every cell of an inlet, density of a pressure."""
+    values: dict[str, Any] = {}
+    for name, side in domain.sides.items():
+        values[name] = side.kind
+        if side.speed:
+            values[f"{name}_speed"] = side.speed / scales.velocity
+        if side.velocity is not None:
+            count = cells[1] if name in ("left", "right") else cells[0]
+            share = (np.arange(count) + 0.5) / count
+            shape = 6 * share * (1 - share) if side.profile == "parabola" else np.ones(count)
+            values[f"{name}_velocity"] = shape[:, None] * np.asarray(side.velocity) / scales.velocity
+        if side.kind == "pressure":
+            values[f"{name}_density"] = 1 + (side.pressure or 0.0) / scales.pressure
+    return Sides(**values)
 
 
 def _box(domain: Domain) -> Box:
-    kinds = {
-        side: "periodic" if getattr(domain, side) == "periodic" else "solid"
-        for side in ("left", "right", "bottom", "top")
-    }
+    kinds = {name: "periodic" if side.kind == "periodic" else "solid" for name, side in domain.sides.items()}
     return Box((0.0, 0.0), (domain.width, domain.height), **kinds)
 
 
 def _grains(scene: Scene, derived: Derived) -> Grains:
-    assert scene.grains
-    assert derived.law
-    box, law, wall_law = _box(scene.domain), derived.law, derived.wall_law
+    """All discs in their order: the packing's, those placed by hand, those that are held."""
+    box, law, wall_law = _box(scene.domain), derived.law or UNTOUCHED, derived.wall_law
     plates = (
         [Plate(scene.gate.x, 0.0, scene.domain.height, friction=scene.gate.friction, name=GATE)] if scene.gate else []
     )
-    packing = scene.grains.packing
-    by_hand = len(scene.grains.grain)
+    packing = scene.grains.packing if scene.grains else None
+    parts = [_by_hand(scene)] if scene.grains and scene.grains.grain else []
+    parts += [_held(scene)] if scene.disc else []
     if packing and packing.settle:
         grains = prepared(scene, packing, box, derived, plates)
-        if by_hand:
-            grains = joined(grains, _by_hand(scene))
+        if parts:
+            grains = joined(grains, together(*parts))
     else:
-        parts = [_placed(scene, packing)] if packing else []
-        if by_hand:
-            parts.append(_by_hand(scene))
+        parts = [_placed(scene, packing), *parts] if packing else parts
         grains = Grains(together(*parts), law, box, wall_law=wall_law, plates=plates)
         grains.refresh()  # contacts count from the first row of the series on
-    if by_hand:
-        refuse_overlaps(grains.discs, scene.domain, grains.discs.count - by_hand)
+    if scene.disc:
+        grains.hold(slice(grains.discs.count - len(scene.disc), None))
+    added = len(scene.disc) + (len(scene.grains.grain) if scene.grains else 0)
+    if added:
+        refuse_overlaps(grains.discs, scene, grains.discs.count - added)
     return grains
+
+
+def _held(scene: Scene) -> Discs:
+    """The discs that move as told; their mass moves nothing."""
+    density = scene.fluid.density if scene.fluid else 1000.0
+    return make_discs(
+        [(it.x, it.y) for it in scene.disc], np.array([it.diameter / 2 for it in scene.disc]), density,
+        np.array([it.velocity for it in scene.disc]), np.array([it.spin for it in scene.disc]),
+    )  # fmt: skip
 
 
 def prepared(scene: Scene, packing: Packing, box: Box, derived: Derived, plates: list[Plate]) -> Grains:
     """The packing settled dry, then at rest under the run's contact law and its weight in the fluid."""
     assert scene.grains
     assert derived.law
+    placed = len(scene.grains.grain) + len(scene.disc)
     pile = Pile(
-        corner=(packing.left, packing.bottom), width=packing.width, count=grain_count(scene) - len(scene.grains.grain),
+        corner=(packing.left, packing.bottom), width=packing.width, count=grain_count(scene) - placed,
         diameter=packing.diameter, density=scene.grains.density, spread=packing.size_spread,
         friction=packing.settling_friction, seed=packing.seed, gravity=-scene.gravity[1],
     )  # fmt: skip

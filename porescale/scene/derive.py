@@ -12,10 +12,11 @@ from porescale.dem.contact.linear import Linear
 from porescale.dem.integrate import packing_limit, stable_step
 from porescale.ground.check import Fault, InputError
 from porescale.lbm.scales import NAMES, Scales, implied
+from porescale.scene.fluid import Fluid
 from porescale.scene.geometry import judge_places
 from porescale.scene.lattice import is_whole
 from porescale.scene.regime import expected_speed, judge
-from porescale.scene.sections import Contact, Fluid, Scene
+from porescale.scene.sections import Contact, Scene
 
 MANY = 1e6
 """Contact steps in a step of the fluid beyond which somebody slipped in a unit."""
@@ -47,10 +48,10 @@ def derive(scene: Scene) -> Derived:
     faults: list[Fault] = []
     warnings: list[str] = []
     scales, cells, column = _lattice(scene, faults) if scene.fluid else (None, None, None)
-    if scene.gate and "periodic" in (scene.domain.bottom, scene.domain.left):
+    if scene.gate and any(scene.domain.periodic):
         faults.append(Fault("gate", None, "stands in a periodic box", repair="give the box walls"))
-    sizes = diameters(scene)
-    judge_places(scene, sizes, faults)
+    judge_places(scene, diameters(scene), faults)
+    sizes = diameters(scene, held=False) or diameters(scene)
     law = wall_law = limit = step = steps = None
     model_step, mean_mass = scales.step if scales else 0.0, 0.0
     if scene.grains and scene.contact and sizes:
@@ -64,12 +65,22 @@ def derive(scene: Scene) -> Derived:
     variation = 0.0
     if scales:
         variation = judge(scene, scales, speed, sizes, faults, warnings)
+    _loads(scene, faults)
     if faults:
         raise InputError(faults)
     return Derived(
         scales, cells, column, law, wall_law, limit, step, steps, model_step, grain_count(scene), sizes,
         mean_mass, speed, variation, tuple(warnings),
     )  # fmt: skip
+
+
+def _loads(scene: Scene, faults: list[Fault]) -> None:
+    """Grains whose loads are asked for must exist."""
+    count = grain_count(scene) - len(scene.disc)
+    for number in scene.loads.grains if scene.loads else ():
+        if not 0 <= number < count:
+            allowed = f"0 to {count - 1}" if count else "none: there are no grains"
+            faults.append(Fault("loads.grains", number, "there is no such grain", "", allowed))
 
 
 def fluid_scales(fluid: Fluid) -> Scales:
@@ -92,22 +103,25 @@ def laws(contact: Contact, mass: float) -> tuple[Linear, Linear]:
 
 
 def grain_count(scene: Scene) -> int:
-    """Number of grains."""
-    if scene.grains is None:
-        return 0
-    packing, placed = scene.grains.packing, len(scene.grains.grain)
+    """Number of grains and discs that are held."""
+    placed = len(scene.disc) + (len(scene.grains.grain) if scene.grains else 0)
+    packing = scene.grains.packing if scene.grains else None
     if packing is None:
         return placed
     area = math.pi / 4 * packing.diameter**2 * (1 + packing.size_spread**2 / 3)
     return placed + max(1, round(packing.packing_fraction * packing.width * packing.height / area))
 
 
-def diameters(scene: Scene) -> tuple[float, float, float] | None:
-    """Smallest, mean and largest diameter, m (the mean of a packing where there is one)."""
-    if scene.grains is None:
+def diameters(scene: Scene, *, held: bool = True) -> tuple[float, float, float] | None:
+    """Smallest, mean and largest diameter, m, of grains and, if ``held``, of discs that are held; None without any.
+
+    The mean is that of a packing where there is one.
+    """
+    packing = scene.grains.packing if scene.grains else None
+    sizes = [grain.diameter for grain in scene.grains.grain] if scene.grains else []
+    sizes += [disc.diameter for disc in scene.disc] if held else []
+    if packing is None and not sizes:
         return None
-    sizes = [grain.diameter for grain in scene.grains.grain]
-    packing = scene.grains.packing
     mean = packing.diameter if packing else sum(sizes) / len(sizes)
     if packing:
         sizes += [packing.diameter * (1 - packing.size_spread), packing.diameter * (1 + packing.size_spread)]

@@ -10,7 +10,9 @@ from porescale.dem.settle import Pile
 from porescale.dem.system import SKIN
 from porescale.ground.check import Fault, InputError
 from porescale.particles.placement import DENSEST
-from porescale.scene.sections import Domain, Gate, Packing, Scene
+from porescale.scene.bodies import Disc
+from porescale.scene.sections import Gate, Grain, Packing, Scene
+from porescale.scene.sides import Domain
 
 TOUCH = 1e-3
 """Overlap, over the smaller diameter, up to which grains placed by hand may start."""
@@ -26,36 +28,48 @@ def judge_places(scene: Scene, sizes: tuple[float, float, float] | None, faults:
     sizes : smallest, mean and largest diameter, m; None without grains.  A periodic side too short for them is the
     only fault named then: places mean nothing across it.
     """
-    if scene.grains is None or sizes is None:
+    if sizes is None:
         return
     if _judge_periods(scene, sizes, faults):
         return
-    if scene.grains.packing:
-        _judge_packing(scene.grains.packing, scene.domain, scene.gate, faults)
-        if scene.grains.packing.settle:
+    packing = scene.grains.packing if scene.grains else None
+    if packing:
+        _judge_packing(packing, scene.domain, scene.gate, faults)
+        if packing.settle:
             _judge_settling(scene, faults)
-    grains = scene.grains.grain
-    if not grains:
+    names, x, r = placed(scene)
+    if not names:
         return
-    x, r = np.array([(g.x, g.y) for g in grains]), np.array([g.diameter / 2 for g in grains])
     box, inner = np.array([scene.domain.width, scene.domain.height]), r[:, None] * (1 - TOUCH)
     beyond = np.where(_periodic(scene.domain), (x < 0) | (x > box), (x < inner) | (x > box - inner)).any(axis=1)
     if beyond.any():
-        faults.append(_misplaced(int(beyond.argmax()), x, "reaches out of the box", "move it inside by its radius"))
+        k = int(beyond.argmax())
+        faults.append(_misplaced(names[k], x[k], "reaches out of the box", "move it inside by its radius"))
     if scene.gate:
         across = np.abs(x[:, 0] - scene.gate.x) < inner[:, 0]
         if across.any():
-            faults.append(_misplaced(int(across.argmax()), x, "stands across the gate", "move one of them"))
-    _judge_overlap(x, r, scene.domain, 0, faults)
+            k = int(across.argmax())
+            faults.append(_misplaced(names[k], x[k], "stands across the gate", "move one of them"))
+    _judge_overlap(x, r, scene.domain, names, 0, faults)
 
 
-def refuse_overlaps(discs: Discs, domain: Domain, packed: int) -> None:
+def placed(scene: Scene) -> tuple[list[str], NDArray[np.float64], NDArray[np.float64]]:
+    """Keys, centres (n, 2) m and radii (n,) m of what is placed by hand: grains, then discs that are held."""
+    grains = scene.grains.grain if scene.grains else ()
+    names = [f"grains.grain[{k}]" for k in range(len(grains))] + [f"disc[{k}]" for k in range(len(scene.disc))]
+    bodies: list[Grain | Disc] = [*grains, *scene.disc]
+    x = np.array([(it.x, it.y) for it in bodies]).reshape(-1, 2)
+    return names, x, np.array([it.diameter / 2 for it in bodies])
+
+
+def refuse_overlaps(discs: Discs, scene: Scene, packed: int) -> None:
     """InputError naming the deepest overlap of a disc placed by hand; the first ``packed`` are the packing's.
 
     What the packing's own contacts are is for its settling to say.
     """
     faults: list[Fault] = []
-    _judge_overlap(discs.position, discs.radius, domain, packed, faults)
+    names, _, _ = placed(scene)
+    _judge_overlap(discs.position, discs.radius, scene.domain, names, packed, faults)
     if faults:
         raise InputError(faults)
 
@@ -90,10 +104,9 @@ def deepest(
 
 def _judge_periods(scene: Scene, sizes: tuple[float, float, float], faults: list[Fault]) -> bool:
     """Whether a periodic side is shorter than two cutoffs of the pair search, where a grain meets another twice."""
-    assert scene.grains
     _, mean, largest = sizes
     # The skin follows the mean radius; that of a packing is drawn, so its upper bound counts.
-    skin = SKIN * (largest if scene.grains.packing else mean) / 2
+    skin = SKIN * (largest if scene.grains and scene.grains.packing else mean) / 2
     least = 2 * (largest + skin)
     sides = (("width", scene.domain.width, "wide"), ("height", scene.domain.height, "high"))
     short = [
@@ -145,9 +158,9 @@ def _judge_settling(scene: Scene, faults: list[Fault]) -> None:
     if scene.grains.density <= fluid_density:
         problem, repair = "the grains do not sink, so they do not settle", f"make them heavier, {otherwise}"
         faults.append(Fault("grains.density", scene.grains.density, problem, "kg/m^3", f"> {fluid_density:g}", repair))
-    if domain.bottom == "periodic":
+    if domain.periodic[1]:
         repair = f"give the box a bottom, {otherwise}"
-        faults.append(Fault("domain.bottom", domain.bottom, "there is no floor to settle on", repair=repair))
+        faults.append(Fault("domain.bottom", domain.bottom.kind, "there is no floor to settle on", repair=repair))
     loose = _loose_sides(packing, domain, scene.gate)
     if loose:
         problem = f"nothing holds the packing on its {loose} while it settles"
@@ -157,12 +170,12 @@ def _judge_settling(scene: Scene, faults: list[Fault]) -> None:
 
 def _loose_sides(packing: Packing, domain: Domain, gate: Gate | None) -> str:
     """Sides on which no wall or gate stands within a diameter of the packing, in words; a full period holds itself."""
-    if domain.left == "periodic" and packing.width > domain.width - packing.diameter:
+    if domain.periodic[0] and packing.width > domain.width - packing.diameter:
         return ""
     ends = {"left": (packing.left, 0.0), "right": (packing.left + packing.width, domain.width)}
     loose = []
     for side, (edge, wall) in ends.items():
-        near_wall = domain.left != "periodic" and abs(edge - wall) < packing.diameter
+        near_wall = not domain.periodic[0] and abs(edge - wall) < packing.diameter
         near_gate = gate is not None and abs(edge - gate.x) < packing.diameter
         if not near_wall and not near_gate:
             loose.append(side)
@@ -170,20 +183,25 @@ def _loose_sides(packing: Packing, domain: Domain, gate: Gate | None) -> str:
 
 
 def _judge_overlap(
-    x: NDArray[np.float64], r: NDArray[np.float64], domain: Domain, packed: int, faults: list[Fault]
+    x: NDArray[np.float64], r: NDArray[np.float64], domain: Domain, names: list[str], packed: int, faults: list[Fault]
 ) -> None:
+    """Name the deepest overlap; discs from ``packed`` on have ``names``."""
     found = deepest(x, r, domain, packed)
     if found is None or found[2] <= TOUCH * 2 * min(r[found[0]], r[found[1]]):
         return
     i, j, depth = found
-    other = f"grain {j - packed}" if j >= packed else "a grain of the packing"
-    key = f"grains.grain[{i - packed}]" if i >= packed else "grains.packing"
-    faults.append(Fault(key, None, f"overlaps {other} by {depth:.3g} m", repair="move one of them"))
+    other = _plain(names[j - packed]) if j >= packed else "a grain of the packing"
+    faults.append(Fault(names[i - packed], None, f"overlaps {other} by {depth:.3g} m", repair="move one of them"))
 
 
-def _misplaced(k: int, x: NDArray[np.float64], problem: str, repair: str) -> Fault:
-    return Fault(f"grains.grain[{k}]", f"({x[k, 0]:g}, {x[k, 1]:g})", problem, "m", repair=repair)
+def _plain(name: str) -> str:
+    """grains.grain[0] as "grain 0", disc[0] as "disc 0"."""
+    return name.removeprefix("grains.").replace("[", " ").rstrip("]")
+
+
+def _misplaced(name: str, at: NDArray[np.float64], problem: str, repair: str) -> Fault:
+    return Fault(name, f"({at[0]:g}, {at[1]:g})", problem, "m", repair=repair)
 
 
 def _periodic(domain: Domain) -> NDArray[np.bool_]:
-    return np.array([domain.left == "periodic", domain.bottom == "periodic"])
+    return np.array(domain.periodic)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.dem.discs import FIELDS, Discs
 from porescale.dem.measure import centre_of_mass, coordination, kinetic_energy, max_overlap
 from porescale.dem.system import Grains
 from porescale.lbm.scales import Scales
@@ -19,22 +21,28 @@ class Watch:
     """Follows the grains from where they start.
 
     The front is the foremost edge of any grain on the side to which the packing can flow: left if it starts right of
-    the middle of the box, right otherwise.  Run-out is how far the front has come since the start.
+    the middle of the box, right otherwise.  Run-out is how far the front has come since the start.  Discs that are held
+    come after the grains and are none of them.
     """
 
     def __init__(self, scene: Scene, grains: Grains) -> None:
+        self.count = grains.discs.count - len(scene.disc)
         middle = 0.5 * scene.domain.width
-        self.leftward = bool(centre_of_mass(grains.discs)[0] > middle)
+        self.leftward = bool(centre_of_mass(self.free(grains))[0] > middle)
         self.start = self.front(grains)
+
+    def free(self, grains: Grains) -> Discs:
+        """The grains, as views, without the discs that are held."""
+        return Discs(*(getattr(grains.discs, name)[: self.count] for name in FIELDS))
 
     def front(self, grains: Grains) -> float:
         """Position of the front, m."""
-        x, r = grains.discs.position[:, 0], grains.discs.radius
+        x, r = grains.discs.position[: self.count, 0], grains.discs.radius[: self.count]
         return float((x - r).min() if self.leftward else (x + r).max())
 
     def row(self, grains: Grains) -> dict[str, float]:
         """Columns of the series."""
-        discs, front = grains.discs, self.front(grains)
+        discs, front = self.free(grains), self.front(grains)
         x, y = centre_of_mass(discs)
         return {
             "front (m)": front,
@@ -69,6 +77,34 @@ def fluid_row(excess: Array, ux: Array, uy: Array, solid: Array, scales: Scales 
         "lowest relative density ()": 1 + float(excess.min()) / scales.density,
         "highest relative density ()": 1 + float(excess.max()) / scales.density,
     }
+
+
+UNITS = {"vorticity": "1/s", "stream_function": "m²/s"}
+"""Fields that a scene may ask for besides velocity and pressure, and their units."""
+
+
+def derived_fields(names: Sequence[str], ux: Array, uy: Array, spacing: float) -> dict[str, NDArray[np.float32]]:
+    """Fields called ``names`` of a velocity (ny, nx) m/s; see ``vorticity`` and ``stream_function``."""
+    makers = {"vorticity": vorticity, "stream_function": stream_function}
+    return {name: makers[name](ux, uy, spacing).astype(np.float32) for name in names}
+
+
+def vorticity(ux: Array, uy: Array, spacing: float) -> Array:
+    """dv/dx - du/dy in every cell, (ny, nx) 1/s: central differences, one-sided at the sides."""
+    along: Array = np.gradient(uy, spacing, axis=1)
+    up: Array = np.gradient(ux, spacing, axis=0)
+    return along - up
+
+
+def stream_function(ux: Array, uy: Array, spacing: float) -> Array:
+    """psi in the centre of every cell, (ny, nx) m²/s, with u = dpsi/dy, v = -dpsi/dx; zero in the lower left corner.
+
+    Integrated along the lowest row of cells, then upwards, by the midpoint rule from the bottom of the box: fluid that
+    turns clockwise has a minimum where it flows left below the centre.
+    """
+    across = 0.5 * spacing * uy[0]
+    along = -(np.cumsum(uy[0]) * spacing - across)
+    return np.asarray(along[None, :] + np.cumsum(ux, axis=0) * spacing - 0.5 * spacing * ux)
 
 
 def surface(position: Array, radius: Array, edges: Array) -> Array:

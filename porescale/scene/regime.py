@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from porescale.ground.check import Fault
+from porescale.lbm.collision.choose import choose
+from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
 from porescale.lbm.scales import Scales
+from porescale.scene.limits import (
+    CELLS_COARSE,
+    DENSITY_REFUSE,
+    DENSITY_WARN,
+    LIGHT,
+    LIGHT_CELLS,
+    MACH_REFUSE,
+    MACH_WARN,
+    SINGLE_PRECISION,
+    TAU_COARSE,
+    stability,
+)
 from porescale.scene.sections import Scene
 
-DENSITY_WARN, DENSITY_REFUSE = 0.05, 0.3
-"""Density variation by the weight of a column: measured runs varied by twice this estimate (0.05: 4-10 %)."""
-MACH_WARN, MACH_REFUSE = 0.1, 0.3
-"""Errors of compressibility grow as the square of the Mach number: 1 % and 9 %."""
-TRT_FLOOR = 0.505
-"""Relaxation time below which two relaxation times ring or blow up in fast flow."""
-TAU_COARSE = 1.5
-"""Relaxation time above which the drag at 10 cells per diameter is more than a tenth too small."""
-CELLS_COARSE = 4.0
-"""Cells per hydraulic diameter below which drag is off by a tenth or more."""
-LIGHT, LIGHT_CELLS = 0.5, 16.0
-"""Density ratio below which free grains need so many cells: 0.3 is stable at 16 and diverges at 10 (measured)."""
 BLUNT = 1.2
 """Drag coefficient of a cylinder in cross flow at Reynolds numbers of 10² to 10⁵."""
+
+UNIT: dict[str, Any] = {"relaxation_time": 1.0, "force": (0.0, 0.0), "dtype": "float64"}
+"""Numbers for a law that is only looked at."""
 
 Sizes = tuple[float, float, float]
 
@@ -33,9 +39,10 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None) -> 
     fluid), reduced by buoyancy; over a periodic side, which has no end, for as long as the run lasts.  In fluid the
     terminal speed of a grain if that is less, and for a packing that of the gravity current it can become,
     sqrt(g' H)/2 with g' = phi |s - 1| g (Benjamin 1968): grains that fall together fall faster than each alone.
-    Fluid under a body force: the parabola between the walls across it, which grains in its way only slow down.
+    Fluid under a body force: the parabola between the walls across it, which grains in its way only slow down; under a
+    difference of pressure the same, or Bernoulli's speed if that is less.  What is told to move counts as told.
     """
-    g, speed = math.hypot(*scene.gravity), 0.0
+    g, speed = math.hypot(*scene.gravity), given_speed(scene)
     if scene.grains and sizes:
         for grain in scene.grains.grain:
             speed = max(speed, math.hypot(*grain.velocity) + abs(grain.spin) * grain.diameter / 2)
@@ -53,7 +60,30 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None) -> 
         push = math.hypot(*scene.fluid.body_force) / scales.density
         across = min(scene.domain.width, scene.domain.height)
         speed = max(speed, push * across**2 / (8 * scales.viscosity))
+        speed = max(speed, _pressed_speed(scene, scales))
     return speed
+
+
+def given_speed(scene: Scene) -> float:
+    """The largest speed that the scene itself states, m/s: of sides, of the fluid at the start, of what is towed."""
+    speeds = [side.peak for side in scene.domain.sides.values()]
+    speeds += [disc.fastest for disc in scene.disc] + [rectangle.fastest for rectangle in scene.rectangle]
+    if scene.fluid:
+        speeds.append(math.hypot(*scene.fluid.velocity))
+    if scene.gate and scene.gate.lift_speed:
+        speeds.append(scene.gate.lift_speed)
+    return max(speeds)
+
+
+def _pressed_speed(scene: Scene, scales: Scales) -> float:
+    """Speed (m/s) that the largest difference of pressure between sides can drive."""
+    held = {name: side.pressure or 0.0 for name, side in scene.domain.sides.items() if side.kind == "pressure"}
+    if len(held) < 2:
+        return 0.0
+    d, drop = scene.domain, max(held.values()) - min(held.values())
+    along, across = (d.width, d.height) if {"left", "right"} <= set(held) else (d.height, d.width)
+    parabola = drop / along / scales.density * across**2 / (8 * scales.viscosity)
+    return min(parabola, math.sqrt(2 * drop / scales.density))
 
 
 def fall(scene: Scene, sense: float) -> tuple[float, bool]:
@@ -65,7 +95,7 @@ def fall(scene: Scene, sense: float) -> tuple[float, bool]:
         return 0.0, False
     along = [sense * component / g for component in scene.gravity]
     d = scene.domain
-    unending = (along[0] != 0 and d.left == "periodic") or (along[1] != 0 and d.bottom == "periodic")
+    unending = any(component != 0 and endless for component, endless in zip(along, d.periodic, strict=True))
     starts = [(grain.x, grain.y) for grain in scene.grains.grain]
     if packing := scene.grains.packing:
         right, top = packing.left + packing.width, packing.bottom + packing.height
@@ -108,12 +138,15 @@ def judge(
     Adds refusals to ``faults`` and doubts to ``warnings``, each with its repair.
     """
     _judge_mach(scales, speed, faults, warnings)
-    if scales.relaxation_time < TRT_FLOOR:
-        warnings.append(
-            f"relaxation time {scales.relaxation_time:.4f}: two relaxation times ring below {TRT_FLOOR} in fast flow; "
-            "refine the spacing or raise the viscosity"
-        )
-    if scene.grains is None or sizes is None:
+    _judge_operator(scene, scales, speed, sizes, warnings)
+    if sizes is None:
+        return 0.0
+    if scene.grains is None:
+        across = sizes[1] / scales.spacing
+        if across < CELLS_COARSE:
+            warnings.append(
+                f"{across:.3g} cells per diameter of a disc: below {CELLS_COARSE:g} the drag is off by a tenth"
+            )
         return 0.0
     ratio = scene.grains.hydraulic_radius_ratio or 1.0
     across = sizes[1] * ratio / scales.spacing
@@ -140,6 +173,31 @@ def judge(
             "it breaches at a rate set by numerical leak; 0.7 to 0.9 opens them"
         )
     return _judge_pore_pressure(scene, scales, faults, warnings)
+
+
+def _judge_operator(scene: Scene, scales: Scales, speed: float, sizes: Sizes | None, warnings: list[str]) -> None:
+    """Where the operators that the scene names are known to ring, to blow up or to be beside their purpose."""
+    assert scene.fluid
+    fluid, tau = scene.fluid, scales.relaxation_time
+    known = stability(fluid.operator, eddy=fluid.smagorinsky is not None)
+    if tau < known.floor:
+        warnings.append(f"relaxation time {tau:.4f}: {known.words} below {known.floor} in fast flow; {known.repair}")
+    if fluid.magic != MAGIC_MIDWAY_WALL and "magic" not in choose(**fluid.laws, **UNIT)._fields:
+        warnings.append(
+            f"fluid.magic = {fluid.magic:g} is not used: the operator {fluid.operator!r} has no such parameter"
+        )
+    if sizes is None and (fluid.solid_operator, fluid.weighting) != ("odd-SC1", "B2"):
+        warnings.append("fluid.solid_operator and fluid.weighting are not used: there is nothing solid in the fluid")
+    if fluid.solid_operator == "SC3" and scene.grains is not None:
+        warnings.append(
+            "fluid.solid_operator = 'SC3': free grains ran away with it in every trial; it is for held discs"
+        )
+    slowness = speed / scales.velocity
+    if fluid.precision == "float32" and 0 < slowness < SINGLE_PRECISION:
+        warnings.append(
+            f"fluid.precision = 'float32': speeds of {slowness:.2g} cells a step are near its round-off; take float64 "
+            "or longer steps"
+        )
 
 
 def _judge_mach(scales: Scales, speed: float, faults: list[Fault], warnings: list[str]) -> None:

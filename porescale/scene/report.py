@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import math
 
+from porescale.coupling.solid.choose import SOLID_OPERATORS
+from porescale.coupling.weighting import WEIGHTINGS
+from porescale.lbm.collision.choose import OPERATORS
 from porescale.scene.cost import expected_seconds, memory, refuse_too_large
 from porescale.scene.derive import Derived, derive
+from porescale.scene.permeability import gebart, kozeny_carman
 from porescale.scene.sections import Scene
 from porescale.workbench.report import Report
 
@@ -21,6 +25,10 @@ def report(scene: Scene) -> Report:
     _parts(scene, out)
     if derived.scales:
         _lattice(scene, derived, out)
+    if scene.fluid:
+        _operators(scene, out)
+    if scene.disc:
+        _discs(scene, derived, out)
     if scene.grains:
         _grains(scene, derived, out)
         _contact(derived, out)
@@ -34,12 +42,13 @@ def report(scene: Scene) -> Report:
 
 def _parts(scene: Scene, out: Report) -> None:
     out.heading("Parts")
-    built = [name for name in ("fluid", "grains", "contact", "gate") if getattr(scene, name) is not None]
-    absent = [name for name in ("fluid", "grains", "contact", "gate") if getattr(scene, name) is None]
-    out.row("built", ", ".join(built))
-    out.row("absent, not built", ", ".join(absent) or "none")
-    d = scene.domain
-    out.row("sides", f"left {d.left}, right {d.right}, bottom {d.bottom}, top {d.top}")
+    parts = (
+        "fluid", "grains", "contact", "gate", "disc", "rectangle", "lubrication", "probe", "line", "flux", "loads",
+        "permeability",
+    )  # fmt: skip
+    out.row("built", ", ".join(name for name in parts if getattr(scene, name)))
+    out.row("absent, not built", ", ".join(name for name in parts if not getattr(scene, name)) or "none")
+    out.row("sides", ", ".join(f"{name} {side.text()}" for name, side in scene.domain.sides.items()))
 
 
 def _lattice(scene: Scene, derived: Derived, out: Report) -> None:
@@ -57,11 +66,37 @@ def _lattice(scene: Scene, derived: Derived, out: Report) -> None:
     out.row("Mach number", derived.speed / s.sound_speed, "", "below 0.1")
 
 
+def _operators(scene: Scene, out: Report) -> None:
+    """The laws that were chosen, with a word on each."""
+    fluid = scene.fluid
+    assert fluid is not None
+    out.heading("Operators")
+    out.row("collision", fluid.operator, "", OPERATORS[fluid.operator])
+    out.row("magic parameter", fluid.magic, "", "3/16: walls half-way between nodes")
+    out.row("Smagorinsky constant", fluid.smagorinsky or "none")
+    if scene.grains or scene.disc or scene.rectangle:
+        out.row("solid", fluid.solid_operator, "", SOLID_OPERATORS[fluid.solid_operator])
+        out.row("weight", fluid.weighting, "", WEIGHTINGS[fluid.weighting])
+    out.row("precision", fluid.precision)
+
+
+def _discs(scene: Scene, derived: Derived, out: Report) -> None:
+    out.heading("Held discs")
+    out.row("number", len(scene.disc), "", f"{sum(it.fastest > 0 for it in scene.disc)} of them towed or turned")
+    out.row("fastest", max(it.fastest for it in scene.disc), "m/s")
+    if derived.scales:
+        least = min(it.diameter for it in scene.disc)
+        out.row("cells per diameter", least / derived.scales.spacing, "", "of the smallest")
+        speed = max([derived.speed, *(it.fastest for it in scene.disc)])
+        out.row("Reynolds number", speed * max(it.diameter for it in scene.disc) / derived.scales.viscosity, "",
+                "U d/nu of the largest at the largest speed to expect")  # fmt: skip
+
+
 def _grains(scene: Scene, derived: Derived, out: Report) -> None:
     assert scene.grains is not None
     assert derived.diameters is not None
     out.heading("Grains")
-    out.row("number", derived.grain_count)
+    out.row("number", derived.grain_count - len(scene.disc))
     low, mean, high = derived.diameters
     out.row("diameter", f"{low:.4g} … {high:.4g}, mean {mean:.4g}", "m")
     if derived.scales:
@@ -69,6 +104,17 @@ def _grains(scene: Scene, derived: Derived, out: Report) -> None:
         out.row("cells per diameter", mean / derived.scales.spacing)
         out.row("hydraulic radius ratio", ratio, "", "lambda; 1 seals a 2-D bed at rest")
         out.row("cells per hydraulic diameter", ratio * mean / derived.scales.spacing)
+        packing = scene.grains.packing
+        if packing:
+            _bed(packing.packing_fraction * ratio**2, (0.5 * ratio * mean) ** 2, out)
+
+
+def _bed(solid_fraction: float, square: float, out: Report) -> None:
+    """What regular arrays of that solid fraction let through; square : hydraulic radius squared, m²."""
+    out.row("hydraulic solid fraction", solid_fraction, "", "lambda² times the packing fraction")
+    out.row("permeability, hexagonal array", gebart(solid_fraction, hexagonal=True) * square, "m²", "Gebart 1992")
+    out.row("permeability, Kozeny-Carman", kozeny_carman(solid_fraction) * square, "m²",
+            "measured by [permeability]")  # fmt: skip
 
 
 def _contact(derived: Derived, out: Report) -> None:

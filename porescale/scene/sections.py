@@ -9,7 +9,11 @@ import pydantic
 from porescale.ground.check import Fault
 from porescale.ground.constants import GRAVITY
 from porescale.lbm.scales import NAMES
+from porescale.scene.bodies import Disc, Lubrication, Rectangle
+from porescale.scene.fluid import Fluid
 from porescale.scene.lattice import disagreements
+from porescale.scene.measures import FieldName, Flux, Line, Loads, Permeability, Probe
+from porescale.scene.sides import Domain
 from porescale.workbench.sections import Refused, Section, quantity
 
 LENGTH: Any = {"ge": 1e-9, "le": 1e3}
@@ -18,37 +22,12 @@ DENSITY: Any = {"ge": 1e-3, "le": 1e5}
 FRICTION: Any = {"ge": 0, "le": 1e3}
 """Ranges, SI, far beyond what grains and water need: what lies outside is a slip of unit or exponent, and would
 end in numbers that are none."""
+EDGE = 1e-9
+"""Relative slack of places at the edge of the box."""
 PLACE = 1e3
 SPEED = 1e4
 SPIN = 1e7
 FORCE = 1e12
-
-Side = Literal["wall", "slip", "periodic"]
-
-
-class Domain(Section):
-    """The box, lower left corner at the origin, and what each of its sides is to the fluid.
-
-    "wall" holds the fluid, "slip" lets it slide (a flat water surface), "periodic" joins opposite sides.  For grains
-    wall and slip are both solid.
-    """
-
-    width: float = quantity("m", **LENGTH, help="width of the box")
-    height: float = quantity("m", **LENGTH, help="height of the box")
-    left: Side = "wall"
-    right: Side = "wall"
-    bottom: Side = "wall"
-    top: Side = "wall"
-
-    @pydantic.model_validator(mode="after")
-    def _joined(self) -> Domain:
-        pairs = (("left", self.left, "right", self.right), ("bottom", self.bottom, "top", self.top))
-        for name, one, other_name, other in pairs:
-            if (one == "periodic") != (other == "periodic"):
-                raise Refused(
-                    Fault(name, one, f"but {other_name} is {other}", repair="make both sides periodic, or none")
-                )
-        return self
 
 
 class Time(Section):
@@ -63,35 +42,9 @@ class Output(Section):
     snapshot_interval: float = quantity("s", **TIME, help="time between snapshots (frames of the film)")
     series_interval: float = quantity("s", **TIME, help="time between rows of series.csv")
     checkpoint_seconds: float = quantity("s", 30.0, gt=0, le=1e9, help="wall-clock time between checkpoints")
-
-
-class Fluid(Section):
-    """The fluid and its lattice.  Any three of spacing, step, relaxation_time and viscosity give the fourth.
-
-    Whether four agree is for the scene to say, which knows the box.
-    """
-
-    density: float = quantity("kg/m^3", 1000.0, **DENSITY, help="density of the fluid")
-    viscosity: float | None = quantity("m^2/s", None, ge=1e-12, le=1e3, help="kinematic viscosity")
-    spacing: float | None = quantity("m", None, **LENGTH, help="lattice spacing")
-    step: float | None = quantity("s", None, ge=1e-12, le=1e3, help="time step of the lattice")
-    relaxation_time: float | None = quantity("", None, gt=0.5, le=1e3, help="relaxation time in steps")
-    magic: float = quantity("", 3 / 16, ge=1e-6, le=1e3, help="magic parameter of the two relaxation times")
-    body_force: tuple[float, float] = quantity(
-        "N/m^3", (0.0, 0.0), ge=-1e9, le=1e9, help="force per volume on the fluid"
+    fields: tuple[FieldName, ...] = pydantic.Field(
+        (), description="fields of snapshots besides velocity and pressure, each with a picture"
     )
-
-    @pydantic.model_validator(mode="after")
-    def _three_of_four(self) -> Fluid:
-        given = {name: getattr(self, name) for name in NAMES if getattr(self, name) is not None}
-        if len(given) < 3:
-            missing = [name for name in NAMES if name not in given]
-            have = ", ".join(given) or "none"
-            raise Refused(
-                Fault(", ".join(missing), None, f"three of {', '.join(NAMES)} are needed, given: {have}",
-                      repair=f"add {'one' if len(given) == 2 else str(3 - len(given))} of them")
-            )  # fmt: skip
-        return self
 
 
 class Packing(Section):
@@ -196,6 +149,14 @@ class Scene(Section):
     grains: Grains | None = None
     contact: Contact | None = None
     gate: Gate | None = None
+    disc: tuple[Disc, ...] = ()
+    rectangle: tuple[Rectangle, ...] = ()
+    probe: tuple[Probe, ...] = ()
+    line: tuple[Line, ...] = ()
+    flux: tuple[Flux, ...] = ()
+    loads: Loads | None = None
+    permeability: Permeability | None = None
+    lubrication: Lubrication | None = None
 
     @pydantic.field_validator("fluid")
     @classmethod
@@ -212,15 +173,19 @@ class Scene(Section):
 
     @pydantic.model_validator(mode="after")
     def _complete(self) -> Scene:
+        faults = [*self._needed(), *self._places()]
+        if faults:
+            raise Refused(*faults)
+        return self
+
+    def _needed(self) -> list[Fault]:
+        """Sections that others need, or that need others."""
         faults = []
         if self.fluid is None and self.grains is None:
             faults.append(Fault("fluid, grains", None, "nothing to simulate", repair="add [fluid], [grains] or both"))
         if self.grains is not None and self.contact is None:
-            faults.append(
-                Fault(
-                    "contact", None, "grains need a contact law", repair="add [contact] with stiffness and restitution"
-                )
-            )
+            repair = "add [contact] with stiffness and restitution"
+            faults.append(Fault("contact", None, "grains need a contact law", repair=repair))
         if self.grains is None and self.contact is not None:
             faults.append(
                 Fault("contact", None, "there are no grains to touch", repair="add [grains] or remove [contact]")
@@ -232,10 +197,42 @@ class Scene(Section):
                       repair="0.8 opens the pores of a dense bed; 1 seals a bed at rest, since pores in two "
                              "dimensions do not connect; 1 is right for single grains")
             )  # fmt: skip
+        if self.fluid is None:
+            given = {"probe": self.probe, "line": self.line, "flux": self.flux, "loads": self.loads,
+                     "permeability": self.permeability, "output.fields": self.output.fields}  # fmt: skip
+            faults += [Fault(name, None, "there is no fluid to measure", repair="add [fluid] or leave it out")
+                       for name, section in given.items() if section]  # fmt: skip
+        if self.lubrication and not (self.fluid and (self.grains or self.disc)):
+            faults.append(Fault("lubrication", None, "there are no grains in fluid", repair="leave it out"))
+        if self.permeability and self.fluid and self.grains is None:
+            faults.append(Fault("permeability", None, "there is no bed", repair="add [grains] or leave it out"))
+        packing = self.grains.packing if self.grains else None
+        if self.permeability and self.grains and packing is None and self.permeability.window is None:
+            repair = "add [permeability.window] with left, bottom, width, height"
+            faults.append(Fault("permeability.window", None, "is needed where there is no packing", repair=repair))
+        return faults
+
+    def _places(self) -> list[Fault]:
+        """What must lie in the box, and numbers of bodies that must exist."""
+        box = self.domain.width, self.domain.height
+        points = [(f"probe[{k}]", (it.x, it.y)) for k, it in enumerate(self.probe)]
+        for name, sections in (("line", self.line), ("flux", self.flux)):
+            points += [(f"{name}[{k}].{end}", getattr(it, end)) for k, it in enumerate(sections)
+                       for end in ("start", "end")]  # fmt: skip
+        if self.permeability and (window := self.permeability.window):
+            points.append(("permeability.window", (window.left, window.bottom)))
+            points.append(("permeability.window", (window.left + window.width, window.bottom + window.height)))
+        faults = [
+            Fault(key, f"({at[0]:g}, {at[1]:g})", "is outside the box", "m", repair="move it inside")
+            for key, at in points
+            if not all(-EDGE * size <= value <= (1 + EDGE) * size for value, size in zip(at, box, strict=True))
+        ]
         if self.gate is not None and not self.gate.x < self.domain.width:
             faults.append(
                 Fault("gate.x", self.gate.x, "is outside the box", "m", f"< {self.domain.width:g}", "move it inside")
             )
-        if faults:
-            raise Refused(*faults)
-        return self
+        for number in self.loads.discs if self.loads else ():
+            if not 0 <= number < len(self.disc):
+                allowed = f"0 to {len(self.disc) - 1}" if self.disc else "none: there is no [[disc]]"
+                faults.append(Fault("loads.discs", number, "there is no such disc", "", allowed))
+        return faults

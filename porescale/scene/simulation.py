@@ -15,6 +15,7 @@ from porescale.lbm.plate import Plate
 from porescale.runs.model import Cloud, Grid, Snapshot
 from porescale.scene import observe
 from porescale.scene.derive import Derived
+from porescale.scene.instruments import LAMBDA, Instruments, total_pressure
 from porescale.scene.sections import Scene
 
 Array = NDArray[Any]
@@ -78,7 +79,10 @@ class Simulation:
         self.time = 0.0
         self.step_seconds = derived.model_step
         self._mass = fluid.mass_excess() if fluid else 0.0
-        self._watch = observe.Watch(scene, grains) if grains else None
+        self._watch = observe.Watch(scene, grains) if grains and scene.grains else None
+        self._instruments = (
+            Instruments(scene, derived.scales, derived.cells) if derived.scales and derived.cells else None
+        )
 
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps; raises Unstable when a grain is nowhere."""
@@ -158,8 +162,17 @@ class Simulation:
             excess, ux, uy, solid = self.fields()
             row |= observe.fluid_row(excess, ux, uy, solid, self.derived.scales)
             cells = self.fluid.nx * self.fluid.ny
+            if self.scene.grains and self.scene.grains.hydraulic_radius_ratio:
+                row[LAMBDA] = self.scene.grains.hydraulic_radius_ratio
             row["fluid mass change ()"] = (self.fluid.mass_excess() - self._mass) / cells
         return row
+
+    def tables(self) -> dict[str, dict[str, float]]:
+        """A row of each further series: what probes, flux sections and load cells read; {} where there are none."""
+        scene = self.scene
+        if not self._instruments or not (scene.probe or scene.flux or scene.loads):
+            return {}
+        return self._instruments.tables(self.time, self.fields(), self.coupled)
 
     def snapshot(self) -> Snapshot:
         """Fluid as cells, grains as points."""
@@ -172,6 +185,8 @@ class Simulation:
             flat[:, :2] = d.velocity
             data = {"radius": d.radius, "angle": d.angle, "velocity": flat, "spin": d.spin}
             units = {"radius": "m", "angle": "rad", "velocity": "m/s", "spin": "rad/s"}
+            if self.coupled:
+                data["hydraulic_radius"], units["hydraulic_radius"] = self.coupled.hydraulic_radius, "m"
             period = np.array(self.grains.box.period)
             inside = np.where(period > 0, np.mod(d.position, np.where(period > 0, period, 1.0)), d.position)
             snapshot.clouds["grains"] = Cloud(inside, data, units)
@@ -184,14 +199,14 @@ class Simulation:
         excess, ux, uy, solid = self.fields()
         velocity = np.zeros((*ux.shape, 3), np.float32)
         velocity[..., 0], velocity[..., 1] = ux, uy
-        reduced = excess / s.density * s.pressure
-        depth = (self.fluid.ny - 0.5 - np.arange(self.fluid.ny)) * s.spacing
-        along = (np.arange(self.fluid.nx) + 0.5) * s.spacing
-        hydrostatic = s.density * (-self.scene.gravity[1] * depth[:, None] + self.scene.gravity[0] * along[None, :])
-        cells: dict[str, Array] = {"velocity": velocity, "pressure": (reduced + hydrostatic).astype(np.float32)}
+        cells: dict[str, Array] = {
+            "velocity": velocity, "pressure": total_pressure(self.scene, s, excess).astype(np.float32),
+        }  # fmt: skip
         if self.grains:
             cells["solid_fraction"] = solid.astype(np.float32)
-        units = {"velocity": "m/s", "pressure": "Pa"}
+        cells |= observe.derived_fields(self.scene.output.fields, ux, uy, s.spacing)
+        units = {"velocity": "m/s", "pressure": "Pa", **observe.UNITS}
+        units = {name: unit for name, unit in units.items() if name in cells}
         return Grid((0.0, 0.0), (s.spacing, s.spacing), cells, units)
 
     def state(self) -> dict[str, Any]:
