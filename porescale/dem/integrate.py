@@ -22,6 +22,26 @@ NEIGHBOURS = 6
 
 
 @kernel
+def withhold(held, withheld, velocity, spin, mass, inertia, force, torque, drag, first):
+    """Take the force from held components, so that kick_drift leaves their velocity as it is.
+
+    held (n, 3): not 0 where x, y, rotation is held; (0, 3) if none is.  Adds what the holder bears to withheld (n, 3)
+    N/m, N/m, N m/m, after clearing it if ``first``.  Overwrites force (n, 2) and torque (n,) there with what balances
+    the background damping ``drag`` (1/s), 0 without.
+    """
+    for i in range(held.shape[0]):
+        if first:
+            withheld[i, 0], withheld[i, 1], withheld[i, 2] = 0.0, 0.0, 0.0
+        for a in range(2):
+            if held[i, a]:
+                withheld[i, a] += force[i, a]
+                force[i, a] = drag * mass[i] * velocity[i, a]
+        if held[i, 2]:
+            withheld[i, 2] += torque[i]
+            torque[i] = drag * inertia[i] * spin[i]
+
+
+@kernel
 def kick_drift(
     position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt
 ):  # fmt: skip
@@ -71,13 +91,14 @@ def first_without_number(position, velocity, spin):
 def contact_steps(
     count, dt, drag, position, angle, velocity, spin, radius, mass, inertia, force, torque,
     external_force, external_torque, start, partner, carried, anchor, limit_square, period_x, period_y, law,
-    walls, wall_laws, wall_spring, wall_force, plates, plate_laws, plate_spring, plate_force,
+    walls, wall_laws, wall_spring, wall_force, plates, plate_laws, plate_spring, plate_force, held, withheld, first,
 ):  # fmt: skip
     """Up to ``count`` contact steps; returns (steps done, whether the pair list must be rebuilt first to
     go on).
 
-    Arrays as in add_pair_forces, add_wall_forces, add_plate_forces and kick_drift; external_force (n, 2) N/m
-    and external_torque (n,) N m/m are held over all steps.  Overwrites the state of discs, springs, plates.
+    Arrays as in add_pair_forces, add_wall_forces, add_plate_forces, withhold and kick_drift; external_force (n, 2)
+    N/m and external_torque (n,) N m/m are the same over all steps.  first: withheld forces are summed anew.
+    Overwrites the state of discs, springs, plates.
     """
     for step in range(count):
         start_forces(force, torque, external_force, external_torque)
@@ -100,6 +121,7 @@ def contact_steps(
         add_plate_forces(
             position, velocity, spin, radius, force, torque, plates, plate_laws, plate_spring, plate_force, dt
         )
+        withhold(held, withheld, velocity, spin, mass, inertia, force, torque, drag, first and step == 0)
         moved = kick_drift(
             position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt
         )

@@ -32,8 +32,9 @@ class Grains:
 
     Positions are not wrapped on periodic sides.  The first step starts from velocities half a step back;
     for a start from rest that is the same.  ``steps`` and ``time`` count contact steps and seconds.
-    Arrays held: wall_force (w, 2), plate_force (p, 2) N/m of the last step, wall_spring (w, n),
-    plate_spring (p, n) m.
+    Arrays: wall_force (w, 2), plate_force (p, 2) N/m of the last step, wall_spring (w, n), plate_spring (p, n) m;
+    held (n, 3): not 0 where x, y, rotation of a disc is held, see ``hold``;  withheld (n, 3) N/m, N/m, N m/m: force
+    and torque that held components did not follow, mean over the last call of ``step``;  both (0, 3) till first used.
     """
 
     def __init__(
@@ -63,6 +64,8 @@ class Grains:
         self.plate_force = np.zeros((len(self.plates), 2))
         self.external_force = np.zeros((count, 2))
         self.external_torque = np.zeros(count)
+        self.held, self.withheld = np.zeros((0, 3), np.uint8), np.zeros((0, 3))
+        self.reach: Array | None = None  # of the pair list, m, where it is more than the radii
         self.touching = np.zeros(count, np.int64)
         self.steps, self.last_dt = 0, 0.0
         self._time, self._steps_of_dt = 0.0, 0  # seconds before dt last changed, steps since
@@ -125,9 +128,7 @@ class Grains:
         if dt != self.last_dt:
             self._time, self._steps_of_dt, self.last_dt = self.time, 0, dt
         while left > 0:
-            if self._stale:
-                self._rebuild()
-            pairs = self.pairs
+            pairs = self.current_pairs()
             done, self._stale = contact_steps(
                 left, dt, drag,
                 d.position, d.angle, d.velocity, d.spin, d.radius, d.mass, d.inertia, d.force, d.torque,
@@ -136,10 +137,40 @@ class Grains:
                 self.law_row,
                 self.walls, self.wall_laws, self.wall_spring, self.wall_force,
                 self.plates, self.plate_laws, self.plate_spring, self.plate_force,
+                self.held, self.withheld, left == count,
             )  # fmt: skip
             left -= done
             self.steps += done
             self._steps_of_dt += done
+        if len(self.held):
+            self.withheld /= count
+
+    def hold(self, disc: int | slice | Array, x: bool = True, y: bool = True, rotation: bool = True) -> None:
+        """Hold these components of the velocity of discs (index, slice or mask) from now on, and let the others go.
+
+        A held component keeps its value until the owner writes another between steps, whatever the forces; they are in
+        ``withheld``.  Contacts with other discs go on.
+        """
+        if not len(self.held):
+            self.held, self.withheld = np.zeros((self.discs.count, 3), np.uint8), np.zeros((self.discs.count, 3))
+        self.held[disc] = x, y, rotation
+        self.withheld[disc] = 0.0
+
+    def list_up_to(self, gap: float) -> None:
+        """List all pairs with a gap below ``gap`` (m) from now on, not only those that touch.
+
+        Raises InputError when the periodic box is too small for that, or the gap negative.
+        """
+        if not gap >= 0.0:
+            raise InputError(Fault("gap", gap, "of listed pairs", "m", ">= 0"))
+        self.reach = self.discs.radius + 0.5 * gap
+        self._rebuild()
+
+    def current_pairs(self) -> PairList:
+        """The pair list, rebuilt first if it is due, as the next step would; fetch its arrays anew after each step."""
+        if self._stale:
+            self._rebuild()
+        return self.pairs
 
     def refresh(self) -> None:
         """Bring the pair list up to date; call it after moving or resizing discs by hand."""
@@ -148,7 +179,7 @@ class Grains:
 
     def _rebuild(self) -> None:
         self._check_finite()
-        self.pairs.update(self.discs.position, self.discs.radius)
+        self.pairs.update(self.discs.position, self.discs.radius if self.reach is None else self.reach)
         self._stale = False
 
     def plate(self, name: str) -> int:
@@ -199,8 +230,7 @@ class Grains:
                     f"grain {out}", f"distance to the {name} wall", float(distance[out]), "m",
                     "it went through the wall: raise the stiffness or shorten the contact step",
                 )  # fmt: skip
-        if self._stale:
-            self._rebuild()  # as the next step would
+        self.current_pairs()
         self._check_plates()
         deepest = max_overlap(self)
         if deepest.share > WORST_OVERLAP:
@@ -254,6 +284,8 @@ class Grains:
             "plate_force": self.plate_force.copy(),
             "external_force": self.external_force.copy(),
             "external_torque": self.external_torque.copy(),
+            "held": self.held.copy(),
+            "withheld": self.withheld.copy(),
             "steps": self.steps,
             "time": self._time,
             "steps_of_dt": self._steps_of_dt,
@@ -272,6 +304,7 @@ class Grains:
             if own.shape != given.shape:
                 raise InputError(Fault(f"state.{name}", given.shape, "wrong shape", allowed=str(own.shape)))
             own[...] = given
+        self.held, self.withheld = np.array(state["held"], np.uint8), np.array(state["withheld"])
         self.pairs.restore(state["pairs"])
         self.steps, self._time = int(state["steps"]), float(state["time"])
         self._steps_of_dt = int(state["steps_of_dt"])

@@ -1,0 +1,136 @@
+"""Squeeze films too thin for the lattice: a normal force between discs, and between discs and walls.
+
+Two cylinders that close at V_n over a gap g << R* = R1 R2/(R1 + R2) (a wall: R* = R) resist with
+3 sqrt(2) pi mu (R*/g)^(3/2) V_n per metre of depth (Jeffrey & Onishi 1981; the limit of 4 pi mu V/(alpha - tanh alpha),
+alpha = arccosh(1 + g/R), as alpha goes to 0).  The lattice resolves films down to about a cell; what is missing below,
+
+    dF = -3 sqrt(2) pi mu R*^(3/2) (g^(-3/2) - g_c^(-3/2)) V_n,     0 < g < g_c,
+
+is added here.  It acts in the contact steps dt, velocities half a step back: stable for six films around the lighter
+disc (of mass m), each against a neighbour as light, if C dt <= m/3 (integrate.packing_factor with a damping alone:
+2 * 3 C/m <= 2/dt), which sets the thinnest film
+
+    g_min = R* (9 sqrt(2) pi mu dt/m)^(2/3);     thinner ones count as g_min, touching ones as none.
+
+The gap is that between the radii the fluid sees, or else that between the mechanical ones; never both.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.dem.system import Grains
+from porescale.ground.check import Fault, InputError
+from porescale.ground.jit import inline, kernel
+from porescale.particles.cells import minimum_image
+
+Array = NDArray[np.float64]
+
+CELLS = 1.0
+"""Gap in cells below which the correction acts, unless told otherwise."""
+FILM = 3 * math.sqrt(2) * math.pi
+"""Force over mu V_n (R*/g)^(3/2)."""
+
+
+@inline
+def film(gap, radius, viscosity, cut, mass, dt):
+    """Force over closing speed, N s/m², of a film ``gap`` thick (m) between surfaces of reduced ``radius`` (m).
+
+    viscosity Pa s;  cut m: the gap from which the lattice does it;  mass kg/m: of the lighter;  dt s.
+    """
+    if not 0.0 < gap < cut:
+        return 0.0
+    thinnest = radius * (3.0 * FILM * viscosity * dt / mass) ** (2.0 / 3.0)
+    thick = max(gap, thinnest)
+    return max(0.0, FILM * viscosity * ((radius / thick) ** 1.5 - (radius / cut) ** 1.5))
+
+
+@kernel
+def add_films(
+    position, velocity, radius, mass, start, partner, period_x, period_y, walls, viscosity, cut, dt, force
+):  # fmt: skip
+    """Add the forces of all films to force (n, 2) N/m.
+
+    position, velocity (n, 2) m, m/s;  radius (n,) m: those between which the gap lies;  mass (n,) kg/m;
+    start (n + 1,), partner: half list in CSR of all pairs with a gap below ``cut`` (m);  period m, 0: none;
+    walls (w, 4): a point and the normal into the domain;  viscosity Pa s;  dt s.  Not checked: that centres differ.
+    """
+    for i in range(radius.shape[0]):
+        for k in range(start[i], start[i + 1]):
+            j = partner[k]
+            dx = minimum_image(position[j, 0] - position[i, 0], period_x)
+            dy = minimum_image(position[j, 1] - position[i, 1], period_y)
+            reach = radius[i] + radius[j]
+            square = dx * dx + dy * dy
+            if reach * reach < square < (reach + cut) * (reach + cut):
+                distance = np.sqrt(square)
+                nx, ny = dx / distance, dy / distance
+                closing = (velocity[i, 0] - velocity[j, 0]) * nx + (velocity[i, 1] - velocity[j, 1]) * ny
+                lighter = min(mass[i], mass[j])
+                push = closing * film(distance - reach, radius[i] * radius[j] / reach, viscosity, cut, lighter, dt)
+                force[i, 0] -= push * nx
+                force[i, 1] -= push * ny
+                force[j, 0] += push * nx
+                force[j, 1] += push * ny
+        for w in range(walls.shape[0]):
+            nx, ny = walls[w, 2], walls[w, 3]
+            gap = (position[i, 0] - walls[w, 0]) * nx + (position[i, 1] - walls[w, 1]) * ny - radius[i]
+            if 0.0 < gap < cut:
+                leaving = velocity[i, 0] * nx + velocity[i, 1] * ny
+                push = -leaving * film(gap, radius[i], viscosity, cut, mass[i], dt)
+                force[i, 0] += push * nx
+                force[i, 1] += push * ny
+
+
+class Lubrication:
+    """The films of a system of grains.
+
+    radius (n,) m: those between which gaps lie;  viscosity: dynamic, Pa s;  cut: g_c, m;  dt: contact step, s.
+    force (n, 2) N/m: of the films on each disc, mean over the last call of ``step``.
+
+    Raises InputError when the contact step allows no film thinner than ``cut``.
+    """
+
+    def __init__(self, grains: Grains, radius: Array, *, viscosity: float, cut: float, dt: float) -> None:
+        self.radius, self.viscosity, self.cut, self.dt = radius, viscosity, cut, dt
+        discs = grains.discs
+        thinnest = self.thinnest(radius, discs.mass)  # at a wall, the largest R*
+        worst = int(thinnest.argmax()) if discs.count else 0
+        if discs.count and thinnest[worst] >= cut:
+            raise InputError(
+                Fault("lubrication", cut, f"the film of grain {worst} would be unstable", "m",
+                      f"> {thinnest[worst]:.3g}", "take more contact steps, or leave it out")
+            )  # fmt: skip
+        # The list knows mechanical radii: gaps between smaller ones are wider by what they lack.
+        less = float((discs.radius - radius).min()) if discs.count else 0.0
+        grains.list_up_to(max(0.0, cut - 2 * less))
+        self.force, self._sum = np.zeros((discs.count, 2)), np.zeros((discs.count, 2))
+        self._total, self._withheld = np.zeros((discs.count, 2)), np.zeros((discs.count, 3))
+
+    def thinnest(self, reduced_radius: Array, mass: Array) -> Array:
+        """g_min, m, of films with ``reduced_radius`` (m) whose lighter disc has ``mass`` (kg/m)."""
+        return np.asarray(reduced_radius * (3 * FILM * self.viscosity * self.dt / mass) ** (2 / 3))
+
+    def step(self, grains: Grains, force: Array, torque: Array, count: int) -> None:
+        """``count`` contact steps with force (n, 2) N/m and torque (n,) N m/m held and films as they are in each."""
+        d = grains.discs
+        self._sum[:] = 0.0
+        self._withheld[:] = 0.0
+        for _ in range(count):
+            pairs = grains.current_pairs()
+            self._total[:] = force
+            add_films(
+                d.position, d.velocity, self.radius, d.mass, pairs.start, pairs.partner, *grains.box.period,
+                grains.walls, self.viscosity, self.cut, self.dt, self._total,
+            )  # fmt: skip
+            np.add(self._sum, self._total, out=self._sum)
+            grains.step(self.dt, self._total, torque)
+            if len(grains.held):
+                np.add(self._withheld, grains.withheld, out=self._withheld)
+        np.divide(self._sum, count, out=self._sum)
+        np.subtract(self._sum, force, out=self.force)
+        if len(grains.held):
+            np.divide(self._withheld, count, out=grains.withheld)
