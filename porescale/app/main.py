@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import porescale
-from porescale.app import bench, check, new, run, show, verify
+from porescale.app import bench, check, new, run, show, study, verify
 from porescale.workbench import application
 from porescale.workbench.package import Package
 
@@ -19,6 +19,7 @@ PACKAGE = Package(
     show=show.show,
     validations=verify.validations,
     benchmarks=bench.benchmarks,
+    stability=study.stability,
 )
 
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from cyclopts import App, CycloptsError, Parameter
 
 from porescale.ground.check import InputError, PorescaleError
-from porescale.workbench.commands import bench, check, new, run, show, verify
+from porescale.workbench.commands import bench, check, new, run, show, study, verify
 from porescale.workbench.package import Package
 
 INTERRUPTED = 130
@@ -21,7 +21,7 @@ OF_THE_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EPERM, errno.E
 
 
 def application(package: Package) -> App:
-    """The package's app with run, check, show, new, verify and bench; more commands may be added to it."""
+    """The package's app with run, check, show, new, verify, bench, and study if it has one; more may be added to it."""
     app = App(
         name=package.name,
         help=package.summary,
@@ -34,6 +34,8 @@ def application(package: Package) -> App:
     )
     for part in (run, check, show, new, verify, bench):
         app.command(part.command(package))
+    if package.stability is not None:
+        app.command(study.command(package))
     return app
 
 

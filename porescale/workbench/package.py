@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from porescale.workbench.benchmarks import Benchmarks
     from porescale.workbench.report import Report
     from porescale.workbench.sections import Section
+    from porescale.workbench.study import Stability
     from porescale.workbench.validations import Validations
 
 
@@ -73,7 +74,8 @@ class Package:
     scene : gives the scene type;  template : gives the commented scene.toml that `new` writes;
     build : scene -> model;  drive : runs it;  report : scene -> what `check` says (it may raise InputError);
     show : makes pictures and a film in a run folder and gives their paths;
-    validations, benchmarks : give the registers.
+    validations, benchmarks : give the registers;  stability : that of the flows of a stability map, None if there is
+    none, and then no `study`.
     """
 
     name: str
@@ -87,3 +89,4 @@ class Package:
     show: Callable[[Path], Iterable[Path]]
     validations: Callable[[], Validations]
     benchmarks: Callable[[], Benchmarks]
+    stability: Callable[[], Stability] | None = None

@@ -1,0 +1,62 @@
+"""`study stability [FLOW…]`: where it stays stable, and where it is right."""
+
+from __future__ import annotations
+
+import json as json_text
+import sys
+import time
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import App, Parameter
+
+from porescale.ground.check import Fault, InputError
+from porescale.workbench.commands.options import Json, Threads, use_threads
+from porescale.workbench.folders import refuse_unwritable
+from porescale.workbench.package import Package
+
+
+def command(package: Package) -> App:
+    """The `study` command of a package, with a command for each kind of study."""
+    app = App(name="study", help="Measure where it can be trusted.")
+
+    @app.command
+    def stability(
+        *names: Annotated[str, Parameter(help="flows, or rooms for all of theirs; all if not given")],
+        out: Annotated[str, Parameter(help="folder of stability.json, .csv, .md and .png")] = "runs/stability",
+        quick: Annotated[bool, Parameter(help="few laws at few values: seconds")] = False,
+        list_: Annotated[bool, Parameter(name="--list", help="only say which flows there are")] = False,
+        threads: Threads = 1,
+        json: Json = False,
+    ) -> int:
+        """Map where each law stays stable and where it is right, over flows that go from mild to extreme."""
+        from porescale.workbench import study_files
+
+        assert package.stability is not None
+        flows = package.stability().chosen(names)
+        if list_:
+            print("\n".join(f"{flow.name}: {flow.title}" for flow in flows))
+            return 0
+        if out == "":
+            raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
+        refuse_unwritable(Path(out), "--out")
+        use_threads(threads)
+        rows, start, done = [], time.perf_counter(), 0
+        total = sum(flow.count(quick) for flow in flows)
+        for flow in flows:
+            for law in flow.laws(quick):
+                for y in flow.y.chosen(quick):
+                    rows += flow.run(law, y, quick)
+                    done += 1
+                spent = time.perf_counter() - start
+                left = f"{done} of {total}, about {spent / done * (total - done):.0f} s left"
+                print(f"{flow.name}: {law} ({left})", file=sys.stderr, flush=True)
+        asked = " ".join(["study stability", *names, *(["--quick"] if quick else [])])
+        study_files.write(Path(out), f"{package.name} {asked}", package.version, flows, rows, quick)
+        if json:
+            print(json_text.dumps([row.as_dict() for row in rows], indent=1, allow_nan=False))
+        else:
+            print(f"{len(rows)} tries in {time.perf_counter() - start:.0f} s; {Path(out) / study_files.NAME}.md, .png")
+        return 0
+
+    return app
