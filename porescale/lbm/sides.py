@@ -8,7 +8,10 @@ link, free slip with the mirrored one, periodic with the wrapped one; what moves
 side adds 6 w_i c_i . u (Ladd 1994).
 
 A link through a corner of two sides belongs to the kind that comes first in: velocity, wall, pressure, slip, periodic.
-Two velocities, and two densities, are averaged; two walls each add their own motion.
+Two velocities, and two densities, are averaged.  A wall's motion along itself ends where it meets another wall or free
+slip: the corner link adds nothing.  A lid drags 6 w u = u/6 less fluid past each section than its cells' velocities
+say; leaving its motion out of both corner links makes good for that, as a source in one corner and a sink in the other.
+With it in, a cavity's flow is u/6 short, a first-order error (measured: extrema at Re 100, 32 cells, 7 instead of 1 %).
 """
 
 from collections.abc import Iterator
@@ -148,7 +151,8 @@ class Bounds:
                 return self.flat(direction(CX[out], -CY[out]), (at[0], y)), 0.0
             return self.flat(direction(-CX[out], CY[out]), (x, at[1])), 0.0
         added = 0.0
-        if kind == "wall":
+        closed = len(link.sides) == 2 and {self.sides.kind(side) for side in link.sides} <= {"wall", "slip"}
+        if kind == "wall" and not closed:
             speed_x = self.sides.speed(link.along) if link.along else 0.0
             speed_y = self.sides.speed(link.across) if link.across else 0.0
             added = float(6 * WEIGHTS[back] * (CX[back] * speed_x + CY[back] * speed_y))

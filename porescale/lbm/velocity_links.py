@@ -44,6 +44,10 @@ class VelocityLinks:
     def __bool__(self) -> bool:
         return bool(self._link.size)
 
+    def of(self, side: str) -> NDArray[np.float64]:
+        """Velocity of the cells along a side, (n, 2), a view."""
+        return self.velocity[self._start[side] : self._start[side] + self.bounds.length(side)]
+
     def set(self, side: str, velocity: Any) -> None:
         """Give a side another velocity, (2,) or (n, 2); ValueError unless it is a velocity side and the shape fits."""
         if self.bounds.sides.kind(side) != "velocity":
@@ -51,7 +55,7 @@ class VelocityLinks:
         n = self.bounds.length(side)
         if np.shape(velocity) not in ((2,), (n, 2)):
             raise ValueError(f"velocity of the {side} side: shape {np.shape(velocity)}, not (2,) or ({n}, 2)")
-        self.velocity[self._start[side] : self._start[side] + n] = velocity
+        self.of(side)[:] = velocity
 
     def write(self, added: NDArray[np.floating]) -> None:
         """Overwrite what these links add."""

@@ -174,6 +174,8 @@ class Lattice:
                     return x, y, back, 0.0
                 return tx, y, C.index((cx, -cy)), 0.0
             return x, ty, C.index((-cx, cy)), 0.0
+        if len(solid) == 2 and {kinds[name] for name in solid} <= {"wall", "slip"}:
+            return x, y, back, 0.0
         wall_x = self.side(along)[1] if along in solid and kinds[along] == "wall" else 0.0
         wall_y = self.side(across)[1] if across in solid and kinds[across] == "wall" else 0.0
         return x, y, back, 6 * W[back] * (-cx * wall_x - cy * wall_y)
