@@ -5,10 +5,14 @@ from __future__ import annotations
 import csv
 import io
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from porescale.runs.atomic import write_bytes
+from porescale.runs.model import Cloud
+from porescale.scene.derive import fluid_scales
 from porescale.scene.permeability import Measured, gebart, kozeny_carman, measure
+from porescale.scene.sections import Scene
+from porescale.workbench.sections import validate
 
 if TYPE_CHECKING:
     from porescale.runs.open_run import Run
@@ -19,16 +23,15 @@ def write_permeability(run: Run, folder: Path) -> list[Path]:
 
     Raises InputError where the window holds no grain.  Takes seconds: flow through the bed is driven until steady.
     """
-    scene: dict[str, Any] = run.card["scene"]
-    section = scene.get("permeability")
-    if not section:
+    if not run.card["scene"].get("permeability"):
         return []
-    ratio = scene["grains"]["hydraulic_radius_ratio"]
+    scene = validate(Scene, run.card["scene"])
+    assert scene.grains
+    ratio = scene.grains.hydraulic_radius_ratio or 1.0
     rows = []
     for k in sorted({0, len(run) - 1}):
         snapshot = run.snapshot(k, cells=("velocity",))
-        spacing = section["spacing"] or snapshot.grids["fields"].spacing[0]
-        rows.append(row(snapshot.time, ratio, measure_window(scene, snapshot.clouds["grains"], spacing)))
+        rows.append(row(snapshot.time, ratio, measure_window(scene, snapshot.clouds["grains"])))
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerow(rows[0])
@@ -38,19 +41,24 @@ def write_permeability(run: Run, folder: Path) -> list[Path]:
     return [path]
 
 
-def measure_window(scene: dict[str, Any], grains: Any, spacing: float) -> Measured:
-    """The permeability of the window that a scene (as on a card) names, or of its packing's rectangle."""
-    domain, window = scene["domain"], scene["permeability"]["window"] or scene["grains"]["packing"]
-    lower = window["left"], window["bottom"]
-    upper = lower[0] + window["width"], lower[1] + window["height"]
-    size = domain["width"], domain["height"]
-    periodic = tuple(
-        domain[side]["kind"] == "periodic" and upper[axis] - lower[axis] > size[axis] - 0.5 * spacing
-        for axis, side in enumerate(("left", "bottom"))
-    )
+def measure_window(scene: Scene, grains: Cloud) -> Measured:
+    """The permeability of the window that a scene names, or of its packing's rectangle, as its lattice has it."""
+    assert scene.permeability
+    assert scene.fluid
+    window = scene.permeability.window or (scene.grains.packing if scene.grains else None)
+    assert window  # the scene has made sure
+    scales, (periodic_x, periodic_y) = fluid_scales(scene.fluid), scene.domain.periodic
+    spacing = scene.permeability.spacing or scales.spacing
+    lower = window.left, window.bottom
+    upper = lower[0] + window.width, lower[1] + window.height
+    near = 0.5 * spacing
     return measure(
         grains.position, grains.data["hydraulic_radius"], lower, upper, spacing,
-        direction=scene["permeability"]["direction"], periodic=(periodic[0], periodic[1]),
+        direction=scene.permeability.direction, periodic=(
+            periodic_x and window.width > scene.domain.width - near,
+            periodic_y and window.height > scene.domain.height - near,
+        ),
+        relaxation_time=scales.relaxation_time, laws=scene.fluid.laws, solid_laws=scene.fluid.solid_laws,
     )  # fmt: skip
 
 

@@ -68,7 +68,7 @@ def _coupled(scene: Scene, derived: Derived, fluid: Fluid, grains: Grains) -> Co
     films = scene.lubrication
     return Coupled(
         fluid, grains, derived.scales, hydraulic_ratio=size, contact_steps=derived.contact_steps or 1,
-        acceleration=scene.gravity, solid_operator=scene.fluid.solid_operator, weighting=scene.fluid.weighting,
+        acceleration=scene.gravity, **scene.fluid.solid_laws,
         lubrication=films is not None, film_gap=films.gap if films else 1.0,
     )  # fmt: skip
 

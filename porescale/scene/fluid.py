@@ -74,3 +74,8 @@ class Fluid(Section):
     def laws(self) -> dict[str, Any]:
         """What the operator is chosen by: keyword arguments of ``Fluid`` of the lattice."""
         return {"operator": self.operator, "magic": self.magic, "smagorinsky": self.smagorinsky or 0.0}
+
+    @property
+    def solid_laws(self) -> dict[str, Any]:
+        """The same of cells that grains lie in: keyword arguments of ``Saturated`` and ``Coupled``."""
+        return {"solid_operator": self.solid_operator, "weighting": self.weighting}

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 COLUMNS = (
     "time (s)", "line ()", "distance (m)", "x (m)", "y (m)", "velocity x (m/s)", "velocity y (m/s)", "pressure (Pa)",
+    "solid fraction ()",
 )  # fmt: skip
 LAMBDA = "hydraulic radius ratio ()"
 
@@ -25,7 +26,7 @@ def write_lines(run: Run, folder: Path) -> list[Path]:
     """Write lines.csv, a row a point: of every line in its turn, of every snapshot; [] if the scene has no line.
 
     Lines are numbered from 0 in the scene's order.  Velocity is interpolated, that of the solid in it; pressure over
-    the fluid share of cells.
+    the fluid share of cells: nan inside of grains.
     """
     scene: dict[str, Any] = run.card["scene"]
     lines = scene.get("line") or []
@@ -49,7 +50,7 @@ def write_lines(run: Run, folder: Path) -> list[Path]:
             x, y = at.points.T
             columns = (
                 np.hypot(x - x[0], y - y[0]), x, y, at.of(cells["velocity"][..., 0]), at.of(cells["velocity"][..., 1]),
-                at.in_fluid(cells["pressure"], solid),
+                at.in_fluid(cells["pressure"], solid), at.of(solid),
             )  # fmt: skip
             for row in np.stack(columns, axis=1).tolist():
                 table.writerow([repr(float(snapshot.time)), number, *map(repr, row), *([repr(ratio)] if ratio else [])])

@@ -15,7 +15,9 @@ times the grains'.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +31,7 @@ from porescale.lbm.sides import Kind, Sides
 Array = NDArray[np.floating]
 
 TAU = 0.6
-"""Relaxation time of the measurement: drag depends least on it where it is small."""
+"""Relaxation time unless told otherwise: drag depends least on it where it is small."""
 SLOWNESS = 1e-6
 """Body force over viscosity: Reynolds numbers of the pores stay below 1e-4."""
 STEADY = 2e-5
@@ -77,12 +79,17 @@ def measure(
     *,
     direction: str = "y",
     periodic: tuple[bool, bool] = (False, False),
+    relaxation_time: float = TAU,
+    laws: Mapping[str, Any] | None = None,
+    solid_laws: Mapping[str, Any] | None = None,
 ) -> Measured:
     """Permeability of the discs at ``position`` (n, 2) m with the ``radius`` (n,) m that the fluid sees.
 
     lower, upper : corners of the window, m;  spacing : of the lattice, m;  direction : of the flow, "x" or "y";
-    periodic : whether the window is a whole period along x and y.  Raises InputError for a window without discs or,
-    unless it is periodic, shorter than four diameters.
+    periodic : whether the window is a whole period along x and y;  relaxation_time, laws, solid_laws : of the lattice,
+    keyword arguments of ``Fluid`` and ``Saturated``: a run's own show what its bed lets through in that run.
+
+    Raises InputError for a window without discs or, unless it is periodic, shorter than four diameters.
     """
     order = [0, 1] if direction == "x" else [1, 0]  # the flow runs along the first axis
     at = (np.asarray(position, float) - lower)[:, order] / spacing
@@ -107,30 +114,31 @@ def measure(
     if not whole[0]:
         at = np.concatenate([at, np.stack([2 * length - at[:, 0], at[:, 1]], axis=1)])
         size = np.concatenate([size, size])
-    k, share, steps, steady = _flow(at, size, (length if whole[0] else 2 * length, cells[1]), whole[1], length, margin)
+    side: Kind = "periodic" if whole[1] else "slip"
+    nu = viscosity(relaxation_time)
+    fluid = Fluid(
+        length if whole[0] else 2 * length, cells[1], relaxation_time, force=(SLOWNESS * nu, 0.0),
+        sides=Sides("periodic", "periodic", side, side), **(laws or {}),
+    )  # fmt: skip
+    wet = Saturated(fluid, size, **(solid_laws or {}))
+    k, share, steady = _flow(fluid, wet, at, length, margin)
     return Measured(
-        k * spacing**2, k / across**2, share, across * spacing, across, steady, steps,
+        k * spacing**2, k / across**2, share, across * spacing, across, steady, fluid.step,
     )  # fmt: skip
 
 
-def _flow(
-    at: Array, size: Array, cells: tuple[int, int], flanks: bool, length: int, margin: int
-) -> tuple[float, float, int, bool]:
-    """K (cells²), solid fraction, steps and whether steady, of discs in a box of ``cells`` with flow along x.
+def _flow(fluid: Fluid, wet: Saturated, at: Array, length: int, margin: int) -> tuple[float, float, bool]:
+    """K (cells²), solid fraction and whether steady, of discs held at ``at`` in flow along x, driven until steady.
 
     length : columns of the sample;  margin : of these, columns at each face that are left out of the gradient.
     """
-    nu = viscosity(TAU)
-    force = SLOWNESS * nu
-    side: Kind = "periodic" if flanks else "slip"
-    fluid = Fluid(*cells, TAU, force=(force, 0.0), sides=Sides("periodic", "periodic", side, side))
-    wet = Saturated(fluid, size)
     rest, no_spin = np.zeros_like(at), np.zeros(len(at))
+    nu, force = viscosity(fluid.relaxation_time), fluid.force[0]
     flux, change, block = 0.0, 1.0, FIRST
     while abs(change) > STEADY and fluid.step < MOST:
         for _ in range(block):
             wet.advance(fluid, at, rest, no_spin)
-        now = fluid.momentum()[0] / (cells[0] * cells[1])
+        now = fluid.momentum()[0] / (fluid.nx * fluid.ny)
         flux, change = now, 1 - flux / now
         block = max(FIRST, fluid.step // 4 // 2 * 2)
     wet.cover(at, rest, no_spin)
@@ -142,4 +150,4 @@ def _flow(
         x = np.arange(length)[margin : length - margin]
         gradient = float(np.polyfit(x, pressure[margin : length - margin], 1)[0])
     share = 1 - free[:, margin : length - margin or None]
-    return nu * flux / (force - gradient), float(share.mean()), fluid.step, abs(change) <= STEADY
+    return nu * flux / (force - gradient), float(share.mean()), abs(change) <= STEADY

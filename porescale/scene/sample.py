@@ -9,6 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[Any]
 
+NOTHING = 1e-6
+"""Share of fluid below which a point counts as solid: solid fractions are written in single precision."""
+
 
 class Sampler:
     """Bilinear interpolation at fixed ``points`` (n, 2) m of a lattice of ``cells`` (nx, ny) with ``spacing``, m.
@@ -40,13 +43,12 @@ class Sampler:
         return np.asarray((values.reshape(-1)[self._index] * self._weight).sum(axis=0))
 
     def in_fluid(self, values: Array, solid: Array) -> Array:
-        """The same with every cell counted by its fluid share 1 - ``solid`` (ny, nx): inside grains there is no
-        pressure.  Where all four cells are solid they count as they are."""
+        """The same with every cell counted by its fluid share 1 - ``solid`` (ny, nx), as pressure must be: inside grains
+        there is none.  Not a number where all four cells are solid."""
         weight = self._weight * np.clip(1 - solid.reshape(-1)[self._index], 0, 1)
         total = weight.sum(axis=0)
-        lost = total <= 1e-9
-        weight = np.where(lost, self._weight, weight)
-        return np.asarray((values.reshape(-1)[self._index] * weight).sum(axis=0) / np.where(lost, 1.0, total))
+        value = (values.reshape(-1)[self._index] * weight).sum(axis=0)
+        return np.asarray(np.divide(value, total, out=np.full_like(value, np.nan, float), where=total > NOTHING))
 
 
 def along(start: tuple[float, float], end: tuple[float, float], count: int) -> Array:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.coupling.stability_watch import Sense
 from porescale.coupling.step import Coupled
 from porescale.dem.system import Grains
 from porescale.ground.check import Unstable
@@ -19,11 +20,6 @@ from porescale.scene.instruments import LAMBDA, Instruments, total_pressure
 from porescale.scene.sections import Scene
 
 Array = NDArray[Any]
-
-WORST_MACH = 0.6
-"""Beyond it the lattice's equilibrium means nothing; populations turn negative near it."""
-WORST_DENSITY = 0.5
-"""Relative density change beyond which the fluid is not what the scene calls a liquid."""
 
 
 class Gatekeeper:
@@ -84,11 +80,21 @@ class Simulation:
             Instruments(scene, derived.scales, derived.cells) if derived.scales and derived.cells else None
         )
 
+        self._sense: Sense | None = None
+        if fluid and derived.scales and scene.fluid:
+            laws = scene.fluid
+            self._sense = Sense(
+                fluid, derived.scales, coupled, operator=laws.operator, eddies=bool(laws.smagorinsky),
+                solid_operator=laws.solid_operator,
+            )  # fmt: skip
+
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps; raises Unstable when a grain is nowhere."""
         try:
             self._advance(steps)
         except Unstable as error:
+            if self._sense:  # where both are beyond sense the lattice is named: it throws the grains, not they it
+                self._sense.check(self.step, self.time)
             raise self._in_steps(error) from None
 
     def _in_steps(self, error: Unstable) -> Unstable:
@@ -128,30 +134,10 @@ class Simulation:
                 self.grains.check()
             except Unstable as error:
                 fault = self._in_steps(error)
-                if not self.fluid or not np.isfinite(self.grains.discs.position).all():
-                    raise fault from None
-        if self.fluid:  # where both are beyond sense the lattice is named: it throws the grains, not they it
-            excess, ux, uy, _ = self.fields()
-            self._check_fluid(excess, np.hypot(ux, uy))
+        if self._sense:
+            self._sense.check(self.step, self.time)
         if fault:
             raise fault
-
-    def _check_fluid(self, excess: Array, speed: Array) -> None:
-        s = self.derived.scales
-        assert s
-        for name, values, bound, unit, cause in (
-            ("relative density change", np.abs(excess) / s.density, WORST_DENSITY, "",
-             "the pressure is too high for the sound speed of the lattice: shorten fluid.step"),
-            ("speed", speed, WORST_MACH * s.sound_speed, "m/s",
-             "too fast for the lattice: shorten fluid.step, or raise the viscosity or refine the spacing where the "
-             "relaxation time is near 1/2"),
-        ):  # fmt: skip
-            worst = np.nan_to_num(values, nan=np.inf)
-            at = int(worst.argmax())
-            if worst.flat[at] > bound:
-                y, x = divmod(at, values.shape[1])
-                where = f"cell ({x}, {y}) at ({(x + 0.5) * s.spacing:.4g}, {(y + 0.5) * s.spacing:.4g}) m"
-                raise Unstable(where, name, float(values.flat[at]), unit, self.step, self.time, cause)
 
     def series(self) -> dict[str, float]:
         """One row: time, and what the parts present have to say."""
