@@ -1,10 +1,11 @@
-"""Validations of the fluid: flows with exact answers."""
+"""Validations of the fluid: channels and vortices with exact answers here, the others in files of their own."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from porescale.lbm import experiments as lab
+from porescale.lbm import verify_cavity, verify_open, verify_operators
 from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
 from porescale.workbench.validations import Measured, Validations
 
@@ -78,3 +79,7 @@ def taylor_green() -> Measured:
     """Order of convergence over 16, 32 and 64 cells."""
     found = lab.order([lab.taylor_green(cells) for cells in (16, 32, 64)])
     return Measured(2.0, found, abs(found - 2.0))
+
+
+for others in (verify_open, verify_cavity, verify_operators):
+    VALIDATIONS.include(others.VALIDATIONS)
