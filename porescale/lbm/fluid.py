@@ -20,6 +20,9 @@ from porescale.lbm.stream import sweep_even, sweep_odd
 
 Sweep = Callable[..., None]
 
+ROWS_AT_ONCE = 64
+"""Rows whose equilibrium is worked out at a time: in double precision all at once would be larger than the fluid."""
+
 
 class Fluid:
     """A box of nx by ny cells of fluid in lattice units, at rest with density 1 until ``set_flow``.
@@ -61,8 +64,12 @@ class Fluid:
 
     def set_flow(self, ux: Any, uy: Any, density: Any = 1.0) -> None:
         """Start from local equilibrium with velocity and density (numbers or (ny, nx)) and step 0."""
+        shape = (self.ny, self.nx)
+        rho, ux, uy = (np.broadcast_to(np.asarray(values, float), shape) for values in (density, ux, uy))
         inside = self.populations[:, 1:-1, 1:-1]
-        inside[...] = equilibrium(density, ux, uy, (self.ny, self.nx))
+        for low in range(0, self.ny, ROWS_AT_ONCE):
+            rows = slice(low, low + ROWS_AT_ONCE)
+            inside[:, rows] = equilibrium(rho[rows], ux[rows], uy[rows], rho[rows].shape)
         self.step = 0
 
     def advance(self, even: Sweep = sweep_even, odd: Sweep = sweep_odd, *extra: Any) -> None:
@@ -112,8 +119,11 @@ class Fluid:
         """
         with self.readable():
             rho, jx, jy = moment_fields(self.populations, self.step % 2)
-        share = 1.0 if solid is None else 1.0 - solid
-        return rho, (jx + 0.5 * share * self.force[0]) / rho, (jy + 0.5 * share * self.force[1]) / rho
+        for j, force in ((jx, self.force[0]), (jy, self.force[1])):
+            if force:
+                j += 0.5 * force if solid is None else 0.5 * force * (1.0 - solid)
+            j /= rho
+        return rho, jx, jy
 
     def mass_excess(self) -> float:
         """Sum over cells of density - 1, lattice units: a small number, so that a leak of 1e-12 shows."""

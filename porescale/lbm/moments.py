@@ -38,4 +38,6 @@ def moment_fields(
     shape = (populations.shape[1] - 2, populations.shape[2] - 2)
     d, jx, jy = (np.empty(shape, populations.dtype) for _ in range(3))
     (_moments_odd if parity else _moments_even)(populations, d, jx, jy)
-    return d if shifted else 1 + d, jx, jy
+    if not shifted:
+        d += 1
+    return d, jx, jy

@@ -50,7 +50,8 @@ def _molecular(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, law):
 def _collide(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, law):
     """Each moment relaxes with its own rate."""
     c = numbers(rate)
-    odd = c.one / (c.half + law.magic / (c.one / rate - c.half))
+    spread = c.one - c.half * rate  # (tau - 1/2)/tau; one division, since with eddies every cell has its own
+    odd = spread / (c.half * spread + law.magic * rate)
     return relax_moments(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, odd, law)
 
 
