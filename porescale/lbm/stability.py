@@ -17,17 +17,13 @@ from porescale.lbm.experiments import one_thread
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import relaxation_time, viscosity
 from porescale.lbm.sides import Sides
+from porescale.lbm.stability_sense import SOUND, sane
 from porescale.workbench.study import Axis, Stability, Tried
 
 STABILITY = Stability()
 
-WORST_MACH = 0.6
-"""Beyond it the lattice's equilibrium means nothing; populations turn negative near it."""
-WORST_DENSITY = 0.5
-"""Relative density change beyond which the fluid is not what is called a liquid."""
 LOOK_EVERY = 50
 """Steps between two looks whether it still makes sense."""
-SOUND = 1 / math.sqrt(3)
 
 MAGICS = {"trt": {"trt 3/16": 3 / 16, "trt 1/4": 1 / 4}}
 """Operators whose magic parameter is varied."""
@@ -70,13 +66,6 @@ def variants(quick: bool) -> dict[str, dict[str, Any]]:
 def laws(quick: bool) -> list[str]:
     """Names of the variants."""
     return list(variants(quick))
-
-
-def sane(fluid: Fluid) -> bool:
-    """Whether every cell is a number, below Mach 0.6, and its density changed by less than a half."""
-    rho, ux, uy = fluid.fields()
-    slow = np.hypot(ux, uy) < WORST_MACH * SOUND
-    return bool(np.all(slow & (np.abs(rho - 1) < WORST_DENSITY)))  # no comparison holds for a nan
 
 
 def lasts(fluid: Fluid, steps: int) -> bool:
@@ -152,6 +141,7 @@ def shear_layer(law: str, tau: float, mach: float) -> bool:
     laws=laws,
     right=0.05,
     because="viscosity within 5 % of the wanted one, at 48 cells a wave; compressibility costs 3 Mach²/4, 7 % at 0.3",
+    limit="cell Reynolds number",
 )
 def shear(law: str, x: float, y: float) -> Tried:
     """tau - 1/2 against the Mach number."""
@@ -175,6 +165,7 @@ def shear(law: str, x: float, y: float) -> Tried:
     " nothing is judged on this grid",
     judged=1000,
     monotone=True,
+    limit="cell Reynolds number",
 )
 def cavity(law: str, x: float, y: float) -> Tried:
     """Reynolds number of lid and box, as far as it goes."""

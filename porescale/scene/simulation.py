@@ -190,7 +190,7 @@ class Simulation:
         }  # fmt: skip
         if self.grains:
             cells["solid_fraction"] = solid.astype(np.float32)
-        cells |= observe.derived_fields(self.scene.output.fields, ux, uy, s.spacing)
+        cells |= observe.derived_fields(self.scene.output.fields, self.fluid, ux, uy, s)
         units = {"velocity": "m/s", "pressure": "Pa", **observe.UNITS}
         units = {name: unit for name, unit in units.items() if name in cells}
         return Grid((0.0, 0.0), (s.spacing, s.spacing), cells, units)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -77,7 +77,8 @@ class Flow:
 
     title : one line;  x, y : what is varied;  laws : names, given whether the short version is asked for;  right :
     largest error that counts as right;  because : what the error is and why that much;  judged : largest x at which an
-    error can be told;  monotone : once unstable at an x, so beyond it: the limit is found by halving.
+    error can be told;  monotone : once unstable at an x, so beyond it: the limit is found by halving;  limit : the one
+    of the numbers that instability follows, "" if none.
     """
 
     name: str
@@ -90,6 +91,7 @@ class Flow:
     measure: Measure
     judged: float = math.inf
     monotone: bool = False
+    limit: str = ""
 
     def count(self, quick: bool) -> int:
         """Laws times values of y: the pieces of work that ``run`` is asked for."""
@@ -157,6 +159,16 @@ class Stability:
     def chosen(self, names: Sequence[str] = ()) -> list[Flow]:
         """Flows by name (a room stands for all its own), without names all; InputError on unknown names."""
         return [self._known[name] for name in choose(names, self._known, "flow")]
+
+
+def holds_up_to(rows: Iterable[Row], number: str) -> tuple[float, float]:
+    """The largest value of a number below which every try was stable, 0 if none, and the least at which one was not.
+
+    The second is infinite where all were stable.  Only of tries that ran.
+    """
+    pairs = [(row.numbers[number], row.verdict == UNSTABLE) for row in rows if number in row.numbers]
+    worst = min((value for value, bad in pairs if bad), default=math.inf)
+    return max((value for value, bad in pairs if not bad and value < worst), default=0.0), worst
 
 
 def _finite(value: float | None) -> float | None:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from porescale.workbench.report import shown
-from porescale.workbench.study import RIGHT, STABLE, UNSTABLE, Axis, Flow, Row
+from porescale.workbench.study import RIGHT, STABLE, UNSTABLE, Axis, Flow, Row, holds_up_to
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,7 +47,7 @@ def as_dict(flow: Flow, quick: bool) -> dict[str, Any]:
     axes = {letter: {"name": axis.name, "values": axis.chosen(quick)} for letter, axis in _axes(flow)}
     return {
         "name": flow.name, "title": flow.title, **axes, "laws": list(flow.laws(quick)), "right": flow.right,
-        "because": flow.because,
+        "because": flow.because, "limit": flow.limit,
     }  # fmt: skip
 
 
@@ -88,12 +89,19 @@ def markdown(command: str, flows: Sequence[Flow], rows: Sequence[Row], quick: bo
         parts.append(f"\n## {flow.name}\n\n{flow.title}. Right: {flow.because}.\n")
         inside = f"in each place {flow.y.name} {_several(ys)} from left to right" if len(ys) > 1 else _single(flow, ys)
         parts.append(f"Across {flow.x.name}; {inside}.\n")
-        parts.append("| law | " + " | ".join(shown(x) for x in xs) + " |")
-        parts.append("|---|" + "---|" * len(xs))
+        more = [f"{flow.limit}: holds up to", "fails from"] if flow.limit else []
+        parts.append("| law | " + " | ".join([*map(shown, xs), *more]) + " |")
+        parts.append("|---|" + "---|" * (len(xs) + len(more)))
         for law in flow.laws(quick):
-            cells = ("".join(SIGNS[verdict[flow.name, law, x, y]] for y in ys) for x in xs)
+            cells = ["".join(SIGNS[verdict[flow.name, law, x, y]] for y in ys) for x in xs]
+            mine = [row for row in rows if (row.flow, row.law) == (flow.name, law)]
+            cells += [_edge(value) for value in holds_up_to(mine, flow.limit)] if flow.limit else []
             parts.append(f"| {law} | " + " | ".join(cells) + " |")
     return "\n".join(parts) + "\n"
+
+
+def _edge(value: float) -> str:
+    return f"{value:.3g}" if math.isfinite(value) else "–"
 
 
 _LEGEND = {RIGHT: "stable and right", STABLE: "stable", UNSTABLE: "unstable"}
