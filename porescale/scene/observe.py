@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from porescale.dem.discs import FIELDS, Discs
 from porescale.dem.measure import centre_of_mass, coordination, kinetic_energy, max_overlap
 from porescale.dem.system import Grains
+from porescale.lbm.fluid import Fluid
+from porescale.lbm.observe import stream_function
 from porescale.lbm.scales import Scales
 from porescale.scene.sections import Scene
 
@@ -83,10 +85,21 @@ UNITS = {"vorticity": "1/s", "stream_function": "m²/s"}
 """Fields that a scene may ask for besides velocity and pressure, and their units."""
 
 
-def derived_fields(names: Sequence[str], ux: Array, uy: Array, spacing: float) -> dict[str, NDArray[np.float32]]:
-    """Fields called ``names`` of a velocity (ny, nx) m/s; see ``vorticity`` and ``stream_function``."""
-    makers = {"vorticity": vorticity, "stream_function": stream_function}
-    return {name: makers[name](ux, uy, spacing).astype(np.float32) for name in names}
+def derived_fields(
+    names: Sequence[str], fluid: Fluid, ux: Array, uy: Array, scales: Scales
+) -> dict[str, NDArray[np.float32]]:
+    """Fields called ``names`` in the centres of cells, (ny, nx), of a velocity (ny, nx) m/s of ``fluid``.
+
+    The stream function is the mean of the four corners of a cell (lbm/observe.py).
+    """
+    fields = {}
+    if "vorticity" in names:
+        fields["vorticity"] = vorticity(ux, uy, scales.spacing).astype(np.float32)
+    if "stream_function" in names:
+        psi = stream_function(fluid, ux / scales.velocity, uy / scales.velocity)
+        centres = 0.25 * (psi[1:, 1:] + psi[1:, :-1] + psi[:-1, 1:] + psi[:-1, :-1])
+        fields["stream_function"] = (centres * scales.velocity * scales.spacing).astype(np.float32)
+    return fields
 
 
 def vorticity(ux: Array, uy: Array, spacing: float) -> Array:
@@ -94,17 +107,6 @@ def vorticity(ux: Array, uy: Array, spacing: float) -> Array:
     along: Array = np.gradient(uy, spacing, axis=1)
     up: Array = np.gradient(ux, spacing, axis=0)
     return along - up
-
-
-def stream_function(ux: Array, uy: Array, spacing: float) -> Array:
-    """psi in the centre of every cell, (ny, nx) m²/s, with u = dpsi/dy, v = -dpsi/dx; zero in the lower left corner.
-
-    Integrated along the lowest row of cells, then upwards, by the midpoint rule from the bottom of the box: fluid that
-    turns clockwise has a minimum where it flows left below the centre.
-    """
-    across = 0.5 * spacing * uy[0]
-    along = -(np.cumsum(uy[0]) * spacing - across)
-    return np.asarray(along[None, :] + np.cumsum(ux, axis=0) * spacing - 0.5 * spacing * ux)
 
 
 def surface(position: Array, radius: Array, edges: Array) -> Array:

@@ -43,8 +43,10 @@ class Sampler:
         return np.asarray((values.reshape(-1)[self._index] * self._weight).sum(axis=0))
 
     def in_fluid(self, values: Array, solid: Array) -> Array:
-        """The same with every cell counted by its fluid share 1 - ``solid`` (ny, nx), as pressure must be: inside grains
-        there is none.  Not a number where all four cells are solid."""
+        """The same with every cell counted by its fluid share 1 - ``solid`` (ny, nx), as pressure must be.
+
+        Not a number where all four cells are solid: inside grains there is none.
+        """
         weight = self._weight * np.clip(1 - solid.reshape(-1)[self._index], 0, 1)
         total = weight.sum(axis=0)
         value = (values.reshape(-1)[self._index] * weight).sum(axis=0)

@@ -9,7 +9,7 @@ import pydantic
 from porescale.ground.check import Fault
 from porescale.ground.constants import GRAVITY
 from porescale.lbm.scales import NAMES
-from porescale.scene.bodies import Disc, Lubrication, Rectangle
+from porescale.scene.bodies import Disc, Lubrication
 from porescale.scene.fluid import Fluid
 from porescale.scene.lattice import disagreements
 from porescale.scene.measures import FieldName, Flux, Line, Loads, Permeability, Probe
@@ -150,7 +150,6 @@ class Scene(Section):
     contact: Contact | None = None
     gate: Gate | None = None
     disc: tuple[Disc, ...] = ()
-    rectangle: tuple[Rectangle, ...] = ()
     probe: tuple[Probe, ...] = ()
     line: tuple[Line, ...] = ()
     flux: tuple[Flux, ...] = ()
