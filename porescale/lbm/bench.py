@@ -1,10 +1,12 @@
-"""Rate of the plain fluid: cells updated per second, and the share of the memory bandwidth that is."""
+"""Rate of the fluid: cells updated per second, and the share of the memory bandwidth that is."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from porescale.ground.check import Fault, InputError
+from porescale.lbm.collision.choose import OPERATORS, choose
+from porescale.lbm.collision.smagorinsky import CONSTANT
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX
 from porescale.workbench.benchmarks import Benchmarks, Dtype, Work
@@ -48,3 +50,25 @@ def bench_lbm(size: int | None, threads: int, dtype: Dtype) -> Work:
             fluid.advance()
 
     return Work(run, float(steps * side**2), "cells/s", side, bytes_of(dtype))
+
+
+@BENCHMARKS.row("operators")
+def bench_operators(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
+    """The same box with each collision operator in turn, without and with an eddy viscosity."""
+    side = side_of(size)
+    fluid = Fluid(side, side, RELAXATION_TIME, dtype=dtype)
+    fluid.set_flow(0.01, 0.005)
+    steps = steps_of(side**2)
+
+    def work(operator: str, smagorinsky: float) -> Work:
+        law = choose(operator, RELAXATION_TIME, (0.0, 0.0), dtype, smagorinsky=smagorinsky)
+
+        def run() -> None:
+            fluid.law = law
+            for _ in range(steps):
+                fluid.advance()
+
+        variant = f"{operator}_eddies" if smagorinsky else operator
+        return Work(run, float(steps * side**2), "cells/s", side, bytes_of(dtype), variant)
+
+    return [work(operator, constant) for operator in OPERATORS for constant in (0.0, CONSTANT)]

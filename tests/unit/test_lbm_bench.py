@@ -6,10 +6,21 @@ import pytest
 
 from porescale.coupling.bench import bench_psm
 from porescale.ground.check import InputError
-from porescale.lbm.bench import CELLS_A_CALL, MOST_STEPS, SIZE, SMALLEST, bench_lbm, bytes_of, side_of, steps_of
+from porescale.lbm.bench import (
+    CELLS_A_CALL,
+    MOST_STEPS,
+    SIZE,
+    SMALLEST,
+    bench_lbm,
+    bench_operators,
+    bytes_of,
+    side_of,
+    steps_of,
+)  # fmt: skip
+from porescale.lbm.collision.choose import OPERATORS
 
 
-@pytest.mark.parametrize("bench", [bench_lbm, bench_psm])
+@pytest.mark.parametrize("bench", [bench_lbm, bench_psm, bench_operators])
 @pytest.mark.parametrize("size", [1, SMALLEST - 1])
 def test_a_box_too_small_to_time_is_refused_with_the_bound(bench, size):
     with pytest.raises(InputError, match=rf"--size = {size}: is too small to be timed \(allowed: >= {SMALLEST}\)"):
@@ -30,7 +41,16 @@ def test_a_call_takes_an_even_number_of_steps_and_never_more_than_an_end_can_be_
 @pytest.mark.usefixtures("one_thread")
 def test_the_smallest_box_counts_its_cell_steps(monkeypatch):
     monkeypatch.setattr("porescale.lbm.bench.MOST_STEPS", 2)
-    works = [bench_lbm(SMALLEST, 1, "float32"), *bench_psm(SMALLEST, 1, "float32")]
+    works = [
+        bench_lbm(SMALLEST, 1, "float32"),
+        *bench_operators(SMALLEST, 1, "float32"),
+        *bench_psm(SMALLEST, 1, "float32"),
+    ]
     for work in works:
         work.call()
         assert (work.updates, work.size, work.bytes) == (2 * SMALLEST**2, SMALLEST, bytes_of("float32"))
+
+
+def test_every_operator_is_timed_without_and_with_eddies():
+    names = [work.variant for work in bench_operators(SMALLEST, 1, "float64")]
+    assert names == [name for operator in OPERATORS for name in (operator, f"{operator}_eddies")]
