@@ -97,8 +97,8 @@ def lattice_sides(domain: Domain, scales: Scales, cells: tuple[int, int]) -> Sid
             values[f"{name}_speed"] = side.speed / scales.velocity
         if side.velocity is not None:
             count = cells[1] if name in ("left", "right") else cells[0]
-            share = (np.arange(count) + 0.5) / count
-            shape = 6 * share * (1 - share) if side.profile == "parabola" else np.ones(count)
+            along = np.arange(count) + 0.5  # halves: the parabola is symmetric to the last bit
+            shape = 6 * along * (count - along) / count**2 if side.profile == "parabola" else np.ones(count)
             values[f"{name}_velocity"] = shape[:, None] * np.asarray(side.velocity) / scales.velocity
         if side.kind == "pressure":
             values[f"{name}_density"] = 1 + (side.pressure or 0.0) / scales.pressure

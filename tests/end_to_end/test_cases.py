@@ -27,7 +27,8 @@ CAVITY = {
     "highest velocity on the level middle line",
 }  # fmt: skip
 FLOWS = {
-    "cylinder_in_channel": ({"pressure difference", "lift coefficient"}, "fluid.viscosity=1.1e-3", {"drag coefficient"}),
+    "cylinder_in_channel": ({"pressure difference", "lift coefficient"}, "fluid.viscosity=1.1e-3",
+                            {"drag coefficient"}),
     "lid_driven_cavity": (CAVITY, "fluid.viscosity=2e-3", CAVITY),
     "permeameter": ({"permeability", "flux at the outlet"}, "grains.hydraulic_radius_ratio=0.95",
                     {"permeability", "flux at the outlet"}),
