@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -35,6 +36,19 @@ LAW = Linear(2.0, 0.1, 0.5, 0.05, 0.4)
 GATE = "gate"
 
 
+@dataclass(frozen=True)
+class Method:
+    """What is chosen by name: operators of fluid and solid, weight, and the magic parameter of the fluid's."""
+
+    solid_operator: str = "odd-SC1"
+    weighting: str = "B2"
+    operator: str = "trt"
+    magic: float = MAGIC_MIDWAY_WALL
+
+
+DEFAULT = Method()
+
+
 def immersed(
     cells: tuple[int, int],
     position: ArrayLike,
@@ -49,14 +63,20 @@ def immersed(
     ratio: float = 1.0,
     gate: int | None = None,
     scales: Scales | None = None,
+    force: tuple[float, float] = (0.0, 0.0),
+    method: Method = DEFAULT,
 ) -> Coupled:
     """Discs in a box of fluid at rest; lengths and densities in the units of ``scales`` (default: all 1).
 
-    sides: left and right, bottom and top;  ratio: hydraulic over mechanical radius;  gate: column it stands left of.
+    sides: left and right, bottom and top;  ratio: hydraulic over mechanical radius;  gate: column it stands left of;
+    force: on the fluid, lattice units.
     """
     scales = scales or Scales(1.0, 1.0, relaxation_time, 1.0)
     across, along = sides
-    fluid = Fluid(*cells, scales.relaxation_time, sides=Sides(across, across, along, along))
+    fluid = Fluid(
+        *cells, scales.relaxation_time, operator=method.operator, magic=method.magic, force=force,
+        sides=Sides(across, across, along, along),
+    )  # fmt: skip
     plates = []
     if gate is not None:
         fluid.add_plate(gate)
@@ -65,7 +85,10 @@ def immersed(
     kinds = ["periodic" if kind == "periodic" else "solid" for kind in (across, across, along, along)]
     box = Box((0.0, 0.0), (width, height), *kinds)
     grains = Grains(make_discs(position, radius, density, velocity, spin), LAW, box, plates=plates)
-    return Coupled(fluid, grains, scales, hydraulic_ratio=ratio, contact_steps=4, acceleration=acceleration)
+    return Coupled(
+        fluid, grains, scales, hydraulic_ratio=ratio, contact_steps=4, acceleration=acceleration,
+        solid_operator=method.solid_operator, weighting=method.weighting,
+    )  # fmt: skip
 
 
 def without_inner_mass(coupled: Coupled) -> Coupled:
@@ -75,7 +98,9 @@ def without_inner_mass(coupled: Coupled) -> Coupled:
     return coupled
 
 
-def settling_disc(cells_per_diameter: int = 16, relaxation_time: float = 0.65, ratio: float = 1.0) -> float:
+def settling_disc(
+    cells_per_diameter: int = 16, relaxation_time: float = 0.65, ratio: float = 1.0, method: Method = DEFAULT
+) -> float:
     """Largest speed (m/s) of the disc of Glowinski et al. 2001 before it is within a diameter of the bottom.
 
     Box 2 x 6 cm, d 0.25 cm, density ratio 1.25, nu 0.1 cm²/s, g 9.81 m/s², released at (1, 4) cm.  The step follows
@@ -89,6 +114,7 @@ def settling_disc(cells_per_diameter: int = 16, relaxation_time: float = 0.65, r
     coupled = immersed(
         cells, [(0.01, 0.04)], diameter / 2, 1250.0,
         acceleration=(0.0, -9.81), ratio=ratio, scales=Scales(spacing, step, relaxation_time),
+        method=method,
     )  # fmt: skip
     discs, fastest = coupled.grains.discs, 0.0
     while discs.position[0, 1] > 1.5 * diameter:
@@ -107,6 +133,7 @@ def release(
     relaxation_time: float = 0.56,
     width: float = 20.0,
     inner_mass: bool = True,
+    method: Method = DEFAULT,
 ) -> list[float]:
     """v/((s - 1) g a²/nu) of a disc of density ratio s released from rest, at ``times`` nu t/a².
 
@@ -117,7 +144,9 @@ def release(
     g = unit * nu / a**2 / (ratio - 1)
     n = round(width * diameter)
     middle = n / 2 + 0.3, n / 2 + 0.1
-    coupled = immersed((n, n), [middle], a, ratio, relaxation_time=relaxation_time, acceleration=(0.0, -g))
+    coupled = immersed(
+        (n, n), [middle], a, ratio, relaxation_time=relaxation_time, acceleration=(0.0, -g), method=method
+    )
     if not inner_mass:
         without_inner_mass(coupled)
     return _followed(
@@ -133,6 +162,7 @@ def spin_down(
     relaxation_time: float = 0.56,
     width: float = 8.0,
     inner_mass: bool = True,
+    method: Method = DEFAULT,
 ) -> list[float]:
     """Spin over its first value of a disc set spinning in fluid at rest, at ``times`` nu t/a².
 
@@ -142,7 +172,7 @@ def spin_down(
     n = round(width * diameter)
     x0, y0 = n / 2 + 0.3, n / 2 + 0.1
     first = 1e-4 / a
-    coupled = immersed((n, n), [(x0, y0)], a, ratio, 0.0, first, relaxation_time=relaxation_time)
+    coupled = immersed((n, n), [(x0, y0)], a, ratio, 0.0, first, relaxation_time=relaxation_time, method=method)
     if not inner_mass:
         without_inner_mass(coupled)
     _, _, _, solid = coupled.fields()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from porescale.coupling import exact
+from porescale.coupling import exact, verify_moving, verify_towed
 from porescale.coupling import experiments as lab
 from porescale.workbench.validations import Measured, Validations
 
@@ -161,3 +161,7 @@ def drift() -> Measured:
     density, torque = lab.spinning_disc([1500, 15_000])
     error = max(abs(density[1] - density[0]), abs(torque[1] / torque[0] - 1))
     return Measured([density[0], torque[0]], [density[1], torque[1]], error)
+
+
+for _more in (verify_towed.VALIDATIONS, verify_moving.VALIDATIONS):
+    VALIDATIONS.include(_more)
