@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.coupling.coverage import cover, lay_out, list_rows
+from porescale.coupling.coverage import CHUNKS, SCRATCH, cover
+from porescale.coupling.coverage_rows import BLOCK, lay_out, list_rows, make_patches, make_rows
 from porescale.coupling.load import add_rows
 from porescale.coupling.solid.choose import choose_solid
 from porescale.coupling.solid_collision import sweep_even, sweep_odd
@@ -22,8 +23,7 @@ Array = NDArray[np.floating]
 class Saturated:
     """Discs of given radii (cells) as the fluid sees them.
 
-    force (n, 2), torque (n,): loads of the last step, lattice units;  solid, solid_x, solid_y (ny, nx): sum of the
-    solid fractions, and of fraction times velocity, right after ``cover``.  A step allocates no array.
+    force (n, 2), torque (n,): loads of the last step, lattice units.  A step allocates no array.
     """
 
     def __init__(self, fluid: Fluid, radius: Array, *, solid_operator: str = "odd-SC1", weighting: str = "B2") -> None:
@@ -36,34 +36,55 @@ class Saturated:
         if (self.periodic_x and across > nx) or (self.periodic_y and across > ny):
             raise ValueError("a disc is wider than the periodic box")
         width = (np.floor(2 * self.radius) + 2).astype(np.int64)
-        widest = int(width.max(initial=0))
-        start = np.concatenate(([0], np.cumsum(width**2)[:-1])).astype(np.int64)[:count]
-        self._lines = np.zeros((count, 4, widest + 1))
-        corner, reach = np.zeros((count, 2), np.int64), np.zeros((count, widest, 2), np.int64)
-        self._patches = (start, width, np.zeros(int(np.sum(width**2))), corner, reach)
-        entries = int(np.sum(width))
-        self._rows = (np.zeros(ny + 1, np.int64), np.zeros(entries, np.int64), np.zeros(entries, np.int64))
-        self._row_load = np.zeros((count, widest, 3))
+        self._patches = make_patches(width + 1, width, dtype)
+        self._rows = make_rows(self._patches, ny)
+        widest, highest = int(self._patches.stride.max(initial=BLOCK)), int(width.max(initial=0))
+        self._lines = np.zeros((CHUNKS, SCRATCH, widest + BLOCK))
+        self._row_load = np.zeros((count, highest, 3))
         bands = -(-ny // BAND_HEIGHT)
         self._band_order = np.argsort(np.arange(bands) * SPREAD % 1).astype(np.int64)
-        self._scratch = np.zeros((bands, 3, nx), dtype)
-        self.solid, self.solid_x, self.solid_y = (np.zeros((ny, nx), dtype) for _ in range(3))
+        self._ramp = np.arange(BLOCK).astype(dtype)
+        self._scratch = np.zeros((bands, 3, BLOCK + nx + BLOCK), dtype)
+        self._partial = np.zeros((bands, 3 * BLOCK), dtype)
         self._laws = (
             choose_weight(weighting, fluid.relaxation_time, dtype), choose_solid(solid_operator, dtype)
         )  # fmt: skip
+        self._covered: Array | None = None
+        self._shape = ny, nx
         self.force, self.torque = np.zeros((count, 2)), np.zeros(count)
+
+    @property
+    def covered(self) -> Array:
+        """Sum of the solid fractions, and of fraction times velocity (x, y), (3, ny, nx); made when asked for."""
+        if self._covered is None:
+            self._covered = np.zeros((3, *self._shape), self._scratch.dtype)
+        return self._covered
+
+    @property
+    def solid(self) -> Array:
+        """Sum of the solid fractions right after ``cover``, (ny, nx)."""
+        return np.asarray(self.covered[0])
+
+    @property
+    def solid_x(self) -> Array:
+        """Sum of fraction times velocity along x right after ``cover``, (ny, nx)."""
+        return np.asarray(self.covered[1])
+
+    @property
+    def solid_y(self) -> Array:
+        """Sum of fraction times velocity along y right after ``cover``, (ny, nx)."""
+        return np.asarray(self.covered[2])
 
     def _place(self, centre: Array) -> None:
         """Fill the discs' patches, and list what lies in which row."""
-        _, width, _, corner, reach = self._patches
-        cover(centre, self.radius, *self._patches, self._lines)
-        list_rows(corner, width, reach, self.solid.shape[0], self.periodic_y, *self._rows)
+        cover(centre, self.radius, self._patches, self._lines)
+        list_rows(self._patches, self.periodic_y, self._rows)
 
     def cover(self, centre: Array, velocity: Array, spin: Array) -> None:
         """Fill the solid fields for discs at centre (n, 2), cells, with velocity and spin in lattice units."""
         self._place(centre)
-        fields = self.solid, self.solid_x, self.solid_y
-        lay_out(*self._rows, centre, velocity, spin, *self._patches, self.periodic_x, *fields)
+        motion = centre, velocity, spin
+        lay_out(self._rows, self._patches, *motion, self.periodic_x, self._ramp, self._scratch, self.covered)
 
     def weights(self) -> Array:
         """Weight B of every cell (ny, nx), right after ``cover``."""
@@ -74,8 +95,10 @@ class Saturated:
         """One fluid step with the discs where they are; fills ``force`` and ``torque``."""
         self._place(centre)
         fluid.advance(
-            sweep_even, sweep_odd, self._band_order, BAND_HEIGHT, *self._rows, centre, velocity, spin, *self._patches,
-            self.periodic_x, self._row_load, self._scratch, *self._laws,
+            sweep_even, sweep_odd, self._band_order, BAND_HEIGHT, self._rows, self._patches, centre, velocity, spin,
+            self.periodic_x, self._ramp, self._row_load, self._scratch, self._partial, *self._laws,
         )  # fmt: skip
-        _, width, _, corner, reach = self._patches
-        add_rows(corner, width, reach, fluid.ny, self.periodic_y, self._row_load, self.force, self.torque)
+        patches = self._patches
+        add_rows(
+            patches.corner, patches.height, fluid.ny, self.periodic_y, self._row_load, self.force, self.torque
+        )  # fmt: skip

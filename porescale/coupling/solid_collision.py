@@ -4,13 +4,16 @@ Where no grain lies this is the plain operator.  Grains that share a cell act wi
 v = sum e v_n / sum e; their loads use each one's own velocity and add up to the same total (load.py).
 """
 
-from porescale.coupling.coverage import lay_row
+from porescale.coupling.coverage_rows import BLOCK, lay_row
 from porescale.coupling.load import take_row
 from porescale.coupling.solid.law import mix, taken
 from porescale.coupling.weighting import weight
 from porescale.ground.jit import inline, parallel_kernel, prange
 from porescale.lbm.collision.law import collide, collide_row, moments, numbers, shear_rate
 from porescale.lbm.stream import even_slots, odd_slots
+
+STRETCH = 64
+"""Cells of a row that are saturated or plain together."""
 
 
 @inline
@@ -57,70 +60,71 @@ def collide_saturated_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, first, 
 
 @inline
 def saturated_row(
-    a0, a1, a2, a3, a4, a5, a6, a7, a8, begin, end, row_disc, row_line, centre, velocity, spin, patch_start,
-    patch_width, patch, corner, reach, periodic_x, row_load, s, sx, sy, weighting, solid, law,
+    a0, a1, a2, a3, a4, a5, a6, a7, a8, begin, end, rows, patches, centre, velocity, spin, periodic_x, ramp, row_load,
+    scratch, partial, weighting, solid, law,
 ):  # fmt: skip
-    """One row of the lattice: lay out its discs, collide, take their loads.
+    """One row of the lattice: lay out its bodies, collide, take their loads.
 
-    Plain fluid outside of what the discs cover.  s, sx, sy (nx,): scratch, zero before and after.
+    Plain fluid outside of what the bodies cover.  scratch (3, BLOCK + nx + BLOCK): zero before and after;  partial:
+    scratch too; other arguments as in coverage_rows.py and load.py.
     """
-    n = s.shape[0]
+    n = a0.shape[0]
+    s, sx, sy = scratch[0], scratch[1], scratch[2]
     left = n
     right = n
     if begin < end:
-        left, right = lay_row(
-            begin, end, row_disc, row_line, centre, velocity, spin, patch_start, patch_width, patch, corner, reach,
-            periodic_x, s, sx, sy,
-        )  # fmt: skip
+        left, right = lay_row(begin, end, rows, patches, centre, velocity, spin, periodic_x, ramp, scratch)
     if left >= right:
         collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, 0, n, law)
         left = right
     else:
+        # Short loops run cell by cell: the plain ends of the row are whole stretches, or nothing.
+        left, right = left // STRETCH * STRETCH, min((right + STRETCH - 1) // STRETCH * STRETCH, n)
+        cells, cells_x, cells_y = s[BLOCK : BLOCK + n], sx[BLOCK : BLOCK + n], sy[BLOCK : BLOCK + n]
         collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, 0, left, law)
-        collide_saturated_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, left, right, weighting, solid, law)
+        collide_saturated_row(
+            a0, a1, a2, a3, a4, a5, a6, a7, a8, cells, cells_x, cells_y, left, right, weighting, solid, law
+        )  # fmt: skip
         collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, right, n, law)
-    take_row(
-        begin, end, row_disc, row_line, centre, velocity, spin, patch_start, patch_width, patch, corner, reach,
-        periodic_x, s, sx, sy, row_load,
-    )  # fmt: skip
-    s[left:right] = 0
-    sx[left:right] = 0
-    sy[left:right] = 0
+        for beyond in (s, sx, sy):
+            beyond[:BLOCK] = 0
+            beyond[BLOCK + n :] = 0
+    take_row(begin, end, rows, patches, centre, velocity, spin, periodic_x, ramp, scratch, partial, row_load)
+    for used in (s, sx, sy):
+        used[BLOCK + left : BLOCK + right] = 0
 
 
 @parallel_kernel
 def sweep_even(
-    f, band_order, height, row_start, row_disc, row_line, centre, velocity, spin, patch_start, patch_width, patch,
-    corner, reach, periodic_x, row_load, scratch, weighting, solid, law,
+    f, band_order, height, rows, patches, centre, velocity, spin, periodic_x, ramp, row_load, scratch, partial,
+    weighting, solid, law,
 ):  # fmt: skip
-    """Even step with grains; overwrites populations f and row_load.
+    """Even step with bodies; overwrites populations f and row_load.
 
-    scratch (bands, 3, nx): zero before and after.  Bands of ``height`` rows are spread over the threads in
-    ``band_order``; other arguments as in coverage.py and load.py.
+    scratch (bands, 3, BLOCK + nx + BLOCK): zero before and after;  partial (bands, 3 * BLOCK): scratch.  Bands of
+    ``height`` rows are spread over the threads in ``band_order``; other arguments as in ``saturated_row``.
     """
     for turn in prange(band_order.shape[0]):
         band = band_order[turn]
         for y in range(band * height, min((band + 1) * height, f.shape[1] - 2)):
             a0, a1, a2, a3, a4, a5, a6, a7, a8 = even_slots(f, y + 1)
             saturated_row(
-                a0, a1, a2, a3, a4, a5, a6, a7, a8, row_start[y], row_start[y + 1], row_disc, row_line, centre,
-                velocity, spin, patch_start, patch_width, patch, corner, reach, periodic_x, row_load, scratch[band, 0],
-                scratch[band, 1], scratch[band, 2], weighting, solid, law,
+                a0, a1, a2, a3, a4, a5, a6, a7, a8, rows.start[y], rows.start[y + 1], rows, patches, centre, velocity,
+                spin, periodic_x, ramp, row_load, scratch[band], partial[band], weighting, solid, law,
             )  # fmt: skip
 
 
 @parallel_kernel
 def sweep_odd(
-    f, band_order, height, row_start, row_disc, row_line, centre, velocity, spin, patch_start, patch_width, patch,
-    corner, reach, periodic_x, row_load, scratch, weighting, solid, law,
+    f, band_order, height, rows, patches, centre, velocity, spin, periodic_x, ramp, row_load, scratch, partial,
+    weighting, solid, law,
 ):  # fmt: skip
-    """Odd step with grains; the halo must have been filled."""
+    """Odd step with bodies; the halo must have been filled."""
     for turn in prange(band_order.shape[0]):
         band = band_order[turn]
         for y in range(band * height, min((band + 1) * height, f.shape[1] - 2)):
             a0, a1, a2, a3, a4, a5, a6, a7, a8 = odd_slots(f, y + 1)
             saturated_row(
-                a0, a1, a2, a3, a4, a5, a6, a7, a8, row_start[y], row_start[y + 1], row_disc, row_line, centre,
-                velocity, spin, patch_start, patch_width, patch, corner, reach, periodic_x, row_load, scratch[band, 0],
-                scratch[band, 1], scratch[band, 2], weighting, solid, law,
+                a0, a1, a2, a3, a4, a5, a6, a7, a8, rows.start[y], rows.start[y + 1], rows, patches, centre, velocity,
+                spin, periodic_x, ramp, row_load, scratch[band], partial[band], weighting, solid, law,
             )  # fmt: skip

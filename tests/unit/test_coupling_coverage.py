@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from porescale.coupling import coverage
+from porescale.coupling import coverage, coverage_rows
+from porescale.coupling.coverage_rows import BLOCK
 from porescale.coupling.saturated import BAND_HEIGHT, Saturated
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.sides import Sides
@@ -163,49 +164,78 @@ def test_bands_at_the_bottom_are_spread_over_the_threads():
 
 def test_rows_list_discs_in_index_order():
     wet = covered([(6.3, 8.2, 3.5), (13.1, 8.2, 3.6), (9.7, 15.9, 2.2), (3.0, -0.1, 1.5)], kinds=("wall", "periodic"))
-    start, disc, line = wet._rows
-    _, width, _, corner, reach = wet._patches
-    assert start[-1] == sum(int(reach[n, j, 0] < reach[n, j, 1]) for n in range(4) for j in range(width[n]))
+    start, body, line = wet._rows
+    assert start[-1] == wet._patches.height.sum()
     for y in range(17):
-        here = disc[start[y] : start[y + 1]]
+        here = body[start[y] : start[y + 1]]
         assert np.all(np.diff(here) >= 0)
-        assert np.all((corner[here, 1] + line[start[y] : start[y + 1]]) % 17 == y)
+        assert np.all((wet._patches.corner[here, 1] + line[start[y] : start[y + 1]]) % 17 == y)
+
+
+def test_rows_beyond_walls_are_not_listed():
+    wet = covered([(6.3, 0.2, 3.5), (13.1, 16.9, 3.6), (5.0, 40.0, 2.0), (5.0, -9.0, 2.0)])
+    start, body, line = wet._rows
+    listed = {(int(body[k]), int(line[k])) for k in range(start[-1])}
+    corner, height = wet._patches.corner, wet._patches.height
+    assert listed == {(n, j) for n in range(4) for j in range(height[n]) if 0 <= corner[n, 1] + j < 17}
+
+
+@pytest.mark.parametrize("r", [0.3, 6.02, 400.0])
+def test_the_area_under_a_quarter_circle_is_good_to_the_last_digits(r):
+    a = r * np.concatenate((np.linspace(0, 1, 2001), 1 - np.logspace(-15, -1, 200), np.logspace(-15, -1, 200)))
+    h = np.sqrt((r - a) * (r + a))
+    exact = 0.5 * (a * h + r * r * np.arctan2(a, h))
+    found = np.array([coverage.quarter_area(x, r) for x in a])
+    # the angle, at most pi/2, to 4 eps, and five roundings of areas up to r²
+    np.testing.assert_allclose(found, exact, rtol=0, atol=8 * EPS * r * r)
 
 
 def test_coverage_kernels_are_the_same_uncompiled(monkeypatch):
     discs = [(2.3, 3.1, 1.3), (4.9, 0.2, 0.4)]
     kinds = ("periodic", "wall")
     compiled = covered(discs, nx=6, ny=5, kinds=kinds, motion=(0.1, 0.2, 0.3))
-    for name in ("quarter_area", "corner_area", "line_areas", "chord", "inside_box", "lay_row"):
+    for name in ("small_angle", "quarter_area", "mark_lines", "corner_area", "cover_disc"):
         monkeypatch.setattr(coverage, name, getattr(coverage, name).py_func)
-    for name in ("cover", "list_rows", "lay_out"):
-        monkeypatch.setattr(f"porescale.coupling.saturated.{name}", getattr(coverage, name).py_func)
+    for name in ("list_part", "blocks_inside", "lay_row"):
+        monkeypatch.setattr(coverage_rows, name, getattr(coverage_rows, name).py_func)
+    for module, name in ((coverage, "cover"), (coverage_rows, "list_rows"), (coverage_rows, "lay_out")):
+        monkeypatch.setattr(f"porescale.coupling.saturated.{name}", getattr(module, name).py_func)
     plain = covered(discs, nx=6, ny=5, kinds=kinds, motion=(0.1, 0.2, 0.3))
     for name in ("solid", "solid_x", "solid_y"):
         np.testing.assert_allclose(getattr(plain, name), getattr(compiled, name), rtol=0, atol=area_error(1.3))
 
 
-def test_loads_are_the_same_uncompiled():
-    from porescale.coupling.load import add_rows, take_row
+def test_loads_are_the_same_uncompiled(monkeypatch):
+    from porescale.coupling import load
 
     wet = covered([(2.3, 3.1, 1.3), (4.9, 0.2, 0.4)], nx=6, ny=5, kinds=("periodic", "wall"))
     random = np.random.default_rng(0)
-    fields = random.uniform(-1, 1, (3, 5, 6))
-    centre, velocity, spin = np.array([[2.3, 3.1], [4.9, 0.2]]), random.uniform(-1, 1, (2, 2)), np.array([0.1, -0.2])
-    start, disc, line = wet._rows
-    _, width, _, corner, reach = wet._patches
+    scratch = np.zeros((5, 3, 6 + 2 * BLOCK))
+    scratch[:, :, BLOCK:-BLOCK] = random.uniform(-1, 1, (5, 3, 6))
+    motion = np.array([[2.3, 3.1], [4.9, 0.2]]), random.uniform(-1, 1, (2, 2)), np.array([0.1, -0.2])
+    rows, patches, partial = wet._rows, wet._patches, np.zeros(3 * BLOCK)
     made = []
-    for take, add in ((take_row, add_rows), (take_row.py_func, add_rows.py_func)):
+    for plain in (False, True):
+        take, add = (load.take_row.py_func, load.add_rows.py_func) if plain else (load.take_row, load.add_rows)
+        if plain:
+            monkeypatch.setattr(load, "total", load.total.py_func)
+            monkeypatch.setattr(load, "blocks_inside", coverage_rows.blocks_inside.py_func)
         row_load, force, torque = np.full_like(wet._row_load, np.nan), np.zeros((2, 2)), np.zeros(2)
         for y in range(5):
-            take(
-                start[y], start[y + 1], disc, line, centre, velocity, spin, *wet._patches, True, *fields[:, y], row_load
-            )
-        add(corner, width, reach, 5, False, row_load, force, torque)
+            here = rows.start[y], rows.start[y + 1]
+            take(*here, rows, patches, *motion, True, wet._ramp, scratch[y], partial, row_load)
+        add(patches.corner, patches.height, 5, False, row_load, force, torque)
         made.append(np.column_stack((force, torque)))
     assert np.all(np.isfinite(made[0]))
     # a dozen cells, each with five roundings of numbers around 1
     np.testing.assert_allclose(*made, rtol=0, atol=60 * EPS)
+
+
+def test_the_solid_fields_are_made_when_asked_for():
+    wet = Saturated(Fluid(30, 20, 0.7), np.array([3.0]))
+    wet.advance(Fluid(30, 20, 0.7), np.array([[8.0, 9.0]]), np.zeros((1, 2)), np.zeros(1))
+    assert wet._covered is None
+    assert not wet.solid.any()
 
 
 def test_no_discs_cover_nothing():

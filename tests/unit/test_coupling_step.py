@@ -250,7 +250,7 @@ def allocates(kernel):
 
 
 def test_no_kernel_of_a_step_allocates():
-    from porescale.coupling import coverage, load, step
+    from porescale.coupling import coverage, coverage_rows, load, step
     from porescale.dem import integrate
     from porescale.lbm import plate, sides, stream
 
@@ -261,7 +261,7 @@ def test_no_kernel_of_a_step_allocates():
         coupled.fluid.advance()
         coupled.advance()
     used = [
-        coverage.cover, coverage.list_rows, load.add_rows, step.to_lattice, step.total_load, sides.fill_halo,
+        coverage.cover, coverage_rows.list_rows, load.add_rows, step.to_lattice, step.total_load, sides.fill_halo,
         sides.empty_halo, solid_collision.sweep_even, solid_collision.sweep_odd, stream.sweep_even, stream.sweep_odd,
         plate.exchange, integrate.contact_steps,
     ]  # fmt: skip
