@@ -20,7 +20,7 @@ def rows():
         yield pytest.param(row, id=row.name, marks=[pytest.mark.slow] if row.slow else [])
 
 
-@pytest.mark.parametrize("validation", rows())
+@pytest.mark.parametrize("validation", list(rows()))
 def test_the_validation_holds(validation):
     row = validation.run()
     assert row.passed, row
