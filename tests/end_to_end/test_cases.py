@@ -30,7 +30,7 @@ FLOWS = {
     "cylinder_in_channel": ({"pressure difference", "lift coefficient"}, "fluid.viscosity=1.1e-3",
                             {"drag coefficient"}),
     "lid_driven_cavity": (CAVITY, "fluid.viscosity=2e-3", CAVITY),
-    "permeameter": ({"permeability", "flux at the outlet"}, "grains.hydraulic_radius_ratio=0.95",
+    "permeameter": ({"permeability", "flux at the outlet"}, "grains.hydraulic_radius_ratio=0.6",
                     {"permeability", "flux at the outlet"}),
     "towed_cylinder": ({"drag"}, "fluid.viscosity=1.1e-3", {"drag"}),
 }  # fmt: skip
