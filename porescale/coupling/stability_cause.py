@@ -28,6 +28,7 @@ class Circumstances:
     solid_operator: str = "odd-SC1"
     density_ratio: float | None = None
     cells_per_diameter: float = 0.0
+    lid: bool = False
 
 
 def likely_cause(now: Circumstances) -> str:
@@ -66,10 +67,10 @@ def _light(now: Circumstances) -> Found:
 def _thin(now: Circumstances) -> Found:
     """More speed than the viscosity damps: the cell Reynolds number |u|/nu, with tau near 1/2."""
     reynolds = 3 * now.speed / (now.relaxation_time - 0.5)
-    holds = limits.cell_reynolds(now.operator, eddies=now.eddies)
+    holds = limits.cell_reynolds(now.operator, eddies=now.eddies, lid=now.lid)
     if reynolds <= holds:
         return None
-    name = f"'{now.operator}'{' with eddies' if now.eddies else ''}"
+    name = f"'{now.operator}'{' with eddies' if now.eddies else ''}{' under a lid' if now.lid else ''}"
     better = "" if now.operator == "central" and now.eddies else ", or take operator = 'central' with smagorinsky = 0.1"
     return reynolds / holds, (
         f"relaxation time {now.relaxation_time:.6g}, near 1/2, at a speed of Mach {now.speed * 3**0.5:.2g}: cell"

@@ -31,8 +31,9 @@ class Sense:
         self.fluid, self.scales, self.coupled = fluid, scales, coupled
         ratio, cells = _lightest(coupled) if coupled else (None, 0.0)
         self.last = Circumstances(
-            operator, eddies, fluid.relaxation_time, self._told(), 0.0, solid_operator, ratio, cells
-        )
+            operator, eddies, fluid.relaxation_time, self._told(), 0.0, solid_operator, ratio, cells,
+            lid=any(fluid.sides.speed(name) for name in NAMES),
+        )  # fmt: skip
 
     def check(self, step: int, time: float) -> None:
         """Raise Unstable, naming cell, quantity, value and likely cause, where the fluid is beyond sense.

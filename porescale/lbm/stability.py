@@ -161,8 +161,7 @@ def shear(law: str, x: float, y: float) -> Tried:
     laws=laws,
     right=0.1,
     because="least velocity on the centre line within 10 % of Ghia, Ghia & Shin 1982 (Re 1000: Botella & Peyret 1998);"
-    " the corners of the lid make it first order: 8 % at Re 400, 13 % at Re 1000 and 5 % with twice the cells; beyond"
-    " nothing is judged on this grid",
+    " there a cell is two thirds of the layer at the wall, 1/sqrt(Re); beyond, nothing is judged",
     judged=1000,
     monotone=True,
     limit="cell Reynolds number",

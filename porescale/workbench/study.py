@@ -64,6 +64,7 @@ class Row:
         """JSON-able; numbers that are not finite become null."""
         made = asdict(self)
         made["error"] = _finite(self.error)
+        made["seconds"] = round(self.seconds, 3)
         made["numbers"] = {name: _finite(value) for name, value in self.numbers.items()}
         return made
 

@@ -56,12 +56,13 @@ def _axes(flow: Flow) -> tuple[tuple[str, Axis], tuple[str, Axis]]:
 
 
 def json_text(command: str, version: str, flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> str:
-    """Flows and rows, from which checks are derived."""
+    """Flows and rows, from which checks are derived; a row a line, so that two maps can be compared."""
     made = {
         "command": command, "version": version, "quick": quick, "flows": [as_dict(flow, quick) for flow in flows],
-        "rows": [row.as_dict() for row in rows],
     }  # fmt: skip
-    return json.dumps(made, indent=1, allow_nan=False) + "\n"
+    head = json.dumps(made, indent=1, allow_nan=False).removesuffix("\n}")
+    lines = (json.dumps(row.as_dict(), allow_nan=False) for row in rows)
+    return head + ',\n "rows": [\n  ' + ",\n  ".join(lines) + "\n ]\n}\n"
 
 
 def csv_text(rows: Sequence[Row]) -> str:

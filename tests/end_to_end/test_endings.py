@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -13,6 +14,7 @@ import pytest
 
 from porescale import build, load, open_run
 from porescale.ground.check import Unstable
+from porescale.lbm.stability_sense import SOUND, WORST_MACH
 from porescale.runs.checkpoint import read_checkpoint
 from porescale.scene.simulation import Simulation
 from tests.reference.same_run import differences
@@ -196,6 +198,48 @@ def test_an_unstable_lattice_stops_the_run_and_names_its_cell(ends, tmp_path):
     simulation.restore(saved["state"])
     simulation.check()  # what was saved is good
     assert f"step {saved['step']}, " in line
+
+
+LIGHT = {**FAST["grains"], "density": 120}
+
+
+@pytest.mark.parametrize(
+    ("changes", "cause"),
+    [
+        ({"fluid__viscosity": 1e-9}, "'trt' is known to hold up to"),
+        ({"grains": LIGHT}, "free grains of density ratio 0.12 at 5 cells per diameter"),
+        *(pytest.param(*case, marks=pytest.mark.slow) for case in (  # each compiles kernels of its own
+            ({"fluid__viscosity": 1e-9, "fluid__operator": "bgk"}, "'bgk' is known to hold up to"),
+            ({"fluid__viscosity": 1e-9, "fluid__operator": "mrt"}, "'mrt' is known to hold up to"),
+            ({"fluid__viscosity": 1e-9, "fluid__precision": "float32"}, "'trt' is known to hold up to"),
+            ({"fluid__solid_operator": "SC3"}, "fluid.solid_operator = 'SC3' with free grains"),
+        )),
+    ],
+)  # fmt: skip
+def test_whatever_blows_up_stops_within_a_hundred_steps_with_its_cause(ends, tmp_path, changes, cause):
+    out, file = tmp_path / "out", write(tmp_path / "edge.toml", table(**{**FAST, **changes}))
+    code, said = ends("run", file, "--out", out, "--quiet", "--threads", 1)
+    assert code == 3
+    assert re.fullmatch(
+        r"unstable at step \d+ \(t = \S+ s\): .+ = .+ at cell \(\d+, \d+\) at \(.+\) m; likely cause: .+; last good .+",
+        said[-1],
+    )
+    assert cause in said[-1]
+    for snapshot in open_run(out).snapshots():
+        speed = snapshot.grids["fields"].cells["velocity"]
+        assert float(np.abs(speed).max()) < WORST_MACH * SOUND * 5.0  # 5 m/s: one cell per step
+    stopped = json.loads((out / "card.json").read_text())["step"]
+    simulation, first = build(load(file)), 0  # the twin: asked after every step
+    try:
+        while simulation.step < stopped:
+            simulation.advance(1)
+            first = simulation.step
+            simulation.check()
+    except Unstable:
+        pass
+    assert 0 < stopped - first <= 100 or stopped == first
+    state = read_checkpoint(out / "checkpoint.h5")
+    assert state["step"] < first
 
 
 def test_an_unstable_grain_is_named(ends, tmp_path):
