@@ -133,8 +133,11 @@ def blocks_inside(base, stride, nx):
 
 
 @inline
-def lay_row(begin, end, rows, patches, centre, velocity, spin, periodic_x, ramp, scratch):
+def lay_row(begin, end, rows, patches, centre, velocity, spin, shift, periodic_x, ramp, scratch):
     """Add up the solid fractions of one row, and fractions times solid velocity at the cells' centres.
+
+    The velocity in a cell that a body covers by e is its own and e times the half-step correction ``shift`` (n, 3),
+    along x and y and of the spin.
 
     Entries ``begin`` to ``end`` - 1 of ``rows`` are the row's;  centre (n, 2) cells, velocity (n, 2), spin (n,):
     lattice units;  ramp (BLOCK,): 0, 1, 2, ...  Adds to scratch (3, BLOCK + nx + BLOCK); returns the first column that
@@ -153,12 +156,16 @@ def lay_row(begin, end, rows, patches, centre, velocity, spin, periodic_x, ramp,
         turning = ramp.dtype.type(spin[n])
         vx = ramp.dtype.type(velocity[n, 0] - spin[n] * (patches.corner[n, 1] + j + 0.5 - centre[n, 1]))
         vy0 = velocity[n, 1] + spin[n] * (base + 0.5 - centre[n, 0])
+        twist = ramp.dtype.type(shift[n, 2])
+        cx = ramp.dtype.type(shift[n, 0] - shift[n, 2] * (patches.corner[n, 1] + j + 0.5 - centre[n, 1]))
+        cy0 = shift[n, 1] + shift[n, 2] * (base + 0.5 - centre[n, 0])
         if periodic_x:
             base %= nx
         while base + stride > 0:  # once, or again for what lies beyond a periodic side
             first, last = blocks_inside(base, stride, nx)
             for b in range(first, last, BLOCK):
                 vy = ramp.dtype.type(vy0 + spin[n] * b)
+                cy = ramp.dtype.type(cy0 + shift[n, 2] * b)
                 e = patches.fraction[at + b : at + b + BLOCK]
                 x = base + b + BLOCK
                 t = s[x : x + BLOCK]
@@ -166,8 +173,8 @@ def lay_row(begin, end, rows, patches, centre, velocity, spin, periodic_x, ramp,
                 ty = sy[x : x + BLOCK]
                 for i in range(BLOCK):
                     t[i] += e[i]
-                    tx[i] += e[i] * vx
-                    ty[i] += e[i] * (vy + turning * ramp[i])
+                    tx[i] += e[i] * (vx + e[i] * cx)
+                    ty[i] += e[i] * (vy + turning * ramp[i] + e[i] * (cy + twist * ramp[i]))
             if first < last:
                 leftmost = min(leftmost, base + first)
                 rightmost = max(rightmost, base + last)
@@ -178,7 +185,7 @@ def lay_row(begin, end, rows, patches, centre, velocity, spin, periodic_x, ramp,
 
 
 @parallel_kernel
-def lay_out(rows, patches, centre, velocity, spin, periodic_x, ramp, scratch, out):
+def lay_out(rows, patches, centre, velocity, spin, shift, periodic_x, ramp, scratch, out):
     """All rows at once, for output: overwrites out (3, ny, nx) with what ``lay_row`` gives.
 
     scratch (bands, 3, BLOCK + nx + BLOCK): zero before and after.
@@ -188,7 +195,7 @@ def lay_out(rows, patches, centre, velocity, spin, periodic_x, ramp, scratch, ou
     for band in prange(bands):
         for y in range(band * ny // bands, (band + 1) * ny // bands):
             lay_row(
-                rows.start[y], rows.start[y + 1], rows, patches, centre, velocity, spin, periodic_x, ramp,
+                rows.start[y], rows.start[y + 1], rows, patches, centre, velocity, spin, shift, periodic_x, ramp,
                 scratch[band],
             )  # fmt: skip
             out[:, y] = scratch[band, :, BLOCK : BLOCK + nx]

@@ -8,7 +8,7 @@ order afterwards, so that loads do not depend on threads.
 """
 
 from porescale.coupling.coverage_rows import BLOCK, blocks_inside
-from porescale.ground.jit import inline, parallel_kernel, prange
+from porescale.ground.jit import inline, kernel, parallel_kernel, prange
 
 
 @inline
@@ -20,12 +20,12 @@ def total(p, k):
 
 
 @inline
-def take_row(begin, end, rows, patches, centre, velocity, spin, periodic_x, ramp, scratch, partial, row_load):
+def take_row(begin, end, rows, patches, centre, velocity, spin, shift, periodic_x, ramp, scratch, partial, row_load):
     """Load of one collided row on the bodies in it.
 
     scratch (3, BLOCK + nx + BLOCK): rho, then j along x and y, times B/sum e, as collide_saturated_row leaves them,
-    and zero beyond the box;  the rest as in ``lay_row``.  Overwrites partial (3 * BLOCK,), and row_load (n, largest
-    height, 3) for these bodies and rows: force along x and y, torque.
+    and zero beyond the box;  the rest as in ``lay_row``.  Overwrites partial (5 * BLOCK,), and row_load (n, largest
+    height, 5) for these bodies and rows: force along x and y, torque, inside mass and its moment of inertia.
     """
     nx = scratch.shape[1] - 2 * BLOCK
     density, jx, jy = scratch[0], scratch[1], scratch[2]
@@ -41,9 +41,14 @@ def take_row(begin, end, rows, patches, centre, velocity, spin, periodic_x, ramp
         height = ramp.dtype.type(ry)
         vx = ramp.dtype.type(velocity[n, 0] - spin[n] * ry)
         vy0 = velocity[n, 1] + spin[n] * rx
+        twist = ramp.dtype.type(shift[n, 2])
+        cx = ramp.dtype.type(shift[n, 0] - shift[n, 2] * ry)
+        cy0 = shift[n, 1] + shift[n, 2] * rx
         fx = 0.0
         fy = 0.0
         tz = 0.0
+        mass = 0.0
+        inertia = 0.0
         if periodic_x:
             base %= nx
         while base + stride > 0:  # once, or again for what lies beyond a periodic side
@@ -51,41 +56,75 @@ def take_row(begin, end, rows, patches, centre, velocity, spin, periodic_x, ramp
             for b in range(first, last, BLOCK):
                 arm = ramp.dtype.type(rx + b)
                 vy = ramp.dtype.type(vy0 + spin[n] * b)
+                cy = ramp.dtype.type(cy0 + shift[n, 2] * b)
                 e = patches.fraction[at + b : at + b + BLOCK]
                 x = base + b + BLOCK
                 rho = density[x : x + BLOCK]
                 kx = jx[x : x + BLOCK]
                 ky = jy[x : x + BLOCK]
                 for i in range(BLOCK):
-                    gy = e[i] * (ky[i] - rho[i] * (vy + turning * ramp[i]))
-                    gx = e[i] * (kx[i] - rho[i] * vx)
+                    gy = e[i] * (ky[i] - rho[i] * (vy + turning * ramp[i] + e[i] * (cy + twist * ramp[i])))
+                    gx = e[i] * (kx[i] - rho[i] * (vx + e[i] * cx))
+                    m = e[i] * rho[i]
+                    x1 = arm + ramp[i]
                     partial[i] = gx
                     partial[BLOCK + i] = gy
-                    partial[2 * BLOCK + i] = (arm + ramp[i]) * gy - height * gx
+                    partial[2 * BLOCK + i] = x1 * gy - height * gx
+                    partial[3 * BLOCK + i] = m
+                    partial[4 * BLOCK + i] = m * (x1 * x1 + height * height)
                 fx += total(partial, 0)
                 fy += total(partial, BLOCK)
                 tz += total(partial, 2 * BLOCK)
+                mass += total(partial, 3 * BLOCK)
+                inertia += total(partial, 4 * BLOCK)
             if not periodic_x:
                 break
             base -= nx
         row_load[n, j, 0] = fx
         row_load[n, j, 1] = fy
         row_load[n, j, 2] = tz
+        row_load[n, j, 3] = mass
+        row_load[n, j, 4] = inertia
 
 
 @parallel_kernel
-def add_rows(corner, height, ny, periodic_y, row_load, force, torque):
-    """Sum of the rows of every body; overwrites force (n, 2) and torque (n,)."""
-    for n in prange(torque.shape[0]):
+def add_rows(corner, height, ny, periodic_y, row_load, load, inside):
+    """Sum of the rows of every body; overwrites load (n, 3), force and torque, and inside (n, 2), mass and inertia.
+
+    Inside mass: sum of B_n rho, what of the fluid takes the body's velocity in one step.
+    """
+    for n in prange(load.shape[0]):
         fx = 0.0
         fy = 0.0
         tz = 0.0
+        mass = 0.0
+        inertia = 0.0
         for j in range(height[n]):
             y = corner[n, 1] + j
             if periodic_y or 0 <= y < ny:
                 fx += row_load[n, j, 0]
                 fy += row_load[n, j, 1]
                 tz += row_load[n, j, 2]
-        force[n, 0] = fx
-        force[n, 1] = fy
-        torque[n] = tz
+                mass += row_load[n, j, 3]
+                inertia += row_load[n, j, 4]
+        load[n, 0] = fx
+        load[n, 1] = fy
+        load[n, 2] = tz
+        inside[n, 0] = mass
+        inside[n, 1] = inertia
+
+
+@kernel
+def half_step_correction(load, inside, buoyancy, share, held, shift):
+    """Velocity that full cells must be given for their time-centred one to be the body's: -load/(2 inside mass).
+
+    A cell that takes velocity v after collision has v + (what it was given in the step)/2 in mid-step.  load (n, 3),
+    inside (n, 2) of the last step;  buoyancy (n, 2): the part of the load that the body force makes directly;  held
+    (n, 3): the load low-passed with ``share`` a step, overwritten;  shift (n, 3): overwritten.
+    """
+    for n in range(load.shape[0]):
+        for a in range(3):
+            direct = buoyancy[n, a] if a < 2 else 0.0
+            held[n, a] += share * (load[n, a] - direct - held[n, a])
+            size = 2.0 * inside[n, 0 if a < 2 else 1]
+            shift[n, a] = -held[n, a] / size if size > 0.0 else 0.0

@@ -6,7 +6,7 @@ v = sum e v_n / sum e; their loads use each one's own velocity and add up to the
 
 from porescale.coupling.coverage_rows import BLOCK, lay_row
 from porescale.coupling.load import take_row
-from porescale.coupling.solid.law import mix, taken
+from porescale.coupling.solid.law import force_share, mix, taken
 from porescale.coupling.weighting import weight
 from porescale.ground.jit import inline, parallel_kernel, prange
 from porescale.lbm.collision.law import collide, collide_row, moments, numbers, shear_rate
@@ -34,25 +34,28 @@ def collide_saturated_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, first, 
         f0, f1, f2, f3, f4 = a0[x], a1[x], a2[x], a3[x], a4[x]
         f5, f6, f7, f8 = a5[x], a6[x], a7[x], a8[x]
         e = s[x]
-        part = one / (e if e > c.zero else one)
-        vx, vy = sx[x] * part, sy[x] * part
         d, jx, jy = moments(f0, f1, f2, f3, f4, f5, f6, f7, f8)
         rho = one + d
-        lightness = one / rho
+        share = e if e > c.zero else one
+        both = one / (rho * share)  # one division for two: they cost more than all else here
+        part, lightness = both * rho, both * share
+        e = min(one, e)
+        vx, vy = sx[x] * part, sy[x] * part
         b = weight(e, jx * lightness - vx, jy * lightness - vy, weighting)
-        free = one - b
-        hx = half * free * law.fx
-        hy = half * free * law.fy
+        acting = half * force_share(b, solid)
+        hx = acting * law.fx
+        hy = acting * law.fy
         kx, ky = jx + hx, jy + hy
         ux, uy = kx * lightness, ky * lightness
         rate = shear_rate(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, kx, ky, ux, uy, law)
         g0, g1, g2, g3, g4, g5, g6, g7, g8 = collide(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, kx, ky, ux, uy, rate, law)
         g0, g1, g2, g3, g4, g5, g6, g7, g8 = mix(
-            f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, b, rho, ux, uy, vx, vy, rate, solid
-        )
+            f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, rho, ux, uy, vx, vy, hx, hy,
+            rate, solid,
+        )  # fmt: skip
         a0[x], a2[x], a1[x], a4[x], a3[x] = g0, g1, g2, g3, g4
         a6[x], a5[x], a8[x], a7[x] = g5, g6, g7, g8
-        ta, tx, ty = taken(b, rho, jx, jy, hx, hy, rate, solid)
+        ta, tx, ty = taken(e, b, rho, jx, jy, hx, hy, rate, solid)
         s[x] = part * ta
         sx[x] = part * tx
         sy[x] = part * ty
@@ -60,8 +63,8 @@ def collide_saturated_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, first, 
 
 @inline
 def saturated_row(
-    a0, a1, a2, a3, a4, a5, a6, a7, a8, begin, end, rows, patches, centre, velocity, spin, periodic_x, ramp, row_load,
-    scratch, partial, weighting, solid, law,
+    a0, a1, a2, a3, a4, a5, a6, a7, a8, begin, end, rows, patches, centre, velocity, spin, shift, periodic_x, ramp,
+    row_load, scratch, partial, weighting, solid, law,
 ):  # fmt: skip
     """One row of the lattice: lay out its bodies, collide, take their loads.
 
@@ -73,7 +76,7 @@ def saturated_row(
     left = n
     right = n
     if begin < end:
-        left, right = lay_row(begin, end, rows, patches, centre, velocity, spin, periodic_x, ramp, scratch)
+        left, right = lay_row(begin, end, rows, patches, centre, velocity, spin, shift, periodic_x, ramp, scratch)
     if left >= right:
         collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, 0, n, law)
         left = right
@@ -89,14 +92,14 @@ def saturated_row(
         for beyond in (s, sx, sy):
             beyond[:BLOCK] = 0
             beyond[BLOCK + n :] = 0
-    take_row(begin, end, rows, patches, centre, velocity, spin, periodic_x, ramp, scratch, partial, row_load)
+    take_row(begin, end, rows, patches, centre, velocity, spin, shift, periodic_x, ramp, scratch, partial, row_load)
     for used in (s, sx, sy):
         used[BLOCK + left : BLOCK + right] = 0
 
 
 @parallel_kernel
 def sweep_even(
-    f, band_order, height, rows, patches, centre, velocity, spin, periodic_x, ramp, row_load, scratch, partial,
+    f, band_order, height, rows, patches, centre, velocity, spin, shift, periodic_x, ramp, row_load, scratch, partial,
     weighting, solid, law,
 ):  # fmt: skip
     """Even step with bodies; overwrites populations f and row_load.
@@ -110,13 +113,13 @@ def sweep_even(
             a0, a1, a2, a3, a4, a5, a6, a7, a8 = even_slots(f, y + 1)
             saturated_row(
                 a0, a1, a2, a3, a4, a5, a6, a7, a8, rows.start[y], rows.start[y + 1], rows, patches, centre, velocity,
-                spin, periodic_x, ramp, row_load, scratch[band], partial[band], weighting, solid, law,
+                spin, shift, periodic_x, ramp, row_load, scratch[band], partial[band], weighting, solid, law,
             )  # fmt: skip
 
 
 @parallel_kernel
 def sweep_odd(
-    f, band_order, height, rows, patches, centre, velocity, spin, periodic_x, ramp, row_load, scratch, partial,
+    f, band_order, height, rows, patches, centre, velocity, spin, shift, periodic_x, ramp, row_load, scratch, partial,
     weighting, solid, law,
 ):  # fmt: skip
     """Odd step with bodies; the halo must have been filled."""
@@ -126,5 +129,5 @@ def sweep_odd(
             a0, a1, a2, a3, a4, a5, a6, a7, a8 = odd_slots(f, y + 1)
             saturated_row(
                 a0, a1, a2, a3, a4, a5, a6, a7, a8, rows.start[y], rows.start[y + 1], rows, patches, centre, velocity,
-                spin, periodic_x, ramp, row_load, scratch[band], partial[band], weighting, solid, law,
+                spin, shift, periodic_x, ramp, row_load, scratch[band], partial[band], weighting, solid, law,
             )  # fmt: skip

@@ -77,8 +77,8 @@ class Coupled:
         hydraulic_ratio: float,
         contact_steps: int,
         acceleration: tuple[float, float],
-        solid_operator: str = "odd-SC1",
-        weighting: str = "B2",
+        solid_operator: str = "exact-wall",
+        weighting: str | None = None,
         lubrication: bool = False,
         film_gap: float = CELLS,
     ) -> None:
@@ -162,12 +162,14 @@ class Coupled:
             "force": self.force,
             "fluid_force": self.fluid_force,
             "torque": self.torque,
+            "saturated": self.saturated.state(),
         }
 
     def restore(self, state: dict[str, Any]) -> None:
         """Take up a state of a system made alike."""
         self.fluid.restore(state["fluid"])
         self.grains.restore(state["grains"])
+        self.saturated.restore(state["saturated"])
         for name in ("old_velocity", "old_spin", "force", "fluid_force", "torque"):
             getattr(self, name)[...] = state[name]
 

@@ -1,7 +1,8 @@
 """Weight B of a partially saturated cell from its solid area fraction e (Noble & Torczynski 1998).
 
 B1 = e.   B2 = e k / ((1 - e) + k),  k = tau - 1/2,  which makes the position of a wall independent of tau to first
-order.  tau is the molecular relaxation time: with an eddy viscosity the geometry must not breathe with the flow.
+order.  wall = 4 k e/(4 k e + 3 (1 - e)²) goes with the solid operator of exact_wall.py.  tau is the molecular
+relaxation time: with an eddy viscosity the geometry must not breathe with the flow.
 Grains that share a cell: B of min(1, sum of e), split in proportion to e; summing B(e) would make contacts porous.
 """
 
@@ -26,6 +27,12 @@ class B2(NamedTuple):
     k: np.floating
 
 
+class WallWeight(NamedTuple):
+    """k : tau - 1/2."""
+
+    k: np.floating
+
+
 @by_law
 def weight(solid, slip_x, slip_y, law):
     """B of a cell with summed solid fraction ``solid`` >= 0, in which fluid slips past solid at (slip_x, slip_y)."""
@@ -45,6 +52,16 @@ def _viscous(solid, slip_x, slip_y, law):
     return e * law.k / ((one - e) + law.k)
 
 
+@weight.of(WallWeight)
+def _wall(solid, slip_x, slip_y, law):
+    """That of exact_wall.py."""
+    c = numbers(solid)
+    e = min(c.one, solid)
+    t = c.one - e
+    n = law.k * e
+    return n / (n + c.c34 * t * t)
+
+
 @kernel
 def _weights(solid, slip_x, slip_y, law, out):
     """B of cells (ny, nx) into ``out``, at one slip for all."""
@@ -61,15 +78,25 @@ def weights_of(solid: NDArray[np.floating], slip_x: Any, slip_y: Any, law: Any) 
 
 
 WEIGHTINGS = {
+    "wall": "goes with the solid operator exact-wall",
     "B2": "depends on the viscosity so that walls stay where they are",
     "B1": "the solid fraction: walls move with the viscosity",
 }
 """Name of each weight and what it is good for."""
 
 
+def fitting_weight(solid_operator: str, weighting: str | None) -> str:
+    """The weight that a solid operator is used with where none is named; ValueError if the one named does not fit."""
+    own = solid_operator == "exact-wall"
+    if weighting is not None and own != (weighting == "wall"):
+        fits = "'wall'" if own else "'B2' or 'B1'"
+        raise ValueError(f"weight {weighting!r} does not go with the solid operator {solid_operator!r}: take {fits}")
+    return weighting or ("wall" if own else "B2")
+
+
 def choose_weight(name: str, relaxation_time: float, dtype: DTypeLike) -> Any:
     """The law of a weight by name; ValueError if there is none of that name."""
-    laws: dict[str, Any] = {"B1": B1, "B2": B2}
+    laws: dict[str, Any] = {"wall": WallWeight, "B1": B1, "B2": B2}
     if name not in laws:
         raise ValueError(f"unknown weight {name!r}: choose from {', '.join(WEIGHTINGS)}")
     real: Any = np.dtype(dtype).type

@@ -5,11 +5,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike
 
+from porescale.coupling.solid.exact_wall import ONSET, SMOOTHING, ExactWall
 from porescale.coupling.solid.sc1 import OddSc1, Sc1
 from porescale.coupling.solid.sc2 import Sc2
 from porescale.coupling.solid.sc3 import Sc3
 
 SOLID_OPERATORS = {
+    "exact-wall": "holds walls where they are at every viscosity, the most accurate: the default; with weight wall",
     "odd-SC1": "the odd half of SC1: as accurate, and nothing drifts inside grains",
     "SC1": "bounce-back of the non-equilibrium part, as published: drifts where grains stay",
     "SC2": "superposition: smooth inside grains, but converges at first order only; for comparison",
@@ -18,9 +20,20 @@ SOLID_OPERATORS = {
 """Name of each solid operator and what it is good for."""
 
 
-def choose_solid(name: str, dtype: DTypeLike) -> Any:
-    """The law of a solid operator by name; ValueError if there is none of that name."""
-    laws: dict[str, Any] = {"odd-SC1": OddSc1, "SC1": Sc1, "SC2": Sc2, "SC3": Sc3}
+def choose_solid(name: str, relaxation_time: float, third_order: float, dtype: DTypeLike) -> Any:
+    """The law of a solid operator by name;  third_order: rate of the fluid operator's odd moments but momentum.
+
+    ValueError if there is none of that name.
+    """
+    laws: dict[str, Any] = {"exact-wall": ExactWall, "odd-SC1": OddSc1, "SC1": Sc1, "SC2": Sc2, "SC3": Sc3}
     if name not in laws:
         raise ValueError(f"unknown solid operator {name!r}: choose from {', '.join(SOLID_OPERATORS)}")
-    return laws[name](np.dtype(dtype).type(1))
+    real: Any = np.dtype(dtype).type
+    values = {
+        "one": 1.0,
+        "k": relaxation_time - 0.5,
+        "third_order": third_order,
+        "onset": ONSET,
+        "smoothing": SMOOTHING**2,
+    }
+    return laws[name](**{field: real(values[field]) for field in laws[name]._fields})

@@ -1,27 +1,37 @@
 """What every solid operator of a partially saturated cell provides, chosen by the type of its law.
 
+Every operator conserves mass in each cell, and what the fluid loses of momentum the solid gains.  The body force acts
+in a share of the cell, ``force_share``, or a resting disc would feel a force that is not there; rho u = sum f c + h
+with half the force that acts, h.  Those of the literature are of the form
+
     f_i* = (1 - B) g_i + B (f_i + Omega^s_i),     g = f + Omega + S, the collided populations of the fluid operator
 
-so that the body force acts in (1 - B) of the cell, or a resting disc would feel a force that is not there; with
-rho u = sum f c + h, h = (1 - B) F/2.  Every operator conserves mass in each cell.
+with the share 1 - B.  A fluid operator relaxes the odd moments that are not momentum with the rate ``third_order``.
 """
 
 from porescale.ground.jit import by_law
 
 
 @by_law
+def force_share(b, solid):
+    """Share of a cell with weight b in which the body force acts."""
+
+
+@by_law
 def mix(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, b, rho, ux, uy, vx, vy, rate, solid
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, rho, ux, uy, vx, vy, hx, hy, rate,
+    solid,
 ):  # fmt: skip
     """The nine populations after solid and fluid operator.
 
-    f before, g after the fluid operator (shifted);  b weight;  u velocity with h;  v of the solid;  rate 1/tau.
+    f before, g after the fluid operator (shifted);  e solid fraction, b weight;  u velocity with h;  v of the solid;
+    rate 1/tau.
     """
 
 
 @by_law
-def taken(b, rho, jx, jy, hx, hy, rate, solid):
+def taken(e, b, rho, jx, jy, hx, hy, rate, solid):
     """What a cell's load is made of: (a, x, y) such that the solid of velocity v gains (x - a vx, y - a vy).
 
-    j: first moment sum f c;  h: half the force that acts, (1 - B) F/2.
+    j: first moment sum f c.
     """

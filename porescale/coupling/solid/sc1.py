@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.coupling.solid.law import mix, taken
+from porescale.coupling.solid.law import force_share, mix, taken
 from porescale.lbm.collision.law import numbers
 
 
@@ -30,9 +30,16 @@ class Sc1(NamedTuple):
     one: np.floating
 
 
+@force_share.of(OddSc1, Sc1)
+def _free(b, solid):
+    """1 - B."""
+    return numbers(b).one - b
+
+
 @mix.of(OddSc1)
 def _mix_odd(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, b, rho, ux, uy, vx, vy, rate, solid
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, rho, ux, uy, vx, vy, hx, hy, rate,
+    solid,
 ):  # fmt: skip
     """Odd half of SC1."""
     c = numbers(b)
@@ -57,7 +64,8 @@ def _mix_odd(
 
 @mix.of(Sc1)
 def _mix_whole(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, b, rho, ux, uy, vx, vy, rate, solid
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, rho, ux, uy, vx, vy, hx, hy, rate,
+    solid,
 ):  # fmt: skip
     """SC1 as published: the odd half and  w (9/2 ((c.v)² - (c.u)²) - 3/2 (v² - u²)) rho."""
     c = numbers(b)
@@ -86,6 +94,6 @@ def _mix_whole(
 
 
 @taken.of(OddSc1, Sc1)
-def _taken(b, rho, jx, jy, hx, hy, rate, solid):
+def _taken(e, b, rho, jx, jy, hx, hy, rate, solid):
     """B (j - h - rho v)."""
     return b * rho, b * (jx - hx), b * (jy - hy)

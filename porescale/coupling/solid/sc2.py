@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.coupling.solid.law import mix, taken
+from porescale.coupling.solid.law import force_share, mix, taken
 from porescale.lbm.collision.law import moments, numbers
 
 
@@ -20,9 +20,16 @@ class Sc2(NamedTuple):
     one: np.floating
 
 
+@force_share.of(Sc2)
+def _free(b, solid):
+    """1 - B."""
+    return numbers(b).one - b
+
+
 @mix.of(Sc2)
 def _mix(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, b, rho, ux, uy, vx, vy, rate, solid
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, rho, ux, uy, vx, vy, hx, hy, rate,
+    solid,
 ):  # fmt: skip
     """Superposition; the equilibria of v and u differ by what is of first and second order in velocity."""
     c = numbers(b)
@@ -53,7 +60,7 @@ def _mix(
 
 
 @taken.of(Sc2)
-def _taken(b, rho, jx, jy, hx, hy, rate, solid):
+def _taken(e, b, rho, jx, jy, hx, hy, rate, solid):
     """B (j + (1 - 1/tau) h - rho v)."""
     kept = numbers(rate).one - rate
     return b * rho, b * (jx + kept * hx), b * (jy + kept * hy)

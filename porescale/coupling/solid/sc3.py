@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.coupling.solid.law import mix, taken
+from porescale.coupling.solid.law import force_share, mix, taken
 from porescale.lbm.collision.law import numbers
 
 
@@ -22,9 +22,16 @@ class Sc3(NamedTuple):
     one: np.floating
 
 
+@force_share.of(Sc3)
+def _free(b, solid):
+    """1 - B."""
+    return numbers(b).one - b
+
+
 @mix.of(Sc3)
 def _mix(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, b, rho, ux, uy, vx, vy, rate, solid
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, rho, ux, uy, vx, vy, hx, hy, rate,
+    solid,
 ):  # fmt: skip
     """Bounce-back from the moving solid."""
     c = numbers(b)
@@ -47,7 +54,7 @@ def _mix(
 
 
 @taken.of(Sc3)
-def _taken(b, rho, jx, jy, hx, hy, rate, solid):
+def _taken(e, b, rho, jx, jy, hx, hy, rate, solid):
     """2 B (j - rho v)."""
     twice = b + b
     return twice * rho, twice * jx, twice * jy

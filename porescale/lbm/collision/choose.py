@@ -9,7 +9,7 @@ from numpy.typing import DTypeLike
 from porescale.lbm.collision.bgk import Bgk, EddyBgk
 from porescale.lbm.collision.central import Central, EddyCentral
 from porescale.lbm.collision.mrt import ENERGY_RATE, SQUARE_RATE, EddyMrt, Mrt
-from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL, EddyTrt, Trt
+from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL, EddyTrt, Trt, odd_rate
 
 OPERATORS = {
     "trt": "two relaxation times: walls stay where they are at every viscosity",
@@ -49,3 +49,12 @@ def choose(
     }
     real: Any = np.dtype(dtype).type
     return kind(**{name: real(values[name]) for name in kind._fields})
+
+
+def third_order_rate(law: Any) -> float:
+    """Rate of the odd moments that are not momentum, at the molecular viscosity, of an operator's law."""
+    if isinstance(law, Central | EddyCentral):
+        return 1.0
+    if isinstance(law, Bgk | EddyBgk):
+        return float(law.rate)
+    return odd_rate(1 / float(law.rate), float(law.magic))

@@ -27,12 +27,14 @@ class Numbers(NamedTuple):
     three: np.floating
     c45: np.floating
     nine: np.floating
+    c34: np.floating
+    c38: np.floating
 
 
 @by_precision
 def numbers(real: type) -> Numbers:
     """``Numbers`` in the precision of a number."""
-    return Numbers(*(real(v) for v in (4 / 9, 1 / 9, 1 / 36, 0, 0.25, 0.5, 1, 1.5, 2, 3, 4.5, 9)))
+    return Numbers(*(real(v) for v in (4 / 9, 1 / 9, 1 / 36, 0, 0.25, 0.5, 1, 1.5, 2, 3, 4.5, 9, 0.75, 0.375)))
 
 
 @inline
