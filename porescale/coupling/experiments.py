@@ -40,8 +40,8 @@ GATE = "gate"
 class Method:
     """What is chosen by name: operators of fluid and solid, weight, and the magic parameter of the fluid's."""
 
-    solid_operator: str = "odd-SC1"
-    weighting: str = "B2"
+    solid_operator: str = "exact-wall"
+    weighting: str | None = None
     operator: str = "trt"
     magic: float = MAGIC_MIDWAY_WALL
 

@@ -8,7 +8,7 @@ from typing import Any, Literal
 import pydantic
 
 from porescale.coupling.solid.choose import SOLID_OPERATORS
-from porescale.coupling.weighting import WEIGHTINGS
+from porescale.coupling.weighting import WEIGHTINGS, fitting_weight
 from porescale.ground.check import Fault
 from porescale.lbm.collision.choose import OPERATORS
 from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
@@ -38,8 +38,10 @@ class Fluid(Section):
     smagorinsky: float | None = quantity(
         "", None, gt=0, le=1, help="Smagorinsky constant of an eddy viscosity (left out: none)"
     )
-    solid_operator: str = pydantic.Field("odd-SC1", description="operator of cells that grains lie in")
-    weighting: str = pydantic.Field("B2", description="weight of cells that grains lie in")
+    solid_operator: str = pydantic.Field("exact-wall", description="operator of cells that grains lie in")
+    weighting: str | None = pydantic.Field(
+        None, description="weight of cells that grains lie in (left out: the one that goes with solid_operator)"
+    )
     precision: Literal["float64", "float32"] = pydantic.Field("float64", description="precision of the populations")
     body_force: tuple[float, float] = quantity(
         "N/m^3", (0.0, 0.0), ge=-1e9, le=1e9, help="force per volume on the fluid (a pressure gradient, reversed)"
@@ -50,9 +52,9 @@ class Fluid(Section):
 
     @pydantic.field_validator(*CHOICES)
     @classmethod
-    def _known(cls, name: str, info: pydantic.ValidationInfo) -> str:
+    def _known(cls, name: str | None, info: pydantic.ValidationInfo) -> str | None:
         known = CHOICES[str(info.field_name)]
-        if name not in known:
+        if name is not None and name not in known:
             alike = [it for it in known if it.lower() == name.lower()]
             repair = nearest(alike[0] if alike else name, known, "choices")
             raise Refused(Fault("", name, "unknown choice", "", ", ".join(known), repair))
@@ -70,12 +72,27 @@ class Fluid(Section):
             )  # fmt: skip
         return self
 
+    @pydantic.model_validator(mode="after")
+    def _weight_fits(self) -> Fluid:
+        try:
+            fitting_weight(self.solid_operator, self.weighting)
+        except ValueError:
+            fits = "'wall'" if self.solid_operator == "exact-wall" else "'B2' or 'B1'"
+            problem = f"does not go with the solid operator {self.solid_operator!r}"
+            raise Refused(Fault("weighting", self.weighting, problem, "", fits, "leave it out")) from None
+        return self
+
     @property
     def laws(self) -> dict[str, Any]:
         """What the operator is chosen by: keyword arguments of ``Fluid`` of the lattice."""
         return {"operator": self.operator, "magic": self.magic, "smagorinsky": self.smagorinsky or 0.0}
 
     @property
+    def weight(self) -> str:
+        """Name of the weight that is used."""
+        return fitting_weight(self.solid_operator, self.weighting)
+
+    @property
     def solid_laws(self) -> dict[str, Any]:
         """The same of cells that grains lie in: keyword arguments of ``Saturated`` and ``Coupled``."""
-        return {"solid_operator": self.solid_operator, "weighting": self.weighting}
+        return {"solid_operator": self.solid_operator, "weighting": self.weight}

@@ -186,7 +186,8 @@ def _judge_operator(scene: Scene, scales: Scales, speed: float, sizes: Sizes | N
         warnings.append(
             f"fluid.magic = {fluid.magic:g} is not used: the operator {fluid.operator!r} has no such parameter"
         )
-    if sizes is None and (fluid.solid_operator, fluid.weighting) != ("odd-SC1", "B2"):
+    default = type(fluid).model_fields["solid_operator"].default
+    if sizes is None and (fluid.solid_operator != default or fluid.weighting):
         warnings.append("fluid.solid_operator and fluid.weighting are not used: there is nothing solid in the fluid")
     if fluid.solid_operator == "SC3" and scene.grains is not None:
         warnings.append(

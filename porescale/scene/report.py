@@ -76,7 +76,7 @@ def _operators(scene: Scene, out: Report) -> None:
     out.row("Smagorinsky constant", fluid.smagorinsky or "none")
     if scene.grains or scene.disc:
         out.row("solid", fluid.solid_operator, "", SOLID_OPERATORS[fluid.solid_operator])
-        out.row("weight", fluid.weighting, "", WEIGHTINGS[fluid.weighting])
+        out.row("weight", fluid.weight, "", WEIGHTINGS[fluid.weight])
     out.row("precision", fluid.precision)
 
 

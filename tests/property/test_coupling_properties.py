@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from porescale.coupling.saturated import Saturated
+from porescale.coupling.saturated import RADIUS_SHIFT, Saturated
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.sides import Sides
 
@@ -16,7 +16,7 @@ EPS = np.finfo(float).eps
 N = 24
 
 place = st.floats(0.0, float(N))
-radius = st.floats(0.05, N / 2 - 1e-9)
+radius = st.floats(0.05, N / 2 - 0.03)  # as the fluid sees it, half a box at most
 
 
 def coverage(x, y, r, mirrored=False):
@@ -35,9 +35,10 @@ def tolerance(r):
 @given(place, place, radius)
 def test_coverage_adds_up_to_the_disc_and_fills_no_cell_twice(x, y, r):
     e = coverage(x, y, r)
-    assert abs(e.sum() - math.pi * r * r) <= 4 * (r + 1) ** 2 * tolerance(r)
+    seen = r + RADIUS_SHIFT / max(r, 1.0)
+    assert abs(e.sum() - math.pi * seen**2) <= 4 * (r + 1) ** 2 * tolerance(r)
     assert e.min() >= 0.0
-    assert e.max() <= 1.0 or 2 * r > N - 2  # a disc that all but fills the box meets itself
+    assert e.max() <= 1.0 or 2 * seen > N - 2  # a disc that all but fills the box meets itself
 
 
 @settings(deadline=None, max_examples=100)

@@ -1,8 +1,9 @@
 """Partially saturated cells, slow and obvious, on the two-array lattice of tests/reference/lbm.py.
 
-Written from Noble & Torczynski 1998: dense coverage of every disc from the area a
-circle has in common with a square; collision  f + (1 - B)(Omega^f + S) + B Omega^s;  loads
--sum B_n sum_i Omega^s_n c_i.
+Dense coverage of every disc from the area a circle has in common with a square.  Solid operators "odd-SC1" and "SC1"
+with weight B2, from Noble & Torczynski 1998: collision  f + (1 - B)(Omega^f + S) + B Omega^s;  loads
+-sum B_n sum_i Omega^s_n c_i.  "exact-wall" with its own weight, radius and half-step correction, from the docstrings of
+porescale/coupling/solid/exact_wall.py and saturated.py.
 The switches are the wrong ways that the tests must be able to tell from the right one.
 """
 
@@ -14,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tests.reference import solid_operators as solid
 from tests.reference.lbm import BACK, C, Lattice, W, equilibrium, guo, trt
 
 
@@ -76,13 +78,20 @@ class Disc:
 class Saturated(Lattice):
     """The lattice with discs in it.
 
-    even_half: keep the even half of SC1 (the textbook operator);  forcing "inside" or "outside" of (1 - B);
-    sharing "total": B(min(1, sum e)) in proportion to e;  "sum": the sum of every disc's own B(e).
+    forcing "inside" or "outside" of (1 - B);
+    sharing "total": B(min(1, sum e)) in proportion to e;  "sum": the sum of every disc's own B(e);
+    of the exact wall, low_pass: share of a step's load in the correction, 0 for none;  shift: of the radius, cells²;
+    buoyant: whether the solid gets back the force on its part.
     """
 
-    even_half: bool = False
+    operator: str = "exact-wall"
     forcing: str = "inside"
     sharing: str = "total"
+    low_pass: float = 0.1
+    radius_shift: float = 0.28
+    buoyant: bool = True
+    slow_load: np.ndarray | None = None
+    correction: np.ndarray | None = None
 
     def split(self, discs):
         """Each disc's share of the weight (n, ny, nx) and its solid velocity at the cell centres."""
@@ -99,14 +108,56 @@ class Saturated(Lattice):
         return share, speed, arm
 
     def solid_operator(self, rho, ux, uy, sx, sy):
-        """SC1 in every cell for a solid velocity s; without its even half unless that is asked for."""
-        if self.even_half:
+        """SC1 in every cell for a solid velocity s, or its odd half."""
+        if self.operator == "SC1":
             return self.f[BACK] - self.f + equilibrium(rho, sx, sy) - equilibrium(rho, ux, uy)[BACK]
         out = [3 * w * rho * (cx * (sx + ux) + cy * (sy + uy)) for (cx, cy), w in zip(C, W, strict=True)]
         return self.f[BACK] - self.f + np.array(out)
 
     def step_with(self, discs):
         """One step; returns force (n, 2) and torque (n,) on the discs."""
+        return self.exact_step(discs) if self.operator == "exact-wall" else self.printed_step(discs)
+
+    def exact_step(self, discs):
+        """One step with exact walls."""
+        count, force = len(discs), np.array(self.force)
+        if self.correction is None:
+            self.slow_load, self.correction = np.zeros((count, 3)), np.zeros((count, 3))
+        periodic = self.side("left")[0] == "periodic", self.side("bottom")[0] == "periodic"
+        radius = [d.r + self.radius_shift / max(d.r, 1) for d in discs]
+        parts = [coverage(d.x, d.y, r, self.nx, self.ny, periodic) for d, r in zip(discs, radius, strict=True)]
+        e, arm = np.array([p[0] for p in parts]), np.array([p[1:] for p in parts])
+        speed = [(d.u - d.w * ry, d.v + d.w * rx) for d, (rx, ry) in zip(discs, arm, strict=True)]
+        extra = [(c[0] - c[2] * ry, c[1] + c[2] * rx) for c, (rx, ry) in zip(self.correction, arm, strict=True)]
+        speed = np.array(speed) + e[:, None] * np.array(extra)
+        total = e.sum(0)
+        share = e / np.where(total > 0, total, 1)
+        whole = np.minimum(total, 1)
+        b = solid.wall_weight(whole, self.tau)
+        rho, jx, jy = self.moments()
+        j = np.array([jx, jy])
+        hx, hy = force / 2
+        ux, uy = (jx + hx) / rho, (jy + hy) / rho
+        collided = trt(self.f, equilibrium(rho, ux, uy), self.even, self.odd)
+        g = self.f + collided + guo(ux, uy, *force, self.even, self.odd)
+        everywhere = force[:, None, None] * np.ones_like(rho)
+        v = (share[:, None] * speed).sum(0)
+        out = solid.exact_wall(self.f, g, rho, everywhere, v, whole, self.tau, self.odd)
+        load = np.zeros((count, 3))
+        for n in range(count):
+            gain = share[n] * (b * (j + everywhere / 2 - rho * speed[n]) - self.buoyant * whole * everywhere)
+            rx, ry = arm[n]
+            load[n] = gain[0].sum(), gain[1].sum(), (rx * gain[1] - ry * gain[0]).sum()
+            inside = share[n] * b * rho
+            directly = np.append(-math.pi * radius[n] ** 2 * force, 0.0)
+            self.slow_load[n] += self.low_pass * (load[n] - directly - self.slow_load[n])
+            mass = inside.sum(), inside.sum(), (inside * (rx**2 + ry**2)).sum()
+            self.correction[n] = -self.slow_load[n] / (2 * np.array(mass))
+        self.stream(out)
+        return load[:, :2], load[:, 2]
+
+    def printed_step(self, discs):
+        """One step with an operator of the literature."""
         share, speed, arm = self.split(discs)
         b = share.sum(0)
         rho, jx, jy = self.moments()

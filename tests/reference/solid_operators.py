@@ -1,5 +1,7 @@
-"""Solid operators of partially saturated cells, one cell at a time, as printed (Noble & Torczynski 1998; Holdych 2003;
-review: Owen, Leonardi & Feng 2010, eqs 28-33), on whole populations f (9,).
+"""Solid operators of partially saturated cells, one cell at a time, on whole populations f (9,).
+
+Those of the literature as printed (Noble & Torczynski 1998; Holdych 2003; review: Owen, Leonardi & Feng 2010, eqs
+28-33); the exact wall from the formulas in the docstring of porescale/coupling/solid/exact_wall.py.
 
 u carries half the force that acts in the cell:  rho u = sum f c + h.
 """
@@ -35,3 +37,43 @@ def sc3(f, rho, u, v, tau):
 
 
 OPERATORS = {"odd-SC1": odd_sc1, "SC1": sc1, "SC2": sc2, "SC3": sc3}
+
+
+def wall_weight(e, tau):
+    """b of the exact wall: 1/b - 1/2 = 1/2 + 3/4 (1 - e)²/(k e)."""
+    k = tau - 0.5
+    return 4 * k * e / (4 * k * e + 3 * (1 - e) ** 2)
+
+
+def wall_rates(e, tau, third_order):
+    """Rates s_q of the odd moments but momentum, and s_e of the even part; e a number or an array."""
+    k, t = tau - 0.5, 1 - e
+    fluid = 1 / third_order - 0.5
+    lam = t * (fluid + (3 / (8 * k) - fluid) * e / (e + 0.05)) + 0.5 * e * t / (t**2 + 0.3**2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        r = 0.5 + 0.75 * t**2 / (k * e) + 2 * lam
+        k0 = (k - 0.75 * t / r) / t
+        even = 1 / (0.5 + k0)
+    return 1 / (0.5 + lam), np.where(e == 1, 0.0, even)
+
+
+def halves(f):
+    """Even half, momentum's share of the odd one, and the rest of it, of populations (9, ...)."""
+    even, odd = (f + f[BACK]) / 2, (f - f[BACK]) / 2
+    momentum = np.tensordot(DIRECTIONS, odd, ((0,), (0,)))
+    carried = 3 * np.tensordot(WEIGHTS[:, None] * DIRECTIONS, momentum, 1)
+    return even, carried, odd - carried
+
+
+def exact_wall(f, g, rho, force, v, e, tau, third_order):
+    """Populations after the step; g: collided fluid;  v, force (2, ...), in the whole cell;  e and rho (...)."""
+    j = np.tensordot(DIRECTIONS, f, ((0,), (0,)))
+    third, even_rate = wall_rates(e, tau, third_order)
+    even, _, rest = halves(f)
+    after = j + force + wall_weight(e, tau) * (rho * v - j - force / 2)
+    return (
+        even
+        + even_rate * tau * (halves(g)[0] - even)
+        + 3 * np.tensordot(WEIGHTS[:, None] * DIRECTIONS, after, 1)
+        + (1 - third) * rest
+    )

@@ -15,6 +15,7 @@ from porescale.coupling.saturated import Saturated
 from porescale.coupling.solid.choose import choose_solid
 from porescale.coupling.weighting import choose_weight
 from porescale.ground.jit import set_threads, threads
+from porescale.lbm.collision.choose import third_order_rate
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.sides import Sides
 from tests.reference import lbm as plain
@@ -27,17 +28,19 @@ EPS = np.finfo(float).eps
 ROUND_OFF = 120 * EPS
 
 
-def wet_and_twin(kinds, discs, force=(2e-5, -1e-5), tau=0.7, **switches):
+def wet_and_twin(kinds, discs, force=(2e-5, -1e-5), tau=0.7, operator="exact-wall", twin_operator=None, **switches):
     names = ("left", "right", "bottom", "top")
     fluid = Fluid(22, 18, tau, force=force, sides=Sides(*kinds))
     other = twin.Saturated(
-        22, 18, tau, force=force, sides={n: (k, 0.0) for n, k in zip(names, kinds, strict=True)}, **switches
-    )
+        22, 18, tau, force=force, sides={n: (k, 0.0) for n, k in zip(names, kinds, strict=True)},
+        operator=twin_operator or operator, **switches,
+    )  # fmt: skip
     random = np.random.default_rng(5)
     rho, ux, uy = 1 + 0.01 * random.uniform(-1, 1, (18, 22)), *(0.05 * random.uniform(-1, 1, (2, 18, 22)))
     fluid.set_flow(ux, uy, rho)
     other.f = plain.equilibrium(rho, ux, uy)
-    return fluid, Saturated(fluid, np.array([d.r for d in discs])), other
+    wet = Saturated(fluid, np.array([d.r for d in discs]), solid_operator=operator)
+    return fluid, wet, other
 
 
 def arrays(discs):
@@ -84,27 +87,68 @@ SIDES = [
 ]
 
 
+@pytest.mark.parametrize("operator", ["exact-wall", "odd-SC1"])
 @pytest.mark.parametrize("kinds", SIDES)
-def test_saturated_cells_are_those_of_the_paper(kinds):
-    force, torque, flow = differences(kinds, crowd(), steps=6)
+def test_saturated_cells_are_those_of_the_formulas(kinds, operator):
+    force, torque, flow = differences(kinds, crowd(), steps=6, operator=operator)
     # Loads sum some 40 cells with lever arms up to 3.4; errors of the flow pile up over the steps.
     assert flow < 6 * ROUND_OFF
     assert force < 40 * 6 * ROUND_OFF
     assert torque < 3.4 * 40 * 6 * ROUND_OFF
 
 
-@pytest.mark.parametrize("wrong", [{"even_half": True}, {"forcing": "outside"}, {"sharing": "sum"}])
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"operator": "odd-SC1", "twin_operator": "SC1"}, {"operator": "odd-SC1", "forcing": "outside"},
+        {"operator": "odd-SC1", "sharing": "sum"}, {"low_pass": 0.0}, {"low_pass": 0.11}, {"radius_shift": 0.29},
+        {"buoyant": False},
+    ],
+)  # fmt: skip
 def test_another_operator_is_told_apart(wrong):
     assert differences(SIDES[0], crowd(), steps=2, **wrong).max() > 1e-7
 
 
-def test_a_row_of_saturated_cells_is_the_same_uncompiled():
+def test_a_correction_that_is_forgotten_is_missed():
+    def go(forget):
+        fluid, wet, _ = wet_and_twin(SIDES[0], crowd())
+        for step in range(8):
+            if step == 5:
+                again = Saturated(fluid, wet.radius)
+                if not forget:
+                    again.restore(_copied(wet.state()))
+                wet = again
+            wet.advance(fluid, *arrays(crowd()))
+        return fluid.populations[:, 1:-1, 1:-1].copy(), wet.force.copy()
+
+    fluid, wet, _ = wet_and_twin(SIDES[0], crowd())
+    for _ in range(8):
+        wet.advance(fluid, *arrays(crowd()))
+    for whole, again in zip((fluid.populations[:, 1:-1, 1:-1], wet.force), go(False), strict=True):
+        np.testing.assert_array_equal(whole, again)
+    assert np.abs(go(True)[1] - wet.force).max() > 1e-7
+
+
+PAIRS = [("exact-wall", "wall"), ("odd-SC1", "B2")]
+
+
+def laws_of(operator, weighting, fluid):
+    tau = fluid.relaxation_time
+    return (
+        choose_weight(weighting, tau, float),
+        choose_solid(operator, tau, third_order_rate(fluid.law), float),
+        fluid.law,
+    )
+
+
+@pytest.mark.parametrize(("operator", "weighting"), PAIRS)
+def test_a_row_of_saturated_cells_is_the_same_uncompiled(operator, weighting):
     random = np.random.default_rng(2)
     fluid = Fluid(5, 1, 0.7, force=(1e-4, 2e-4))
     rows = 0.01 * random.uniform(-1, 1, (9, 5))
     s = np.array([0.0, 0.3, 1.0, 1.4, 0.999])
     sx, sy = s * 0.02, s * -0.03
-    laws = choose_weight("B2", 0.7, float), choose_solid("odd-SC1", float), fluid.law
+    laws = laws_of(operator, weighting, fluid)
     made = []
     for run in (solid_collision.collide_saturated_row, solid_collision.collide_saturated_row.py_func):
         copies = [row.copy() for row in rows], s.copy(), sx.copy(), sy.copy()
@@ -114,7 +158,8 @@ def test_a_row_of_saturated_cells_is_the_same_uncompiled():
     np.testing.assert_allclose(*made, rtol=0, atol=30 * 1.4 * EPS)
 
 
-def test_an_empty_saturated_row_is_a_plain_one():
+@pytest.mark.parametrize(("operator", "weighting"), PAIRS)
+def test_an_empty_saturated_row_is_a_plain_one(operator, weighting):
     from porescale.lbm.collision.law import collide_row
 
     random = np.random.default_rng(2)
@@ -122,7 +167,7 @@ def test_an_empty_saturated_row_is_a_plain_one():
     rows = 0.01 * random.uniform(-1, 1, (9, 5))
     wet, dry, none = [row.copy() for row in rows], [row.copy() for row in rows], np.zeros(5)
     solid = none.copy(), none.copy(), none.copy()
-    laws = choose_weight("B2", 0.7, float), choose_solid("odd-SC1", float), fluid.law
+    laws = laws_of(operator, weighting, fluid)
     solid_collision.collide_saturated_row(*wet, *solid, 0, 5, *laws)
     collide_row(*dry, 0, 5, fluid.law)
     np.testing.assert_allclose(wet, dry, rtol=0, atol=30 * EPS)
@@ -261,9 +306,9 @@ def test_no_kernel_of_a_step_allocates():
         coupled.fluid.advance()
         coupled.advance()
     used = [
-        coverage.cover, coverage_rows.list_rows, load.add_rows, step.to_lattice, step.total_load, sides.fill_halo,
-        sides.empty_halo, solid_collision.sweep_even, solid_collision.sweep_odd, stream.sweep_even, stream.sweep_odd,
-        plate.exchange, integrate.contact_steps,
+        coverage.cover, coverage_rows.list_rows, load.add_rows, load.half_step_correction, step.to_lattice,
+        step.total_load, sides.fill_halo, sides.empty_halo, solid_collision.sweep_even, solid_collision.sweep_odd,
+        stream.sweep_even, stream.sweep_odd, plate.exchange, integrate.contact_steps,
     ]  # fmt: skip
     assert [kernel.__name__ for kernel in used if allocates(kernel)] == []
 
