@@ -16,6 +16,8 @@ from porescale.ground.jit import inline, parallel_kernel, prange
 
 CHUNKS = 64
 """Parts of the discs that are done side by side; any number gives the same patches."""
+FAR, NOWHERE = 2.0**40, -(2**40)
+"""Cells beyond which a disc counts as gone, since cells are counted in integers; where its patch is put then."""
 SCRATCH = 7
 """Rows of scratch that ``cover`` needs."""
 
@@ -107,7 +109,8 @@ def cover(centre, radius, patches, lines):
     """Exact solid fractions of the cells around every disc.
 
     centre (n, 2), radius (n,): cells;  lines (CHUNKS, SCRATCH, largest stride + BLOCK): scratch.  Overwrites the first
-    n patches, whose rows hold one cell more than a disc can touch, and their corners.
+    n patches, whose rows hold one cell more than a disc can touch, and their corners.  The patch of a centre
+    that is no number, or beyond ``FAR``, lies outside of every box with walls.
     """
     count = radius.shape[0]
     # By name: what a loop over threads writes into a member of a tuple is lost.
@@ -121,9 +124,10 @@ def cover(centre, radius, patches, lines):
     for chunk in prange(lines.shape[0]):
         for n in range(chunk * count // lines.shape[0], (chunk + 1) * count // lines.shape[0]):
             r = radius[n]
-            x0 = math.floor(centre[n, 0] - r)
-            y0 = math.floor(centre[n, 1] - r)
+            patch = fraction[start[n] : start[n] + stride[n] * height[n]]
+            there = abs(centre[n, 0]) < FAR and abs(centre[n, 1]) < FAR  # nor no number, as when a run blows up
+            x0 = math.floor(centre[n, 0] - r) if there else NOWHERE
+            y0 = math.floor(centre[n, 1] - r) if there else NOWHERE
             corner[n, 0] = x0
             corner[n, 1] = y0
-            patch = fraction[start[n] : start[n] + stride[n] * height[n]]
             cover_disc(centre[n, 0], centre[n, 1], r, x0, y0, height[n], stride[n], patch, lines[chunk])

@@ -22,11 +22,15 @@ DENSITY = 0.3
 HELD_ONLY = ("SC3",)
 """Solid operators with which free discs run away: in the map at nearly every density ratio (coupling.fall,
 coupling.fly) and in beds of every solid fraction (coupling.bed)."""
-LIGHTEST = ((16.0, 0.3), (10.0, 0.5), (3.0, 0.8))
-"""Cells per diameter, and the density ratio from which on a free disc of that size holds with odd-SC1 and B2
-(coupling.fall); with B1 0.2, 0.3 and 0.5 at 16, 10 and 5 cells.  Nothing at or below 0.1 holds."""
-CELLS_RIGHT = 10.0
-"""Cells per diameter from which on the drag of a free disc is within a tenth with odd-SC1 and B2 (coupling.fall)."""
+LIGHTEST = {
+    "exact-wall wall": ((10.0, 0.2), (5.0, 0.3), (3.0, 0.5)),
+    "odd-SC1 B2": ((16.0, 0.3), (10.0, 0.5), (3.0, 0.8)),
+    "odd-SC1 B1": ((16.0, 0.2), (10.0, 0.3), (5.0, 0.5), (3.0, 0.8)),
+}
+"""Cells per diameter, and the density ratio from which on a free disc of that size holds, by solid operator and weight
+(coupling.fall).  Nothing at 0.1 or below holds."""
+CELLS_RIGHT = {"exact-wall wall": 3.0, "odd-SC1 B2": 10.0, "odd-SC1 B1": 5.0}
+"""Cells per diameter from which on the drag of a free disc is within a tenth, wherever it holds (coupling.fall)."""
 
 
 def cell_reynolds(operator: str, *, eddies: bool, lid: bool = False) -> float:
@@ -41,7 +45,12 @@ def cell_reynolds(operator: str, *, eddies: bool, lid: bool = False) -> float:
     return known.get(operator, min(known.values()))
 
 
-def lightest(cells_per_diameter: float) -> float:
-    """Density ratio from which on free discs of that size are known to hold; 1 below the fewest cells of the map."""
-    held = [ratio for cells, ratio in LIGHTEST if cells_per_diameter >= cells]
-    return min(held, default=1.0)
+def lightest(cells_per_diameter: float, solid_operator: str = "exact-wall", weighting: str = "wall") -> float:
+    """Density ratio from which on free discs of that size are known to hold; 1 below the fewest cells of the map.
+
+    A pair of solid operator and weight that is not in the table counts as the worst that is.
+    """
+    name = f"{solid_operator} {weighting}"
+    tables = [LIGHTEST[name]] if name in LIGHTEST else list(LIGHTEST.values())
+    held = [min((ratio for cells, ratio in rows if cells_per_diameter >= cells), default=1.0) for rows in tables]
+    return max(held)

@@ -15,7 +15,7 @@ from porescale.coupling.experiments import LAW, faxen
 from porescale.coupling.saturated import Saturated
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.step import Coupled
-from porescale.coupling.weighting import WEIGHTINGS
+from porescale.coupling.weighting import WEIGHTINGS, fitting_weight
 from porescale.dem.discs import make_discs
 from porescale.dem.system import Grains
 from porescale.dem.walls import Box
@@ -49,17 +49,28 @@ OFF_CENTRE = (0.3, 0.1)
 
 
 def variants(quick: bool) -> dict[str, dict[str, Any]]:
-    """Operators by name: every solid operator with every weight; the first pair also with central moments, in float32.
+    """Operators by name: every solid operator with every weight that fits it; the first pair also in float32.
 
-    Keys solid_operator, weighting, operator, dtype.
+    The first pair and the odd half of SC1 also with central moments.  Keys solid_operator, weighting, operator, dtype.
     """
     plain = {"operator": "trt", "dtype": np.float64}
-    pairs = {f"{s} {w}": {"solid_operator": s, "weighting": w, **plain} for s in SOLID_OPERATORS for w in WEIGHTINGS}
+    pairs = {
+        f"{s} {w}": {"solid_operator": s, "weighting": w, **plain}
+        for s in SOLID_OPERATORS for w in WEIGHTINGS if _fits(s, w)
+    }  # fmt: skip
     first = next(iter(pairs))
     if quick:
         return {first: pairs[first]}
-    more = {f"{name}, central": {**law, "operator": "central"} for name, law in pairs.items() if name.startswith("odd")}
+    liked = [name for name in pairs if name == first or name.startswith("odd-SC1")]
+    more = {f"{name}, central": {**pairs[name], "operator": "central"} for name in liked}
     return pairs | more | {f"{first}, float32": {**pairs[first], "dtype": np.float32}}
+
+
+def _fits(solid_operator: str, weighting: str) -> bool:
+    try:
+        return fitting_weight(solid_operator, weighting) == weighting
+    except ValueError:
+        return False
 
 
 def laws(quick: bool) -> list[str]:

@@ -25,7 +25,8 @@ class Circumstances:
     relaxation_time: float
     speed: float
     density_change: float
-    solid_operator: str = "odd-SC1"
+    solid_operator: str = "exact-wall"
+    weighting: str = "wall"
     density_ratio: float | None = None
     cells_per_diameter: float = 0.0
     lid: bool = False
@@ -47,7 +48,7 @@ def _free_sc3(now: Circumstances) -> Found:
     if now.density_ratio is None or now.solid_operator not in limits.HELD_ONLY:
         return None
     return float("inf"), (
-        f"fluid.solid_operator = '{now.solid_operator}' with free grains, which run away with it; take 'odd-SC1'"
+        f"fluid.solid_operator = '{now.solid_operator}' with free grains, which run away with it; take 'exact-wall'"
     )
 
 
@@ -55,7 +56,7 @@ def _light(now: Circumstances) -> Found:
     """Grains lighter than their number of cells bears."""
     if now.density_ratio is None:
         return None
-    least = limits.lightest(now.cells_per_diameter)
+    least = limits.lightest(now.cells_per_diameter, now.solid_operator, now.weighting)
     if now.density_ratio >= least:
         return None
     return least / now.density_ratio, (

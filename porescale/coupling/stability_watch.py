@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from porescale.coupling.stability_cause import Circumstances, likely_cause
 from porescale.coupling.step import Coupled
+from porescale.coupling.weighting import fitting_weight
 from porescale.dem.system import Grains
 from porescale.ground.check import Unstable
 from porescale.lbm.fluid import Fluid
@@ -22,16 +23,18 @@ Array = NDArray[np.floating]
 class Sense:
     """Watches a fluid, and the grains in it.  Remembers how it stood at the last look, for the cause.
 
-    operator, eddies, solid_operator : names of the laws, for the cause.
+    operator, eddies, solid_operator, weighting : names of the laws, for the cause; None: the weight that fits.
     """
 
     def __init__(
-        self, fluid: Fluid, scales: Scales, coupled: Coupled | None, *, operator: str, eddies: bool, solid_operator: str
-    ) -> None:
+        self, fluid: Fluid, scales: Scales, coupled: Coupled | None, *, operator: str, eddies: bool,
+        solid_operator: str, weighting: str | None = None,
+    ) -> None:  # fmt: skip
         self.fluid, self.scales, self.coupled = fluid, scales, coupled
         ratio, cells = _lightest(coupled) if coupled else (None, 0.0)
         self.last = Circumstances(
-            operator, eddies, fluid.relaxation_time, self._told(), 0.0, solid_operator, ratio, cells,
+            operator, eddies, fluid.relaxation_time, self._told(), 0.0, solid_operator,
+            fitting_weight(solid_operator, weighting), ratio, cells,
             lid=any(fluid.sides.speed(name) for name in NAMES),
         )  # fmt: skip
 

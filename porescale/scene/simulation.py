@@ -85,7 +85,7 @@ class Simulation:
             laws = scene.fluid
             self._sense = Sense(
                 fluid, derived.scales, coupled, operator=laws.operator, eddies=bool(laws.smagorinsky),
-                solid_operator=laws.solid_operator, weighting=laws.weighting,
+                solid_operator=laws.solid_operator, weighting=laws.weight,
             )  # fmt: skip
 
     def advance(self, steps: int) -> None:

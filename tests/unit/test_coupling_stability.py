@@ -12,15 +12,18 @@ import pytest
 
 from porescale.coupling import limits, stability
 from porescale.coupling.experiments import immersed
+from porescale.coupling.saturated import Saturated
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.stability_cause import Circumstances, likely_cause
 from porescale.coupling.stability_watch import Sense, worst_cell
 from porescale.coupling.weighting import WEIGHTINGS
 from porescale.ground.check import Unstable
-from porescale.workbench.study import UNSTABLE, Row, holds_up_to
+from porescale.lbm.fluid import Fluid
+from porescale.lbm.sides import Sides
+from porescale.workbench.study import STABLE, UNSTABLE, Row, holds_up_to
 
 MAP = Path(__file__).resolve().parents[2] / "docs" / "stability" / "stability.json"
-CALM = Circumstances("trt", False, 0.8, 0.01, 0.01, "odd-SC1", 2.5, 16.0)
+CALM = Circumstances("trt", False, 0.8, 0.01, 0.01, "odd-SC1", "B2", 2.5, 16.0)
 
 
 @pytest.fixture(scope="module")
@@ -29,8 +32,9 @@ def rows() -> list[Row]:
 
 
 def test_every_pair_of_solid_operator_and_weight_is_in_the_map(rows):
-    laws = stability.laws(False)
-    assert {f"{s} {w}" for s in SOLID_OPERATORS for w in WEIGHTINGS} <= set(laws)
+    laws = stability.variants(False)
+    assert {law["solid_operator"] for law in laws.values()} == set(SOLID_OPERATORS)
+    assert {law["weighting"] for law in laws.values()} == set(WEIGHTINGS)
     assert {row.law for row in rows if row.flow.startswith("coupling.")} == set(laws)
 
 
@@ -49,14 +53,21 @@ def test_an_operator_that_was_not_tried_gets_the_least_limit():
     assert limits.cell_reynolds("new", eddies=False) == min(limits.IN_THE_OPEN.values())
 
 
-def test_light_discs_hold_from_the_density_ratio_of_the_map_on(rows):
-    fall = [row for row in rows if (row.flow, row.law) == ("coupling.fall", "odd-SC1 B2")]
-    for cells, least in limits.LIGHTEST:
+@pytest.mark.parametrize("law", list(limits.LIGHTEST))
+def test_light_discs_hold_from_the_density_ratio_of_the_map_on(rows, law):
+    fall = [row for row in rows if (row.flow, row.law) == ("coupling.fall", law)]
+    for cells, least in limits.LIGHTEST[law]:
         held = {row.x: row.verdict != UNSTABLE for row in fall if row.y == cells}
         assert all(held[x] for x in held if x >= least)
         assert not held[max(x for x in held if x < least)]
+    right = {row.y for row in fall if all(it.verdict != STABLE for it in fall if it.y == row.y)}
+    assert min(right) == limits.CELLS_RIGHT[law]
+
+
+def test_light_discs_between_the_sizes_of_the_map_count_as_the_smaller():
+    assert limits.lightest(12.0, "odd-SC1", "B2") == 0.5
     assert limits.lightest(2.0) == 1.0
-    assert limits.lightest(12.0) == 0.5
+    assert limits.lightest(10.0, "SC9", "B9") == max(limits.lightest(10.0, *law.split()) for law in limits.LIGHTEST)
 
 
 def test_free_discs_run_away_with_what_is_for_held_ones(rows):
@@ -75,7 +86,7 @@ def test_free_discs_run_away_with_what_is_for_held_ones(rows):
         ({"density_change": 0.45}, "too much for the sound speed"),
         ({"density_ratio": 0.25}, "density ratio 0.25 at 16 cells"),
         ({"density_ratio": 0.4, "cells_per_diameter": 10.0}, "density ratio 0.4 at 10 cells"),
-        ({"solid_operator": "SC3"}, "take 'odd-SC1'"),
+        ({"solid_operator": "SC3"}, "take 'exact-wall'"),
         ({"solid_operator": "SC3", "density_ratio": None}, "none that is known of"),
         ({"density_change": 0.45, "relaxation_time": 0.5001}, "near 1/2"),  # 300 times beyond against 1.5
     ],
@@ -121,6 +132,17 @@ def test_a_disc_that_is_nowhere_hides_no_fault_of_the_fluid():
     watch.fluid.populations[1, 5, 5] = 2.0
     with pytest.raises(Unstable, match="cell"):
         watch.check(1, 1.0)
+
+
+@pytest.mark.parametrize("where", [np.nan, np.inf, -np.inf, 1e30, -1e30, 1e15])
+@pytest.mark.parametrize("kind", ["wall", "periodic"])
+def test_a_disc_that_is_nowhere_is_no_crash(where, kind):
+    fluid = Fluid(20, 16, 0.8, sides=Sides(kind, kind, kind, kind))
+    wet = Saturated(fluid, np.array([3.0, 3.0, 3.0]))
+    place = np.array([[5.0, 5.0], [where, where], [12.0, 8.0]])
+    for _ in range(4):
+        wet.advance(fluid, place, np.zeros((3, 2)), np.zeros(3))
+    assert np.isfinite(fluid.populations[:, 1:-1, 1:-1]).all() or kind == "periodic"
 
 
 def test_the_lightest_free_disc_counts():
