@@ -33,11 +33,15 @@ class Circumstances:
 
 
 def likely_cause(now: Circumstances) -> str:
-    """The circumstance that is furthest beyond what is known to hold, with its repair, in one line."""
-    beyond = [found for found in (_free_sc3(now), _light(now), _thin(now), _fast(now), _pressed(now)) if found]
-    if not beyond:
+    """The circumstance that is furthest beyond what is known to hold, with its repair, in one line.
+
+    What is wrong from the start comes first: grains with an operator, or of a weight, that cannot last.  Speed and
+    pressure may be the first signs of these.
+    """
+    beyond = _free_sc3(now) or _light(now) or max(filter(None, (_thin(now), _fast(now), _pressed(now))), default=None)
+    if beyond is None:
         return "likely cause: none that is known of; a shorter fluid.step or a finer spacing often helps"
-    return f"likely cause: {max(beyond)[1]}"
+    return f"likely cause: {beyond[1]}"
 
 
 Found = tuple[float, str] | None
