@@ -133,14 +133,15 @@ def blocks_inside(base, stride, nx):
 
 
 @inline
-def lay_row(begin, end, rows, patches, centre, velocity, spin, shift, periodic_x, ramp, scratch):
+def lay_row(begin, end, rows, patches, centre, velocity, spin, shift, theta, periodic_x, ramp, scratch):
     """Add up the solid fractions of one row, and fractions times solid velocity at the cells' centres.
 
     The velocity in a cell that a body covers by e is its own and e times the half-step correction ``shift`` (n, 3),
-    along x and y and of the spin.
+    along x and y and of the spin.  Where rims are soft scratch has a fourth row:
+    fractions times theta (n,), rim.py.
 
     Entries ``begin`` to ``end`` - 1 of ``rows`` are the row's;  centre (n, 2) cells, velocity (n, 2), spin (n,):
-    lattice units;  ramp (BLOCK,): 0, 1, 2, ...  Adds to scratch (3, BLOCK + nx + BLOCK); returns the first column that
+    lattice units;  ramp (BLOCK,): 0, 1, 2, ...  Adds to scratch (3 or 4, BLOCK + nx + BLOCK); returns the first column that
     may be covered and one past the last.
     """
     nx = scratch.shape[1] - 2 * BLOCK
@@ -175,6 +176,11 @@ def lay_row(begin, end, rows, patches, centre, velocity, spin, shift, periodic_x
                     t[i] += e[i]
                     tx[i] += e[i] * (vx + e[i] * cx)
                     ty[i] += e[i] * (vy + turning * ramp[i] + e[i] * (cy + twist * ramp[i]))
+                if scratch.shape[0] > 3:
+                    softness = ramp.dtype.type(theta[n])
+                    summed = scratch[3, x : x + BLOCK]
+                    for i in range(BLOCK):
+                        summed[i] += e[i] * softness
             if first < last:
                 leftmost = min(leftmost, base + first)
                 rightmost = max(rightmost, base + last)
@@ -185,18 +191,18 @@ def lay_row(begin, end, rows, patches, centre, velocity, spin, shift, periodic_x
 
 
 @parallel_kernel
-def lay_out(rows, patches, centre, velocity, spin, shift, periodic_x, ramp, scratch, out):
+def lay_out(rows, patches, centre, velocity, spin, shift, theta, periodic_x, ramp, scratch, out):
     """All rows at once, for output: overwrites out (3, ny, nx) with what ``lay_row`` gives.
 
-    scratch (bands, 3, BLOCK + nx + BLOCK): zero before and after.
+    scratch (bands, 3 or 4, BLOCK + nx + BLOCK): zero before and after.
     """
     bands = scratch.shape[0]
     ny, nx = out.shape[1], out.shape[2]
     for band in prange(bands):
         for y in range(band * ny // bands, (band + 1) * ny // bands):
             lay_row(
-                rows.start[y], rows.start[y + 1], rows, patches, centre, velocity, spin, shift, periodic_x, ramp,
-                scratch[band],
+                rows.start[y], rows.start[y + 1], rows, patches, centre, velocity, spin, shift, theta,
+                periodic_x, ramp, scratch[band],
             )  # fmt: skip
-            out[:, y] = scratch[band, :, BLOCK : BLOCK + nx]
+            out[:, y] = scratch[band, :3, BLOCK : BLOCK + nx]
             scratch[band] = 0

@@ -25,7 +25,9 @@ def take_row(begin, end, rows, patches, centre, velocity, spin, shift, periodic_
 
     scratch (3, BLOCK + nx + BLOCK): rho, then j along x and y, times B/sum e, as collide_saturated_row leaves them,
     and zero beyond the box;  the rest as in ``lay_row``.  Overwrites partial (5 * BLOCK,), and row_load (n, largest
-    height, 5) for these bodies and rows: force along x and y, torque, inside mass and its moment of inertia.
+    height, 5) for these bodies and rows: force along x and y, torque, inside mass and its moment of inertia;
+    where rims are soft, with a fourth row of scratch, the slip |u - v|, also the sums of e (1 - e) times slip and of
+    e (1 - e) (partial 7 * BLOCK, row_load 7).
     """
     nx = scratch.shape[1] - 2 * BLOCK
     density, jx, jy = scratch[0], scratch[1], scratch[2]
@@ -49,6 +51,9 @@ def take_row(begin, end, rows, patches, centre, velocity, spin, shift, periodic_
         tz = 0.0
         mass = 0.0
         inertia = 0.0
+        slipping = 0.0
+        rim = 0.0
+        soft = scratch.shape[0] > 3
         if periodic_x:
             base %= nx
         while base + stride > 0:  # once, or again for what lies beyond a periodic side
@@ -77,6 +82,14 @@ def take_row(begin, end, rows, patches, centre, velocity, spin, shift, periodic_
                 tz += total(partial, 2 * BLOCK)
                 mass += total(partial, 3 * BLOCK)
                 inertia += total(partial, 4 * BLOCK)
+                if soft:
+                    slip = scratch[3, x : x + BLOCK]
+                    for i in range(BLOCK):
+                        edge = e[i] * (1 - e[i])
+                        partial[5 * BLOCK + i] = edge * slip[i]
+                        partial[6 * BLOCK + i] = edge
+                    slipping += total(partial, 5 * BLOCK)
+                    rim += total(partial, 6 * BLOCK)
             if not periodic_x:
                 break
             base -= nx
@@ -85,6 +98,9 @@ def take_row(begin, end, rows, patches, centre, velocity, spin, shift, periodic_
         row_load[n, j, 2] = tz
         row_load[n, j, 3] = mass
         row_load[n, j, 4] = inertia
+        if soft:
+            row_load[n, j, 5] = slipping
+            row_load[n, j, 6] = rim
 
 
 @parallel_kernel
@@ -112,6 +128,18 @@ def add_rows(corner, height, ny, periodic_y, row_load, load, inside):
         load[n, 2] = tz
         inside[n, 0] = mass
         inside[n, 1] = inertia
+
+
+@kernel
+def add_rims(corner, height, ny, periodic_y, row_load, rim):
+    """Sum of the rows of the first bodies where rims are soft; overwrites rim (n, 2), see ``take_row``."""
+    for n in range(rim.shape[0]):
+        rim[n, 0] = 0.0
+        rim[n, 1] = 0.0
+        for j in range(height[n]):
+            if periodic_y or 0 <= corner[n, 1] + j < ny:
+                rim[n, 0] += row_load[n, j, 5]
+                rim[n, 1] += row_load[n, j, 6]
 
 
 @kernel

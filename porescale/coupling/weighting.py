@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from porescale.coupling.rim import SLIP_FACTOR
 from porescale.ground.jit import by_law, kernel
 from porescale.lbm.collision.law import numbers
 
@@ -33,19 +34,29 @@ class WallWeight(NamedTuple):
     k: np.floating
 
 
+class SoftWallWeight(NamedTuple):
+    """k : tau - 1/2;  slip_factor : of theta times slip in it (rim.py)."""
+
+    k: np.floating
+    slip_factor: np.floating
+
+
 @by_law
-def weight(solid, slip_x, slip_y, law):
-    """B of a cell with summed solid fraction ``solid`` >= 0, in which fluid slips past solid at (slip_x, slip_y)."""
+def weight(solid, theta, slip_x, slip_y, law):
+    """B of a cell with summed solid fraction ``solid`` >= 0, in which fluid slips past solid at (slip_x, slip_y).
+
+    theta: softness of the rim (rim.py).
+    """
 
 
 @weight.of(B1)
-def _solid_fraction(solid, slip_x, slip_y, law):
+def _solid_fraction(solid, theta, slip_x, slip_y, law):
     """The solid fraction itself."""
     return min(numbers(solid).one, solid)
 
 
 @weight.of(B2)
-def _viscous(solid, slip_x, slip_y, law):
+def _viscous(solid, theta, slip_x, slip_y, law):
     """Noble & Torczynski's weight."""
     one = numbers(solid).one
     e = min(one, solid)
@@ -53,7 +64,7 @@ def _viscous(solid, slip_x, slip_y, law):
 
 
 @weight.of(WallWeight)
-def _wall(solid, slip_x, slip_y, law):
+def _wall(solid, theta, slip_x, slip_y, law):
     """That of exact_wall.py."""
     c = numbers(solid)
     e = min(c.one, solid)
@@ -62,18 +73,28 @@ def _wall(solid, slip_x, slip_y, law):
     return n / (n + c.c34 * t * t)
 
 
+@weight.of(SoftWallWeight)
+def _soft_wall(solid, theta, slip_x, slip_y, law):
+    """The same with the slip in k."""
+    c = numbers(solid)
+    e = min(c.one, solid)
+    t = c.one - e
+    n = (law.k + law.slip_factor * theta * np.sqrt(slip_x * slip_x + slip_y * slip_y)) * e
+    return n / (n + c.c34 * t * t)
+
+
 @kernel
-def _weights(solid, slip_x, slip_y, law, out):
-    """B of cells (ny, nx) into ``out``, at one slip for all."""
+def _weights(solid, zero, law, out):
+    """B of cells (ny, nx) without slip into ``out``."""
     for y in range(solid.shape[0]):
         for x in range(solid.shape[1]):
-            out[y, x] = weight(solid[y, x], slip_x, slip_y, law)
+            out[y, x] = weight(solid[y, x], zero, zero, zero, law)
 
 
-def weights_of(solid: NDArray[np.floating], slip_x: Any, slip_y: Any, law: Any) -> NDArray[np.floating]:
-    """B of cells with summed solid fractions (ny, nx), at one slip for all, in the precision of ``solid``."""
+def weights_of(solid: NDArray[np.floating], law: Any) -> NDArray[np.floating]:
+    """B of cells with summed solid fractions (ny, nx) without slip, in the precision of ``solid``."""
     out = np.empty_like(solid)
-    _weights(solid, slip_x, slip_y, law, out)
+    _weights(solid, solid.dtype.type(0), law, out)
     return out
 
 
@@ -94,10 +115,12 @@ def fitting_weight(solid_operator: str, weighting: str | None) -> str:
     return weighting or ("wall" if own else "B2")
 
 
-def choose_weight(name: str, relaxation_time: float, dtype: DTypeLike) -> Any:
-    """The law of a weight by name; ValueError if there is none of that name."""
+def choose_weight(name: str, relaxation_time: float, dtype: DTypeLike, *, soft: bool = False) -> Any:
+    """The law of a weight by name;  soft: of bodies with soft rims.  ValueError if there is none of that name."""
     laws: dict[str, Any] = {"wall": WallWeight, "B1": B1, "B2": B2}
     if name not in laws:
         raise ValueError(f"unknown weight {name!r}: choose from {', '.join(WEIGHTINGS)}")
     real: Any = np.dtype(dtype).type
+    if soft and name == "wall":
+        return SoftWallWeight(real(relaxation_time - 0.5), real(SLIP_FACTOR))
     return laws[name](real(relaxation_time - 0.5))

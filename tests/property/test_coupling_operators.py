@@ -67,7 +67,7 @@ def mixed(name, f, g, force, v, e, b, tau, dtype=float):
     shifted[ORDER], after[ORDER] = f - twin.WEIGHTS, g - twin.WEIGHTS
     law = choose_solid(name, tau, odd_rate(tau, MAGIC_MIDWAY_WALL), dtype)
     rho, j, h = f.sum(), f @ twin.DIRECTIONS, force_share.py_func(b, law) * force / 2
-    found = np.array(mix.py_func(*shifted, *after, e, b, rho, *((j + h) / rho), *v, *h, 1 / tau, law)) + WEIGHTS
+    found = np.array(mix.py_func(*shifted, *after, e, b, 0.0, rho, *((j + h) / rho), *v, *h, 1 / tau, law)) + WEIGHTS
     ta, tx, ty = taken.py_func(e, b, rho, *j, *h, 1 / tau, law)
     return found[ORDER], np.array([tx, ty]) - ta * v
 
@@ -204,7 +204,7 @@ def test_left_is_as_good_as_right(solid, weight, seed):
 def test_an_operator_stays_in_single_precision(solid):
     law = choose_solid(solid, 0.8, 1.0, np.float32)
     b = np.float32(0.3)
-    assert {type(v) for v in mix.py_func(*[b] * 28, law)} == {np.float32}
+    assert {type(v) for v in mix.py_func(*[b] * 29, law)} == {np.float32}
     assert {type(v) for v in taken.py_func(*[b] * 8, law)} == {np.float32}
     assert type(force_share.py_func(b, law)) is np.float32
 
@@ -212,7 +212,7 @@ def test_an_operator_stays_in_single_precision(solid):
 @pytest.mark.parametrize("weighting", WEIGHTINGS)
 def test_a_weight_stays_in_single_precision(weighting):
     b = np.float32(0.3)
-    assert type(weight.py_func(b, b, b, choose_weight(weighting, 0.8, np.float32))) is np.float32
+    assert type(weight.py_func(b, b, b, b, choose_weight(weighting, 0.8, np.float32))) is np.float32
 
 
 def test_unknown_names_are_refused_with_the_known_ones():

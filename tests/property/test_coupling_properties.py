@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from porescale.coupling.saturated import RADIUS_SHIFT, Saturated
+from porescale.coupling.saturated import Saturated
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.sides import Sides
 
@@ -35,7 +35,7 @@ def tolerance(r):
 @given(place, place, radius)
 def test_coverage_adds_up_to_the_disc_and_fills_no_cell_twice(x, y, r):
     e = coverage(x, y, r)
-    seen = r + RADIUS_SHIFT / max(r, 1.0)
+    seen = float(Saturated(Fluid(N, N, 0.7), np.array([r])).covering_radius[0])
     assert abs(e.sum() - math.pi * seen**2) <= 4 * (r + 1) ** 2 * tolerance(r)
     assert e.min() >= 0.0
     assert e.max() <= 1.0 or 2 * seen > N - 2  # a disc that all but fills the box meets itself

@@ -88,7 +88,7 @@ class Saturated(Lattice):
     forcing: str = "inside"
     sharing: str = "total"
     low_pass: float = 0.1
-    radius_shift: float = 0.28
+    radius_shift: float = 0.28125
     buoyant: bool = True
     slow_load: np.ndarray | None = None
     correction: np.ndarray | None = None

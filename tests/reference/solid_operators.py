@@ -49,7 +49,7 @@ def wall_rates(e, tau, third_order):
     """Rates s_q of the odd moments but momentum, and s_e of the even part; e a number or an array."""
     k, t = tau - 0.5, 1 - e
     fluid = 1 / third_order - 0.5
-    lam = t * (fluid + (3 / (8 * k) - fluid) * e / (e + 0.05)) + 0.5 * e * t / (t**2 + 0.3**2)
+    lam = t * (fluid + (3 / (8 * k) - fluid) * 1.05 * e / (e + 0.05)) + 0.5 * e * t / (t**2 + 0.3**2)
     with np.errstate(divide="ignore", invalid="ignore"):
         r = 0.5 + 0.75 * t**2 / (k * e) + 2 * lam
         k0 = (k - 0.75 * t / r) / t

@@ -21,7 +21,7 @@ def covered(discs, nx=20, ny=17, kinds=("wall", "wall"), motion=(0.0, 0.0, 0.0))
     """The saturated cells of discs (x, y, r)."""
     fluid = Fluid(nx, ny, 0.7, sides=Sides(kinds[0], kinds[0], kinds[1], kinds[1]))
     discs = np.array(discs, float)
-    wet = Saturated(fluid, discs[:, 2])
+    wet = Saturated(fluid, discs[:, 2], solid_operator="odd-SC1")  # which sees the radius as it is
     u, v, w = motion
     wet.cover(discs[:, :2].copy(), np.tile((float(u), float(v)), (len(discs), 1)), np.full(len(discs), float(w)))
     return wet
@@ -110,9 +110,9 @@ def test_the_contact_of_two_discs_is_as_tight_as_one_solid():
     from porescale.coupling.weighting import choose_weight, weight
 
     law = choose_weight("B2", 0.6, float)
-    assert weight(0.5 + 0.5, 0.0, 0.0, law) == 1.0
-    assert weight(1.7, 0.0, 0.0, law) == 1.0
-    assert weight(0.0, 0.0, 0.0, law) == 0.0
+    assert weight(0.5 + 0.5, 0.0, 0.0, 0.0, law) == 1.0
+    assert weight(1.7, 0.0, 0.0, 0.0, law) == 1.0
+    assert weight(0.0, 0.0, 0.0, 0.0, law) == 0.0
 
 
 def test_the_solid_moves_like_the_disc_in_every_cell():
@@ -213,19 +213,20 @@ def test_loads_are_the_same_uncompiled(monkeypatch):
     scratch = np.zeros((5, 3, 6 + 2 * BLOCK))
     scratch[:, :, BLOCK:-BLOCK] = random.uniform(-1, 1, (5, 3, 6))
     motion = np.array([[2.3, 3.1], [4.9, 0.2]]), random.uniform(-1, 1, (2, 2)), np.array([0.1, -0.2])
-    rows, patches, partial = wet._rows, wet._patches, np.zeros(3 * BLOCK)
+    shift = random.uniform(-0.1, 0.1, (2, 3))
+    rows, patches, partial = wet._rows, wet._patches, np.zeros(5 * BLOCK)
     made = []
     for plain in (False, True):
         take, add = (load.take_row.py_func, load.add_rows.py_func) if plain else (load.take_row, load.add_rows)
         if plain:
             monkeypatch.setattr(load, "total", load.total.py_func)
             monkeypatch.setattr(load, "blocks_inside", coverage_rows.blocks_inside.py_func)
-        row_load, force, torque = np.full_like(wet._row_load, np.nan), np.zeros((2, 2)), np.zeros(2)
+        row_load, loads, inside = np.full_like(wet._row_load, np.nan), np.zeros((2, 3)), np.zeros((2, 2))
         for y in range(5):
             here = rows.start[y], rows.start[y + 1]
-            take(*here, rows, patches, *motion, True, wet._ramp, scratch[y], partial, row_load)
-        add(patches.corner, patches.height, 5, False, row_load, force, torque)
-        made.append(np.column_stack((force, torque)))
+            take(*here, rows, patches, *motion, shift, True, wet._ramp, scratch[y], partial, row_load)
+        add(patches.corner, patches.height, 5, False, row_load, loads, inside)
+        made.append(np.column_stack((loads, inside)))
     assert np.all(np.isfinite(made[0]))
     # a dozen cells, each with five roundings of numbers around 1
     np.testing.assert_allclose(*made, rtol=0, atol=60 * EPS)

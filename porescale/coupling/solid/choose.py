@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike
 
-from porescale.coupling.solid.exact_wall import ONSET, SMOOTHING, ExactWall
+from porescale.coupling.rim import SLIP_FACTOR
+from porescale.coupling.solid.exact_wall import ONSET, SMOOTHING, ExactWall, SoftWall
 from porescale.coupling.solid.sc1 import OddSc1, Sc1
 from porescale.coupling.solid.sc2 import Sc2
 from porescale.coupling.solid.sc3 import Sc3
@@ -20,14 +21,17 @@ SOLID_OPERATORS = {
 """Name of each solid operator and what it is good for."""
 
 
-def choose_solid(name: str, relaxation_time: float, third_order: float, dtype: DTypeLike) -> Any:
+def choose_solid(
+    name: str, relaxation_time: float, third_order: float, dtype: DTypeLike, *, soft: bool = False
+) -> Any:
     """The law of a solid operator by name;  third_order: rate of the fluid operator's odd moments but momentum.
 
-    ValueError if there is none of that name.
+    soft: with soft rims (rim.py), which go with exact walls only.  ValueError if there is none of that name.
     """
     laws: dict[str, Any] = {"exact-wall": ExactWall, "odd-SC1": OddSc1, "SC1": Sc1, "SC2": Sc2, "SC3": Sc3}
     if name not in laws:
         raise ValueError(f"unknown solid operator {name!r}: choose from {', '.join(SOLID_OPERATORS)}")
+    kind = SoftWall if soft and name == "exact-wall" else laws[name]
     real: Any = np.dtype(dtype).type
     values = {
         "one": 1.0,
@@ -35,5 +39,6 @@ def choose_solid(name: str, relaxation_time: float, third_order: float, dtype: D
         "third_order": third_order,
         "onset": ONSET,
         "smoothing": SMOOTHING**2,
+        "slip_factor": SLIP_FACTOR,
     }
-    return laws[name](**{field: real(values[field]) for field in laws[name]._fields})
+    return kind(**{field: real(values[field]) for field in kind._fields})

@@ -12,7 +12,7 @@ and only if  1/beta + 2 lambda = R = 3/4 t/(k - k0 t);  for a parabola too, at m
 2 lambda = e R.  These rates satisfy the first for every e and tau, the second nearly, and go over continuously into the
 fluid's (e = 0) and a rigid cell's (e = 1: b = 1, s_q = 2, s_e = 0):
 
-    lambda = t (lambda0 + (3/(8 k) - lambda0) e/(e + E)) + 1/2 e t/(t² + D²),     lambda0 that of the fluid
+    lambda = t (lambda0 + (3/(8 k) - lambda0) (1 + E) e/(e + E)) + 1/2 e t/(t² + D²),     lambda0 that of the fluid
     R = 1/2 + 3/4 t²/(k e) + 2 lambda,     k0 = (k - 3/4 t/R)/t
 
 A full cell that moves with v is a half-way bounce-back node on its own faces once its time-centred velocity is v: the
@@ -27,7 +27,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.coupling.solid.law import force_share, mix, taken
+from porescale.coupling.solid.law import force_share, is_soft, mix, taken
+from porescale.ground.jit import by_law
 from porescale.lbm.collision.law import numbers
 
 ONSET = 0.05
@@ -45,32 +46,72 @@ class ExactWall(NamedTuple):
     smoothing: np.floating
 
 
-@force_share.of(ExactWall)
+class SoftWall(NamedTuple):
+    """The same where bodies have soft rims (rim.py);  slip_factor : of theta |v - u| in k."""
+
+    k: np.floating
+    third_order: np.floating
+    onset: np.floating
+    smoothing: np.floating
+    slip_factor: np.floating
+
+
+@by_law
+def _stiffness(theta, slip_x, slip_y, solid):
+    """k of a cell in which the fluid slips past the solid."""
+
+
+@_stiffness.of(ExactWall)
+def _molecular(theta, slip_x, slip_y, solid):
+    """tau - 1/2."""
+    return solid.k
+
+
+@_stiffness.of(SoftWall)
+def _with_slip(theta, slip_x, slip_y, solid):
+    """And a part of the slip where the rim is soft."""
+    return solid.k + solid.slip_factor * theta * np.sqrt(slip_x * slip_x + slip_y * slip_y)
+
+
+@is_soft.of(ExactWall)
+def _sharp(solid):
+    """No."""
+    return False
+
+
+@is_soft.of(SoftWall)
+def _soft(solid):
+    """Yes."""
+    return True
+
+
+@force_share.of(ExactWall, SoftWall)
 def _whole(b, solid):
     """All of it."""
     return numbers(b).one
 
 
-@mix.of(ExactWall)
+@mix.of(ExactWall, SoftWall)
 def _mix(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, rho, ux, uy, vx, vy, hx, hy, rate,
-    solid,
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, theta, rho, ux, uy, vx, vy, hx,
+    hy, rate, solid,
 ):  # fmt: skip
     """Each part at its own rate; q after the fluid operator has a share t, so that e = 0 is plain fluid."""
     c = numbers(b)
-    k = solid.k
+    k = _stiffness(theta, ux - vx, uy - vy, solid)
     t = c.one - e
     tt = c.c34 * t * t
     n = k * e
     lam0 = c.one / solid.third_order - c.half
     # Divisions cost more than all else here: quotients share them, s_e = 1/(1/2 + k0) and s_q = 1/(1/2 + lambda) too.
     onset, smooth = e + solid.onset, t * t + solid.smoothing
-    lam = t * (lam0 + e * ((c.c38 / k - lam0) * smooth + c.half * onset) / (onset * smooth))
+    lam = t * (lam0 + e * ((c.c38 / k - lam0) * (c.one + solid.onset) * smooth + c.half * onset) / (onset * smooth))
     q = c.half * n + tt + c.two * lam * n
     beneath, above = (c.half * t + k) * q - c.c34 * t * n, c.half + lam
     both = c.one / (beneath * above)
     even, third = t * q * both * above, both * beneath
-    share = even * (k + c.half)
+    third += theta * ((c.one - b) * solid.third_order + c.two * b - third)
+    share = even * (solid.k + c.half)
     free = c.one - share
     psi = c.one - third - t * (c.one - solid.third_order)
     jx, jy = rho * ux - hx, rho * uy - hy
@@ -96,7 +137,7 @@ def _mix(
     )
 
 
-@taken.of(ExactWall)
+@taken.of(ExactWall, SoftWall)
 def _taken(e, b, rho, jx, jy, hx, hy, rate, solid):
     """b (j + h - rho v), less the body force on the solid part."""
     two_e = numbers(e).two * e

@@ -18,14 +18,19 @@ def force_share(b, solid):
 
 
 @by_law
+def is_soft(solid):
+    """Whether rims are soft (rim.py): a constant, so that what depends on it costs nothing where they are not."""
+
+
+@by_law
 def mix(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, rho, ux, uy, vx, vy, hx, hy, rate,
-    solid,
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, theta, rho, ux, uy, vx, vy, hx,
+    hy, rate, solid,
 ):  # fmt: skip
     """The nine populations after solid and fluid operator.
 
-    f before, g after the fluid operator (shifted);  e solid fraction, b weight;  u velocity with h;  v of the solid;
-    rate 1/tau.
+    f before, g after the fluid operator (shifted);  e solid fraction, b weight, theta softness of the rim (rim.py);
+    u velocity with h;  v of the solid;  rate 1/tau.
     """
 
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.coupling.solid.law import force_share, mix, taken
+from porescale.coupling.solid.law import force_share, is_soft, mix, taken
 from porescale.lbm.collision.law import numbers
 
 
@@ -36,10 +36,16 @@ def _free(b, solid):
     return numbers(b).one - b
 
 
+@is_soft.of(OddSc1, Sc1)
+def _sharp(solid):
+    """No."""
+    return False
+
+
 @mix.of(OddSc1)
 def _mix_odd(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, rho, ux, uy, vx, vy, hx, hy, rate,
-    solid,
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, theta, rho, ux, uy, vx, vy, hx,
+    hy, rate, solid,
 ):  # fmt: skip
     """Odd half of SC1."""
     c = numbers(b)
@@ -64,8 +70,8 @@ def _mix_odd(
 
 @mix.of(Sc1)
 def _mix_whole(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, rho, ux, uy, vx, vy, hx, hy, rate,
-    solid,
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, theta, rho, ux, uy, vx, vy, hx,
+    hy, rate, solid,
 ):  # fmt: skip
     """SC1 as published: the odd half and  w (9/2 ((c.v)² - (c.u)²) - 3/2 (v² - u²)) rho."""
     c = numbers(b)

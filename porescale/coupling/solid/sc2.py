@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.coupling.solid.law import force_share, mix, taken
+from porescale.coupling.solid.law import force_share, is_soft, mix, taken
 from porescale.lbm.collision.law import moments, numbers
 
 
@@ -26,10 +26,16 @@ def _free(b, solid):
     return numbers(b).one - b
 
 
+@is_soft.of(Sc2)
+def _sharp(solid):
+    """No."""
+    return False
+
+
 @mix.of(Sc2)
 def _mix(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, rho, ux, uy, vx, vy, hx, hy, rate,
-    solid,
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, theta, rho, ux, uy, vx, vy, hx,
+    hy, rate, solid,
 ):  # fmt: skip
     """Superposition; the equilibria of v and u differ by what is of first and second order in velocity."""
     c = numbers(b)

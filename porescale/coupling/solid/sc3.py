@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.coupling.solid.law import force_share, mix, taken
+from porescale.coupling.solid.law import force_share, is_soft, mix, taken
 from porescale.lbm.collision.law import numbers
 
 
@@ -28,10 +28,16 @@ def _free(b, solid):
     return numbers(b).one - b
 
 
+@is_soft.of(Sc3)
+def _sharp(solid):
+    """No."""
+    return False
+
+
 @mix.of(Sc3)
 def _mix(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, rho, ux, uy, vx, vy, hx, hy, rate,
-    solid,
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, theta, rho, ux, uy, vx, vy, hx,
+    hy, rate, solid,
 ):  # fmt: skip
     """Bounce-back from the moving solid."""
     c = numbers(b)
