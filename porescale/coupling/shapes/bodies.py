@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.coupling.coverage_rows import Patches
 from porescale.coupling.shapes.crossing import move_sides, relieve, side_links, take_sides

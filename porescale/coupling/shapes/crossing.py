@@ -18,8 +18,11 @@ is led back to 1 (``relieve``), at rest and in equilibrium, which fluid outside 
 Sides that move at the density of what fills the body instead were unstable.
 
 A gap below a cell is unresolved: by the cell's fraction the side moves with the body before they touch, and lets in, in
-part, what a body needs that lifts off it.  Through a free-slip side only the part of v across it counts.  What fills a body passes the side with it:
-mass is not conserved, and what comes in is booked.  Momentum passes as well: the part of a body's load that sides bear,
+part, what a body needs that lifts off it.  Through a free-slip side only the part of v across
+it counts.
+
+What fills a body passes the side with it: mass is not conserved, and what comes in is booked.  Momentum passes as well:
+the part of a body's load that sides bear,
 
     sum e_n ((f_out + f_back) c - v_n (f_back - f_out)),
 
@@ -29,7 +32,7 @@ that of a moving wall: Wen, Zhang, Tu, Wang & Fang 2014.)  Pressures count from 
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,12 +83,15 @@ def side_links(fluid: Fluid) -> SideLinks:
         across.append((-cx if link.across else 0.0, -cy if link.along else 0.0))
         along.append((0.0 if link.across or mirrored else -cx, 0.0 if link.along or mirrored else -cy))
         size.append(6 * WEIGHTS[OPPOSITE[link.out]])
+
+    def pairs(values: list[Any], dtype: Any) -> NDArray[Any]:
+        return np.array(values, dtype).reshape(-1, 2)
+
     which = np.array(number, np.int64)
     rim = fluid.rim
     return SideLinks(
-        which, np.array(cell, np.int64).reshape(-1, 2), np.array(beside, np.int64).reshape(-1, 2), np.array(at, float).reshape(-1, 2),
-        np.array(across, float).reshape(-1, 2), np.array(along, float).reshape(-1, 2), np.array(size, float), rim.added[which].astype(float), rim.halo[which],
-        rim.inner[which],
+        which, pairs(cell, np.int64), pairs(beside, np.int64), pairs(at, float), pairs(across, float),
+        pairs(along, float), np.array(size, float), rim.added[which].astype(float), rim.halo[which], rim.inner[which],
     )  # fmt: skip
 
 

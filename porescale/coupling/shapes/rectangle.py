@@ -22,7 +22,7 @@ class Rectangle(Shape):
         self.lower = np.array(lower, float)
         self.extent = np.array(upper, float) - self.lower
         if self.extent.shape != (2,) or not np.all(self.extent > 0):
-            raise ValueError(f"the upper corner {upper} does not lie right of and above the lower one, {lower}")
+            raise ValueError(f"the upper corner {upper!r} does not lie right of and above the lower one, {lower!r}")
 
     @property
     def upper(self) -> Array:

@@ -20,14 +20,12 @@ class Ring(Shape):
     The whole box is its patch, filled anew only when it has moved: spinning costs nothing.
     """
 
-    def __init__(
-        self, centre: ArrayLike, radius: float, velocity: ArrayLike = (0.0, 0.0), spin: float = 0.0
-    ) -> None:
+    def __init__(self, centre: ArrayLike, radius: float, velocity: ArrayLike = (0.0, 0.0), spin: float = 0.0) -> None:
         super().__init__(velocity, spin)
         self._centre = np.array(centre, float)
         self.radius = self.hole = float(radius)
         if self._centre.shape != (2,) or not radius > 1:
-            raise ValueError(f"a ring needs a centre (x, y) and a radius above a cell, not {centre} and {radius}")
+            raise ValueError(f"a ring needs a centre (x, y) and a radius above a cell, not {centre!r} and {radius}")
 
     @property
     def centre(self) -> Array:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from porescale.lbm.fluid import Fluid
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating]
 Integers = NDArray[np.int64]
 
 
