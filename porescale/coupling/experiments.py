@@ -288,7 +288,7 @@ def handful(
 def carried(coupled: Coupled, velocity: tuple[float, float]) -> Coupled:
     """The same with fluid and discs moving at ``velocity``."""
     coupled.fluid.set_flow(*velocity)
-    coupled.grains.discs.velocity[:] = coupled.old_velocity[:] = velocity
+    coupled.grains.discs.velocity[:] = coupled.inner_velocity[:] = velocity
     return coupled
 
 

@@ -131,7 +131,7 @@ def stream_drag(
         sides=PERIODIC, method=method,
     )  # fmt: skip
     coupled.fluid.set_flow((1 - frame) * speed, 0.0)
-    coupled.old_velocity[:] = coupled.grains.discs.velocity
+    coupled.inner_velocity[:] = coupled.grains.discs.velocity
     drag = np.zeros(steps)
     with one_thread():
         for step in range(steps):

@@ -154,7 +154,7 @@ def near_wall(
 
     def load() -> float:
         if motion == "turning":
-            return -float(coupled.torque[0]) / unit
+            return -float(coupled.fluid_torque[0]) / unit
         film = coupled.lubrication.force[0] if coupled.lubrication else np.zeros(2)
         force = coupled.fluid_force[0] + film
         return float(-force[0] if motion == "along" else force[1]) / unit

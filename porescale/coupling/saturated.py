@@ -98,6 +98,7 @@ class Saturated:
         self._shape = ny, nx
         self._load, self._inside = np.zeros((count, 3)), np.zeros((count, 2))
         self.force, self.torque = self._load[:discs, :2], self._load[:discs, 2]
+        self.inside = self._inside[:discs]
         self._corrected, self._slow_load, self._shift = exact, np.zeros((count, 3)), np.zeros((count, 3))
         self._theta = np.zeros(count)
         self.rim = Rim(self.radius, shift, fluid.relaxation_time, self._theta[:discs]) if soft_rim else None

@@ -108,7 +108,7 @@ def load_row(scene: Scene, loads: Loads, coupled: Coupled) -> Row:
         fx, fy = (float(value) for value in coupled.fluid_force[k])
         row[f"{name} force x (N/m)"] = fx
         row[f"{name} force y (N/m)"] = fy
-        row[f"{name} torque (N m/m)"] = float(coupled.torque[k])
+        row[f"{name} torque (N m/m)"] = float(coupled.fluid_torque[k])
         if loads.speed and loads.length:
             unit = 0.5 * coupled.scales.density * loads.speed**2 * loads.length
             row[f"{name} drag coefficient ()"] = (fx * ex + fy * ey) / unit

@@ -141,11 +141,12 @@ def _flow(fluid: Fluid, wet: Saturated, at: Array, length: int, margin: int) -> 
         now = fluid.momentum()[0] / (fluid.nx * fluid.ny)
         flux, change = now, 1 - flux / now
         block = max(FIRST, fluid.step // 4 // 2 * 2)
+    wet.covering_radius = wet.radius  # only looked at from here on: what is solid, without what walls need
     wet.cover(at, rest, no_spin)
     free = 1 - np.minimum(wet.solid[:, :length], 1)
     gradient = 0.0
     if margin:
-        rho = fluid.fields(wet.weights())[0][:, :length]
+        rho = fluid.fields()[0][:, :length]
         pressure = ((rho - 1) * free).sum(axis=0) / free.sum(axis=0) / 3
         x = np.arange(length)[margin : length - margin]
         gradient = float(np.polyfit(x, pressure[margin : length - margin], 1)[0])

@@ -174,7 +174,7 @@ def test_a_state_that_differs_in_one_bit_ends_differently(folder, scene, poresca
 
 def test_the_comparison_covers_the_whole_state(folder):
     places = state_of(folder)
-    for name in ("populations", "position", "velocity", "spin", "carried", "partner", "old_velocity", "old_spin"):
+    for name in ("populations", "position", "velocity", "spin", "carried", "partner", "inner_velocity", "inner_spin"):
         assert any(place.endswith(f"/{name}") for place in places), name
     assert any("plates" in place for place in places)
     assert any("Values" in place for place in contents(folder / "grains.vtkhdf"))

@@ -42,6 +42,7 @@ def said(make: Any, **changes: Any) -> str:
         ("fluid__operator", "centrl", "did you mean 'central'?"),
         ("fluid__solid_operator", "odd-sc1", "did you mean 'odd-SC1'?"),
         ("fluid__weighting", "b1", "did you mean 'B1'?"),
+        ("fluid__weighting", "B2", "fluid.weighting = 'B2': does not go with the solid operator 'exact-wall'"),
         ("fluid__precision", "float16", "unknown choice"),
         ("domain__top", "slipp", "did you mean 'slip'?"),
         ("domain__top", {"kind": "slip", "speed": 1.0}, 'belongs to a side of kind "wall", this is a slip'),
@@ -106,6 +107,15 @@ def test_every_law_that_a_scene_names_is_the_one_that_runs():
     assert (values["collision"], values["solid"], values["weight"]) == ("mrt", "SC1", "B1")
 
 
+def test_the_weight_that_is_used_is_shown_and_kept():
+    for changes, weight in (({}, "wall"), ({"fluid__solid_operator": "odd-SC1"}, "B2")):
+        scene = channel(**changes)
+        assert {row.name: row.value for row in report(scene).groups["Operators"]}["weight"] == weight
+        assert validate(Scene, scene_as_dict(scene)) == scene
+    wrong = channel, {"fluid__solid_operator": "SC1", "fluid__weighting": "wall"}
+    assert said(wrong[0], **wrong[1]).endswith("(allowed: 'B2' or 'B1'); leave it out")
+
+
 def test_single_precision_runs_restores_and_says_the_same_to_its_own_round_off():
     single, double = build(channel(fluid__precision="float32")), build(channel())
     assert single.fluid
@@ -155,7 +165,8 @@ def test_a_choice_that_does_nothing_is_warned_of():
 
     assert "magic = 0.25 is not used" in warnings(channel(fluid__operator="bgk", fluid__magic=0.25))
     assert "is not used" not in warnings(channel(fluid__magic=0.25))
-    assert "nothing solid in the fluid" in warnings(channel(disc=[], fluid__weighting="B1"))
+    assert "nothing solid in the fluid" in warnings(channel(disc=[], fluid__solid_operator="odd-SC1"))
+    assert "nothing solid in the fluid" not in warnings(channel(disc=[]))
     assert "free grains ran away" in warnings(column(fluid__solid_operator="SC3"))
     low = {"fluid__viscosity": 1e-6}  # tau = 0.503
     assert "two relaxation times ring" in warnings(channel(**low))

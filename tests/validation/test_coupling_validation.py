@@ -147,11 +147,11 @@ def test_a_closed_box_that_is_filled_is_noticed():
 
 def test_without_the_fluid_inside_the_momentum_book_does_not_close():
     coupled = lab.handful()
-    inside = coupled.inner_mass @ coupled.old_velocity
+    inside = coupled.inner_mass @ coupled.inner_velocity
     first = coupled.momentum() + inside
     for _ in range(50):
         coupled.advance()
-    now = coupled.momentum() + coupled.inner_mass @ coupled.old_velocity
+    now = coupled.momentum() + coupled.inner_mass @ coupled.inner_velocity
     size = float(np.sum(coupled.grains.discs.mass[:, None] * np.abs(coupled.grains.discs.velocity)))
     assert np.abs(now - first).max() / size > 1e9 * tolerance("momentum")
 
