@@ -14,6 +14,7 @@ import numpy as np
 
 from porescale.dem.contact.linear import Linear
 from porescale.dem.forces import add_pair_forces, start_forces
+from porescale.dem.rectangle import add_rectangle_forces, move_rectangles
 from porescale.dem.walls import add_plate_forces, add_wall_forces, move_plates
 from porescale.ground.jit import kernel
 
@@ -91,14 +92,15 @@ def first_without_number(position, velocity, spin):
 def contact_steps(
     count, dt, drag, position, angle, velocity, spin, radius, mass, inertia, force, torque,
     external_force, external_torque, start, partner, carried, anchor, limit_square, period_x, period_y, law,
-    walls, wall_laws, wall_spring, wall_force, plates, plate_laws, plate_spring, plate_force, held, withheld, first,
+    walls, wall_laws, wall_spring, wall_force, plates, plate_laws, plate_spring, plate_force,
+    rectangles, rectangle_laws, rectangle_spring, rectangle_force, held, withheld, first,
 ):  # fmt: skip
     """Up to ``count`` contact steps; returns (steps done, whether the pair list must be rebuilt first to
     go on).
 
-    Arrays as in add_pair_forces, add_wall_forces, add_plate_forces, withhold and kick_drift; external_force (n, 2)
+    Arrays as in add_pair_forces and the like, withhold and kick_drift; external_force (n, 2)
     N/m and external_torque (n,) N m/m are the same over all steps.  first: withheld forces are summed anew.
-    Overwrites the state of discs, springs, plates.
+    Overwrites the state of discs, springs, plates, rectangles.
     """
     for step in range(count):
         start_forces(force, torque, external_force, external_torque)
@@ -121,11 +123,16 @@ def contact_steps(
         add_plate_forces(
             position, velocity, spin, radius, force, torque, plates, plate_laws, plate_spring, plate_force, dt
         )
+        add_rectangle_forces(
+            position, velocity, spin, radius, force, torque, rectangles, rectangle_laws, rectangle_spring,
+            rectangle_force, dt,
+        )  # fmt: skip
         withhold(held, withheld, velocity, spin, mass, inertia, force, torque, drag, first and step == 0)
         moved = kick_drift(
             position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt
         )
         move_plates(plates, dt)
+        move_rectangles(rectangles, dt)
         if moved:
             return step + 1, True
     return count, False

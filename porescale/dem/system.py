@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from porescale.dem.contact.linear import COLUMNS, Linear
 from porescale.dem.discs import Discs
 from porescale.dem.integrate import contact_steps, first_without_number, stable_step
+from porescale.dem.rectangle import Rectangle
 from porescale.dem.walls import HIGH, LOW, PRESENT, VELOCITY, Box, Plate, X
 from porescale.ground.check import Fault, InputError, Unstable
 from porescale.particles.pairs import PairList
@@ -21,6 +22,8 @@ Array = NDArray[np.float64]
 
 SKIN = 0.5  # of the mean radius: measured 12 % faster than 0.3 in a dry collapse, 2 % slower in a pile at rest
 WORST_OVERLAP = 0.3  # of the smaller radius: the linear law and its lever arms mean nothing beyond
+RECTANGLES = ("rectangles", "rectangle_spring", "rectangle_force")
+"""What of the state belongs to rectangles, where there are any."""
 WORST_TRAVEL = 0.1  # of the smallest radius in one step: a contact would be met after the fact
 
 
@@ -33,6 +36,7 @@ class Grains:
     Positions are not wrapped on periodic sides.  The first step starts from velocities half a step back;
     for a start from rest that is the same.  ``steps`` and ``time`` count contact steps and seconds.
     Arrays: wall_force (w, 2), plate_force (p, 2) N/m of the last step, wall_spring (w, n), plate_spring (p, n) m;
+    rectangles (m, 6): see rectangle.py, with rectangle_force (m, 2), rectangle_spring (m, n); see ``set_rectangles``;
     held (n, 3): not 0 where x, y, rotation of a disc is held, see ``hold``;  withheld (n, 3) N/m, N/m, N m/m: force
     and torque that held components did not follow, mean over the last call of ``step``;  both (0, 3) till first used.
     """
@@ -57,6 +61,9 @@ class Grains:
         self.plate_names = [plate.name for plate in plates]
         self.plates = np.array([plate.row() for plate in plates]).reshape(-1, 5)
         self.plate_frictions = [plate.friction for plate in plates]
+        self._rectangle_frictions: list[float | None] = []
+        self.rectangles, self.rectangle_spring = np.zeros((0, 6)), np.zeros((0, count))
+        self.rectangle_force = np.zeros((0, 2))
         self.set_law(law, wall_law)
         self.wall_spring = np.zeros((len(self.walls), count))
         self.wall_force = np.zeros((len(self.walls), 2))
@@ -79,9 +86,21 @@ class Grains:
         self.law, self.wall_law = law, law if wall_law is None else wall_law
         self.law_row = law.row()
         self.wall_laws = np.array([self.wall_law.row()] * len(self.walls)).reshape(-1, COLUMNS)
-        self.plate_laws = np.array(
-            [(self.wall_law if own is None else self.wall_law.with_friction(own)).row() for own in self.plate_frictions]
-        ).reshape(-1, COLUMNS)
+        self.plate_laws = self._own_laws(self.plate_frictions)
+        self.rectangle_laws = self._own_laws(self._rectangle_frictions)
+
+    def _own_laws(self, frictions: list[float | None]) -> Array:
+        """Rows of the wall law, each with its own friction where it has one."""
+        rows = [(self.wall_law if own is None else self.wall_law.with_friction(own)).row() for own in frictions]
+        return np.array(rows).reshape(-1, COLUMNS)
+
+    def set_rectangles(self, rectangles: Sequence[Rectangle]) -> None:
+        """Put these rectangles, and no others, into the box; without contacts so far."""
+        self._rectangle_frictions = [it.friction for it in rectangles]
+        self.rectangles = np.array([it.row() for it in rectangles]).reshape(-1, 6)
+        self.rectangle_laws = self._own_laws(self._rectangle_frictions)
+        self.rectangle_spring = np.zeros((len(rectangles), self.discs.count))
+        self.rectangle_force = np.zeros((len(rectangles), 2))
 
     @property
     def time(self) -> float:
@@ -137,6 +156,7 @@ class Grains:
                 self.law_row,
                 self.walls, self.wall_laws, self.wall_spring, self.wall_force,
                 self.plates, self.plate_laws, self.plate_spring, self.plate_force,
+                self.rectangles, self.rectangle_laws, self.rectangle_spring, self.rectangle_force,
                 self.held, self.withheld, left == count,
             )  # fmt: skip
             left -= done
@@ -286,6 +306,7 @@ class Grains:
             "external_torque": self.external_torque.copy(),
             "held": self.held.copy(),
             "withheld": self.withheld.copy(),
+            **({name: getattr(self, name).copy() for name in RECTANGLES} if len(self.rectangles) else {}),
             "steps": self.steps,
             "time": self._time,
             "steps_of_dt": self._steps_of_dt,
@@ -298,8 +319,8 @@ class Grains:
         differ.
         """
         self.discs.restore(state["discs"])
-        for name in ("wall_spring", "wall_force", "plates", "plate_spring", "plate_force",
-                     "external_force", "external_torque"):  # fmt: skip
+        for name in ("wall_spring", "wall_force", "plates", "plate_spring", "plate_force", "external_force",
+                     "external_torque", *(RECTANGLES if len(self.rectangles) else ())):  # fmt: skip
             own, given = getattr(self, name), np.asarray(state[name])
             if own.shape != given.shape:
                 raise InputError(Fault(f"state.{name}", given.shape, "wrong shape", allowed=str(own.shape)))
