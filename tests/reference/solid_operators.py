@@ -47,6 +47,7 @@ def wall_weight(e, tau):
 
 def wall_rates(e, tau, third_order):
     """Rates s_q of the odd moments but momentum, and s_e of the even part; e a number or an array."""
+    e = np.asarray(e, float)
     k, t = tau - 0.5, 1 - e
     fluid = 1 / third_order - 0.5
     lam = t * (fluid + (3 / (8 * k) - fluid) * 1.05 * e / (e + 0.05)) + 0.5 * e * t / (t**2 + 0.3**2)
