@@ -141,8 +141,8 @@ def lay_row(begin, end, rows, patches, centre, velocity, spin, shift, theta, per
     fractions times theta (n,), rim.py.
 
     Entries ``begin`` to ``end`` - 1 of ``rows`` are the row's;  centre (n, 2) cells, velocity (n, 2), spin (n,):
-    lattice units;  ramp (BLOCK,): 0, 1, 2, ...  Adds to scratch (3 or 4, BLOCK + nx + BLOCK); returns the first column that
-    may be covered and one past the last.
+    lattice units;  ramp (BLOCK,): 0, 1, 2, ...  Adds to scratch (3 or 4, BLOCK + nx + BLOCK); returns the first column
+    that may be covered and one past the last.
     """
     nx = scratch.shape[1] - 2 * BLOCK
     s, sx, sy = scratch[0], scratch[1], scratch[2]

@@ -16,6 +16,7 @@ The conserved momentum is  sum rho u + sum (m_p U - m_f V + m_v a dt).  The pres
 the fluid carries no weight, and each disc that of its mechanical area less the fluid's, (rho_s - rho0) A g.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,7 @@ from numpy.typing import NDArray
 
 from porescale.coupling.lubrication import CELLS, Lubrication
 from porescale.coupling.saturated import Saturated
+from porescale.coupling.shapes.rectangle import Rectangle
 from porescale.dem.system import Grains
 from porescale.ground.jit import kernel
 from porescale.lbm.fluid import Fluid
@@ -51,14 +53,15 @@ def to_lattice(position, velocity, spin, spacing, step, centre, lattice_velocity
 @kernel
 def total_load(
     load, load_torque, inside, weight, velocity, spin, inner_velocity, inner_spin, inner_mass, inner_inertia, uptake,
-    step, units, fluid_force, fluid_torque, force, torque,
+    step, units, inner_momentum, fluid_force, fluid_torque, force, torque,
 ):  # fmt: skip
     """What the fluid does to every disc, the inner mass given back, and with the weight.
 
     load (n, 2), load_torque (n,), inside (n, 2) mass and moment of inertia that answer within a step: lattice units,
     of ``units`` (4,) N/m, N m/m, kg/m, kg m²/m;  weight (n, 2) N/m;  velocity m/s, spin rad/s;  inner_mass (n,) kg/m,
     inner_inertia (n,) kg m²/m;  uptake (n, 2): share of a change of force, and of torque, taken up in a step;  step s.
-    Overwrites inner_velocity (n, 2) m/s and inner_spin (n,) rad/s of the fluid inside;  fluid_force (n, 2) N/m and
+    Overwrites inner_velocity (n, 2) m/s, inner_spin (n,) rad/s and inner_momentum (n, 2) kg/s of the fluid inside;
+    fluid_force (n, 2) N/m and
     fluid_torque (n,) N m/m;  force and torque, likewise, which move the disc.
     """
     for n in range(spin.shape[0]):
@@ -68,6 +71,7 @@ def total_load(
             fluid_force[n, a] = load[n, a] * units[0] + inner_mass[n] * change / step
             force[n, a] += uptake[n, 0] * (weight[n, a] + fluid_force[n, a] - force[n, a])
             inner_velocity[n, a] += change
+            inner_momentum[n, a] += inner_mass[n] * change
         follows = FOLLOWING * min(1.0, inside[n, 1] * units[3] / inner_inertia[n]) if inner_inertia[n] > 0.0 else 1.0
         change = follows * (spin[n] - inner_spin[n])
         fluid_torque[n] = load_torque[n] * units[1] + inner_inertia[n] * change / step
@@ -80,6 +84,7 @@ class Coupled:
 
     hydraulic_ratio : lambda, radius the fluid sees over mechanical radius;  contact_steps : per fluid step;
     acceleration : of free fall, m/s²;  solid_operator, weighting : by name, see solid/choose.py and weighting.py;
+    soft_rim : for what the fluid passes fast near tau = 1/2 (rim.py; the fluid inside is then that in the shrunk disc);
     lubrication : whether films below ``film_gap`` cells are corrected, between the radii the fluid sees.
 
     After a step: fluid_force (n, 2) N/m and fluid_torque (n,) N m/m, films not included: drag and lift;  force (n, 2)
@@ -103,18 +108,22 @@ class Coupled:
         weighting: str | None = None,
         lubrication: bool = False,
         film_gap: float = CELLS,
+        rectangles: Sequence[Rectangle] = (),
+        soft_rim: bool = False,
     ) -> None:
         discs = grains.discs
         self.fluid, self.grains, self.scales, self.contact_steps = fluid, grains, scales, contact_steps
         self.hydraulic_radius = hydraulic_ratio * discs.radius
         self.saturated = Saturated(
-            fluid, self.hydraulic_radius / scales.spacing, solid_operator=solid_operator, weighting=weighting
-        )
+            fluid, self.hydraulic_radius / scales.spacing, solid_operator=solid_operator, weighting=weighting,
+            rectangles=rectangles, soft_rim=soft_rim,
+        )  # fmt: skip
         self._force_everywhere = solid_operator == "exact-wall"
         self.inner_mass = scales.density * np.pi * self.hydraulic_radius**2
         self.inner_inertia = 0.5 * self.inner_mass * self.hydraulic_radius**2
         self.weight = buoyant_weight(grains, scales.density, acceleration)
         self.inner_velocity, self.inner_spin = discs.velocity.copy(), discs.spin.copy()
+        self.inner_momentum = self.inner_mass[:, None] * discs.velocity
         self._centre, self._velocity = np.zeros((discs.count, 2)), np.zeros((discs.count, 2))
         self._spin = np.zeros(discs.count)
         self.force, self.fluid_force = np.zeros((discs.count, 2)), np.zeros((discs.count, 2))
@@ -136,10 +145,13 @@ class Coupled:
         discs, scales, wet = self.grains.discs, self.scales, self.saturated
         self._to_lattice()
         wet.advance(self.fluid, self._centre, self._velocity, self._spin)
+        if wet.rim is not None:
+            self.inner_mass[:] = self._units[2] * np.pi * wet.covering_radius**2
+            self.inner_inertia[:] = 0.5 * self._units[3] * np.pi * wet.covering_radius**4
         total_load(
             wet.force, wet.torque, wet.inside, self.weight, discs.velocity, discs.spin, self.inner_velocity,
             self.inner_spin, self.inner_mass, self.inner_inertia, self.uptake, scales.step, self._units,
-            self.fluid_force, self.fluid_torque, self.force, self.torque,
+            self.inner_momentum, self.fluid_force, self.fluid_torque, self.force, self.torque,
         )  # fmt: skip
         if self.lubrication is None:
             self.grains.step(scales.step / self.contact_steps, self.force, self.torque, self.contact_steps)
@@ -164,6 +176,11 @@ class Coupled:
             met = np.where(grains.held != 0, grains.withheld - given, met)
         return np.asarray(met)
 
+    @property
+    def rectangle_force(self) -> Array:
+        """Force of the fluid on the rectangles, (m, 2) N/m, the fluid inside them given back."""
+        return np.asarray(self.saturated.rectangle_force * self.scales.force)
+
     def fields(self) -> tuple[Array, Array, Array, Array]:
         """Density excess (kg/m³), velocity (m/s, two arrays) and solid fraction of every cell, each (ny, nx).
 
@@ -181,7 +198,7 @@ class Coupled:
 
     def momentum(self) -> Array:
         """Conserved momentum, kg/s (per metre), (2,): fluid + discs - the fluid inside them and + virtual masses."""
-        with_inside = self.grains.discs.mass @ self.grains.discs.velocity - self.inner_mass @ self.inner_velocity
+        with_inside = self.grains.discs.mass @ self.grains.discs.velocity - self.inner_momentum.sum(axis=0)
         with_inside = with_inside + (1 / self.uptake[:, 0] - 1) @ self.force * self.scales.step
         px, py = self.fluid.momentum()
         unit = self.scales.density * self.scales.spacing**2 * self.scales.velocity
@@ -194,6 +211,7 @@ class Coupled:
             "grains": self.grains.state(),
             "inner_velocity": self.inner_velocity,
             "inner_spin": self.inner_spin,
+            "inner_momentum": self.inner_momentum,
             "force": self.force,
             "fluid_force": self.fluid_force,
             "torque": self.torque,
@@ -206,7 +224,15 @@ class Coupled:
         self.fluid.restore(state["fluid"])
         self.grains.restore(state["grains"])
         self.saturated.restore(state["saturated"])
-        for name in ("inner_velocity", "inner_spin", "force", "fluid_force", "torque", "fluid_torque"):
+        for name in (
+            "inner_velocity",
+            "inner_spin",
+            "inner_momentum",
+            "force",
+            "fluid_force",
+            "torque",
+            "fluid_torque",
+        ):
             getattr(self, name)[...] = state[name]
 
 

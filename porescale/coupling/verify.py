@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from porescale.coupling import exact, verify_moving, verify_towed
+from porescale.coupling import exact, verify_fast, verify_moving, verify_towed
 from porescale.coupling import experiments as lab
 from porescale.workbench.validations import Measured, Validations
 
@@ -163,5 +163,5 @@ def drift() -> Measured:
     return Measured([density[0], torque[0]], [density[1], torque[1]], error)
 
 
-for _more in (verify_towed.VALIDATIONS, verify_moving.VALIDATIONS):
+for _more in (verify_towed.VALIDATIONS, verify_moving.VALIDATIONS, verify_fast.VALIDATIONS):
     VALIDATIONS.include(_more)

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from porescale.coupling.shapes.rectangle import Rectangle
 from porescale.coupling.step import Coupled, buoyant_weight
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import Discs, make_discs
@@ -24,6 +25,7 @@ from porescale.particles.placement import place
 from porescale.scene.cost import refuse_too_large
 from porescale.scene.derive import Derived, derive, grain_count
 from porescale.scene.geometry import refuse_overlaps
+from porescale.scene.rectangles import Movers, on_the_lattice, stand_ins, take_over
 from porescale.scene.sections import Packing, Scene
 from porescale.scene.sides import Domain
 from porescale.scene.simulation import Gatekeeper, Simulation
@@ -32,6 +34,8 @@ from porescale.workbench.sections import load
 GATE = "gate"
 UNTOUCHED = Linear(1.0, 0.0)
 """Contact law where all discs are held: nothing comes of it."""
+
+NO_DISCS = make_discs(np.zeros((0, 2)), np.zeros(0), np.zeros(0))
 
 
 def load_scene(path: str | Path, *, quality: str | None = None, settings: Sequence[str] = ()) -> Scene:
@@ -46,18 +50,22 @@ def build(scene: Scene) -> Simulation:
     """
     derived = derive(scene)
     refuse_too_large(derived)
-    grains = _grains(scene, derived) if scene.grains or scene.disc else None
+    grains = _grains(scene, derived) if scene.grains or scene.disc or scene.rectangle else None
     fluid = _fluid(scene, derived) if scene.fluid else None
-    coupled = _coupled(scene, derived, fluid, grains) if fluid and grains else None
+    solids = on_the_lattice(scene, derived.scales) if derived.scales else []
+    coupled = _coupled(scene, derived, fluid, grains, solids) if fluid and grains else None
+    movers = Movers(scene, solids, derived.scales, grains) if scene.rectangle else None
     weight = buoyant_weight(grains, 0.0, scene.gravity) if grains and not fluid else None
     gate = None
     if scene.gate:
         plate = fluid.add_plate(derived.gate_column or 0) if fluid else None
         gate = Gatekeeper(scene.gate.opens_at, scene.gate.lift_speed, plate, grains, GATE)
-    return Simulation(scene, derived, fluid=fluid, grains=grains, coupled=coupled, weight=weight, gate=gate)
+    return Simulation(
+        scene, derived, fluid=fluid, grains=grains, coupled=coupled, weight=weight, gate=gate, movers=movers
+    )  # fmt: skip
 
 
-def _coupled(scene: Scene, derived: Derived, fluid: Fluid, grains: Grains) -> Coupled:
+def _coupled(scene: Scene, derived: Derived, fluid: Fluid, grains: Grains, rectangles: Sequence[Rectangle]) -> Coupled:
     """Fluid and grains, each as large to the other as the scene says: grains by lambda, held discs as they are."""
     assert scene.fluid
     assert derived.scales
@@ -69,7 +77,7 @@ def _coupled(scene: Scene, derived: Derived, fluid: Fluid, grains: Grains) -> Co
     return Coupled(
         fluid, grains, derived.scales, hydraulic_ratio=size, contact_steps=derived.contact_steps or 1,
         acceleration=scene.gravity, **scene.fluid.solid_laws,
-        lubrication=films is not None, film_gap=films.gap if films else 1.0,
+        lubrication=films is not None, film_gap=films.gap if films else 1.0, rectangles=rectangles,
     )  # fmt: skip
 
 
@@ -120,13 +128,15 @@ def _grains(scene: Scene, derived: Derived) -> Grains:
     parts = [_by_hand(scene)] if scene.grains and scene.grains.grain else []
     parts += [_held(scene)] if scene.disc else []
     if packing and packing.settle:
-        grains = prepared(scene, packing, box, derived, plates)
+        grains = prepared(scene, packing, box, derived, [*plates, *stand_ins(scene)])
         if parts:
             grains = joined(grains, together(*parts))
     else:
         parts = [_placed(scene, packing), *parts] if packing else parts
-        grains = Grains(together(*parts), law, box, wall_law=wall_law, plates=plates)
+        grains = Grains(together(*parts) if parts else NO_DISCS, law, box, wall_law=wall_law, plates=plates)
         grains.refresh()  # contacts count from the first row of the series on
+    if scene.rectangle:
+        take_over(scene, grains)
     if scene.disc:
         grains.hold(slice(grains.discs.count - len(scene.disc), None))
     added = len(scene.disc) + (len(scene.grains.grain) if scene.grains else 0)

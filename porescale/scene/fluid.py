@@ -42,6 +42,9 @@ class Fluid(Section):
     weighting: str | None = pydantic.Field(
         None, description="weight of cells that grains lie in (left out: the one that goes with solid_operator)"
     )
+    rim: Literal["sharp", "soft"] | None = pydantic.Field(
+        None, description="soft: for grains that the fluid passes fast (left out: with the operator central)"
+    )
     precision: Literal["float64", "float32"] = pydantic.Field("float64", description="precision of the populations")
     body_force: tuple[float, float] = quantity(
         "N/m^3", (0.0, 0.0), ge=-1e9, le=1e9, help="force per volume on the fluid (a pressure gradient, reversed)"
@@ -82,6 +85,13 @@ class Fluid(Section):
             raise Refused(Fault("weighting", self.weighting, problem, "", fits, "leave it out")) from None
         return self
 
+    @pydantic.model_validator(mode="after")
+    def _rim_fits(self) -> Fluid:
+        if self.rim == "soft" and self.solid_operator != "exact-wall":
+            problem = f"does not go with the solid operator {self.solid_operator!r}"
+            raise Refused(Fault("rim", self.rim, problem, "", "'sharp'", "leave it out, or take 'exact-wall'"))
+        return self
+
     @property
     def laws(self) -> dict[str, Any]:
         """What the operator is chosen by: keyword arguments of ``Fluid`` of the lattice."""
@@ -93,6 +103,11 @@ class Fluid(Section):
         return fitting_weight(self.solid_operator, self.weighting)
 
     @property
+    def soft_rim(self) -> bool:
+        """Whether grains have soft rims."""
+        return self.rim == "soft" or (self.rim is None and self.operator == "central" and self.weight == "wall")
+
+    @property
     def solid_laws(self) -> dict[str, Any]:
         """The same of cells that grains lie in: keyword arguments of ``Saturated`` and ``Coupled``."""
-        return {"solid_operator": self.solid_operator, "weighting": self.weight}
+        return {"solid_operator": self.solid_operator, "weighting": self.weight, "soft_rim": self.soft_rim}

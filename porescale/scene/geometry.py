@@ -11,6 +11,7 @@ from porescale.dem.system import SKIN
 from porescale.ground.check import Fault, InputError
 from porescale.particles.placement import DENSEST
 from porescale.scene.bodies import Disc
+from porescale.scene.rectangles import beside, judge_rectangles
 from porescale.scene.sections import Gate, Grain, Packing, Scene
 from porescale.scene.sides import Domain
 
@@ -38,6 +39,7 @@ def judge_places(scene: Scene, sizes: tuple[float, float, float] | None, faults:
         if packing.settle:
             _judge_settling(scene, faults)
     names, x, r = placed(scene)
+    judge_rectangles(scene, x, r, names, faults)
     if not names:
         return
     box, inner = np.array([scene.domain.width, scene.domain.height]), r[:, None] * (1 - TOUCH)
@@ -161,23 +163,24 @@ def _judge_settling(scene: Scene, faults: list[Fault]) -> None:
     if domain.periodic[1]:
         repair = f"give the box a bottom, {otherwise}"
         faults.append(Fault("domain.bottom", domain.bottom.kind, "there is no floor to settle on", repair=repair))
-    loose = _loose_sides(packing, domain, scene.gate)
+    loose = _loose_sides(scene, packing)
     if loose:
         problem = f"nothing holds the packing on its {loose} while it settles"
         repair = f"put it between walls and gate, {otherwise}"
         faults.append(Fault("grains.packing.left", packing.left, problem, "m", repair=repair))
 
 
-def _loose_sides(packing: Packing, domain: Domain, gate: Gate | None) -> str:
+def _loose_sides(scene: Scene, packing: Packing) -> str:
     """Sides on which no wall or gate stands within a diameter of the packing, in words; a full period holds itself."""
-    if domain.periodic[0] and packing.width > domain.width - packing.diameter:
+    if scene.domain.periodic[0] and packing.width > scene.domain.width - packing.diameter:
         return ""
+    domain, gate = scene.domain, scene.gate
     ends = {"left": (packing.left, 0.0), "right": (packing.left + packing.width, domain.width)}
     loose = []
     for side, (edge, wall) in ends.items():
         near_wall = not domain.periodic[0] and abs(edge - wall) < packing.diameter
         near_gate = gate is not None and abs(edge - gate.x) < packing.diameter
-        if not near_wall and not near_gate:
+        if not near_wall and not near_gate and not beside(scene, edge, packing.diameter):
             loose.append(side)
     return " and ".join(loose)
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from porescale.lbm.scales import Scales
 from porescale.scene.measures import Flux, Loads
+from porescale.scene.rectangles import rectangle_loads
 from porescale.scene.sample import Sampler, midpoints
 from porescale.scene.sections import Scene
 
@@ -54,6 +55,7 @@ class Instruments:
             tables["flux"] = first | self._flux_row(fields)
         if self.scene.loads and coupled:
             tables["loads"] = first | load_row(self.scene, self.scene.loads, coupled)
+            tables["loads"] |= rectangle_loads(self.scene.loads.rectangles, coupled)
         return tables
 
     def _probe_row(self, probes: Sampler, fields: tuple[Array, Array, Array, Array]) -> Row:

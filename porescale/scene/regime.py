@@ -67,7 +67,7 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None) -> 
 def given_speed(scene: Scene) -> float:
     """The largest speed that the scene itself states, m/s: of sides, of the fluid at the start, of what is towed."""
     speeds = [side.peak for side in scene.domain.sides.values()]
-    speeds += [disc.fastest for disc in scene.disc]
+    speeds += [disc.fastest for disc in scene.disc] + [it.fastest for it in scene.rectangle]
     if scene.fluid:
         speeds.append(math.hypot(*scene.fluid.velocity))
     if scene.gate and scene.gate.lift_speed:

@@ -76,6 +76,7 @@ def _operators(scene: Scene, out: Report) -> None:
     out.row("Smagorinsky constant", fluid.smagorinsky or "none")
     if scene.grains or scene.disc:
         out.row("solid", fluid.solid_operator, "", SOLID_OPERATORS[fluid.solid_operator])
+        out.row("rim", "soft" if fluid.soft_rim else "sharp", "", "soft: for grains that the fluid passes fast")
         out.row("weight", fluid.weight, "", WEIGHTINGS[fluid.weight])
     out.row("precision", fluid.precision)
 

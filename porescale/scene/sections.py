@@ -13,6 +13,7 @@ from porescale.scene.bodies import Disc, Lubrication
 from porescale.scene.fluid import Fluid
 from porescale.scene.lattice import disagreements
 from porescale.scene.measures import FieldName, Flux, Line, Loads, Permeability, Probe
+from porescale.scene.rectangles import Rectangle
 from porescale.scene.sides import Domain
 from porescale.workbench.sections import Refused, Section, quantity
 
@@ -150,6 +151,7 @@ class Scene(Section):
     contact: Contact | None = None
     gate: Gate | None = None
     disc: tuple[Disc, ...] = ()
+    rectangle: tuple[Rectangle, ...] = ()
     probe: tuple[Probe, ...] = ()
     line: tuple[Line, ...] = ()
     flux: tuple[Flux, ...] = ()
@@ -234,4 +236,8 @@ class Scene(Section):
             if not 0 <= number < len(self.disc):
                 allowed = f"0 to {len(self.disc) - 1}" if self.disc else "none: there is no [[disc]]"
                 faults.append(Fault("loads.discs", number, "there is no such disc", "", allowed))
+        for number in self.loads.rectangles if self.loads else ():
+            if not 0 <= number < len(self.rectangle):
+                allowed = f"0 to {len(self.rectangle) - 1}" if self.rectangle else "none: there is no [[rectangle]]"
+                faults.append(Fault("loads.rectangles", number, "there is no such rectangle", "", allowed))
         return faults

@@ -17,6 +17,7 @@ from porescale.runs.model import Cloud, Grid, Snapshot
 from porescale.scene import observe
 from porescale.scene.derive import Derived
 from porescale.scene.instruments import LAMBDA, Instruments, total_pressure
+from porescale.scene.rectangles import Movers
 from porescale.scene.sections import Scene
 
 Array = NDArray[Any]
@@ -67,10 +68,11 @@ class Simulation:
         coupled: Coupled | None,
         weight: Array | None,
         gate: Gatekeeper | None,
+        movers: Movers | None = None,
     ) -> None:
         self.scene, self.derived = scene, derived
         self.fluid, self.grains, self.coupled, self.gate = fluid, grains, coupled, gate
-        self.weight = weight
+        self.weight, self.movers = weight, movers
         self.step = 0
         self.time = 0.0
         self.step_seconds = derived.model_step
@@ -107,6 +109,8 @@ class Simulation:
         for _ in range(steps):
             if self.gate:
                 self.gate.advance(self.time, self.fluid, scales.spacing if scales else 1.0, self.step_seconds)
+            if self.movers:
+                self.movers.advance(self.step, self.step_seconds, self.coupled)
             if self.coupled:
                 self.coupled.advance()
             elif self.fluid:
@@ -115,6 +119,8 @@ class Simulation:
                 self.grains.step(self.step_seconds, self.weight)
             self.step += 1
             self.time = self.step * self.step_seconds
+            if self.movers:
+                self.movers.place(self.step, self.step_seconds)
 
     def fields(self) -> tuple[Array, Array, Array, Array]:
         """Density excess (kg/m³), velocity (m/s, two arrays) and solid fraction of every cell, each (ny, nx)."""
@@ -151,6 +157,8 @@ class Simulation:
             if self.scene.grains and self.scene.grains.hydraulic_radius_ratio:
                 row[LAMBDA] = self.scene.grains.hydraulic_radius_ratio
             row["fluid mass change ()"] = (self.fluid.mass_excess() - self._mass) / cells
+            if self.movers and self.coupled:
+                row |= self.movers.row(self.coupled)
         return row
 
     def tables(self) -> dict[str, dict[str, float]]:
@@ -165,7 +173,7 @@ class Simulation:
         snapshot = Snapshot(self.time, self.step)
         if self.fluid and self.derived.scales:
             snapshot.grids["fields"] = self._grid()
-        if self.grains:
+        if self.grains and self.grains.discs.count:
             d = self.grains.discs
             flat = np.zeros((d.count, 3))
             flat[:, :2] = d.velocity
@@ -208,12 +216,16 @@ class Simulation:
             state["watch"] = self._watch.state()
         if self.gate:
             state["gate_open"] = self.gate.open
+        if self.movers:
+            state["made_good"] = self.movers.made_good
         return state
 
     def restore(self, state: dict[str, Any]) -> None:
         """Take up a state of a simulation built from the same scene."""
         self.step, self._mass = int(state["step"]), float(state["mass"])
         self.time = self.step * self.step_seconds
+        if self.movers:
+            self.movers.made_good = float(state["made_good"])
         if self.gate and bool(state["gate_open"]):
             self.gate.open = True
             if self.gate.lift_speed is None and self.fluid:
@@ -224,5 +236,7 @@ class Simulation:
             self.fluid.restore(state["fluid"])
         elif self.grains:
             self.grains.restore(state["grains"])
+        if self.movers:
+            self.movers.place(self.step, self.step_seconds)
         if self._watch:
             self._watch.restore(state["watch"])

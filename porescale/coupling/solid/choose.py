@@ -21,9 +21,7 @@ SOLID_OPERATORS = {
 """Name of each solid operator and what it is good for."""
 
 
-def choose_solid(
-    name: str, relaxation_time: float, third_order: float, dtype: DTypeLike, *, soft: bool = False
-) -> Any:
+def choose_solid(name: str, relaxation_time: float, third_order: float, dtype: DTypeLike, *, soft: bool = False) -> Any:
     """The law of a solid operator by name;  third_order: rate of the fluid operator's odd moments but momentum.
 
     soft: with soft rims (rim.py), which go with exact walls only.  ValueError if there is none of that name.
