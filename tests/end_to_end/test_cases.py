@@ -249,7 +249,7 @@ def test_the_continuum_does_as_expected(case, tmp_path):
 
 
 EARLY = {
-    "centre of mass at 0.25 s", "centre of mass at 0.45 s", "height of the column", "centre of mass at the start",
+    "centre of mass at 0.25 s", "centre of mass at 0.6 s", "height of the column", "centre of mass at the start",
     "Mach number", "highest density", "lowest density", "largest overlap", "overlap in 95 % of rows", "fluid mass",
 }  # fmt: skip
 """Rows of the column collapse that a run cut short can be judged by."""
@@ -264,19 +264,19 @@ def test_the_column_collapses_as_expected(collapse):
 @pytest.mark.parametrize(
     ("setting", "end", "names"),
     [
-        ("fluid.viscosity=1e-3", 0.46, {"centre of mass at 0.45 s"}),
-        ("grains.hydraulic_radius_ratio=1", 0.32, {"lowest density", "highest density", "Mach number"}),
+        ("fluid.viscosity=1e-3", 0.61, {"centre of mass at 0.6 s", "Mach number"}),
+        ("grains.hydraulic_radius_ratio=1", 0.32, {"lowest density", "largest overlap", "overlap in 95 % of rows"}),
     ],
 )
 def test_another_column_does_not(porescale, tmp_path, setting, end, names):
-    # The twins that must fail: in fluid ten times as thick the half of the fall comes later; with pores sealed the
-    # water in them is squeezed and torn instead of flowing.  Both press grains together for longer and harder.
+    # The twins that must fail: fluid ten times as thick is slow, and half of the fall comes later; with pores sealed the
+    # water in them is torn instead of flowing in, and presses the grains together.
     columns = run(porescale, "column_collapse", tmp_path / "out", setting, f"time.end={end}")
     rows = [row for row in expected("column_collapse") if row["name"] in EARLY]
     assert {row["name"] for row in rows} == EARLY
     rows = [row for row in rows if not isinstance(row["at"], float) or row["at"] < end]
     found = {it.partition(":")[0] for it in missed(columns, rows)}
-    assert found == names | {"largest overlap", "overlap in 95 % of rows"}
+    assert found == names
 
 
 def test_grains_that_never_touch_or_move_would_be_noticed():
@@ -305,9 +305,9 @@ def eye(snapshot: Any) -> tuple[float, float, float]:
 
 @pytest.mark.slow
 def test_a_clockwise_vortex_stays_at_the_lower_left(collapse):
-    # The paper has it at the lower left, in experiment and simulation, once the column has collapsed.  From 0.5 s on
+    # The paper has it at the lower left, in experiment and simulation, once the column has collapsed.  From 0.65 s on
     # the front is in the left half; two packings shift a vortex by centimetres, so a quarter of the box is asked for.
-    seen = [eye(it) for it in collapse.snapshots() if it.time > 0.55]
+    seen = [eye(it) for it in collapse.snapshots() if it.time > 0.65]
     assert len(seen) > 30
     for x, y, strength in seen:
         assert strength < 0
