@@ -1,0 +1,123 @@
+"""Contacts of a region: coordination, rattlers, fabric, and how normal forces are distributed."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.dem.contacts import Contacts
+from porescale.dem.measures.region import Region
+from porescale.dem.measures.stress import principal
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+LEAST_WITH_FRICTION, LEAST_WITHOUT = 2, 3
+"""Fewest loaded contacts with which a disc can be held in two dimensions."""
+
+
+def loads(contacts: Contacts) -> Mask:
+    """Which contacts carry: a normal force that pushes, (c,) bool."""
+    return np.greater(contacts.normal_force, 0.0)
+
+
+def rattlers(contacts: Contacts, count: int, least: int = LEAST_WITH_FRICTION, held: Mask | None = None) -> Mask:
+    """Discs (count,) bool with fewer than ``least`` loaded contacts, those with other rattlers not counted.
+
+    held (count,) bool: discs that are held from outside and never rattle.  Repeated until no more fall out.
+    """
+    kept = contacts.chosen(loads(contacts))
+    loose = np.zeros(count, bool)
+    pair = kept.pairs
+    while True:
+        alive = ~loose[kept.first] & ~np.where(pair, loose[kept.second], False)
+        found = _per_disc(kept, alive, count) < least
+        if held is not None:
+            found &= ~held
+        if (found == loose).all():
+            return loose
+        loose = found | loose
+
+
+def contact_numbers(contacts: Contacts, count: int) -> NDArray[np.int64]:
+    """Loaded contacts of each disc, those with walls included, (count,)."""
+    return _per_disc(contacts, loads(contacts), count)
+
+
+def coordination(
+    contacts: Contacts, region: Region, position: Array, period: tuple[float, float], loose: Mask | None = None
+) -> float:
+    """Mean number of loaded contacts of the discs whose centre lies in the region; nan where there is none.
+
+    loose (n,) bool: discs left out, with their contacts (rattlers: the mechanical coordination number); walls count
+    as neighbours.
+    """
+    inside = region.holds(position, period)
+    alive = loads(contacts)
+    if loose is not None:
+        inside = inside & ~loose
+        alive &= ~loose[contacts.first] & ~np.where(contacts.pairs, loose[contacts.second], False)
+    if not inside.any():
+        return float("nan")
+    return float(_per_disc(contacts, alive, len(position))[inside].mean())
+
+
+class Fabric(NamedTuple):
+    """tensor (2, 2): mean of n n;  anisotropy a and angle (rad) of the density (1 + a cos 2(theta - angle))/(2 pi) that
+    has this tensor;  contacts: their number in the region."""
+
+    tensor: Array
+    anisotropy: float
+    angle: float
+    contacts: int
+
+
+def fabric(contacts: Contacts, region: Region, period: tuple[float, float] = (0.0, 0.0)) -> Fabric:
+    """Fabric of the loaded contacts whose point lies in the region; nan where there is none.
+
+    Sources: Satake 1982; a = 2 (major - minor value) in two dimensions, Rothenburg & Bathurst 1989, Geotechnique 39,
+    601.
+    """
+    chosen = contacts.chosen(loads(contacts) & region.holds(contacts.point, period))
+    if not chosen.count:
+        return Fabric(np.full((2, 2), np.nan), float("nan"), float("nan"), 0)
+    tensor = np.einsum("ca,cb->ab", chosen.normal, chosen.normal) / chosen.count
+    _, half, angle = principal(tensor)
+    return Fabric(np.asarray(tensor), 4.0 * half, angle, chosen.count)
+
+
+def rose(contacts: Contacts, bins: int = 36, weight: Array | None = None) -> tuple[Array, Array]:
+    """(edges (bins + 1,) rad from 0 to 2 pi, probability density per rad (bins,)) of the directions of contacts.
+
+    Every contact counts in both directions;  weight (c,): normal forces, for the directions of force instead.
+    """
+    angle = np.arctan2(contacts.normal[:, 1], contacts.normal[:, 0])
+    both = np.concatenate((angle, angle + np.pi)) % (2.0 * np.pi)
+    twice = None if weight is None else np.concatenate((weight, weight))
+    edges = np.linspace(0.0, 2.0 * np.pi, bins + 1)
+    counted, _ = np.histogram(both, edges, weights=twice)
+    total = counted.sum()
+    return edges, counted / (total if total > 0 else 1.0) / np.diff(edges)
+
+
+def force_distribution(contacts: Contacts, bins: int = 30, highest: float = 6.0) -> tuple[Array, Array]:
+    """(edges (bins + 1,), probability density (bins,)) of loaded normal forces over their mean, up to ``highest``.
+
+    Forces beyond count in the last bin, so that the density integrates to one.
+    """
+    force = contacts.normal_force[loads(contacts)]
+    edges = np.linspace(0.0, highest, bins + 1)
+    if not len(force):
+        return edges, np.zeros(bins)
+    counted, _ = np.histogram(np.minimum(force / force.mean(), highest), edges)
+    return edges, counted / len(force) / np.diff(edges)
+
+
+def _per_disc(contacts: Contacts, alive: Mask, count: int) -> NDArray[np.int64]:
+    """How many of the contacts that are ``alive`` each disc has."""
+    pair = alive & contacts.pairs
+    return np.asarray(
+        np.bincount(contacts.first[alive], minlength=count) + np.bincount(contacts.second[pair], minlength=count)
+    )

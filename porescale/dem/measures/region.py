@@ -1,0 +1,90 @@
+"""A rectangle in which something is measured, and what of discs and of contacts lies within it, periodic images too."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.ground.check import Fault, InputError
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Region:
+    """Corners, m: lower left and upper right."""
+
+    lower: tuple[float, float]
+    upper: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        numbers = (*self.lower, *self.upper)
+        if not all(math.isfinite(it) for it in numbers) or not all(
+            a < b for a, b in zip(self.lower, self.upper, strict=True)
+        ):
+            problem = "must lie right of and above the lower corner"
+            raise InputError(Fault("region.upper", str(self.upper), problem, "m", f"> {self.lower}"))
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height, m."""
+        return self.upper[0] - self.lower[0], self.upper[1] - self.lower[1]
+
+    @property
+    def area(self) -> float:
+        """m²."""
+        width, height = self.size
+        return width * height
+
+    def near(self, points: Array, period: tuple[float, float]) -> Array:
+        """The images (n, 2) m of ``points`` within a period of the lower corner; themselves where not periodic."""
+        moved = np.array(points, dtype=np.float64)
+        for axis, length in enumerate(period):
+            if length > 0.0:
+                moved[:, axis] -= length * np.floor((moved[:, axis] - self.lower[axis]) / length)
+        return moved
+
+    def shifts(self, low: Array, high: Array, period: tuple[float, float]) -> Iterator[Array]:
+        """Whole periods (2,) m by which something between corners ``low`` and ``high`` (n, 2) m may have to be moved
+        to reach into the region: (0, 0) alone where nothing is periodic."""
+        ranges = []
+        for axis, length in enumerate(period):
+            if length == 0.0 or len(low) == 0:
+                ranges.append([0.0])
+                continue
+            first = math.ceil((self.lower[axis] - float(high[:, axis].max())) / length)
+            last = math.floor((self.upper[axis] - float(low[:, axis].min())) / length)
+            ranges.append([k * length for k in range(first, last + 1)])
+        for along in ranges[0]:
+            for up in ranges[1]:
+                yield np.array([along, up])
+
+    def holds(self, points: Array, period: tuple[float, float] = (0.0, 0.0)) -> NDArray[np.bool_]:
+        """Which points (n, 2) m, or images of them, lie inside or on the lower and left edges, (n,) bool."""
+        at = self.near(points, period)
+        return np.asarray(np.all((at >= self.lower) & (at < self.upper), axis=1))
+
+    def share_of_branch(self, start: Array, branch: Array, period: tuple[float, float] = (0.0, 0.0)) -> Array:
+        """Share (n,) of the segments from ``start`` (n, 2) m along ``branch`` (n, 2) m that lies inside.
+
+        Clipping after Liang & Barsky, ACM Trans. Graphics 3 (1984) 1; shares of all periodic images add up.
+        """
+        start = self.near(start, period)
+        end = start + branch
+        total = np.zeros(len(start))
+        for shift in self.shifts(np.minimum(start, end), np.maximum(start, end), period):
+            enters, leaves = np.zeros(len(start)), np.ones(len(start))
+            for axis in range(2):
+                along, at = branch[:, axis], start[:, axis] + shift[axis]
+                level = along == 0.0
+                step = np.where(level, 1.0, along)
+                ends = ((self.lower[axis] - at) / step, (self.upper[axis] - at) / step)
+                inside = (at >= self.lower[axis]) & (at < self.upper[axis])
+                enters = np.maximum(enters, np.where(level, np.where(inside, 0.0, 2.0), np.minimum(*ends)))
+                leaves = np.minimum(leaves, np.where(level, 1.0, np.maximum(*ends)))
+            total += np.maximum(leaves - enters, 0.0)
+        return total
