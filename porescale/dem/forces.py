@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from porescale.dem.cell import Still, drift, image, note
 from porescale.dem.contact.linear import contact_force
 from porescale.ground.jit import kernel
-from porescale.particles.cells import minimum_image
 
 
 @kernel
@@ -28,10 +28,19 @@ def start_forces(force, torque, external_force, external_torque):
 def add_pair_forces(
     position, velocity, spin, radius, force, torque, start, partner, carried, period_x, period_y, law, dt
 ):  # fmt: skip
+    """Add the contacts of all listed pairs in a cell of period_x, period_y m, 0 where not periodic: see pair_forces."""
+    cell = Still(period_x, period_y)
+    pair_forces(position, velocity, spin, radius, force, torque, start, partner, carried, law, dt, cell)
+
+
+@kernel
+def pair_forces(
+    position, velocity, spin, radius, force, torque, start, partner, carried, law, dt, cell
+):  # fmt: skip
     """Add the contacts of all listed pairs; reset the springs of those that do not touch.
 
     position, velocity (n, 2) m, m/s;  spin, radius (n,) rad/s, m;  start (n + 1,), partner (m,) half list in CSR;
-    period m, 0 where not periodic;  law (7,) row;  dt s.  Adds to force (n, 2) N/m and torque (n,) N m/m
+    law (7,) row;  dt s;  cell Still or Straining, whose load is added to.  Adds to force (n, 2) N/m and torque (n,) N m/m
     in the order of the list; overwrites carried (m, >= 1), column 0 the tangential spring, m.
     Not checked: two centres in one place give nan, which Grains.check reports.
     """
@@ -44,8 +53,7 @@ def add_pair_forces(
         fx, fy, moment = 0.0, 0.0, 0.0
         for k in range(first, last):
             j = partner[k]
-            dx = minimum_image(position[j, 0] - xi, period_x)
-            dy = minimum_image(position[j, 1] - yi, period_y)
+            dx, dy = image(position[j, 0] - xi, position[j, 1] - yi, cell)
             rj = radius[j]
             square = dx * dx + dy * dy
             if square >= (ri + rj) * (ri + rj):
@@ -56,13 +64,15 @@ def add_pair_forces(
             nx, ny = dx * inverse, dy * inverse
             arm_i = 0.5 * (distance + (ri - rj) * (ri + rj) * inverse)
             arm_j = distance - arm_i
-            du, dv = ui - velocity[j, 0], vi - velocity[j, 1]
+            drift_x, drift_y = drift(dx, dy, cell)
+            du, dv = ui - velocity[j, 0] - drift_x, vi - velocity[j, 1] - drift_y
             closing = du * nx + dv * ny
             slip = dv * nx - du * ny + wi * arm_i + spin[j] * arm_j
             normal, tangential, spring = contact_force(ri + rj - distance, closing, slip, carried[k, 0], dt, law)
             carried[k, 0] = spring
             gx = -normal * nx - tangential * ny
             gy = -normal * ny + tangential * nx
+            note(gx, gy, dx, dy, cell)
             fx += gx
             fy += gy
             moment += tangential * arm_i

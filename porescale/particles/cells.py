@@ -25,6 +25,18 @@ def minimum_image(dx, period):
 
 
 @inline
+def tilted_image(dx, dy, period_x, period_y, tilt):
+    """Components between nearest images, m, where the image one ``period_y`` higher lies ``tilt`` (m) to the right.
+
+    Exact for pairs nearer than half of either period, whatever the tilt; tilt 0: ``minimum_image`` of both, to the bit.
+    Source: Lees & Edwards, J. Phys. C 5 (1972) 1921.
+    """
+    if tilt != 0.0:
+        dx -= tilt * np.rint(dy * (1.0 / period_y))
+    return minimum_image(dx, period_x), minimum_image(dy, period_y)
+
+
+@inline
 def wrapped(x, lower, period):
     """Coordinate (m) of the image of ``x`` in [lower, lower + period]; ``period`` 0: ``x`` itself."""
     if period > 0.0:

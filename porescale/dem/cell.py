@@ -1,0 +1,94 @@
+"""Periodic cells as the contact loop sees them: one that stands still, or one that is strained.
+
+A strained cell has the edges (width, 0) and (tilt, height).  Velocities of discs are then those relative to the affine
+motion G x of the cell, G = [[gxx, gxy], [0, gyy]] in 1/s, so that every image of a disc has the same velocity, and two
+discs that are d apart pass each other with v_i - v_j - G d, across a boundary or not (Evans & Morriss, Statistical
+Mechanics of Nonequilibrium Liquids, 1990, section 6.3; Lees & Edwards, J. Phys. C 5 (1972) 1921).
+The loop is compiled once for each kind of cell: a cell that stands still costs what it cost before there were others.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.ground.jit import by_law
+from porescale.particles.cells import minimum_image, tilted_image
+
+XX, XY, YX, YY, STIFF = range(5)
+"""Columns of ``load``: sums over contacts of g_x d_x, g_x d_y, g_y d_x, g_y d_y (J/m) and of d^2 (m^2)."""
+
+
+class Still(NamedTuple):
+    """A cell that stands still, or none: period m, 0 where a side is not periodic."""
+
+    period_x: float
+    period_y: float
+
+
+class Straining(NamedTuple):
+    """A strained cell at one moment: edges m, velocity gradient 1/s;  load (5,): see ``note``."""
+
+    period_x: float
+    period_y: float
+    tilt: float
+    gxx: float
+    gxy: float
+    gyy: float
+    load: NDArray[np.float64]
+
+
+@by_law
+def image(dx, dy, cell):
+    """Components (m) of the way between nearest images in ``cell``."""
+
+
+@image.of(Still)
+def image_still(dx, dy, cell):
+    """Two minimum images."""
+    return minimum_image(dx, cell.period_x), minimum_image(dy, cell.period_y)
+
+
+@image.of(Straining)
+def image_straining(dx, dy, cell):
+    """The upper image lies ``tilt`` to the right."""
+    return tilted_image(dx, dy, cell.period_x, cell.period_y, cell.tilt)
+
+
+@by_law
+def drift(dx, dy, cell):
+    """Velocity (m/s) of the affine motion at (dx, dy) m from where it is zero."""
+
+
+@drift.of(Still)
+def drift_still(dx, dy, cell):
+    """None."""
+    return 0.0, 0.0
+
+
+@drift.of(Straining)
+def drift_straining(dx, dy, cell):
+    """G d."""
+    return cell.gxx * dx + cell.gxy * dy, cell.gyy * dy
+
+
+@by_law
+def note(gx, gy, dx, dy, cell):
+    """Add a contact to the sums of a strained cell: (gx, gy) N/m on i, (dx, dy) m from i to j.  One thread at a time."""
+
+
+@note.of(Still)
+def note_still(gx, gy, dx, dy, cell):
+    """Nothing to add to."""
+
+
+@note.of(Straining)
+def note_straining(gx, gy, dx, dy, cell):
+    """Overwrites ``cell.load`` (5,)."""
+    cell.load[XX] += gx * dx
+    cell.load[XY] += gx * dy
+    cell.load[YX] += gy * dx
+    cell.load[YY] += gy * dy
+    cell.load[STIFF] += dx * dx + dy * dy
