@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.contact.linear import MU
+from porescale.dem.contact.law import MU
 from porescale.dem.forces import add_pair_forces
 from porescale.dem.rectangle import BOTTOM, LEFT, RIGHT, TOP, add_rectangle_forces, nearest_face
 from porescale.dem.system import Grains
@@ -125,7 +125,7 @@ def _pairs(grains: Grains) -> Contacts:
     carried = pairs.carried[near].copy()
     add_pair_forces(
         d.position[both], d.velocity[both], d.spin[both], d.radius[both], force, torque,
-        start, (2 * np.arange(count) + 1).astype(np.int32), carried, *grains.box.period, grains.law_row,
+        start, (2 * np.arange(count) + 1).astype(np.int32), carried, *grains.box.period, grains.law_of(both),
         grains.last_dt,
     )  # fmt: skip
     distance = np.hypot(*apart.T)
@@ -134,15 +134,15 @@ def _pairs(grains: Grains) -> Contacts:
     return _listed(
         i, j, np.full(count, NOBODY), d.position[i] + arm[:, None] * normal, normal, apart,
         d.radius[i] + d.radius[j] - distance, force[1::2], torque.reshape(-1, 2), carried[:, 0],
-        float(grains.law_row[MU]),
+        grains.contact.table[_material(grains, i), _material(grains, j), MU],
     )  # fmt: skip
 
 
-Surface = tuple[Array, Array, Callable[[Index, Array, Array], Array], float]
-"""Closest point (n, 2) m and signed distance (n,) m of every disc; the step's forces on some discs; friction."""
+Surface = tuple[Array, Array, Callable[[Index, Array, Array], Array], Array]
+"""Closest point (n, 2) m and signed distance (n,) m of every disc; the step's forces on some; friction by material."""
 
 
-def _surface(grains: Grains, number: int, nearest: Array, distance: Array, forces: Any, friction: float) -> Contacts:
+def _surface(grains: Grains, number: int, nearest: Array, distance: Array, forces: Any, friction: Array) -> Contacts:
     """The contacts of one surface."""
     d = grains.discs
     i = np.flatnonzero(distance < d.radius)
@@ -155,8 +155,13 @@ def _surface(grains: Grains, number: int, nearest: Array, distance: Array, force
     count = len(i)
     return _listed(
         i, np.full(count, NOBODY), np.full(count, number), nearest[i], normal, branch, d.radius[i] - depth,
-        -force, np.column_stack((torque, np.zeros(count))), spring, friction,
+        -force, np.column_stack((torque, np.zeros(count))), spring, friction[_material(grains, i)],
     )  # fmt: skip
+
+
+def _material(grains: Grains, discs: Index) -> NDArray[Any]:
+    """Numbers of the materials of some discs."""
+    return np.zeros(len(discs), np.uint8) if grains.material is None else grains.material[discs]
 
 
 def _wall(grains: Grains) -> list[Surface]:
@@ -167,7 +172,7 @@ def _wall(grains: Grains) -> list[Surface]:
         inward = row[NX : NX + 2]
         distance = (d.position - row[PX : PX + 2]) @ inward
         forces = _single(grains, add_wall_forces, grains.walls, grains.wall_laws, grains.wall_spring, w)
-        made.append((d.position - distance[:, None] * inward, distance, forces, float(grains.wall_laws[w, MU])))
+        made.append((d.position - distance[:, None] * inward, distance, forces, grains.wall_laws[w, :, MU]))
     return made
 
 
@@ -180,7 +185,7 @@ def _plate(grains: Grains) -> list[Surface]:
         distance = np.hypot(nearest[:, 0] - x, nearest[:, 1] - y)
         distance = distance if row[PRESENT] else np.full_like(distance, np.inf)
         forces = _single(grains, add_plate_forces, grains.plates, grains.plate_laws, grains.plate_spring, w)
-        made.append((nearest, distance, forces, float(grains.plate_laws[w, MU])))
+        made.append((nearest, distance, forces, grains.plate_laws[w, :, MU]))
     return made
 
 
@@ -196,7 +201,7 @@ def _rectangle(grains: Grains) -> list[Surface]:
             nearest[i], distance[i] = at[i] - depth * np.array([nx, ny]), -depth
         laws = grains.rectangle_laws
         forces = _single(grains, add_rectangle_forces, grains.rectangles, laws, grains.rectangle_spring, w)
-        made.append((nearest, distance, forces, float(laws[w, MU])))
+        made.append((nearest, distance, forces, laws[w, :, MU]))
     return made
 
 
@@ -207,9 +212,9 @@ def _single(grains: Grains, kernel: Any, table: Array, laws: Array, spring: Arra
         d, kept, total = grains.discs, spring[w : w + 1, i].copy(), np.zeros((1, 2))
         kernel(
             d.position[i], d.velocity[i], d.spin[i], d.radius[i], force, torque, table[w : w + 1], laws[w : w + 1],
-            kept, total, grains.last_dt,
+            kept, total, grains.law_of(i), grains.last_dt,
         )  # fmt: skip
-        spent: Array = kept[0]
+        spent: Array = kept[0, :, 0]
         return spent
 
     return forces
@@ -217,7 +222,7 @@ def _single(grains: Grains, kernel: Any, table: Array, laws: Array, spring: Arra
 
 def _listed(
     first: Index, second: Index, surface: Index, point: Array, normal: Array, branch: Array, overlap: Array,
-    force: Array, torque: Array, spring: Array, friction: float,
+    force: Array, torque: Array, spring: Array, friction: Array,
 ) -> Contacts:  # fmt: skip
     """Contacts with their forces resolved along normal and tangent."""
     pushing = np.sum(force * normal, axis=1)

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from porescale.dem.cell import Still, drift, image, note
-from porescale.dem.contact.linear import contact_force
+from porescale.dem.contact.law import contact, material_of, moments, note_contact, recall, remember
 from porescale.ground.jit import kernel
 
 
@@ -40,8 +40,8 @@ def pair_forces(
     """Add the contacts of all listed pairs; reset the springs of those that do not touch.
 
     position, velocity (n, 2) m, m/s;  spin, radius (n,) rad/s, m;  start (n + 1,), partner (m,) half list in CSR;
-    law (7,) row;  dt s;  cell Still or Straining, whose load is added to.  Adds to force (n, 2) N/m and torque (n,) N m/m
-    in the order of the list; overwrites carried (m, >= 1), column 0 the tangential spring, m.
+    law see contact/law.py;  dt s;  cell Still or Straining, whose load is added to.  Adds to force (n, 2) N/m and
+    torque (n,) N m/m in the order of the list; overwrites carried (m, 1 or 2): springs, tangential and rolling, m.
     Not checked: two centres in one place give nan, which Grains.check reports.
     """
     for i in range(radius.shape[0]):
@@ -57,7 +57,7 @@ def pair_forces(
             rj = radius[j]
             square = dx * dx + dy * dy
             if square >= (ri + rj) * (ri + rj):
-                carried[k, 0] = 0.0
+                remember(carried, k, 0.0, 0.0, law)
                 continue
             distance = np.sqrt(square)
             inverse = 1.0 / distance
@@ -68,17 +68,29 @@ def pair_forces(
             du, dv = ui - velocity[j, 0] - drift_x, vi - velocity[j, 1] - drift_y
             closing = du * nx + dv * ny
             slip = dv * nx - du * ny + wi * arm_i + spin[j] * arm_j
-            normal, tangential, spring = contact_force(ri + rj - distance, closing, slip, carried[k, 0], dt, law)
-            carried[k, 0] = spring
+            overlap, reduced = ri + rj - distance, ri * rj / (ri + rj)
+            turning = reduced * (wi - spin[j])
+            mass = law.mass[i] * law.mass[j] / (law.mass[i] + law.mass[j])
+            p = law.table[material_of(law.material, i), material_of(law.material, j)]
+            before, roll_before = recall(carried, k, law)
+            normal, tangential, resisting, spring, roll = contact(
+                overlap, closing, slip, turning, before, roll_before, reduced, mass, dt, p, law
+            )
+            remember(carried, k, spring, roll, law)
+            note_contact(
+                i, overlap, closing, slip, turning, before, roll_before, normal, tangential, resisting, spring, roll,
+                reduced, mass, dt, p, law.book, law,
+            )  # fmt: skip
             gx = -normal * nx - tangential * ny
             gy = -normal * ny + tangential * nx
             note(gx, gy, dx, dy, cell)
             fx += gx
             fy += gy
-            moment += tangential * arm_i
+            moment_i, moment_j = moments(tangential, resisting, arm_i, arm_j, reduced, law)
+            moment += moment_i
             force[j, 0] -= gx
             force[j, 1] -= gy
-            torque[j] += tangential * arm_j
+            torque[j] += moment_j
         force[i, 0] += fx
         force[i, 1] += fy
         torque[i] += moment

@@ -12,23 +12,25 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from porescale.dem.contact.law import BEFORE_SPIN, BEFORE_X, BEFORE_Y, DRAG, EXTERNAL, HOLDERS, note_work
 from porescale.dem.contact.linear import Linear
+from porescale.dem.contact.materials import Law
 from porescale.dem.forces import add_pair_forces, start_forces
 from porescale.dem.rectangle import add_rectangle_forces, move_rectangles
 from porescale.dem.walls import add_plate_forces, add_wall_forces, move_plates
-from porescale.ground.jit import kernel
+from porescale.ground.jit import inline, kernel
 
 NEIGHBOURS = 6
 """Most discs that touch a disc and are no smaller than it: the kissing number of the plane."""
 
 
 @kernel
-def withhold(held, withheld, velocity, spin, mass, inertia, force, torque, drag, first):
+def withhold(held, withheld, velocity, spin, mass, inertia, force, torque, drag, first, book, dt):
     """Take the force from held components, so that kick_drift leaves their velocity as it is.
 
     held (n, 3): not 0 where x, y, rotation is held; (0, 3) if none is.  Adds what the holder bears to withheld (n, 3)
     N/m, N/m, N m/m, after clearing it if ``first``.  Overwrites force (n, 2) and torque (n,) there with what balances
-    the background damping ``drag`` (1/s), 0 without.
+    the background damping ``drag`` (1/s), 0 without.  The holder's work over ``dt`` (s) goes into ``book``, if any.
     """
     for i in range(held.shape[0]):
         if first:
@@ -36,10 +38,26 @@ def withhold(held, withheld, velocity, spin, mass, inertia, force, torque, drag,
         for a in range(2):
             if held[i, a]:
                 withheld[i, a] += force[i, a]
+                note_work(book, i, HOLDERS, -force[i, a] * velocity[i, a], dt)
                 force[i, a] = drag * mass[i] * velocity[i, a]
         if held[i, 2]:
             withheld[i, 2] += torque[i]
+            note_work(book, i, HOLDERS, -torque[i] * spin[i], dt)
             torque[i] = drag * inertia[i] * spin[i]
+
+
+@inline
+def note_step(book, velocity, spin, mass, inertia, external_force, external_torque, drag, dt):
+    """Enter the work of external forces (n, 2) N/m and torques (n,) N m/m and of the drag (1/s) over ``dt`` (s) into
+    ``book`` (n, BOOK), and the velocities before the kick; nothing where it is None.
+    """
+    if book is None:
+        return
+    for i in range(mass.shape[0]):
+        u, v, w = velocity[i, 0], velocity[i, 1], spin[i]
+        book[i, EXTERNAL] += (external_force[i, 0] * u + external_force[i, 1] * v + external_torque[i] * w) * dt
+        book[i, DRAG] += drag * (mass[i] * (u * u + v * v) + inertia[i] * w * w) * dt
+        book[i, BEFORE_X], book[i, BEFORE_Y], book[i, BEFORE_SPIN] = u, v, w
 
 
 @kernel
@@ -119,15 +137,18 @@ def contact_steps(
             law,
             dt,
         )
-        add_wall_forces(position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, wall_force, dt)
+        add_wall_forces(
+            position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, wall_force, law, dt
+        )
         add_plate_forces(
-            position, velocity, spin, radius, force, torque, plates, plate_laws, plate_spring, plate_force, dt
+            position, velocity, spin, radius, force, torque, plates, plate_laws, plate_spring, plate_force, law, dt
         )
         add_rectangle_forces(
             position, velocity, spin, radius, force, torque, rectangles, rectangle_laws, rectangle_spring,
-            rectangle_force, dt,
+            rectangle_force, law, dt,
         )  # fmt: skip
-        withhold(held, withheld, velocity, spin, mass, inertia, force, torque, drag, first and step == 0)
+        note_step(law.book, velocity, spin, mass, inertia, external_force, external_torque, drag, dt)
+        withhold(held, withheld, velocity, spin, mass, inertia, force, torque, drag, first and step == 0, law.book, dt)
         moved = kick_drift(
             position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt
         )
@@ -138,7 +159,7 @@ def contact_steps(
     return count, False
 
 
-def packing_factor(normal: float, tangential: float) -> float:
+def packing_factor(normal: float, tangential: float, rolling: float = 0.0) -> float:
     """Largest eigenvalue bound, N/m: m w^2 of the stiffest motion in any packing of discs of mass >= m.
 
     Energy of a contact: k_n/2 (n.(u_i - u_j))^2 + k_t/2 (t.(u_i - u_j) + r_i q_i + r_j q_j)^2.  From
@@ -149,33 +170,50 @@ def packing_factor(normal: float, tangential: float) -> float:
         translation: 2 * 3 (k_n + k_t)/m,      rotation: 2 * 6 k_t r^2/I = 24 k_t/m.
     Table 1 of Saito et al. (k_t = k_n/4): 7.5 k_n/m, dt = 2.2e-5 s; the infinite triangular lattice itself
     reaches 6.5 k_n/m, 2.3e-5 s (a zone-boundary wave), where one pair alone allows 4.2e-5 s.
+    Rolling springs, k_r/2 R^2 (q_i - q_j)^2 with R <= r, add 24 k_r/m to rotation in the same way.
     """
-    return max(NEIGHBOURS * (normal + tangential), 4.0 * NEIGHBOURS * tangential)
+    return max(NEIGHBOURS * (normal + tangential), 4.0 * NEIGHBOURS * (tangential + rolling))
 
 
-def packing_limit(law: Linear, mass: float) -> float:
+def packing_limit(law: Law, mass: float, radius: float | None = None) -> float:
     """Stability limit (s) in any packing whose lightest disc has ``mass`` (kg/m), damping lagged half a
-    step.
+    step.  The law of Hertz also needs its ``radius`` (m), and takes the stiffness at its ``deepest`` overlap.
 
     A mode z = -1 needs dt^2 K + 2 dt C = 4 M; with bounds K/M = a, C/M = b: dt = 2 / (b/2 + sqrt(b^2/4 +
     a)), which is 2 (sqrt(1 + h^2) - h)/w for one pair.
     """
-    a = packing_factor(law.stiffness, law.tangential_stiffness) / mass
-    b = packing_factor(law.damping, law.tangential_damping) / mass
+    law = _tangents(law, mass, radius)
+    a = packing_factor(law.stiffness, law.tangential_stiffness, law.rolling_stiffness * law.rolls) / mass
+    b = packing_factor(law.damping, law.tangential_damping, law.rolling_damping * law.rolls) / mass
     return 2.0 / (0.5 * b + math.sqrt(0.25 * b * b + a))
 
 
+def _tangents(law: Law, mass: float, radius: float | None) -> Linear:
+    """The linear law that is as stiff as ``law`` ever is for the lightest disc."""
+    if isinstance(law, Linear):
+        return law
+    if radius is None:
+        raise ValueError("the stable step of a law of Hertz depends on the radius")
+    return law.stiffest(mass, radius)
+
+
 def stable_step(
-    laws: Linear | Sequence[Linear], mass: float, *, safety: float = 0.8, steps_per_contact: float = 10.0
+    laws: Law | Sequence[Law],
+    mass: float,
+    radius: float | None = None,
+    *,
+    safety: float = 0.8,
+    steps_per_contact: float = 10.0,
 ) -> float:
-    """A safe contact step (s) for discs whose lightest has ``mass`` (kg/m) under all of ``laws``.
+    """A safe contact step (s) for discs whose lightest has ``mass`` (kg/m) and ``radius`` (m) under all of ``laws``.
 
     ``safety`` times the packing limit, and at least ``steps_per_contact`` steps in the shortest contact of
-    two such discs (a free bounce errs by about a step in its duration; 0: stability alone decides).
+    two such discs (a free bounce errs by about a step in its duration; 0: stability alone decides).  Linear laws do
+    without the radius; see packing_limit for that of Hertz.
     """
     steps = []
-    for law in [laws] if isinstance(laws, Linear) else laws:
-        steps.append(safety * packing_limit(law, mass))
+    for law in laws if isinstance(laws, Sequence) else [laws]:
+        steps.append(safety * packing_limit(law, mass, radius))
         if steps_per_contact > 0.0:
-            steps.append(law.contact_time(0.5 * mass) / steps_per_contact)
+            steps.append(law.shortest_contact(0.5 * mass, 0.5 * (radius or 0.0)) / steps_per_contact)
     return min(steps)

@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.contact.linear import KN, KT
+from porescale.dem.contact.law import material_of, recall, stored
 from porescale.dem.discs import Discs
 from porescale.dem.system import Grains
 from porescale.dem.walls import HIGH, LOW, NX, NY, PRESENT, PX, PY, X
-from porescale.ground.jit import kernel
+from porescale.ground.jit import inline, kernel
 from porescale.particles.cells import minimum_image
 
 Array = NDArray[np.float64]
@@ -37,15 +37,27 @@ def survey_pairs(position, radius, start, partner, carried, period_x, period_y, 
             if overlap > 0.0:
                 touching[i] += 1
                 touching[j] += 1
-                energy += 0.5 * law[KN] * overlap**2 + 0.5 * law[KT] * carried[k, 0] ** 2
+                p = law.table[material_of(law.material, i), material_of(law.material, j)]
+                spring, roll = recall(carried, k, law)
+                reduced = radius[i] * radius[j] / (radius[i] + radius[j])
+                normal, tangential, rolling = stored(overlap, spring, roll, reduced, p, law)
+                energy += normal + tangential + rolling
                 share = overlap / min(radius[i], radius[j])
                 if share > worst:
                     worst, worst_i, worst_j = share, i, j
     return worst, worst_i, worst_j, energy
 
 
+@inline
+def stored_at_surface(i, overlap, radius, memory, laws, law):
+    """Elastic energy (J/m) of disc i against a surface; arguments as in walls.surface_contact."""
+    spring, roll = recall(memory, i, law)
+    normal, tangential, rolling = stored(overlap, spring, roll, radius, laws[material_of(law.material, i)], law)
+    return normal + tangential + rolling
+
+
 @kernel
-def survey_walls(position, radius, walls, laws, spring):
+def survey_walls(position, radius, walls, laws, spring, law):
     """(largest overlap over the radius, its disc, its wall, elastic energy J/m) over walls (w, 4)."""
     worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
     for w in range(walls.shape[0]):
@@ -54,14 +66,14 @@ def survey_walls(position, radius, walls, laws, spring):
             distance += (position[i, 1] - walls[w, PY]) * walls[w, NY]
             overlap = radius[i] - distance
             if overlap > 0.0:
-                energy += 0.5 * laws[w, KN] * overlap**2 + 0.5 * laws[w, KT] * spring[w, i] ** 2
+                energy += stored_at_surface(i, overlap, radius[i], spring[w], laws[w], law)
                 if overlap / radius[i] > worst:
                     worst, worst_i, worst_w = overlap / radius[i], i, w
     return worst, worst_i, worst_w, energy
 
 
 @kernel
-def survey_plates(position, radius, plates, laws, spring):
+def survey_plates(position, radius, plates, laws, spring, law):
     """(largest overlap over the radius, its disc, its plate, elastic energy J/m) over the plates (p, 5) present."""
     worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
     for w in range(plates.shape[0]):
@@ -71,7 +83,7 @@ def survey_plates(position, radius, plates, laws, spring):
                 dy = min(max(position[i, 1], plates[w, LOW]), plates[w, HIGH]) - position[i, 1]
                 overlap = radius[i] - np.sqrt(dx * dx + dy * dy)
                 if overlap > 0.0:
-                    energy += 0.5 * laws[w, KN] * overlap**2 + 0.5 * laws[w, KT] * spring[w, i] ** 2
+                    energy += stored_at_surface(i, overlap, radius[i], spring[w], laws[w], law)
                     if overlap / radius[i] > worst:
                         worst, worst_i, worst_w = overlap / radius[i], i, w
     return worst, worst_i, worst_w, energy
@@ -150,7 +162,7 @@ def _survey(grains: Grains) -> tuple[float, int, int, float]:
     """survey_pairs of ``grains``; fills ``grains.touching``."""
     result: tuple[float, int, int, float] = survey_pairs(
         grains.discs.position, grains.discs.radius, grains.pairs.start, grains.pairs.partner,
-        grains.pairs.carried, *grains.box.period, grains.law_row, grains.touching,
+        grains.pairs.carried, *grains.box.period, grains.contact, grains.touching,
     )  # fmt: skip
     return result
 
@@ -158,7 +170,7 @@ def _survey(grains: Grains) -> tuple[float, int, int, float]:
 def _survey_walls(grains: Grains) -> tuple[float, int, int, float]:
     d = grains.discs
     result: tuple[float, int, int, float] = survey_walls(
-        d.position, d.radius, grains.walls, grains.wall_laws, grains.wall_spring
+        d.position, d.radius, grains.walls, grains.wall_laws, grains.wall_spring, grains.contact
     )
     return result
 
@@ -166,6 +178,6 @@ def _survey_walls(grains: Grains) -> tuple[float, int, int, float]:
 def _survey_plates(grains: Grains) -> tuple[float, int, int, float]:
     d = grains.discs
     result: tuple[float, int, int, float] = survey_plates(
-        d.position, d.radius, grains.plates, grains.plate_laws, grains.plate_spring
+        d.position, d.radius, grains.plates, grains.plate_laws, grains.plate_spring, grains.contact
     )
     return result

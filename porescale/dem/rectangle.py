@@ -1,8 +1,8 @@
 """Rectangles that move as they are told: gates of finite thickness, pistons, steps.
 
 A disc touches a rectangle at its closest point, on a face or a corner, by the contact law of walls; a centre that got
-inside (which a stiff law never lets happen) is pushed out through the nearest face.  Every disc keeps one tangential
-spring per rectangle, zero while they do not touch.
+inside (which a stiff law never lets happen) is pushed out through the nearest face.  Every disc keeps its springs per
+rectangle, zero while they do not touch.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.dem.contact.law import SURFACES, note_work, remember
 from porescale.dem.walls import surface_contact
 from porescale.ground.check import Fault, InputError
 from porescale.ground.jit import inline, kernel
@@ -62,12 +63,12 @@ def nearest_face(x, y, left, bottom, right, top):
 
 @kernel
 def add_rectangle_forces(
-    position, velocity, spin, radius, force, torque, rectangles, laws, spring, rectangle_force, dt
+    position, velocity, spin, radius, force, torque, rectangles, laws, spring, rectangle_force, law, dt
 ):  # fmt: skip
     """Add the contacts of all discs with all rectangles; reset the springs of those that do not touch.
 
-    rectangles (m, 6);  laws (m, 7);  spring (m, n) m;  rectangle_force (m, 2) N/m, force of the discs on each.  The
-    rest as in walls.add_wall_forces.
+    rectangles (k, 6);  laws (k, m, COLUMNS);  spring (k, n, 1 or 2) m;  rectangle_force (k, 2) N/m, force of the discs
+    on each.  The rest as in walls.add_wall_forces.
     """
     for w in range(rectangles.shape[0]):
         left, bottom, right, top = (
@@ -76,7 +77,7 @@ def add_rectangle_forces(
             rectangles[w, RIGHT],
             rectangles[w, TOP],
         )
-        p = laws[w]
+        memory = spring[w]
         sum_x, sum_y = 0.0, 0.0
         for i in range(radius.shape[0]):
             x, y = position[i, 0], position[i, 1]
@@ -90,18 +91,19 @@ def add_rectangle_forces(
                 else:
                     nx, ny, depth = nearest_face(x, y, left, bottom, right, top)
                     distance = -depth
-                fx, fy, moment, kept = surface_contact(
-                    nx, ny, max(distance, 0.0), radius[i] - distance, velocity[i, 0] - rectangles[w, VELOCITY_X],
-                    velocity[i, 1] - rectangles[w, VELOCITY_Y], spin[i], spring[w, i], dt, p,
+                across, up = rectangles[w, VELOCITY_X], rectangles[w, VELOCITY_Y]
+                fx, fy, moment = surface_contact(
+                    i, nx, ny, distance, radius[i], velocity[i, 0] - across, velocity[i, 1] - up, spin[i], memory, dt,
+                    laws[w], law,
                 )  # fmt: skip
                 force[i, 0] += fx
                 force[i, 1] += fy
                 torque[i] += moment
-                spring[w, i] = kept
                 sum_x -= fx
                 sum_y -= fy
+                note_work(law.book, i, SURFACES, fx * across + fy * up, dt)
             else:
-                spring[w, i] = 0.0
+                remember(memory, i, 0.0, 0.0, law)
         rectangle_force[w, 0] = sum_x
         rectangle_force[w, 1] = sum_y
 

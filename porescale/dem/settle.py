@@ -144,12 +144,14 @@ def settle(grains: Grains, pile: Pile) -> None:
     grains.plates[:, LOW] = np.minimum(plates[:, LOW], pile.corner[1])
     grains.plates[:, HIGH] = np.maximum(plates[:, HIGH], pile.top() + pile.diameter)
     frictions, grains.plate_frictions = grains.plate_frictions, [None] * len(plates)
-    grains.set_law(stiffened(law, 1.0 / SOFTER))
+    law = stiffened(law, 1.0 / SOFTER)
+    grains.set_law(law)
     come_to_rest(grains, weights, pile.gravity)
     stiffer = SOFTER
     while stiffer > 1.0:
         scale_springs(grains, 1.0 / stiffer)
-        grains.set_law(stiffened(grains.law, stiffer))
+        law = stiffened(law, stiffer)
+        grains.set_law(law)
         come_to_rest(grains, weights, pile.gravity)
         deepest = 0.5 * max_overlap(grains).share  # of a diameter
         stiffer = 1.2 * deepest / OVERLAP if deepest >= OVERLAP else 1.0
@@ -190,8 +192,10 @@ def relax(grains: Grains, law: Linear, weights: Array, gravity: float, *, wall_l
     """
     before = np.hypot(grains.external_force[:, 0], grains.external_force[:, 1]).sum()
     share = np.hypot(weights[:, 0], weights[:, 1]).sum() / before if before > 0.0 else 1.0
-    if law.tangential_stiffness > 0.0:
-        scale_springs(grains, float(share) * grains.law.tangential_stiffness / law.tangential_stiffness)
+    smallest = float(grains.discs.mass.min()), float(grains.discs.radius.min())
+    stiff = [each.stiffest(*smallest).tangential_stiffness for each in (grains.laws[0], law)]
+    if stiff[1] > 0.0:
+        scale_springs(grains, float(share) * stiff[0] / stiff[1])
     grains.set_law(law, wall_law)
     rising = grains.plates[:, VELOCITY].copy()
     grains.plates[:, VELOCITY] = 0.0

@@ -8,9 +8,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from porescale.dem.contact.linear import COLUMNS, Linear
+from porescale.dem.contact.law import BOOK, COLUMNS, KernelLaw, memory_of
+from porescale.dem.contact.materials import Law, Materials
 from porescale.dem.discs import Discs
 from porescale.dem.integrate import contact_steps, first_without_number, stable_step
 from porescale.dem.rectangle import Rectangle
@@ -30,13 +31,15 @@ WORST_TRAVEL = 0.1  # of the smallest radius in one step: a contact would be met
 class Grains:
     """Discs under ``law`` in ``box`` with ``plates``.
 
-    law : between discs;  wall_law : at sides and plates (default: ``law``); a plate may have its own
-    friction. skin : m, of the pair list (default 0.5 mean radii).
+    law : between discs, or Materials;  wall_law : at sides and plates (default: ``law``, or what the material of the
+    walls says); a plate may have its own friction.  material : (n,) numbers of the discs' materials (default: 0).
+    energy : keep the energy book, see energy.py.  skin : m, of the pair list (default 0.5 mean radii).
 
     Positions are not wrapped on periodic sides.  The first step starts from velocities half a step back;
     for a start from rest that is the same.  ``steps`` and ``time`` count contact steps and seconds.
-    Arrays: wall_force (w, 2), plate_force (p, 2) N/m of the last step, wall_spring (w, n), plate_spring (p, n) m;
-    rectangles (m, 6): see rectangle.py, with rectangle_force (m, 2), rectangle_spring (m, n); see ``set_rectangles``;
+    Arrays: wall_force (w, 2), plate_force (p, 2) N/m of the last step, wall_spring (w, n, s), plate_spring (p, n, s) m,
+    the springs: tangential and, with rolling resistance, rolling;  rectangles (m, 6): see rectangle.py, with
+    rectangle_force (m, 2), rectangle_spring (m, n, s); see ``set_rectangles``;
     held (n, 3): not 0 where x, y, rotation of a disc is held, see ``hold``;  withheld (n, 3) N/m, N/m, N m/m: force
     and torque that held components did not follow, mean over the last call of ``step``;  both (0, 3) till first used.
     """
@@ -44,30 +47,33 @@ class Grains:
     def __init__(
         self,
         discs: Discs,
-        law: Linear,
+        law: Law | Materials,
         box: Box,
         *,
-        wall_law: Linear | None = None,
+        wall_law: Law | None = None,
         plates: Sequence[Plate] = (),
         skin: float | None = None,
+        material: ArrayLike | None = None,
+        energy: bool = False,
     ) -> None:
         count = discs.count
         self.discs, self.box = discs, box
+        self.book = np.zeros((count, BOOK)) if energy else None
+        self.material = self._numbers(law, material)
+        self._memory = 0  # springs per contact, none yet
         mean_radius = float(discs.radius.mean()) if count else 1.0
-        self.pairs = PairList(
-            count, SKIN * mean_radius if skin is None else skin, box.lower, box.upper, box.periodic, carried=1
-        )
+        self._skin = SKIN * mean_radius if skin is None else skin
         self.wall_names, self.walls = box.walls()
         self.plate_names = [plate.name for plate in plates]
         self.plates = np.array([plate.row() for plate in plates]).reshape(-1, 5)
         self.plate_frictions = [plate.friction for plate in plates]
         self._rectangle_frictions: list[float | None] = []
-        self.rectangles, self.rectangle_spring = np.zeros((0, 6)), np.zeros((0, count))
+        self.rectangles, self.rectangle_spring = np.zeros((0, 6)), np.zeros((0, count, 0))
         self.rectangle_force = np.zeros((0, 2))
+        self.wall_spring = np.zeros((len(self.walls), count, 0))
+        self.plate_spring = np.zeros((len(self.plates), count, 0))
         self.set_law(law, wall_law)
-        self.wall_spring = np.zeros((len(self.walls), count))
         self.wall_force = np.zeros((len(self.walls), 2))
-        self.plate_spring = np.zeros((len(self.plates), count))
         self.plate_force = np.zeros((len(self.plates), 2))
         self.external_force = np.zeros((count, 2))
         self.external_torque = np.zeros(count)
@@ -81,25 +87,79 @@ class Grains:
         self._stale = True  # the pair list must be looked at before the next step
         self._smallest = float(discs.radius.min()) if count else 0.0
 
-    def set_law(self, law: Linear, wall_law: Linear | None = None) -> None:
-        """Use ``law`` between discs and ``wall_law`` (default: the same) at sides and plates from now on."""
-        self.law, self.wall_law = law, law if wall_law is None else wall_law
-        self.law_row = law.row()
-        self.wall_laws = np.array([self.wall_law.row()] * len(self.walls)).reshape(-1, COLUMNS)
+    def set_law(self, law: Law | Materials, wall_law: Law | None = None) -> None:
+        """Use ``law`` between discs and ``wall_law`` (default: the same) at sides and plates from now on.
+
+        One law holds between all materials.  Raises InputError when the laws are of different kinds, or know fewer
+        materials than the discs have.
+        """
+        known = 1 if self.material is None else int(self.material.max(initial=0)) + 1
+        if isinstance(law, Materials):
+            if known > len(law.names):
+                raise InputError(Fault("material", known - 1, "no such material", allowed=f"< {len(law.names)}"))
+            at_walls = law.against(law.wall) if wall_law is None else [wall_law] * len(law.names)
+            table, used = law.table(), [*law.all(), *at_walls]
+        else:
+            at_walls = [law if wall_law is None else wall_law] * known
+            table, used = np.tile(law.row(), (known, known, 1)), [law, *at_walls]
+        if len({type(each) for each in used}) > 1:
+            raise InputError(Fault("contact.law", "linear and hertz", "all laws of a system must be of one kind"))
+        self.law, self.laws_at_walls, self.laws = law, at_walls, used
+        self.wall_law = law if wall_law is None and not isinstance(law, Materials) else wall_law
+        kind = used[0].kind(self._memory > 1 or any(each.rolls for each in used))
+        self.contact: KernelLaw = kind(table, self.material, self.discs.mass, self.book)
+        self._widen(memory_of(self.contact))
+        self.wall_laws = self._own_laws([None] * len(self.walls))
         self.plate_laws = self._own_laws(self.plate_frictions)
         self.rectangle_laws = self._own_laws(self._rectangle_frictions)
 
-    def _own_laws(self, frictions: list[float | None]) -> Array:
-        """Rows of the wall law, each with its own friction where it has one."""
-        rows = [(self.wall_law if own is None else self.wall_law.with_friction(own)).row() for own in frictions]
-        return np.array(rows).reshape(-1, COLUMNS)
+    def law_of(self, discs: NDArray[Any]) -> KernelLaw:
+        """The law as kernels take it for some of the discs, by index, without an energy book."""
+        law = self.contact
+        own = None if law.material is None else law.material[discs]
+        return type(law)(law.table, own, law.mass[discs], None)
+
+    def _own_laws(self, frictions: Sequence[float | None]) -> Array:
+        """Rows (surfaces, materials, COLUMNS) of the wall laws, with its own friction where a surface has one."""
+        rows = [
+            [(each if own is None else each.with_friction(own)).row() for each in self.laws_at_walls]
+            for own in frictions
+        ]
+        return np.array(rows).reshape(len(rows), len(self.laws_at_walls), COLUMNS)
+
+    def _numbers(self, law: Law | Materials, material: ArrayLike | None) -> NDArray[np.uint8] | None:
+        """The discs' materials, or None where there is but one; raises InputError at a number that is none."""
+        if not isinstance(law, Materials) or len(law.names) == 1:
+            return None
+        given = np.broadcast_to(np.asarray(0 if material is None else material), (self.discs.count,))
+        bad = np.flatnonzero((given < 0) | (given >= len(law.names)))
+        if len(bad):
+            raise InputError(
+                Fault("material", given[bad[0]].item(), f"of grain {bad[0]}", allowed=f"0 to {len(law.names) - 1}")
+            )
+        return given.astype(np.uint8)
+
+    def _widen(self, memory: int) -> None:
+        """Room for ``memory`` springs per contact; what there is is kept, new ones are zero."""
+        more = memory - self._memory
+        if more == 0:
+            return
+        box = self.box
+        pairs = PairList(self.discs.count, self._skin, box.lower, box.upper, box.periodic, carried=memory)
+        if self._memory > 0:
+            state = self.pairs.state()
+            pairs.restore({**state, "carried": np.pad(state["carried"], ((0, 0), (0, more)))})
+        self.pairs: PairList = pairs
+        self._memory = memory
+        for name in ("wall_spring", "plate_spring", "rectangle_spring"):
+            setattr(self, name, np.pad(getattr(self, name), ((0, 0), (0, 0), (0, more))))
 
     def set_rectangles(self, rectangles: Sequence[Rectangle]) -> None:
         """Put these rectangles, and no others, into the box; without contacts so far."""
         self._rectangle_frictions = [it.friction for it in rectangles]
         self.rectangles = np.array([it.row() for it in rectangles]).reshape(-1, 6)
         self.rectangle_laws = self._own_laws(self._rectangle_frictions)
-        self.rectangle_spring = np.zeros((len(rectangles), self.discs.count))
+        self.rectangle_spring = np.zeros((len(rectangles), self.discs.count, self._memory))
         self.rectangle_force = np.zeros((len(rectangles), 2))
 
     @property
@@ -114,8 +174,9 @@ class Grains:
     def stable_step(self, *, safety: float = 0.8, steps_per_contact: float = 10.0) -> float:
         """A safe contact step, s; see integrate.stable_step."""
         return stable_step(
-            [self.law, self.wall_law],
+            self.laws,
             float(self.discs.mass.min()),
+            float(self.discs.radius.min()),
             safety=safety,
             steps_per_contact=steps_per_contact,
         )
@@ -153,7 +214,7 @@ class Grains:
                 d.position, d.angle, d.velocity, d.spin, d.radius, d.mass, d.inertia, d.force, d.torque,
                 self.external_force, self.external_torque,
                 pairs.start, pairs.partner, pairs.carried, pairs.anchor, limit, *self.box.period,
-                self.law_row,
+                self.contact,
                 self.walls, self.wall_laws, self.wall_spring, self.wall_force,
                 self.plates, self.plate_laws, self.plate_spring, self.plate_force,
                 self.rectangles, self.rectangle_laws, self.rectangle_spring, self.rectangle_force,
@@ -243,7 +304,7 @@ class Grains:
                     f"more than {WORST_TRAVEL:g} of the smallest radius in a step: shorten the contact step",
                 )  # fmt: skip
         for name, wall in zip(self.wall_names, self.walls, strict=True):
-            distance = (self.discs.position - wall[:2]) @ wall[2:]
+            distance = (self.discs.position - wall[:2]) @ wall[2:4]
             out = int(distance.argmin())
             if distance[out] < 0.0:
                 raise self._unstable(
@@ -307,6 +368,7 @@ class Grains:
             "held": self.held.copy(),
             "withheld": self.withheld.copy(),
             **({name: getattr(self, name).copy() for name in RECTANGLES} if len(self.rectangles) else {}),
+            **({} if self.book is None else {"book": self.book.copy()}),
             "steps": self.steps,
             "time": self._time,
             "steps_of_dt": self._steps_of_dt,
@@ -325,6 +387,8 @@ class Grains:
             if own.shape != given.shape:
                 raise InputError(Fault(f"state.{name}", given.shape, "wrong shape", allowed=str(own.shape)))
             own[...] = given
+        if self.book is not None:
+            self.book[:] = state["book"]
         self.held, self.withheld = np.array(state["held"], np.uint8), np.array(state["withheld"])
         self.pairs.restore(state["pairs"])
         self.steps, self._time = int(state["steps"]), float(state["time"])

@@ -2,8 +2,8 @@
 
 A wall is a point and a normal that points into the domain; behind it is solid without end.  A plate has no
 thickness and takes contacts on both sides and at its ends, by its closest point.  Both use the contact law
-of pairs (contact_force): the limit r_j -> infinity of the pair's lever arm is the distance to the wall.
-Every disc keeps one tangential spring per wall and per plate, zero while they do not touch.
+of pairs: the limit r_j -> infinity of the pair's lever arm is the distance to the wall, that of the reduced radius r_i.
+Every disc keeps its springs per wall and per plate, zero while they do not touch.
 """
 
 from __future__ import annotations
@@ -14,7 +14,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.contact.linear import contact_force
+from porescale.dem.contact.law import (
+    SURFACES,
+    contact,
+    material_of,
+    moments,
+    note_contact,
+    note_work,
+    recall,
+    remember,
+)
 from porescale.ground.check import Fault, InputError
 from porescale.ground.jit import inline, kernel
 
@@ -22,8 +31,11 @@ Array = NDArray[np.float64]
 
 SIDES = ("left", "right", "bottom", "top")
 KINDS = ("solid", "periodic", "open")
-PX, PY, NX, NY = range(4)
-"""Columns of the wall table: a point (m) and the unit normal."""
+PX, PY, NX, NY, VX, VY, TURN = range(7)
+"""Columns of the wall table: a point (m) and the unit normal; velocity of that point (m/s) and rotation about it
+(rad/s), as the contacts feel it.
+"""
+WALL = 7
 X, LOW, HIGH, VELOCITY, PRESENT = range(5)
 """Columns of the plate table: x, lower and upper end (m), upward velocity (m/s), 1 while it is there."""
 
@@ -74,7 +86,7 @@ class Box:
         )
 
     def walls(self) -> tuple[list[str], Array]:
-        """Names of the solid sides and their wall table (w, 4), in the order of SIDES."""
+        """Names of the solid sides and their wall table (w, WALL), in the order of SIDES; they stand still."""
         table = {
             "left": (*self.lower, 1.0, 0.0),
             "right": (*self.upper, -1.0, 0.0),
@@ -82,7 +94,7 @@ class Box:
             "top": (*self.upper, 0.0, -1.0),
         }
         names = [side for side in SIDES if getattr(self, side) == "solid"]
-        return names, np.array([table[name] for name in names], dtype=np.float64).reshape(-1, 4)
+        return names, np.array([(*table[name], 0.0, 0.0, 0.0) for name in names]).reshape(-1, WALL)
 
 
 @dataclass(frozen=True)
@@ -111,90 +123,104 @@ class Plate:
 
 
 @inline
-def surface_contact(nx, ny, distance, overlap, vx, vy, spin, spring, dt, p):
-    """Disc against a surface: (force x, force y N/m, torque N m/m, spring m) on the disc.
+def surface_contact(i, nx, ny, distance, radius, vx, vy, spin, memory, dt, laws, law):
+    """Disc i against a surface: (force x, force y N/m, torque N m/m) on the disc.
 
-    (nx, ny) unit vector from the disc to the surface;  distance centre to surface (m), the lever arm;
-    overlap (m) > 0;  (vx, vy) velocity relative to the surface (m/s);  spin (rad/s);  dt (s);  p law row
-    (7,).
+    (nx, ny) unit vector from the disc to the surface;  distance centre to surface (m) < radius, the lever arm;
+    (vx, vy) velocity relative to the surface (m/s);  spin (rad/s);  dt (s);  laws (m, COLUMNS) of the surface with each
+    material;  law see contact/law.py.  Overwrites row i of memory (n, 1 or 2), springs in m.
     """
+    overlap, arm = radius - distance, max(distance, 0.0)
     closing = vx * nx + vy * ny
-    slip = vy * nx - vx * ny + spin * distance
-    normal, tangential, spring = contact_force(overlap, closing, slip, spring, dt, p)
-    return (
-        -normal * nx - tangential * ny,
-        -normal * ny + tangential * nx,
-        tangential * distance,
-        spring,
+    slip = vy * nx - vx * ny + spin * arm
+    turning = spin * radius
+    p, mass = laws[material_of(law.material, i)], law.mass[i]
+    before, roll_before = recall(memory, i, law)
+    normal, tangential, resisting, spring, roll = contact(
+        overlap, closing, slip, turning, before, roll_before, radius, mass, dt, p, law
     )
+    remember(memory, i, spring, roll, law)
+    note_contact(
+        i, overlap, closing, slip, turning, before, roll_before, normal, tangential, resisting, spring, roll,
+        radius, mass, dt, p, law.book, law,
+    )  # fmt: skip
+    moment, _ = moments(tangential, resisting, arm, 0.0, radius, law)
+    return -normal * nx - tangential * ny, -normal * ny + tangential * nx, moment
 
 
 @kernel
 def add_wall_forces(
-    position, velocity, spin, radius, force, torque, walls, laws, spring, wall_force, dt
+    position, velocity, spin, radius, force, torque, walls, laws, spring, wall_force, law, dt
 ):  # fmt: skip
     """Add the contacts of all discs with all walls; reset the springs of those that do not touch.
 
-    position, velocity (n, 2) m, m/s;  spin, radius (n,) rad/s, m;  walls (w, 4);  laws (w, 7);  dt s.
-    Adds to force (n, 2) N/m and torque (n,) N m/m; overwrites spring (w, n) m and wall_force (w, 2) N/m, the
-    force of the discs on each wall, summed in the order of discs.
+    position, velocity (n, 2) m, m/s;  spin, radius (n,) rad/s, m;  walls (w, WALL);  laws (w, m, COLUMNS) with each
+    material;  law see contact/law.py;  dt s.  Adds to force (n, 2) N/m and torque (n,) N m/m; overwrites spring
+    (w, n, 1 or 2) m and wall_force (w, 2 or 3) N/m, N m/m, the force of the discs on each wall, summed in the order of
+    discs, and its moment about the wall's point.
     """
     for w in range(walls.shape[0]):
         px, py, nx, ny = walls[w, PX], walls[w, PY], walls[w, NX], walls[w, NY]
-        p = laws[w]
-        sum_x, sum_y = 0.0, 0.0
+        wall_x, wall_y, turn = walls[w, VX], walls[w, VY], walls[w, TURN]
+        memory = spring[w]
+        sum_x, sum_y, moments_sum = 0.0, 0.0, 0.0
         for i in range(radius.shape[0]):
             distance = (position[i, 0] - px) * nx + (position[i, 1] - py) * ny
-            overlap = radius[i] - distance
-            if overlap > 0.0:
-                fx, fy, moment, kept = surface_contact(
-                    -nx, -ny, distance, overlap, velocity[i, 0], velocity[i, 1], spin[i], spring[w, i], dt, p
-                )
+            if radius[i] - distance > 0.0:
+                along = (position[i, 1] - py) * nx - (position[i, 0] - px) * ny
+                at_x, at_y = wall_x - turn * along * nx, wall_y - turn * along * ny
+                fx, fy, moment = surface_contact(
+                    i, -nx, -ny, distance, radius[i], velocity[i, 0] - at_x, velocity[i, 1] - at_y, spin[i], memory,
+                    dt, laws[w], law,
+                )  # fmt: skip
                 force[i, 0] += fx
                 force[i, 1] += fy
                 torque[i] += moment
-                spring[w, i] = kept
                 sum_x -= fx
                 sum_y -= fy
+                moments_sum += along * (ny * fy + nx * fx)
+                note_work(law.book, i, SURFACES, fx * at_x + fy * at_y, dt)
             else:
-                spring[w, i] = 0.0
+                remember(memory, i, 0.0, 0.0, law)
         wall_force[w, 0] = sum_x
         wall_force[w, 1] = sum_y
+        if wall_force.shape[1] > 2:
+            wall_force[w, 2] = moments_sum
 
 
 @kernel
 def add_plate_forces(
-    position, velocity, spin, radius, force, torque, plates, laws, spring, plate_force, dt
+    position, velocity, spin, radius, force, torque, plates, laws, spring, plate_force, law, dt
 ):  # fmt: skip
     """Add the contacts of all discs with all plates that are present; reset the springs of those that do
     not touch.
 
-    plates (p, 5);  laws (p, 7);  spring (p, n) m;  plate_force (p, 2) N/m, force of the discs on each plate.
-    The rest as in add_wall_forces.
+    plates (p, 5);  laws (p, m, COLUMNS);  spring (p, n, 1 or 2) m;  plate_force (p, 2) N/m, force of the discs on each
+    plate.  The rest as in add_wall_forces.
     """
     for w in range(plates.shape[0]):
         sum_x, sum_y = 0.0, 0.0
         if plates[w, PRESENT] != 0.0:
             x, low, high, rise = plates[w, X], plates[w, LOW], plates[w, HIGH], plates[w, VELOCITY]
-            p = laws[w]
+            memory = spring[w]
             for i in range(radius.shape[0]):
                 dx = x - position[i, 0]
                 dy = min(max(position[i, 1], low), high) - position[i, 1]
                 square = dx * dx + dy * dy
                 if square < radius[i] * radius[i]:
                     distance = np.sqrt(square)
-                    fx, fy, moment, kept = surface_contact(
-                        dx / distance, dy / distance, distance, radius[i] - distance,
-                        velocity[i, 0], velocity[i, 1] - rise, spin[i], spring[w, i], dt, p,
+                    fx, fy, moment = surface_contact(
+                        i, dx / distance, dy / distance, distance, radius[i],
+                        velocity[i, 0], velocity[i, 1] - rise, spin[i], memory, dt, laws[w], law,
                     )  # fmt: skip
                     force[i, 0] += fx
                     force[i, 1] += fy
                     torque[i] += moment
-                    spring[w, i] = kept
                     sum_x -= fx
                     sum_y -= fy
+                    note_work(law.book, i, SURFACES, fy * rise, dt)
                 else:
-                    spring[w, i] = 0.0
+                    remember(memory, i, 0.0, 0.0, law)
         plate_force[w, 0] = sum_x
         plate_force[w, 1] = sum_y
 

@@ -6,7 +6,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from porescale.dem.contact.linear import Linear, tangential_force
+from porescale.dem.contact.law import coulomb
+from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
 from porescale.dem.experiments import cloud, momentum_drift
 from porescale.dem.system import Grains
@@ -46,12 +47,14 @@ def test_spin_kept_in_the_mirror_is_no_mirror_image():  # the twin that must fai
 slips = st.lists(st.tuples(st.floats(-10.0, 10.0), st.floats(0.0, 100.0)), min_size=1, max_size=60)
 
 
-def taken_minus_stored(path, law, dt, friction=tangential_force.py_func):
+def taken_minus_stored(path, law, dt, friction=coulomb.py_func):
     """Smallest over the path of: work taken out of the slip, less the energy in the spring."""
     spring = work = 0.0
     least = 0.0
     for slip, limit in path:
-        force, spring = friction(spring, slip, limit, dt, law.row())
+        force, spring = friction(
+            spring, slip, limit, dt, law.tangential_stiffness, 1.0 / law.tangential_stiffness, law.tangential_damping
+        )
         work -= force * slip * dt
         least = min(least, work - 0.5 * law.tangential_stiffness * spring**2)
     return least
@@ -68,10 +71,10 @@ def test_friction_never_returns_more_than_it_took(path, damping):
 
 
 def test_resetting_the_spring_to_the_limit_with_the_dashpot_creates_energy():  # the twin that must fail
-    def common(spring, slip, limit, dt, p):
-        trial = p[2] * (spring + slip * dt) + p[3] * slip
+    def common(spring, slip, limit, dt, stiff, soft, damping):
+        trial = stiff * (spring + slip * dt) + damping * slip
         force = min(max(trial, -limit), limit)
-        return -force, (spring + slip * dt if force == trial else force / p[2])
+        return -force, (spring + slip * dt if force == trial else force * soft)
 
     law = Linear(1.0, 0.0, 100.0, 50.0, 0.5)
     assert taken_minus_stored([(10.0, 100.0)], law, 1e-6, common) < -10.0

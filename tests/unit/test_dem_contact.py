@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from porescale.dem.contact.linear import Linear, contact_force, normal_force, tangential_force
+from porescale.dem.contact.law import LinearSliding, contact, coulomb
+from porescale.dem.contact.linear import Linear
 from porescale.dem.integrate import packing_limit, stable_step
 from porescale.ground.check import InputError
 
@@ -85,30 +86,36 @@ def test_safe_step_respects_stability_and_resolves_the_contact():
     assert stable_step([PAPER, stiff], GRAIN) == stable_step(stiff, GRAIN)
 
 
+def at_contact(law, overlap, closing, slip=0.0, spring=0.0, dt=1e-3, compiled=True):
+    """(normal, tangential, spring) of a contact of unit mass and radius."""
+    function = contact if compiled else contact.py_func
+    kind = LinearSliding(law.row()[None, None], None, np.ones(1), None)
+    normal, tangential, _, spring, _ = function(overlap, closing, slip, 0.0, spring, 0.0, 1.0, 1.0, dt, law.row(), kind)
+    return normal, tangential, spring
+
+
 @pytest.mark.parametrize("compiled", [True, False])
 def test_only_release_at_zero_overlap_attracts(compiled):
-    force = normal_force if compiled else normal_force.py_func
-    assert force(1e-3, -10.0, Linear(1e3, 1.0).row()) == 0.0
-    assert force(1e-3, -10.0, Linear(1e3, 1.0, release="overlap").row()) == -9.0
-    assert force(1e-3, 10.0, Linear(1e3, 1.0).row()) == 11.0
+    def force(closing, release="force"):
+        return at_contact(Linear(1e3, 1.0, release=release), 1e-3, closing, compiled=compiled)[0]
+
+    assert force(-10.0) == 0.0
+    assert force(-10.0, "overlap") == -9.0
+    assert force(10.0) == 11.0
 
 
 @pytest.mark.parametrize("compiled", [True, False])
 def test_friction_saturates_and_the_spring_with_it(compiled):
-    friction = tangential_force if compiled else tangential_force.py_func
-    row = Linear(1.0, 0.0, 100.0, 5.0, 0.5).row()
-    assert friction(0.01, 2.0, 50.0, 0.01, row) == (-(100.0 * 0.03 + 5.0 * 2.0), 0.03)  # sticks
-    assert friction(0.01, 2.0, 4.0, 0.01, row) == (-4.0, 0.03)  # slides by its dashpot: spring apart
-    assert friction(0.01, -2.0, 0.5, 0.01, row) == (0.5, -0.005)  # slides: spring back on the limit
-    assert friction(0.01, 2.0, 50.0, 0.01, Linear(1.0, 0.0, 0.0, 5.0, 0.5).row()) == (
-        -10.0,
-        0.0,
-    )  # springless
+    friction = coulomb if compiled else coulomb.py_func
+    assert friction(0.01, 2.0, 50.0, 0.01, 100.0, 0.01, 5.0) == (-(100.0 * 0.03 + 5.0 * 2.0), 0.03)  # sticks
+    assert friction(0.01, 2.0, 4.0, 0.01, 100.0, 0.01, 5.0) == (-4.0, 0.03)  # slides by its dashpot: spring apart
+    assert friction(0.01, -2.0, 0.5, 0.01, 100.0, 0.01, 5.0) == (0.5, -0.005)  # slides: spring back on the limit
+    assert friction(0.01, 2.0, 50.0, 0.01, 0.0, 0.0, 5.0) == (-10.0, 0.0)  # springless
 
 
 def test_attraction_carries_no_friction():
-    row = Linear(1e3, 1.0, 100.0, 5.0, 0.5, release="overlap").row()
-    assert contact_force.py_func(1e-3, -10.0, 3.0, 0.01, 1e-3, row) == (-9.0, -0.0, 0.0)
+    law = Linear(1e3, 1.0, 100.0, 5.0, 0.5, release="overlap")
+    assert at_contact(law, 1e-3, -10.0, 3.0, 0.01, compiled=False) == (-9.0, -0.0, 0.0)
 
 
 @pytest.mark.parametrize(

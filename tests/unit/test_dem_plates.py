@@ -42,7 +42,12 @@ def test_the_energy_in_the_spring_of_a_plate_is_counted():
     assert measure.elastic_energy(grains) == pytest.approx(0.5 * 1e6 * 2e-3**2 + 0.5 * 3e5 * 1e-3**2, rel=1e-12)
     np.testing.assert_allclose(
         measure.survey_plates.py_func(
-            grains.discs.position, grains.discs.radius, grains.plates, grains.plate_laws, grains.plate_spring
+            grains.discs.position,
+            grains.discs.radius,
+            grains.plates,
+            grains.plate_laws,
+            grains.plate_spring,
+            grains.contact,
         ),
         (0.2, 0, 0, 2.15),
         rtol=1e-12,
@@ -149,7 +154,7 @@ def test_joining_keeps_what_rests_and_adds_the_rest():
     np.testing.assert_array_equal(both.plates, bed.plates)
     assert both.plate_names == ["gate"]
     np.testing.assert_array_equal(both.wall_spring[:, :2], bed.wall_spring)
-    np.testing.assert_array_equal(both.plate_spring, [[2e-6, 2e-6, 0, 0]])
+    np.testing.assert_array_equal(both.plate_spring[:, :, 0], [[2e-6, 2e-6, 0, 0]])
     pairs = {
         (i, int(both.pairs.partner[k])): both.pairs.carried[k, 0]
         for i in range(4)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from porescale.dem.contact.law import LinearSliding
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
 from porescale.dem.rectangle import Rectangle, add_rectangle_forces
@@ -55,12 +56,12 @@ def test_a_moving_face_gives_twice_its_speed():
 
 def test_a_rectangle_gets_what_the_disc_gets_less():
     discs = make_discs([(0.44, 0.5)], 0.05, 1.0, [(0.1, 0.2)])
-    force, torque, spring, on = np.zeros((1, 2)), np.zeros(1), np.zeros((1, 1)), np.zeros((1, 2))
+    force, torque, spring, on = np.zeros((1, 2)), np.zeros(1), np.zeros((1, 1, 1)), np.zeros((1, 2))
     box = np.array([Rectangle((0.1, 0.2), (0.4, 0.8)).row()])
     for kernel in (add_rectangle_forces, add_rectangle_forces.py_func):
         force[:] = 0.0
-        kernel(discs.position, discs.velocity, discs.spin, discs.radius, force, torque, box, RUBBING.row()[None],
-               spring, on, 1e-4)  # fmt: skip
+        kernel(discs.position, discs.velocity, discs.spin, discs.radius, force, torque, box, RUBBING.row()[None, None],
+               spring, on, LinearSliding(RUBBING.row()[None, None], None, discs.mass, None), 1e-4)  # fmt: skip
         assert force[0, 0] > 0.0
         np.testing.assert_array_equal(on, -force)
 
@@ -68,10 +69,11 @@ def test_a_rectangle_gets_what_the_disc_gets_less():
 @pytest.mark.parametrize("inside", [(0.11, 0.5), (0.39, 0.5), (0.25, 0.21), (0.25, 0.79)])
 def test_a_centre_inside_is_pushed_out_through_the_nearest_face(inside):
     discs = make_discs([inside], 0.05, 1.0)
-    force, torque, spring, on = np.zeros((1, 2)), np.zeros(1), np.zeros((1, 1)), np.zeros((1, 2))
+    force, torque, spring, on = np.zeros((1, 2)), np.zeros(1), np.zeros((1, 1, 1)), np.zeros((1, 2))
     box = np.array([Rectangle((0.1, 0.2), (0.4, 0.8)).row()])
-    add_rectangle_forces(discs.position, discs.velocity, discs.spin, discs.radius, force, torque, box, LAW.row()[None],
-                         spring, on, 1e-4)  # fmt: skip
+    row = LAW.row()[None, None]
+    add_rectangle_forces(discs.position, discs.velocity, discs.spin, discs.radius, force, torque, box, row,
+                         spring, on, LinearSliding(row, None, discs.mass, None), 1e-4)  # fmt: skip
     out = np.sign(np.array(inside) - (0.25, 0.5)) * np.array([abs(inside[0] - 0.25) > 0.1, abs(inside[1] - 0.5) > 0.2])
     np.testing.assert_allclose(force[0], out * 1e5 * 0.06, rtol=1e-12)
 

@@ -44,8 +44,8 @@ def twin_of(grains):
     return World(
         bodies, law.stiffness, law.damping, law.tangential_stiffness, law.tangential_damping, law.friction,
         pulls=law.release == "overlap",
-        walls=[tuple(row) for row in grains.walls.tolist()],
-        plates=[[*p[:4], mu] for p, mu in zip(grains.plates.tolist(), grains.plate_laws[:, 4].tolist(), strict=True)],
+        walls=[tuple(row[:4]) for row in grains.walls.tolist()],
+        plates=[[*p[:4], mu] for p, mu in zip(grains.plates.tolist(), grains.plate_laws[:, 0, 4], strict=True)],
     )  # fmt: skip
 
 
@@ -95,15 +95,15 @@ def test_kernels_do_the_same_as_plain_python():
         call(forces.start_forces)(force, torque, np.ones_like(force), np.ones_like(torque))
         call(forces.add_pair_forces)(
             d.position, d.velocity, d.spin, d.radius, force, torque, p.start, p.partner, p.carried, 0.0, 0.0,
-            grains.law_row, 1e-5,
+            grains.contact, 1e-5,
         )  # fmt: skip
         call(walls.add_wall_forces)(
             d.position, d.velocity, d.spin, d.radius, force, torque, grains.walls, grains.wall_laws,
-            grains.wall_spring, grains.wall_force, 1e-5,
+            grains.wall_spring, grains.wall_force, grains.contact, 1e-5,
         )  # fmt: skip
         call(walls.add_plate_forces)(
             d.position, d.velocity, d.spin, d.radius, force, torque, grains.plates, grains.plate_laws,
-            grains.plate_spring, grains.plate_force, 1e-5,
+            grains.plate_spring, grains.plate_force, grains.contact, 1e-5,
         )  # fmt: skip
         call(integrate.kick_drift)(
             d.position,
@@ -121,9 +121,9 @@ def test_kernels_do_the_same_as_plain_python():
         )
         d.force[:], d.torque[:] = force, torque
         grains.kept = call(measure.survey_pairs)(
-            d.position, d.radius, p.start, p.partner, p.carried, 0.0, 0.0, grains.law_row, grains.touching
+            d.position, d.radius, p.start, p.partner, p.carried, 0.0, 0.0, grains.contact, grains.touching
         ) + call(measure.survey_walls)(
-            d.position, d.radius, grains.walls, grains.wall_laws, grains.wall_spring
+            d.position, d.radius, grains.walls, grains.wall_laws, grains.wall_spring, grains.contact
         )  # fmt: skip
     assert (a.touching > 1).all()
     assert a.plate_force.any()

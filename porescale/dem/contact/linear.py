@@ -1,18 +1,6 @@
-"""Linear springs and dashpots with a Coulomb limit.
+"""Linear springs and dashpots with a Coulomb limit, and rolling resistance if wanted.
 
-Normal:      F = k_n d + c_n d',  d overlap (m), d' closing speed (m/s), F > 0 pushes apart.
-Tangential:  f = -(k_t s + c_t v_t),  s the spring (m), one scalar per contact, v_t the slip speed (m/s).
-
-Two rules for the end of a contact, which differ in restitution:
-  release "force"   : F = max(0, ...), never pulls; the contact ends when the force vanishes;
-  release "overlap" : F as it is while d > 0, may attract; the contact ends when the overlap vanishes.
-
-Friction, limit L = mu max(0, F).  The spring is a Coulomb element of its own: first it moves with the slip,
-s <- s + v_t dt, and is cut back to |k_t s| <= L, which is the reset on sliding; only then the dashpot is
-added, and the sum is cut to |f| <= L again.  So the dashpot decides with the spring whether the contact
-slides, but never enters the stored spring.  Each cut only dissipates: a spring lengthens by no more than
-the slip that did work on it. (Resetting the spring to the limit with the dashpot in the check, as is
-common, stores energy nobody supplied.)
+F = k_n d + c_n d';  tangential and rolling spring of constant stiffness; the rest is the same for all laws: law.py.
 
 Sources: Cundall & Strack 1979; release at zero force: Schwager & Poeschel 2007, Granular Matter 9, 465.
 """
@@ -24,54 +12,42 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
+from porescale.dem.contact.law import (
+    CN,
+    CR,
+    CT,
+    KN,
+    RELEASES,
+    LinearRolling,
+    LinearSliding,
+    kept,
+    scale_at,
+    stiffness,
+    stored_normal,
+)
+from porescale.dem.contact.restitution import contact_phase, ratio_from_restitution, refuse, restitution_of
 from porescale.ground.check import Fault, InputError
-from porescale.ground.jit import inline
-
-KN, CN, KT, CT, MU, RULE, YIELD = range(7)
-"""Columns of a law's row, as kernels read it; YIELD is 1/k_t, which spares a division per contact (0 for
-k_t = 0).
-"""
-COLUMNS = 7
-RELEASES = ("force", "overlap")
-RELEASE_FORCE, RELEASE_OVERLAP = 0.0, 1.0
 
 
-@inline
-def normal_force(overlap, closing, p):
-    """Repulsion (N/m) at ``overlap`` (m) > 0 and ``closing`` speed (m/s) of the law row p (7,); see
-    module.
-    """
-    force = p[KN] * overlap + p[CN] * closing
-    if p[RULE] == RELEASE_FORCE:
-        force = max(force, 0.0)
-    return force
+@stiffness.of(LinearSliding, LinearRolling)
+def _stiffness(overlap, radius, mass, p, law):
+    return p[KN] * overlap, p[CN], 1.0, 1.0, p[CT], p[CR]
 
 
-@inline
-def tangential_force(spring, slip, limit, dt, p):
-    """Friction and the new spring: (force N/m along t on body i, spring m).
-
-    spring (m) before the step, slip speed v_t (m/s), limit mu F (N/m) >= 0, dt (s), p (7,) law row.
-    """
-    reach = limit * p[YIELD]
-    spring = min(max(spring + slip * dt, -reach), reach)
-    force = p[KT] * spring + p[CT] * slip
-    force = min(max(force, -limit), limit)
-    return -force, spring
+@scale_at.of(LinearSliding, LinearRolling)
+def _scale_at(overlap, radius, law):
+    return 1.0
 
 
-@inline
-def contact_force(overlap, closing, slip, spring, dt, p):
-    """One contact: (normal N/m, tangential N/m, spring m).  The same function for pairs, walls and plates.
+@kept.of(LinearSliding, LinearRolling)
+def _kept(overlap, closing, dt, law):
+    return 1.0
 
-    overlap (m) > 0, closing and slip speed (m/s), spring (m), dt (s), p (7,) law row.
-    """
-    normal = normal_force(overlap, closing, p)
-    limit = p[MU] * max(normal, 0.0)
-    tangential, spring = tangential_force(spring, slip, limit, dt, p)
-    return normal, tangential, spring
+
+@stored_normal.of(LinearSliding, LinearRolling)
+def _stored_normal(overlap, radius, p, law):
+    return 0.5 * p[KN] * overlap * overlap
 
 
 @dataclass(frozen=True)
@@ -80,7 +56,9 @@ class Linear:
 
     stiffness k_n : N/m per metre, > 0;   damping c_n : N s/m per metre, >= 0;
     tangential_stiffness k_t, tangential_damping c_t : likewise, >= 0;   friction mu : -, >= 0;
-    release : "force" (never pulls) or "overlap" (may attract), see module.
+    release : "force" (never pulls) or "overlap" (may attract), see law.py;
+    rolling_friction mu_r : -, >= 0, torque over reduced radius and normal force; with rolling_stiffness k_r (N/m per
+    metre) and rolling_damping c_r (N s/m per metre) on the rolling path.
     """
 
     name = "linear"
@@ -90,24 +68,24 @@ class Linear:
     tangential_damping: float = 0.0
     friction: float = 0.0
     release: str = "force"
+    rolling_friction: float = 0.0
+    rolling_stiffness: float = 0.0
+    rolling_damping: float = 0.0
 
     def __post_init__(self) -> None:
-        faults = []
-        if not (self.stiffness > 0.0 and math.isfinite(self.stiffness)):
-            faults.append(Fault("contact.stiffness", self.stiffness, unit="N/m", allowed="> 0"))
-        for key, unit in (
-            ("damping", "N s/m"),
-            ("tangential_stiffness", "N/m"),
-            ("tangential_damping", "N s/m"),
-            ("friction", ""),
-        ):
-            value = getattr(self, key)
-            if not (value >= 0.0 and math.isfinite(value)):
-                faults.append(Fault(f"contact.{key}", value, unit=unit, allowed=">= 0"))
-        if self.release not in RELEASES:
-            faults.append(Fault("contact.release", self.release, allowed=" or ".join(RELEASES)))
-        if faults:
-            raise InputError(faults)
+        refuse(
+            {
+                "stiffness": (self.stiffness, "N/m", True),
+                "damping": (self.damping, "N s/m", False),
+                "tangential_stiffness": (self.tangential_stiffness, "N/m", False),
+                "tangential_damping": (self.tangential_damping, "N s/m", False),
+                "friction": (self.friction, "", False),
+                "rolling_friction": (self.rolling_friction, "", False),
+                "rolling_stiffness": (self.rolling_stiffness, "N/m", False),
+                "rolling_damping": (self.rolling_damping, "N s/m", False),
+            },
+            self.release,
+        )
 
     @classmethod
     def from_restitution(
@@ -126,12 +104,21 @@ class Linear:
         damping = damping_from_restitution(restitution, mass, stiffness, release)
         return cls(stiffness, damping, tangential_stiffness, tangential_damping, friction, release)
 
+    @property
+    def rolls(self) -> bool:
+        """Whether there is rolling resistance."""
+        return self.rolling_friction > 0.0
+
+    def kind(self, rolls: bool) -> type[LinearSliding | LinearRolling]:
+        """The class under which kernels take it, with rolling resistance or without."""
+        return LinearRolling if rolls else LinearSliding
+
     def with_friction(self, friction: float) -> Linear:
         """The same law with another friction coefficient."""
         return replace(self, friction=friction)
 
     def row(self) -> NDArray[np.float64]:
-        """The law as kernels read it, (7,) float64, see the columns above."""
+        """The law as kernels read it, (COLUMNS,) float64, see law.py."""
         return np.array(
             [
                 self.stiffness,
@@ -141,8 +128,42 @@ class Linear:
                 self.friction,
                 float(RELEASES.index(self.release)),
                 1.0 / self.tangential_stiffness if self.tangential_stiffness > 0.0 else 0.0,
+                self.rolling_stiffness,
+                self.rolling_damping,
+                self.rolling_friction,
+                1.0 / self.rolling_stiffness if self.rolling_stiffness > 0.0 else 0.0,
             ]
         )
+
+    def mixed(self, other: Linear) -> Linear:
+        """Between unlike materials, each of which has its law with itself; see materials.py for the rule."""
+        if not isinstance(other, Linear) or other.release != self.release:
+            raise InputError(Fault("contact.law", f"{self} and {other}", "differ in kind or release"))
+
+        def dashpot(stiff: str, damping: str, between: float) -> float:
+            ends = [(getattr(law, stiff), getattr(law, damping)) for law in (self, other)]
+            if all(k > 0.0 for k, _ in ends):
+                return float(0.5 * sum(c / math.sqrt(k) for k, c in ends) * math.sqrt(between))
+            return float(0.5 * sum(c for _, c in ends))
+
+        normal = series(self.stiffness, other.stiffness)
+        tangential = series(self.tangential_stiffness, other.tangential_stiffness)
+        turning = series(self.rolling_stiffness, other.rolling_stiffness)
+        return Linear(
+            normal, dashpot("stiffness", "damping", normal),
+            tangential, dashpot("tangential_stiffness", "tangential_damping", tangential),
+            min(self.friction, other.friction), self.release,
+            min(self.rolling_friction, other.rolling_friction),
+            turning, dashpot("rolling_stiffness", "rolling_damping", turning),
+        )  # fmt: skip
+
+    def stiffest(self, mass: float, radius: float) -> Linear:
+        """The linear law that bounds it for the stable step: itself."""
+        return self
+
+    def shortest_contact(self, mass: float, radius: float) -> float:
+        """Seconds that the shortest contact lasts, at effective ``mass`` (kg/m): they all last as long."""
+        return self.contact_time(mass)
 
     def frequency(self, mass: float) -> float:
         """Undamped angular frequency w0 = sqrt(k/m), rad/s, at effective ``mass`` (kg/m)."""
@@ -161,8 +182,7 @@ class Linear:
 
     def restitution(self, mass: float) -> float:
         """Parting speed over approach speed at effective ``mass`` (kg/m): exp(-h w0 T) for both rules."""
-        h = self.damping_ratio(mass)
-        return math.exp(-h * contact_phase(h, self.release)) if h > 0.0 else 1.0
+        return restitution_of(self.damping_ratio(mass), self.release)
 
     def critical_step(self, mass: float) -> float:
         """Stability limit (s) of leap-frog with lagged damping for one pair: 2 (sqrt(1+h^2) - h)/w0."""
@@ -170,19 +190,9 @@ class Linear:
         return 2.0 * (math.hypot(1.0, h) - h) / self.frequency(mass)
 
 
-def contact_phase(h: float, release: str) -> float:
-    """Duration of a contact times w0, at damping ratio ``h``; Schwager & Poeschel 2007 for release
-    "force".
-    """
-    if release == "overlap":
-        return math.pi / math.sqrt(1.0 - h * h) if h < 1.0 else math.inf
-    if abs(h - 1.0) < 1e-8:
-        return 2.0  # both branches below tend to 2, 2 + 2(1-h)/3, and cancel to 0/0 at h = 1
-    if h < 1.0:
-        s = math.sqrt((1.0 - h) * (1.0 + h))
-        return math.atan2(2.0 * h * s, 2.0 * h * h - 1.0) / s
-    s = math.sqrt((h - 1.0) * (h + 1.0))
-    return 2.0 * math.log(h + s) / s  # (h+s)/(h-s) = (h+s)^2
+def series(one: float, other: float) -> float:
+    """Two springs, each a contact of like materials, as the one between unlike: 2 k1 k2/(k1 + k2), 0 if one is 0."""
+    return 2.0 * one * other / (one + other) if one > 0.0 and other > 0.0 else 0.0
 
 
 def damping_from_restitution(restitution: float, mass: float, stiffness: float, release: str) -> float:
@@ -190,21 +200,4 @@ def damping_from_restitution(restitution: float, mass: float, stiffness: float, 
 
     Raises InputError unless 0 < restitution <= 1 (release "overlap" also allows 0: critical damping).
     """
-    allowed = "0 <= e <= 1" if release == "overlap" else "0 < e <= 1"
-    if not (0.0 <= restitution <= 1.0) or (restitution == 0.0 and release == "force"):
-        raise InputError(Fault("contact.restitution", restitution, allowed=allowed))
-    if restitution == 1.0:
-        return 0.0
-    scale = 2.0 * math.sqrt(stiffness * mass)
-    if restitution == 0.0:
-        return scale
-    wanted = -math.log(restitution)
-    if release == "overlap":
-        return scale * wanted / math.hypot(math.pi, wanted)
-    # h phase(h) grows from 0 like pi h and for large h like 2 ln 2h: e = 1/(4 h^2) brackets the root.
-    highest = 1.0 + math.exp(0.5 * wanted)
-
-    def excess(h: float) -> float:
-        return h * contact_phase(h, release) - wanted
-
-    return scale * float(brentq(excess, 0.0, highest, xtol=1e-15, rtol=1e-14))
+    return 2.0 * math.sqrt(stiffness * mass) * ratio_from_restitution(restitution, release)

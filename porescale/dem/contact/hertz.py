@@ -1,0 +1,244 @@
+"""Law of Hertz and Mindlin for discs: that of spheres of the discs' radii, one sphere to a metre of depth.
+
+Normal:      F = K d^(3/2) + a d^(1/4) d',  K = 4/3 E sqrt(R),  a = 2 h sqrt(5/4 K m) = h sqrt(5 K m);
+Tangential:  k_t = 8 G sqrt(R d),  c_t = 2 sqrt(5/6) h_t sqrt(m k_t);   rolling likewise, k_r in proportion to k_t.
+R and m are the reduced radius and mass of the contact (r and m at a wall), E and G the moduli of the contact:
+    1/E = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2,    1/G = (2 - nu_1)/G_1 + (2 - nu_2)/G_2.
+(Two-dimensional codes, PFC2D among them, take the spheres' law, since a line contact of cylinders has no force law of
+the overlap alone.)
+
+With damping in proportion to d^(1/4) the restitution does not depend on the speed: with y = d^(5/4) speed and overlap
+obey the linear oscillator p dp/dy + 2 h w p + w^2 y = 0, w = sqrt(4K/5m), and the force vanishes where its does.  So h
+is its damping ratio and restitution.py holds for both rules of release.
+
+The tangential spring s (m) is kept with k_t of the overlap: on unloading s stays, and the force falls with k_t; on
+loading the force stays and s shrinks, since new area of contact comes in unstressed.  Otherwise a loop of loading and
+unloading would give energy (Thornton, Cummins & Cleary 2011, Powder Technology 210, 189).
+
+Sources: Mindlin & Deresiewicz 1953, J. Appl. Mech. 20, 327; Tsuji, Tanaka & Ishida 1992, Powder Technology 71, 239;
+Antypov & Elliott 2011, EPL 94, 50004.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import quad
+
+from porescale.dem.contact.law import (
+    CN,
+    CR,
+    CT,
+    KN,
+    KR,
+    KT,
+    RELEASES,
+    HertzRolling,
+    HertzSliding,
+    kept,
+    scale_at,
+    stiffness,
+    stored_normal,
+)
+from porescale.dem.contact.linear import Linear, series
+from porescale.dem.contact.restitution import contact_phase, ratio_from_restitution, refuse, restitution_of
+from porescale.ground.check import Fault, InputError
+
+TANGENT = 2.0 * math.sqrt(5.0 / 6.0)
+"""Damping over sqrt(m dF/dd) and ratio h: of a d^(1/4) = TANGENT h sqrt(m 3/2 K sqrt(d))."""
+
+
+@stiffness.of(HertzSliding, HertzRolling)
+def _stiffness(overlap, radius, mass, p, law):
+    scale = np.sqrt(radius * overlap)
+    root = np.sqrt(mass * scale)
+    # K d^(3/2) = 4/3 E sqrt(R d) d; the columns of damping hold what sqrt(m sqrt(R d)) multiplies.
+    return p[KN] * scale * overlap, p[CN] * root, scale, 1.0 / scale, p[CT] * root, p[CR] * root
+
+
+@scale_at.of(HertzSliding, HertzRolling)
+def _scale_at(overlap, radius, law):
+    return np.sqrt(radius * overlap)
+
+
+@kept.of(HertzSliding, HertzRolling)
+def _kept(overlap, closing, dt, law):
+    before = max(overlap - closing * dt, 0.0)
+    return np.sqrt(min(before / overlap, 1.0))
+
+
+@stored_normal.of(HertzSliding, HertzRolling)
+def _stored_normal(overlap, radius, p, law):
+    return 0.4 * p[KN] * np.sqrt(radius * overlap) * overlap * overlap
+
+
+@dataclass(frozen=True)
+class Hertz:
+    """Law of Hertz and Mindlin between like discs; see module for the formulas and ``of`` for elastic constants.
+
+    modulus E, shear_modulus G : of the contact, Pa (of spheres to a metre of depth), > 0 and >= 0;
+    damping_ratio h, tangential_damping_ratio h_t : -, >= 0;  friction mu : -, >= 0;  release : as in law.py;
+    rolling_friction mu_r, rolling_stiffness over tangential stiffness, rolling_damping_ratio : -, >= 0;
+    deepest : overlap over radius that the stable step allows for, > 0: stiffness grows with its root.
+    """
+
+    name = "hertz"
+    modulus: float
+    shear_modulus: float = 0.0
+    damping_ratio: float = 0.0
+    tangential_damping_ratio: float = 0.0
+    friction: float = 0.0
+    release: str = "force"
+    rolling_friction: float = 0.0
+    rolling_stiffness: float = 1.0
+    rolling_damping_ratio: float = 0.0
+    deepest: float = 0.02
+
+    def __post_init__(self) -> None:
+        refuse(
+            {
+                "modulus": (self.modulus, "Pa", True),
+                "shear_modulus": (self.shear_modulus, "Pa", False),
+                "damping_ratio": (self.damping_ratio, "", False),
+                "tangential_damping_ratio": (self.tangential_damping_ratio, "", False),
+                "friction": (self.friction, "", False),
+                "rolling_friction": (self.rolling_friction, "", False),
+                "rolling_stiffness": (self.rolling_stiffness, "", False),
+                "rolling_damping_ratio": (self.rolling_damping_ratio, "", False),
+                "deepest": (self.deepest, "", True),
+            },
+            self.release,
+        )
+
+    @classmethod
+    def of(
+        cls,
+        young: float,
+        poisson: float,
+        restitution: float = 1.0,
+        friction: float = 0.0,
+        release: str = "force",
+        rolling_friction: float = 0.0,
+    ) -> Hertz:
+        """Discs of Young's modulus ``young`` (Pa) and Poisson's ratio, dashpots all at the ratio of ``restitution``.
+
+        Raises InputError unless -1 < poisson <= 0.5.
+        """
+        if not -1.0 < poisson <= 0.5:
+            raise InputError(Fault("contact.poisson", poisson, allowed="-1 < nu <= 0.5"))
+        ratio = ratio_from_restitution(restitution, release)
+        return cls(
+            young / (2.0 * (1.0 - poisson**2)), young / (4.0 * (1.0 + poisson) * (2.0 - poisson)), ratio, ratio,
+            friction, release, rolling_friction, rolling_damping_ratio=ratio,
+        )  # fmt: skip
+
+    @property
+    def rolls(self) -> bool:
+        """Whether there is rolling resistance."""
+        return self.rolling_friction > 0.0
+
+    def kind(self, rolls: bool) -> type[HertzSliding | HertzRolling]:
+        """The class under which kernels take it, with rolling resistance or without."""
+        return HertzRolling if rolls else HertzSliding
+
+    def with_friction(self, friction: float) -> Hertz:
+        """The same law with another friction coefficient."""
+        return replace(self, friction=friction)
+
+    def row(self) -> NDArray[np.float64]:
+        """The law as kernels read it, (COLUMNS,) float64; see law.py and _stiffness."""
+        normal, shear = 4.0 / 3.0 * self.modulus, 8.0 * self.shear_modulus
+        turning = self.rolling_stiffness * shear
+        return np.array(
+            [
+                normal,
+                TANGENT * self.damping_ratio * math.sqrt(1.5 * normal),
+                shear,
+                TANGENT * self.tangential_damping_ratio * math.sqrt(shear),
+                self.friction,
+                float(RELEASES.index(self.release)),
+                1.0 / shear if shear > 0.0 else 0.0,
+                turning,
+                TANGENT * self.rolling_damping_ratio * math.sqrt(turning),
+                self.rolling_friction,
+                1.0 / turning if turning > 0.0 else 0.0,
+            ]
+        )
+
+    def mixed(self, other: Hertz) -> Hertz:
+        """Between unlike materials, each of which has its law with itself; see materials.py for the rule."""
+        if not isinstance(other, Hertz) or other.release != self.release:
+            raise InputError(Fault("contact.law", f"{self} and {other}", "differ in kind or release"))
+
+        def mean(key: str) -> float:
+            return float(0.5 * (getattr(self, key) + getattr(other, key)))
+
+        return Hertz(
+            series(self.modulus, other.modulus), series(self.shear_modulus, other.shear_modulus),
+            mean("damping_ratio"), mean("tangential_damping_ratio"),
+            min(self.friction, other.friction), self.release,
+            min(self.rolling_friction, other.rolling_friction), mean("rolling_stiffness"),
+            mean("rolling_damping_ratio"), max(self.deepest, other.deepest),
+        )  # fmt: skip
+
+    def constant(self, radius: float) -> float:
+        """K = 4/3 E sqrt(R), N/m^(3/2) per metre, at the reduced ``radius`` (m)."""
+        return 4.0 / 3.0 * self.modulus * math.sqrt(radius)
+
+    def restitution(self, mass: float = 1.0) -> float:
+        """Parting speed over approach speed, at any speed, radius and ``mass`` (kg/m)."""
+        return restitution_of(self.damping_ratio, self.release)
+
+    def overlap_at(self, mass: float, radius: float, speed: float) -> float:
+        """Deepest overlap (m) of an undamped impact at ``speed`` (m/s); reduced ``mass`` (kg/m), ``radius`` (m)."""
+        return float((1.25 * mass * speed**2 / self.constant(radius)) ** 0.4)
+
+    def contact_time(self, mass: float, radius: float, speed: float) -> float:
+        """Seconds from touch until the contact ends; arguments as in overlap_at.  Infinite where it never ends.
+
+        On the path of the oscillator y(q), dt = dd/p = 4/5 y^(-1/5) dq; with q = T z^(5/4) near the touch, and likewise
+        where y vanishes again, the integrand has no singularity.  Undamped: 2.943 times deepest overlap over speed.
+        """
+        h, end = self.damping_ratio, contact_phase(self.damping_ratio, self.release)
+        if not math.isfinite(end):
+            return math.inf
+        w = math.sqrt(0.8 * self.constant(radius) / mass)
+
+        def measure(q: float) -> float:
+            """y w/speed on the path at phase q."""
+            root = complex(1.0 - h * h) ** 0.5
+            if abs(root) < 1e-6:
+                return q * math.exp(-h * q)
+            return math.exp(-h * q) * float((np.sin(root * q) / root).real)
+
+        half = 0.5 * end
+
+        def rising(z: float) -> float:
+            return float(measure(half * z**1.25) ** -0.2 * half * z**0.25)
+
+        def falling(z: float) -> float:
+            return float(measure(end - half * z**1.25) ** -0.2 * half * z**0.25)
+
+        total = quad(rising, 0.0, 1.0)[0] + quad(falling, 0.0, 1.0)[0]
+        return float(total * (speed / w) ** -0.2 / w)
+
+    def stiffest(self, mass: float, radius: float) -> Linear:
+        """The linear law of its tangents at the overlap ``deepest`` times ``radius`` (m), for the stable step.
+
+        mass (kg/m) and radius are those of the smallest disc: its contacts are at most as stiff as with a wall, R = r,
+        and damped as with one.
+        """
+        row, scale = self.row(), radius * math.sqrt(self.deepest)
+        root = math.sqrt(mass * scale)
+        return Linear(
+            1.5 * row[KN] * scale, row[CN] * root, row[KT] * scale, row[CT] * root, self.friction, self.release,
+            self.rolling_friction, row[KR] * scale, row[CR] * root,
+        )  # fmt: skip
+
+    def shortest_contact(self, mass: float, radius: float) -> float:
+        """Seconds an impact lasts that reaches ``deepest`` of ``radius`` (m) at a wall; ``mass`` reduced, kg/m."""
+        speed = math.sqrt(self.constant(radius) * (self.deepest * radius) ** 2.5 / (1.25 * mass))
+        return self.contact_time(mass, radius, speed)
