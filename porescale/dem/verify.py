@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from porescale.dem import experiments as lab
+from porescale.dem import verify_measures
 from porescale.ground.constants import GRAVITY
 from porescale.workbench.validations import Measured, Validations
 
@@ -188,3 +189,6 @@ def critical_lattice() -> Measured:
     exact = [2.0 / math.sqrt(lab.lattice_frequency(shear)) for shear in shears]
     found = [lab.lattice_critical_step(shear) for shear in shears]
     return Measured(exact, found, lab.relative(found, exact))
+
+
+VALIDATIONS.include(verify_measures.VALIDATIONS)

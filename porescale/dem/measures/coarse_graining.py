@@ -39,9 +39,9 @@ NODES, WEIGHTS = (np.asarray(part) for part in np.polynomial.legendre.leggauss(8
 MASS, X, Y, XX, XY, YY, U, V, UX, UY, VX, VY, ENERGY_XX, ENERGY_XY, ENERGY_YY = range(15)
 """Columns of spread_motion: sums of m phi times the place o = (x_i - r)/c and its products, the velocity, the velocity
 times the place, and the products of the velocity."""
-FLAT = 1e-3
-"""Discs around a point whose second moment has a smaller ratio of principal values lie in a line: noise of their
-velocities would be all of the gradient across it."""
+FLAT = 1e-2
+"""Discs around a point whose second moment has a smaller ratio of principal values, or a smaller sum in widths², lie in
+a line or in one place: noise of their velocities would be all of the gradient there."""
 
 
 @inline
@@ -233,7 +233,7 @@ class CoarseGrained:
             xx, yy = mean[..., XX] - mean[..., X] ** 2, mean[..., YY] - mean[..., Y] ** 2
             xy = mean[..., XY] - mean[..., X] * mean[..., Y]
             determinant = xx * yy - xy**2
-            spread_out = determinant > FLAT * (xx + yy) ** 2
+            spread_out = (determinant > FLAT * (xx + yy) ** 2) & (xx + yy > FLAT)
             gradient = np.empty((*xx.shape, 2, 2))
             for a, (one, along, up) in enumerate(((U, UX, UY), (V, VX, VY))):
                 cx = mean[..., along] - mean[..., one] * mean[..., X]

@@ -46,6 +46,8 @@ class Region:
         for axis, length in enumerate(period):
             if length > 0.0:
                 moved[:, axis] -= length * np.floor((moved[:, axis] - self.lower[axis]) / length)
+                beyond = moved[:, axis] >= self.lower[axis] + length  # a tiny negative number less the floor of it
+                moved[beyond, axis] = self.lower[axis]
         return moved
 
     def shifts(self, low: Array, high: Array, period: tuple[float, float]) -> Iterator[Array]:
