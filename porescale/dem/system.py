@@ -13,19 +13,18 @@ from numpy.typing import ArrayLike, NDArray
 from porescale.dem.contact.law import BOOK, COLUMNS, KernelLaw, memory_of
 from porescale.dem.contact.materials import Law, Materials
 from porescale.dem.discs import Discs
-from porescale.dem.integrate import contact_steps, first_without_number, stable_step
+from porescale.dem.health import Health
+from porescale.dem.integrate import contact_steps, stable_step
 from porescale.dem.rectangle import Rectangle
 from porescale.dem.walls import HIGH, LOW, PRESENT, VELOCITY, Box, Plate, X
-from porescale.ground.check import Fault, InputError, Unstable
+from porescale.ground.check import Fault, InputError
 from porescale.particles.pairs import PairList
 
 Array = NDArray[np.float64]
 
 SKIN = 0.5  # of the mean radius: measured 12 % faster than 0.3 in a dry collapse, 2 % slower in a pile at rest
-WORST_OVERLAP = 0.3  # of the smaller radius: the linear law and its lever arms mean nothing beyond
 RECTANGLES = ("rectangles", "rectangle_spring", "rectangle_force")
 """What of the state belongs to rectangles, where there are any."""
-WORST_TRAVEL = 0.1  # of the smallest radius in one step: a contact would be met after the fact
 
 
 class Grains:
@@ -59,6 +58,7 @@ class Grains:
         count = discs.count
         self.discs, self.box = discs, box
         self.book = np.zeros((count, BOOK)) if energy else None
+        self.book_start: Array | None = None  # what energy.open_book says before the first step
         self.material = self._numbers(law, material)
         self._memory = 0  # springs per contact, none yet
         mean_radius = float(discs.radius.mean()) if count else 1.0
@@ -82,10 +82,8 @@ class Grains:
         self.touching = np.zeros(count, np.int64)
         self.steps, self.last_dt = 0, 0.0
         self._time, self._steps_of_dt = 0.0, 0  # seconds before dt last changed, steps since
-        self._seen = np.zeros((len(self.plates), 3, count))  # right of the plate, beside it, height: at the last check
-        self._looked = False  # that there was one since the discs were last moved by hand
+        self._health = Health(len(self.plates), count)
         self._stale = True  # the pair list must be looked at before the next step
-        self._smallest = float(discs.radius.min()) if count else 0.0
 
     def set_law(self, law: Law | Materials, wall_law: Law | None = None) -> None:
         """Use ``law`` between discs and ``wall_law`` (default: the same) at sides and plates from now on.
@@ -207,6 +205,11 @@ class Grains:
         d, limit, left = self.discs, (0.5 * self.pairs.skin) ** 2, count
         if dt != self.last_dt:
             self._time, self._steps_of_dt, self.last_dt = self.time, 0, dt
+        if self.book is not None and self.book_start is None:
+            from porescale.dem.energy import open_book
+
+            self.current_pairs()
+            self.book_start = open_book(self, self.book, dt)
         while left > 0:
             pairs = self.current_pairs()
             done, self._stale = contact_steps(
@@ -255,11 +258,11 @@ class Grains:
 
     def refresh(self) -> None:
         """Bring the pair list up to date; call it after moving or resizing discs by hand."""
-        self._looked = False
+        self._health.forget()
         self._rebuild()
 
     def _rebuild(self) -> None:
-        self._check_finite()
+        self._health.check_finite(self)
         self.pairs.update(self.discs.position, self.discs.radius if self.reach is None else self.reach)
         self._stale = False
 
@@ -285,73 +288,8 @@ class Grains:
         return float(row[X]), float(row[LOW]), float(row[HIGH])
 
     def check(self) -> None:
-        """Raise Unstable, naming grain, quantity and step, when the state is beyond sense.
-
-        That is: a number that is none; a speed beyond 0.1 smallest radii per step; an overlap beyond 30 %
-        of the radius; a centre behind a solid side, or through a plate since the last check.
-        """
-        from porescale.dem.measure import max_overlap
-
-        if self.discs.count == 0:
-            return
-        self._check_finite()
-        if self.last_dt > 0.0:
-            speed = np.hypot(self.discs.velocity[:, 0], self.discs.velocity[:, 1])
-            fastest = int(speed.argmax())
-            if speed[fastest] * self.last_dt > WORST_TRAVEL * self._smallest:
-                raise self._unstable(
-                    f"grain {fastest}", "speed", float(speed[fastest]), "m/s",
-                    f"more than {WORST_TRAVEL:g} of the smallest radius in a step: shorten the contact step",
-                )  # fmt: skip
-        for name, wall in zip(self.wall_names, self.walls, strict=True):
-            distance = (self.discs.position - wall[:2]) @ wall[2:4]
-            out = int(distance.argmin())
-            if distance[out] < 0.0:
-                raise self._unstable(
-                    f"grain {out}", f"distance to the {name} wall", float(distance[out]), "m",
-                    "it went through the wall: raise the stiffness or shorten the contact step",
-                )  # fmt: skip
-        self.current_pairs()
-        self._check_plates()
-        deepest = max_overlap(self)
-        if deepest.share > WORST_OVERLAP:
-            raise self._unstable(
-                f"grain {deepest.disc}", f"overlap with {deepest.against} over radius", deepest.share, "",
-                "raise the stiffness or shorten the contact step",
-            )  # fmt: skip
-
-    def _check_finite(self) -> None:
-        d = self.discs
-        bad, column = first_without_number(d.position, d.velocity, d.spin)
-        if bad >= 0:
-            quantity, unit = (("position", "m"), ("velocity", "m/s"), ("spin", "rad/s"))[column]
-            raise self._unstable(
-                f"grain {bad}", quantity, float("nan"), unit,
-                "two centres met or the contact step is beyond its stability limit",
-            )  # fmt: skip
-
-    def _check_plates(self) -> None:
-        """Raise Unstable when a centre that was beside a plate at the last check is now on its other side.
-
-        Only for discs that are wholly above the present lower end, then and now: the others may have gone below.
-        """
-        at, radius = self.discs.position, self.discs.radius
-        for name, plate, seen in zip(self.plate_names, self.plates, self._seen, strict=True):
-            right = at[:, 0] > plate[X]
-            beside = (at[:, 1] - radius > plate[LOW]) & (at[:, 1] < plate[HIGH]) & (plate[PRESENT] != 0.0)
-            if self._looked:
-                through = beside & (seen[2] - radius > plate[LOW]) & (seen[1] != 0.0) & (right != (seen[0] != 0.0))
-                if through.any():
-                    out = int(through.argmax())
-                    raise self._unstable(
-                        f"grain {out}", f"distance to the {name}", -abs(float(at[out, 0] - plate[X])), "m",
-                        "it went through: raise the stiffness or shorten the contact step",
-                    )  # fmt: skip
-            seen[0], seen[1], seen[2] = right, beside, at[:, 1]
-        self._looked = True
-
-    def _unstable(self, where: str, quantity: str, value: float, unit: str, cause: str) -> Unstable:
-        return Unstable(where, quantity, value, unit, self.steps, self.time, cause)
+        """Raise Unstable, naming grain, quantity and step, when the state is beyond sense; see health.py."""
+        self._health.check(self)
 
     def state(self) -> dict[str, Any]:
         """Everything needed to go on bit for bit (law, box and the number of plates are the scene's)."""
@@ -368,13 +306,17 @@ class Grains:
             "held": self.held.copy(),
             "withheld": self.withheld.copy(),
             **({name: getattr(self, name).copy() for name in RECTANGLES} if len(self.rectangles) else {}),
-            **({} if self.book is None else {"book": self.book.copy()}),
+            **({} if self.book is None else {"book": self.book.copy(), "book_start": self._start_of_book()}),
             "steps": self.steps,
             "time": self._time,
             "steps_of_dt": self._steps_of_dt,
             "last_dt": self.last_dt,
             "stale": int(self._stale),
         }
+
+    def _start_of_book(self) -> Array:
+        """Copy of the start of the energy book, empty before the first step."""
+        return np.zeros(0) if self.book_start is None else self.book_start.copy()
 
     def restore(self, state: dict[str, Any]) -> None:
         """Go on exactly from ``state()`` of a system made alike; raises InputError when the numbers
@@ -389,10 +331,11 @@ class Grains:
             own[...] = given
         if self.book is not None:
             self.book[:] = state["book"]
+            start = np.array(state["book_start"])
+            self.book_start = start if len(start) else None
         self.held, self.withheld = np.array(state["held"], np.uint8), np.array(state["withheld"])
         self.pairs.restore(state["pairs"])
         self.steps, self._time = int(state["steps"]), float(state["time"])
         self._steps_of_dt = int(state["steps_of_dt"])
         self.last_dt, self._stale = float(state["last_dt"]), bool(state["stale"])
-        self._looked = False
-        self._smallest = float(self.discs.radius.min()) if self.discs.count else 0.0
+        self._health.forget()
