@@ -25,6 +25,7 @@ def show(folder: Path) -> list[Path]:
     scene = run.card["scene"]
     look = Look(
         title=title(scene, run.name),
+        cloud="grains",
         label="speed of the fluid",
         lines=gate_lines(scene),
         streamlines=scene.get("fluid") is not None,

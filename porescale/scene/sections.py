@@ -14,6 +14,7 @@ from porescale.scene.fluid import Fluid
 from porescale.scene.lattice import disagreements
 from porescale.scene.measures import FieldName, Flux, Line, Loads, Permeability, Probe
 from porescale.scene.rectangles import Rectangle
+from porescale.scene.regions import CoarseGraining, Region
 from porescale.scene.sides import Domain
 from porescale.workbench.sections import Refused, Section, quantity
 
@@ -45,6 +46,10 @@ class Output(Section):
     checkpoint_seconds: float = quantity("s", 30.0, gt=0, le=1e9, help="wall-clock time between checkpoints")
     fields: tuple[FieldName, ...] = pydantic.Field(
         (), description="fields of snapshots besides velocity and pressure, each with a picture"
+    )
+    contacts: bool = pydantic.Field(False, description="contacts of grains with their forces in snapshots")
+    forces: bool = pydantic.Field(
+        False, description="force and moment of grains on every wall, plate, rectangle and held disc: forces.csv"
     )
 
 
@@ -157,6 +162,8 @@ class Scene(Section):
     flux: tuple[Flux, ...] = ()
     loads: Loads | None = None
     permeability: Permeability | None = None
+    region: tuple[Region, ...] = ()
+    coarse_graining: CoarseGraining | None = None
     lubrication: Lubrication | None = None
 
     @pydantic.field_validator("fluid")
@@ -203,6 +210,11 @@ class Scene(Section):
                      "permeability": self.permeability, "output.fields": self.output.fields}  # fmt: skip
             faults += [Fault(name, None, "there is no fluid to measure", repair="add [fluid] or leave it out")
                        for name, section in given.items() if section]  # fmt: skip
+        if self.grains is None:
+            asked = {"region": self.region, "coarse_graining": self.coarse_graining,
+                     "output.contacts": self.output.contacts, "output.forces": self.output.forces}  # fmt: skip
+            faults += [Fault(name, None, "there are no grains to measure", repair="add [grains] or leave it out")
+                       for name, section in asked.items() if section]  # fmt: skip
         if self.lubrication and not (self.fluid and (self.grains or self.disc)):
             faults.append(Fault("lubrication", None, "there are no grains in fluid", repair="leave it out"))
         if self.permeability and self.fluid and self.grains is None:
@@ -220,6 +232,9 @@ class Scene(Section):
         for name, sections in (("line", self.line), ("flux", self.flux)):
             points += [(f"{name}[{k}].{end}", getattr(it, end)) for k, it in enumerate(sections)
                        for end in ("start", "end")]  # fmt: skip
+        for k, region in enumerate(self.region):
+            corners = ("lower", region.lower), ("upper", region.upper)
+            points += [(f"region[{k}].{end}", at) for end, at in corners if not any(self.domain.periodic)]
         if self.permeability and (window := self.permeability.window):
             points.append(("permeability.window", (window.left, window.bottom)))
             points.append(("permeability.window", (window.left + window.width, window.bottom + window.height)))

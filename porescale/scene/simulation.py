@@ -16,6 +16,7 @@ from porescale.lbm.plate import Plate
 from porescale.runs.model import Cloud, Grid, Snapshot
 from porescale.scene import observe
 from porescale.scene.derive import Derived
+from porescale.scene.grain_fields import GrainInstruments
 from porescale.scene.instruments import LAMBDA, Instruments, total_pressure
 from porescale.scene.rectangles import Movers
 from porescale.scene.sections import Scene
@@ -78,6 +79,7 @@ class Simulation:
         self.step_seconds = derived.model_step
         self._mass = fluid.mass_excess() if fluid else 0.0
         self._watch = observe.Watch(scene, grains) if grains and scene.grains else None
+        self._grain_instruments = GrainInstruments(scene, grains) if grains and scene.grains else None
         self._instruments = (
             Instruments(scene, derived.scales, derived.cells) if derived.scales and derived.cells else None
         )
@@ -164,9 +166,10 @@ class Simulation:
     def tables(self) -> dict[str, dict[str, float]]:
         """A row of each further series: what probes, flux sections and load cells read; {} where there are none."""
         scene = self.scene
-        if not self._instruments or not (scene.probe or scene.flux or scene.loads):
-            return {}
-        return self._instruments.tables(self.time, self.fields(), self.coupled)
+        tables = self._grain_instruments.tables(self.time) if self._grain_instruments else {}
+        if self._instruments and (scene.probe or scene.flux or scene.loads):
+            tables |= self._instruments.tables(self.time, self.fields(), self.coupled)
+        return tables
 
     def snapshot(self) -> Snapshot:
         """Fluid as cells, grains as points."""
@@ -184,6 +187,8 @@ class Simulation:
             period = np.array(self.grains.box.period)
             inside = np.where(period > 0, np.mod(d.position, np.where(period > 0, period, 1.0)), d.position)
             snapshot.clouds["grains"] = Cloud(inside, data, units)
+            if self._grain_instruments:
+                self._grain_instruments.add_to(snapshot)
         return snapshot
 
     def _grid(self) -> Grid:

@@ -47,18 +47,21 @@ def contact_numbers(contacts: Contacts, count: int) -> NDArray[np.int64]:
 
 
 def coordination(
-    contacts: Contacts, region: Region, position: Array, period: tuple[float, float], loose: Mask | None = None
-) -> float:
+    contacts: Contacts, region: Region, position: Array, period: tuple[float, float], loose: Mask | None = None,
+    apart: Mask | None = None,
+) -> float:  # fmt: skip
     """Mean number of loaded contacts of the discs whose centre lies in the region; nan where there is none.
 
     loose (n,) bool: discs left out, with their contacts (rattlers: the mechanical coordination number); walls count
-    as neighbours.
+    as neighbours.  apart (n,) bool: discs that are neighbours but not averaged over, such as held ones.
     """
     inside = region.holds(position, period)
     alive = loads(contacts)
     if loose is not None:
         inside = inside & ~loose
         alive &= ~loose[contacts.first] & ~np.where(contacts.pairs, loose[contacts.second], False)
+    if apart is not None:
+        inside = inside & ~apart
     if not inside.any():
         return float("nan")
     return float(_per_disc(contacts, alive, len(position))[inside].mean())

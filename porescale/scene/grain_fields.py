@@ -1,0 +1,201 @@
+"""What a scene measures on its grains: rows of regions.csv and forces.csv, contacts and coarse-grained fields.
+
+A scene that asks for none of it computes none of it.  Everything is taken from the list of contacts that the next
+contact step would use, and changes nothing.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.dem.contacts import Contacts, contacts
+from porescale.dem.measures.coarse_graining import CoarseGrained, Raster
+from porescale.dem.measures.fabric import LEAST_WITH_FRICTION, LEAST_WITHOUT, contact_numbers, loads, rattlers
+from porescale.dem.measures.fabric import coordination as coordination_of
+from porescale.dem.measures.fabric import fabric as fabric_of
+from porescale.dem.measures.loads import on_discs, on_surface
+from porescale.dem.measures.motion import motion
+from porescale.dem.measures.porosity import disc_areas, void_ratio
+from porescale.dem.measures.region import Region
+from porescale.dem.measures.stress import contact_stress, kinetic_stress, principal
+from porescale.dem.rectangle import BOTTOM, RIGHT, TOP
+from porescale.dem.rectangle import LEFT as LEFT_FACE
+from porescale.dem.system import Grains
+from porescale.dem.walls import HIGH, LOW, X
+from porescale.runs.model import Cloud, Grid, Snapshot
+
+if TYPE_CHECKING:
+    from porescale.scene.sections import Scene
+
+Array = NDArray[Any]
+Row = dict[str, float]
+
+KERNEL_WIDTH = 2.5
+"""Width of the kernel in mean diameters where a scene gives none: some twenty grains are felt at a point."""
+FIELDS, CONTACTS = "grain_fields", "contacts"
+"""Names of the grid and of the cloud in snapshots."""
+
+
+class GrainInstruments:
+    """The regions, the coarse graining and the wall forces of ``scene``."""
+
+    def __init__(self, scene: Scene, grains: Grains) -> None:
+        self.scene, self.grains = scene, grains
+        self.regions = [(it.name or f"region {k}", Region(it.lower, it.upper)) for k, it in enumerate(scene.region)]
+        self.held = np.arange(grains.discs.count) >= grains.discs.count - len(scene.disc)
+        friction = scene.contact.friction if scene.contact else 0.0
+        self.least = LEAST_WITH_FRICTION if friction > 0.0 else LEAST_WITHOUT
+
+    def tables(self, time: float) -> dict[str, Row]:
+        """A row of regions.csv and of forces.csv, where the scene asks for them."""
+        tables: dict[str, Row] = {}
+        if not (self.regions or self.scene.output.forces):
+            return tables
+        found = contacts(self.grains)
+        if self.regions:
+            loose = self.rattling(found)
+            tables["regions"] = {"time (s)": time}
+            for name, region in self.regions:
+                row = region_row(self.grains, found, region, loose, self.held)
+                tables["regions"] |= {f"{name} {column}": value for column, value in row.items()}
+        if self.scene.output.forces:
+            tables["forces"] = {"time (s)": time} | self._forces(found)
+        return tables
+
+    def rattling(self, found: Contacts) -> NDArray[np.bool_]:
+        """Which discs carry nothing, (n,)."""
+        return rattlers(found, self.grains.discs.count, self.least, self.held)
+
+    def _forces(self, found: Contacts) -> Row:
+        """Force of the grains on every wall, plate and rectangle with its moment about the middle of it, and of all
+        contacts on every held disc, about its centre."""
+        grains = self.grains
+        row: Row = {}
+        (left, bottom), (right, top) = grains.box.lower, grains.box.upper
+        x, y = 0.5 * (left + right), 0.5 * (bottom + top)
+        sides = {"left": (left, y), "right": (right, y), "bottom": (x, bottom), "top": (x, top)}
+        middles = [sides[name] for name in grains.wall_names]
+        middles += [(float(it[X]), 0.5 * float(it[LOW] + it[HIGH])) for it in grains.plates]
+        middles += [
+            (0.5 * float(it[LEFT_FACE] + it[RIGHT]), 0.5 * float(it[BOTTOM] + it[TOP])) for it in grains.rectangles
+        ]
+        for name, middle in zip(found.names, middles, strict=True):
+            shown = f"{name} wall" if name in sides else name
+            fx, fy, moment = on_surface(found, name, middle)
+            row |= {f"{shown} force x (N/m)": fx, f"{shown} force y (N/m)": fy, f"{shown} moment (N m/m)": moment}
+        for k, (fx, fy, moment) in enumerate(on_discs(found, grains.discs, np.flatnonzero(self.held).tolist())):
+            row |= {f"disc {k} force x (N/m)": float(fx), f"disc {k} force y (N/m)": float(fy),
+                    f"disc {k} moment (N m/m)": float(moment)}  # fmt: skip
+        return row
+
+    def add_to(self, snapshot: Snapshot) -> None:
+        """Contacts, what they say of each grain, and fields, where the scene asks for them."""
+        wanted = self.scene.output.contacts
+        if not (wanted or self.scene.coarse_graining):
+            return
+        found = contacts(self.grains)
+        if wanted:
+            snapshot.clouds[CONTACTS] = contact_cloud(found, self.grains)
+            grains, count = snapshot.clouds["grains"], self.grains.discs.count
+            grains.data["contact_number"] = contact_numbers(found, count).astype(np.int32)
+            grains.data["rattler"] = self.rattling(found)
+        if self.scene.coarse_graining:
+            snapshot.grids[FIELDS] = self._fields(found)
+
+    def _fields(self, found: Contacts) -> Grid:
+        """The coarse-grained fields of a snapshot."""
+        asked, grains = self.scene.coarse_graining, self.grains
+        assert asked
+        width = asked.width or max(2.0 * KERNEL_WIDTH * float(grains.discs.radius.mean()), asked.spacing)
+        raster = Raster.over(grains.box.lower, grains.box.upper, asked.spacing, width, grains.box.periodic)
+        fields = CoarseGrained(raster, grains.discs, found)
+        cells: dict[str, Array] = {}
+        units: dict[str, str] = {}
+        for name in asked.fields:
+            value = getattr(fields, "contact_stress" if name == "stress" else name)
+            if value.ndim == 2:
+                cells[name] = value.astype(np.float32)
+            elif value.ndim == 3:
+                cells[name] = np.zeros((*value.shape[:2], 3), np.float32)
+                cells[name][..., :2] = value
+            else:
+                cells |= _components(name, value)
+            units |= {key: UNITS[name] for key in cells if key not in units}
+        return Grid(raster.lower, raster.spacing, cells, units)
+
+
+UNITS = {"density": "kg/m^3", "solid_fraction": "", "velocity": "m/s", "strain_rate": "1/s", "stress": "Pa",
+         "kinetic_stress": "Pa"}  # fmt: skip
+"""Units of the fields."""
+
+
+def _components(name: str, value: Array) -> dict[str, Array]:
+    """A tensor (rows, columns, 2, 2) by component, and its two invariants: mean and largest shear."""
+    parts = {f"{name}_{a}{b}": value[..., i, j] for i, a in enumerate("xy") for j, b in enumerate("xy")}
+    if name == "strain_rate":
+        del parts[f"{name}_yx"]  # symmetric by definition
+    half, mixed = 0.5 * (value[..., 0, 0] - value[..., 1, 1]), 0.5 * (value[..., 0, 1] + value[..., 1, 0])
+    parts[f"{name}_mean"] = 0.5 * (value[..., 0, 0] + value[..., 1, 1])
+    parts[f"{name}_shear"] = np.hypot(half, mixed)
+    return {key: part.astype(np.float32) for key, part in parts.items()}
+
+
+def contact_cloud(found: Contacts, grains: Grains) -> Cloud:
+    """Contacts as points with their bodies, geometry and forces: a table, and lines along ``branch`` as glyphs.
+
+    second is -1 at a surface, whose number is then in ``surface`` (order: walls, plates, rectangles).
+    """
+    names = "normal_force", "tangential_force", "overlap", "spring"
+    data: dict[str, Array] = {
+        "first": found.first.astype(np.int32), "second": found.second.astype(np.int32),
+        "surface": found.surface.astype(np.int32), "sliding": found.sliding,
+        **{name: getattr(found, name) for name in names},
+    }  # fmt: skip
+    for name in ("normal", "branch", "force"):
+        data[name] = np.zeros((found.count, 3))
+        data[name][:, :2] = getattr(found, name)
+    units = dict(zip((*names, "branch", "force"), ("N/m", "N/m", "m", "m", "m", "N/m"), strict=True))
+    point = Region(grains.box.lower, grains.box.upper).near(found.point, grains.box.period)
+    return Cloud(point, data, units)
+
+
+def region_row(grains: Grains, found: Contacts, region: Region, loose: Array, held: Array) -> Row:
+    """What is known of a region, by column with unit.
+
+    Porosity and velocities weigh discs by their area and mass inside; coordination and rattlers are of discs whose
+    centre is inside, held ones left out; fabric and forces of contacts whose point is inside.
+    """
+    d, period = grains.discs, grains.box.period
+    areas = disc_areas(region, d.position, d.radius, period)
+    pores = 1.0 - float(areas.sum()) / region.area
+    stress, kinetic = contact_stress(region, d, found, period), kinetic_stress(region, d, period)
+    mean, deviator, angle = principal(stress)
+    inside = region.holds(d.position, period) & ~held
+    here = found.chosen(region.holds(found.point, period) & loads(found))
+    fabric, force = fabric_of(found, region, period), here.normal_force
+    moving = motion(region.near(d.position, period), d.velocity, d.mass * areas / d.area)
+    nan = float("nan")
+    return {
+        "porosity ()": pores,
+        "void ratio ()": void_ratio(pores),
+        "stress xx (Pa)": float(stress[0, 0]), "stress yy (Pa)": float(stress[1, 1]),
+        "stress xy (Pa)": float(stress[0, 1]), "stress yx (Pa)": float(stress[1, 0]),
+        "mean stress (Pa)": mean, "deviator stress (Pa)": deviator, "major stress direction (rad)": angle,
+        "kinetic stress xx (Pa)": float(kinetic[0, 0]), "kinetic stress yy (Pa)": float(kinetic[1, 1]),
+        "kinetic stress xy (Pa)": float(kinetic[0, 1]),
+        "coordination number ()": coordination_of(found, region, d.position, period, loose, held),
+        "share of rattlers ()": float(loose[inside].mean()) if inside.any() else nan,
+        "contacts ()": float(fabric.contacts),
+        "fabric anisotropy ()": fabric.anisotropy, "fabric direction (rad)": fabric.angle,
+        "mean normal force (N/m)": float(force.mean()) if here.count else nan,
+        "largest over mean normal force ()": float(force.max() / force.mean()) if here.count else nan,
+        "share of sliding contacts ()": float(here.sliding.mean()) if here.count else nan,
+        "velocity x (m/s)": float(moving.velocity[0]), "velocity y (m/s)": float(moving.velocity[1]),
+        "strain rate xx (1/s)": float(moving.strain_rate[0, 0]),
+        "strain rate yy (1/s)": float(moving.strain_rate[1, 1]),
+        "strain rate xy (1/s)": float(moving.strain_rate[0, 1]),
+        "rotation (rad/s)": moving.rotation,
+    }  # fmt: skip
