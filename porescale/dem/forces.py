@@ -12,7 +12,7 @@ import numpy as np
 
 from porescale.dem.cell import Still, drift, image, note
 from porescale.dem.contact.law import contact, material_of, moments, note_contact, recall, remember
-from porescale.ground.jit import kernel
+from porescale.ground.jit import inline, kernel
 
 
 @kernel
@@ -33,6 +33,48 @@ def add_pair_forces(
     pair_forces(position, velocity, spin, radius, force, torque, start, partner, carried, law, dt, cell)
 
 
+@inline
+def pair_contact(i, j, k, position, velocity, spin, radius, carried, law, dt, cell):
+    """Listed pair k of discs i and j: (whether they touch, force on i along x, y N/m, torques on i, j N m/m).
+
+    Arguments as in pair_forces; overwrites row k of ``carried`` and adds to the load of ``cell``.
+    """
+    ri, rj = radius[i], radius[j]
+    dx, dy = image(position[j, 0] - position[i, 0], position[j, 1] - position[i, 1], cell)
+    square = dx * dx + dy * dy
+    if square >= (ri + rj) * (ri + rj):
+        remember(carried, k, 0.0, 0.0, law)
+        return False, 0.0, 0.0, 0.0, 0.0
+    distance = np.sqrt(square)
+    inverse = 1.0 / distance
+    nx, ny = dx * inverse, dy * inverse
+    arm_i = 0.5 * (distance + (ri - rj) * (ri + rj) * inverse)
+    arm_j = distance - arm_i
+    drift_x, drift_y = drift(dx, dy, cell)
+    du = velocity[i, 0] - velocity[j, 0] - drift_x
+    dv = velocity[i, 1] - velocity[j, 1] - drift_y
+    closing = du * nx + dv * ny
+    slip = dv * nx - du * ny + spin[i] * arm_i + spin[j] * arm_j
+    overlap, reduced = ri + rj - distance, ri * rj / (ri + rj)
+    turning = reduced * (spin[i] - spin[j])
+    mass = law.mass[i] * law.mass[j] / (law.mass[i] + law.mass[j])
+    p = law.table[material_of(law.material, i), material_of(law.material, j)]
+    before, roll_before = recall(carried, k, law)
+    normal, tangential, resisting, spring, roll = contact(
+        overlap, closing, slip, turning, before, roll_before, reduced, mass, dt, p, law
+    )
+    remember(carried, k, spring, roll, law)
+    note_contact(
+        i, overlap, closing, slip, turning, before, roll_before, normal, tangential, resisting, spring, roll,
+        reduced, mass, dt, p, law.book, law,
+    )  # fmt: skip
+    gx = -normal * nx - tangential * ny
+    gy = -normal * ny + tangential * nx
+    note(gx, gy, dx, dy, cell)
+    moment_i, moment_j = moments(tangential, resisting, arm_i, arm_j, reduced, law)
+    return True, gx, gy, moment_i, moment_j
+
+
 @kernel
 def pair_forces(
     position, velocity, spin, radius, force, torque, start, partner, carried, law, dt, cell
@@ -45,52 +87,19 @@ def pair_forces(
     Not checked: two centres in one place give nan, which Grains.check reports.
     """
     for i in range(radius.shape[0]):
-        first, last = start[i], start[i + 1]
-        if first == last:
-            continue
-        xi, yi, ri = position[i, 0], position[i, 1], radius[i]
-        ui, vi, wi = velocity[i, 0], velocity[i, 1], spin[i]
         fx, fy, moment = 0.0, 0.0, 0.0
-        for k in range(first, last):
+        for k in range(start[i], start[i + 1]):
             j = partner[k]
-            dx, dy = image(position[j, 0] - xi, position[j, 1] - yi, cell)
-            rj = radius[j]
-            square = dx * dx + dy * dy
-            if square >= (ri + rj) * (ri + rj):
-                remember(carried, k, 0.0, 0.0, law)
-                continue
-            distance = np.sqrt(square)
-            inverse = 1.0 / distance
-            nx, ny = dx * inverse, dy * inverse
-            arm_i = 0.5 * (distance + (ri - rj) * (ri + rj) * inverse)
-            arm_j = distance - arm_i
-            drift_x, drift_y = drift(dx, dy, cell)
-            du, dv = ui - velocity[j, 0] - drift_x, vi - velocity[j, 1] - drift_y
-            closing = du * nx + dv * ny
-            slip = dv * nx - du * ny + wi * arm_i + spin[j] * arm_j
-            overlap, reduced = ri + rj - distance, ri * rj / (ri + rj)
-            turning = reduced * (wi - spin[j])
-            mass = law.mass[i] * law.mass[j] / (law.mass[i] + law.mass[j])
-            p = law.table[material_of(law.material, i), material_of(law.material, j)]
-            before, roll_before = recall(carried, k, law)
-            normal, tangential, resisting, spring, roll = contact(
-                overlap, closing, slip, turning, before, roll_before, reduced, mass, dt, p, law
+            met, gx, gy, moment_i, moment_j = pair_contact(
+                i, j, k, position, velocity, spin, radius, carried, law, dt, cell
             )
-            remember(carried, k, spring, roll, law)
-            note_contact(
-                i, overlap, closing, slip, turning, before, roll_before, normal, tangential, resisting, spring, roll,
-                reduced, mass, dt, p, law.book, law,
-            )  # fmt: skip
-            gx = -normal * nx - tangential * ny
-            gy = -normal * ny + tangential * nx
-            note(gx, gy, dx, dy, cell)
-            fx += gx
-            fy += gy
-            moment_i, moment_j = moments(tangential, resisting, arm_i, arm_j, reduced, law)
-            moment += moment_i
-            force[j, 0] -= gx
-            force[j, 1] -= gy
-            torque[j] += moment_j
+            if met:
+                fx += gx
+                fy += gy
+                moment += moment_i
+                force[j, 0] -= gx
+                force[j, 1] -= gy
+                torque[j] += moment_j
         force[i, 0] += fx
         force[i, 1] += fy
         torque[i] += moment

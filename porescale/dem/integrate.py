@@ -9,16 +9,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
+from porescale.dem.cell import Still
 from porescale.dem.contact.law import BEFORE_SPIN, BEFORE_X, BEFORE_Y, DRAG, EXTERNAL, HOLDERS, note_work
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Law
-from porescale.dem.forces import add_pair_forces, start_forces
-from porescale.dem.rectangle import add_rectangle_forces, move_rectangles
-from porescale.dem.walls import add_plate_forces, add_wall_forces, move_plates
-from porescale.ground.jit import inline, kernel
+from porescale.dem.rectangle import move_rectangles
+from porescale.dem.sweep import BLOCK, Serial, Threads, sweep_pairs, sweep_surfaces
+from porescale.dem.walls import move_plates
+from porescale.ground.jit import by_law, inline, kernel, parallel_kernel, prange
 
 NEIGHBOURS = 6
 """Most discs that touch a disc and are no smaller than it: the kissing number of the plane."""
@@ -89,6 +91,46 @@ def kick_drift(
     return moved
 
 
+@parallel_kernel
+def kick_drift_threads(
+    position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt
+):  # fmt: skip
+    """As kick_drift, block by block."""
+    count = mass.shape[0]
+    moved = 0
+    for b in prange((count + BLOCK - 1) // BLOCK):
+        first, last = b * BLOCK, min((b + 1) * BLOCK, count)
+        moved += kick_drift(
+            position[first:last], angle[first:last], velocity[first:last], spin[first:last], mass[first:last],
+            inertia[first:last], force[first:last], torque[first:last], anchor[first:last], limit_square, drag, dt,
+        )  # fmt: skip
+    return moved > 0
+
+
+@by_law
+def sweep_kick(
+    position: Any, angle: Any, velocity: Any, spin: Any, mass: Any, inertia: Any, force: Any, torque: Any, anchor: Any,
+    limit_square: Any, drag: Any, dt: Any, sweep: Any,
+) -> Any:  # fmt: skip
+    """As kick_drift, by as many threads as ``sweep`` says."""
+
+
+@sweep_kick.of(Serial)
+def _kick_serial(
+    position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt, sweep
+):  # fmt: skip
+    return kick_drift(position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt)
+
+
+@sweep_kick.of(Threads)
+def _kick_threads(
+    position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt, sweep
+):  # fmt: skip
+    return kick_drift_threads(
+        position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt
+    )
+
+
 @kernel
 def first_without_number(position, velocity, spin):
     """(disc, column) of the first disc with a position (column 0) that is not finite, or else a velocity (1), or a
@@ -111,46 +153,29 @@ def contact_steps(
     count, dt, drag, position, angle, velocity, spin, radius, mass, inertia, force, torque,
     external_force, external_torque, start, partner, carried, anchor, limit_square, period_x, period_y, law,
     walls, wall_laws, wall_spring, wall_force, plates, plate_laws, plate_spring, plate_force,
-    rectangles, rectangle_laws, rectangle_spring, rectangle_force, held, withheld, first,
+    rectangles, rectangle_laws, rectangle_spring, rectangle_force, held, withheld, first, sweep,
 ):  # fmt: skip
     """Up to ``count`` contact steps; returns (steps done, whether the pair list must be rebuilt first to
     go on).
 
     Arrays as in add_pair_forces and the like, withhold and kick_drift; external_force (n, 2)
     N/m and external_torque (n,) N m/m are the same over all steps.  first: withheld forces are summed anew.
-    Overwrites the state of discs, springs, plates, rectangles.
+    sweep: by one thread or several, see sweep.py.  Overwrites the state of discs, springs, plates, rectangles.
     """
     for step in range(count):
-        start_forces(force, torque, external_force, external_torque)
-        add_pair_forces(
-            position,
-            velocity,
-            spin,
-            radius,
-            force,
-            torque,
-            start,
-            partner,
-            carried,
-            period_x,
-            period_y,
-            law,
-            dt,
-        )
-        add_wall_forces(
-            position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, wall_force, law, dt
-        )
-        add_plate_forces(
-            position, velocity, spin, radius, force, torque, plates, plate_laws, plate_spring, plate_force, law, dt
-        )
-        add_rectangle_forces(
-            position, velocity, spin, radius, force, torque, rectangles, rectangle_laws, rectangle_spring,
-            rectangle_force, law, dt,
+        sweep_pairs(
+            position, velocity, spin, radius, force, torque, external_force, external_torque, start, partner, carried,
+            law, dt, Still(period_x, period_y), sweep,
+        )  # fmt: skip
+        sweep_surfaces(
+            position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, wall_force,
+            plates, plate_laws, plate_spring, plate_force,
+            rectangles, rectangle_laws, rectangle_spring, rectangle_force, law, dt, sweep,
         )  # fmt: skip
         note_step(law.book, velocity, spin, mass, inertia, external_force, external_torque, drag, dt)
         withhold(held, withheld, velocity, spin, mass, inertia, force, torque, drag, first and step == 0, law.book, dt)
-        moved = kick_drift(
-            position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt
+        moved = sweep_kick(
+            position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt, sweep
         )
         move_plates(plates, dt)
         move_rectangles(rectangles, dt)

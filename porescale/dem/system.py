@@ -16,6 +16,7 @@ from porescale.dem.discs import Discs
 from porescale.dem.health import Health
 from porescale.dem.integrate import contact_steps, stable_step
 from porescale.dem.rectangle import Rectangle
+from porescale.dem.sweep import Sweeps
 from porescale.dem.walls import HIGH, LOW, PRESENT, VELOCITY, Box, Plate, X
 from porescale.ground.check import Fault, InputError
 from porescale.particles.pairs import PairList
@@ -58,6 +59,7 @@ class Grains:
         count = discs.count
         self.discs, self.box = discs, box
         self.book = np.zeros((count, BOOK)) if energy else None
+        self._sweeps = Sweeps(count)
         self.book_start: Array | None = None  # what energy.open_book says before the first step
         self.material = self._numbers(law, material)
         self._memory = 0  # springs per contact, none yet
@@ -148,6 +150,7 @@ class Grains:
             state = self.pairs.state()
             pairs.restore({**state, "carried": np.pad(state["carried"], ((0, 0), (0, more)))})
         self.pairs: PairList = pairs
+        self._sweeps.forget()
         self._memory = memory
         for name in ("wall_spring", "plate_spring", "rectangle_spring"):
             setattr(self, name, np.pad(getattr(self, name), ((0, 0), (0, 0), (0, more))))
@@ -210,6 +213,7 @@ class Grains:
 
             self.current_pairs()
             self.book_start = open_book(self, self.book, dt)
+        surfaces = len(self.walls) + len(self.plates) + len(self.rectangles)
         while left > 0:
             pairs = self.current_pairs()
             done, self._stale = contact_steps(
@@ -222,6 +226,7 @@ class Grains:
                 self.plates, self.plate_laws, self.plate_spring, self.plate_force,
                 self.rectangles, self.rectangle_laws, self.rectangle_spring, self.rectangle_force,
                 self.held, self.withheld, left == count,
+                self._sweeps.now(pairs, surfaces, self.book is not None),
             )  # fmt: skip
             left -= done
             self.steps += done
@@ -335,6 +340,7 @@ class Grains:
             self.book_start = start if len(start) else None
         self.held, self.withheld = np.array(state["held"], np.uint8), np.array(state["withheld"])
         self.pairs.restore(state["pairs"])
+        self._sweeps.forget()
         self.steps, self._time = int(state["steps"]), float(state["time"])
         self._steps_of_dt = int(state["steps_of_dt"])
         self.last_dt, self._stale = float(state["last_dt"]), bool(state["stale"])
