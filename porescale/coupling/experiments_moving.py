@@ -88,6 +88,7 @@ def shear_spin(
     relaxation_time: float = TAU,
     reynolds: float = 0.01,
     density: float = 1.0,
+    place: tuple[float, float] = (0.3, 0.0),
     method: Method = DEFAULT,
 ) -> float:
     """Spin over the shear rate of a free disc midway between walls that move apart, diameter over their distance given.
@@ -100,7 +101,7 @@ def shear_spin(
     wall = rate * height / 2
     sides = Sides("periodic", "periodic", "wall", "wall", top_speed=wall, bottom_speed=-wall)
     cells = 3 * height, height
-    centre = cells[0] / 2 + 0.3, height / 2
+    centre = cells[0] / 2 + place[0], height / 2 + place[1]
     coupled = towed(
         cells, [centre], diameter / 2, spin=-rate / 2, relaxation_time=relaxation_time, sides=sides, density=density,
         method=method,

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.coupling import experiments as lab
-from porescale.coupling.verify import ARRAY_DRAG
-
+from porescale.coupling.experiments_towed import square_array_drag
+from porescale.coupling.verify_arrays import SQUARE
 
 PLACES = [((0.5 + 0.7549 * k) % 1, (0.5 + 0.5698 * k) % 1) for k in range(8)]
 """Spread evenly over a cell: multiples of the powers of 1/1.3247, the root of x³ = x + 1."""
@@ -18,8 +17,8 @@ def test_the_drag_converges_at_second_order(tau):
     # Relative error C h² as a mean over places.  0.4: single places scatter by half of the mean, the mean of eight by
     # a sixth (0.5/sqrt 8 = 0.18), two means: sqrt 2 · 0.18/ln 2 = 0.36 of the order; first order would be 1.
     errors = [
-        np.mean([lab.array_drag(cells, relaxation_time=tau, centre=place) / ARRAY_DRAG - 1 for place in PLACES])
-        for cells in (20, 40)
+        np.mean(square_array_drag(diameter, 0.2, relaxation_time=tau, places=PLACES)) / SQUARE[0.2] - 1
+        for diameter in (10, 20)
     ]
     assert np.log2(abs(errors[0] / errors[1])) == pytest.approx(2.0, abs=0.4)
 
@@ -30,12 +29,14 @@ def test_the_leak_of_touching_discs_falls_at_second_order(centre):
     # discs leave an opening of some share of a cell between them, and what flows through it goes as its width over R
     # to the power 5/2 (Gebart 1992); that share differs with the place in the cell by up to a fifth, 5/2 log2(1.2) =
     # 0.66 of the order.
-    leaks = [4 / lab.array_drag(cells, np.pi / 4, 0.55, centre) for cells in (15, 30)]
+    leaks = [4 / square_array_drag(d, np.pi / 4, relaxation_time=0.55, places=[centre])[0] for d in (15, 30)]
     assert 2.0 < np.log2(leaks[0] / leaks[1]) < 2.5 + 0.66
 
 
 def test_discs_with_a_gap_leak_for_good():
     # The twin: 3 % less area, 1.5 % less diameter than touching is a way through at any resolution, and what passes
     # tends to a constant (Gebart 1992): less than first order, had the opening of touching discs not to be added.
-    leaks = [4 / lab.array_drag(cells, 0.97 * np.pi / 4, 0.55) for cells in (15, 30)]
+    leaks = [
+        4 / square_array_drag(d, 0.97 * np.pi / 4, relaxation_time=0.55, places=[(0.3, 0.1)])[0] for d in (15, 30)
+    ]  # fmt: skip
     assert np.log2(leaks[0] / leaks[1]) < 2.0

@@ -11,26 +11,11 @@ from porescale.coupling import experiments_towed as towed
 from porescale.coupling import verify_moving, verify_towed
 from porescale.coupling.experiments import faxen, weighing
 from porescale.coupling.verify import VALIDATIONS
-from tests.reference.stokes_array import square
 from tests.reference.stokes_box import Box, Enclosed, point_forces
 
 
 def tolerance(name):
     return VALIDATIONS[f"coupling.{name}"].tolerance
-
-
-def drag(fraction):
-    forces, inner = (80, 0.7) if fraction < 0.5 else (200, 0.85)
-    return square(fraction, forces=forces, inner=inner).loads([1.0, 0.0])[0][0, 0]
-
-
-@pytest.mark.parametrize("fraction", verify_towed.ARRAYS)
-def test_drags_and_slopes_of_arrays_are_those_of_point_forces(fraction):
-    found, slope = verify_towed.ARRAYS[fraction]
-    assert drag(fraction) == pytest.approx(found, rel=2e-4)  # four digits
-    # d ln F/d ln R = 2 d ln F/d ln c; differences over 0.4 % err by their square
-    ratio = drag(fraction * 1.002) / drag(fraction / 1.002)
-    assert 2 * np.log(ratio) / (2 * np.log(1.002)) == pytest.approx(slope, rel=1e-3)
 
 
 def near(half_length, half_height, gap, aside, forces, wall_forces, inner, behind):
@@ -86,15 +71,6 @@ def test_added_mass_and_damping_are_those_of_stokes(frequency, exact):
     assert moving.stokes_oscillation(frequency) == pytest.approx(exact, rel=5e-4)  # four digits
 
 
-def test_discs_a_tenth_of_a_cell_smaller_are_told_apart_in_arrays():
-    # what the method misses, and a tenth of a cell: C + 0.1 d
-    cells, c = 14, 0.4
-    radius = cells * np.sqrt(c / np.pi)
-    smaller = towed.square_array_drag(10, c * (1 - 0.1 / radius) ** 2, relaxation_time=0.6, places=towed.PLACES[:1])
-    real, (reference, slope) = 2 * radius, verify_towed.ARRAYS[c]
-    assert -np.log(smaller[0] / reference) / slope * real**2 / 2 > tolerance("square_arrays")
-
-
 def test_an_unbounded_or_wider_channel_is_told_apart():
     found, k = towed.channel_drag(0.3)
     for other in (0.9 * k, 1.1 * k):
@@ -109,7 +85,7 @@ def test_a_disc_a_cell_higher_above_the_wall_is_told_apart():
 @pytest.mark.parametrize("gap", verify_towed.FILMS)
 def test_without_the_correction_a_film_is_too_weak(gap):
     found = towed.near_wall("towards", gap) / towed.jeffrey_onishi("towards", gap)
-    assert 1 - found > 3 * tolerance("films")
+    assert 1 - found > 2.5 * tolerance("films")
 
 
 @pytest.mark.slow
@@ -151,6 +127,14 @@ def test_a_floor_half_a_cell_lower_is_told_apart():
 
 
 def test_what_the_cells_bear_is_no_buoyancy():
-    # 0.87 rho g A: unless that is put right, a disc of density ratio 2.5 sinks 9 % too fast
+    # the area that they see: unless that is put right, a disc of density ratio 2.5 sinks 1.5 % too slowly
     load, _ = weighing(0.6, steps=3000)
-    assert (1 - load / (np.pi * 5.0**2)) / 1.5 > 5 * tolerance("gravity_in_the_fluid")
+    assert (load / (np.pi * 5.0**2) - 1) / 1.5 > 4 * tolerance("gravity_in_the_fluid")
+
+
+def test_at_one_place_in_a_cell_strain_turns_a_disc():
+    # as much and the other way where along and across change places
+    found = [moving.shear_spin(0.25, place=place) for place in ((0.3, 0.0), (0.0, 0.3))]
+    off = np.divide(found, verify_moving.SHEAR[0.25]) - 1
+    assert np.abs(off).min() > 3 * tolerance("neutral_disc_in_shear")
+    assert off[0] * off[1] < 0
