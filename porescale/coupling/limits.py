@@ -32,6 +32,14 @@ LIGHTEST = {
 CELLS_RIGHT = {"exact-wall wall": 3.0, "odd-SC1 B2": 10.0, "odd-SC1 B1": 5.0}
 """Cells per diameter from which on the drag of a free disc is within a tenth, wherever it holds (coupling.fall)."""
 
+BED_RIGHT = {
+    "exact-wall wall": ((0.4, 5.0), (0.6, 15.0)),
+    "odd-SC1 B2": ((0.2, 10.0), (0.4, 15.0)),
+    "odd-SC1 B1": ((0.1, 10.0),),
+}
+"""Solid fraction of a square bed, and the cells per diameter from which on its drag is within a tenth up to there; with
+none of the map's beyond the last one (coupling.bed)."""
+
 
 def cell_reynolds(operator: str, *, eddies: bool, lid: bool = False) -> float:
     """Cell Reynolds number |u|/nu up to which an operator is known to hold; the least of all for one not tried.
@@ -54,3 +62,13 @@ def lightest(cells_per_diameter: float, solid_operator: str = "exact-wall", weig
     tables = [LIGHTEST[name]] if name in LIGHTEST else list(LIGHTEST.values())
     held = [min((ratio for cells, ratio in rows if cells_per_diameter >= cells), default=1.0) for rows in tables]
     return max(held)
+
+
+def cells_in_bed(solid_fraction: float, solid_operator: str = "exact-wall", weighting: str = "wall") -> float:
+    """Cells per diameter from which on the drag in a bed is within a tenth; infinite where none of the map's is.
+
+    A pair of solid operator and weight that is not in the table counts as the worst that is.
+    """
+    name = f"{solid_operator} {weighting}"
+    tables = [BED_RIGHT[name]] if name in BED_RIGHT else list(BED_RIGHT.values())
+    return max(next((cells for most, cells in rows if solid_fraction <= most), float("inf")) for rows in tables)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from porescale.dem.contact.law import material_of, recall, stored
 from porescale.dem.discs import Discs
+from porescale.dem.rectangle import BOTTOM, LEFT, RIGHT, TOP, nearest_face
 from porescale.dem.system import Grains
 from porescale.dem.walls import HIGH, LOW, NX, NY, PRESENT, PX, PY, X
 from porescale.ground.jit import inline, kernel
@@ -89,6 +90,31 @@ def survey_plates(position, radius, plates, laws, spring, law):
     return worst, worst_i, worst_w, energy
 
 
+@kernel
+def survey_rectangles(position, radius, rectangles, laws, spring, law):
+    """(largest overlap over the radius, its disc, its rectangle, elastic energy J/m) over the rectangles (k, 6)."""
+    worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
+    for w in range(rectangles.shape[0]):
+        left, bottom, right, top = (
+            rectangles[w, LEFT],
+            rectangles[w, BOTTOM],
+            rectangles[w, RIGHT],
+            rectangles[w, TOP],
+        )
+        for i in range(radius.shape[0]):
+            dx = min(max(position[i, 0], left), right) - position[i, 0]
+            dy = min(max(position[i, 1], bottom), top) - position[i, 1]
+            distance = np.sqrt(dx * dx + dy * dy)
+            if distance == 0.0:
+                distance = -nearest_face(position[i, 0], position[i, 1], left, bottom, right, top)[2]
+            overlap = radius[i] - distance
+            if overlap > 0.0:
+                energy += stored_at_surface(i, overlap, radius[i], spring[w], laws[w], law)
+                if overlap / radius[i] > worst:
+                    worst, worst_i, worst_w = overlap / radius[i], i, w
+    return worst, worst_i, worst_w, energy
+
+
 class Overlap(NamedTuple):
     """The deepest contact: overlap over the (smaller) radius, the disc, and what it is pressed against."""
 
@@ -109,8 +135,9 @@ def potential_energy(discs: Discs, acceleration: tuple[float, float]) -> float:
 
 
 def elastic_energy(grains: Grains) -> float:
-    """Stored in the normal and tangential springs of pairs, walls and plates, J/m."""
-    return float(_survey(grains)[3] + _survey_walls(grains)[3] + _survey_plates(grains)[3])
+    """Stored in the normal and tangential springs of pairs, walls, plates and rectangles, J/m."""
+    surfaces = (_survey_walls(grains), _survey_plates(grains), _survey_rectangles(grains))
+    return float(_survey(grains)[3] + sum(found[3] for found in surfaces))
 
 
 def momentum(discs: Discs) -> Array:
@@ -133,7 +160,7 @@ def centre_of_mass(discs: Discs) -> Array:
 
 
 def max_overlap(grains: Grains) -> Overlap:
-    """The deepest overlap of all pairs, walls and plates, as a share of the (smaller) radius."""
+    """The deepest overlap of all pairs, walls, plates and rectangles, as a share of the (smaller) radius."""
     share, i, j, _ = _survey(grains)
     deepest = Overlap(float(share), int(i), f"grain {j}")
     share, i, w, _ = _survey_walls(grains)
@@ -142,6 +169,9 @@ def max_overlap(grains: Grains) -> Overlap:
     share, i, w, _ = _survey_plates(grains)
     if share > deepest.share:
         deepest = Overlap(float(share), int(i), f"the {grains.plate_names[w]}")
+    share, i, w, _ = _survey_rectangles(grains)
+    if share > deepest.share:
+        deepest = Overlap(float(share), int(i), f"rectangle {w}")
     return deepest
 
 
@@ -179,5 +209,15 @@ def _survey_plates(grains: Grains) -> tuple[float, int, int, float]:
     d = grains.discs
     result: tuple[float, int, int, float] = survey_plates(
         d.position, d.radius, grains.plates, grains.plate_laws, grains.plate_spring, grains.contact
+    )
+    return result
+
+
+def _survey_rectangles(grains: Grains) -> tuple[float, int, int, float]:
+    d = grains.discs
+    if not len(grains.rectangles):
+        return 0.0, -1, -1, 0.0
+    result: tuple[float, int, int, float] = survey_rectangles(
+        d.position, d.radius, grains.rectangles, grains.rectangle_laws, grains.rectangle_spring, grains.contact
     )
     return result

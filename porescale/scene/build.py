@@ -25,6 +25,7 @@ from porescale.particles.placement import place
 from porescale.scene.cost import refuse_too_large
 from porescale.scene.derive import Derived, derive, grain_count
 from porescale.scene.geometry import refuse_overlaps
+from porescale.scene.rectangle_places import refuse_buried
 from porescale.scene.rectangles import Movers, on_the_lattice, stand_ins, take_over
 from porescale.scene.sections import Packing, Scene
 from porescale.scene.sides import Domain
@@ -128,7 +129,7 @@ def _grains(scene: Scene, derived: Derived) -> Grains:
     parts = [_by_hand(scene)] if scene.grains and scene.grains.grain else []
     parts += [_held(scene)] if scene.disc else []
     if packing and packing.settle:
-        grains = prepared(scene, packing, box, derived, [*plates, *stand_ins(scene)])
+        grains = prepared(scene, packing, box, derived, [*plates, *stand_ins(scene, packing)])
         if parts:
             grains = joined(grains, together(*parts))
     else:
@@ -137,6 +138,7 @@ def _grains(scene: Scene, derived: Derived) -> Grains:
         grains.refresh()  # contacts count from the first row of the series on
     if scene.rectangle:
         take_over(scene, grains)
+        refuse_buried(scene, grains.discs)
     if scene.disc:
         grains.hold(slice(grains.discs.count - len(scene.disc), None))
     added = len(scene.disc) + (len(scene.grains.grain) if scene.grains else 0)

@@ -11,7 +11,8 @@ from porescale.dem.system import SKIN
 from porescale.ground.check import Fault, InputError
 from porescale.particles.placement import DENSEST
 from porescale.scene.bodies import Disc
-from porescale.scene.rectangles import beside, judge_rectangles
+from porescale.scene.rectangle_places import judge_rectangles
+from porescale.scene.rectangles import beside
 from porescale.scene.sections import Gate, Grain, Packing, Scene
 from porescale.scene.sides import Domain
 
@@ -29,6 +30,9 @@ def judge_places(scene: Scene, sizes: tuple[float, float, float] | None, faults:
     sizes : smallest, mean and largest diameter, m; None without grains.  A periodic side too short for them is the
     only fault named then: places mean nothing across it.
     """
+    names, x, r = placed(scene)
+    if scene.rectangle:
+        judge_rectangles(scene, x, r, names, faults)
     if sizes is None:
         return
     if _judge_periods(scene, sizes, faults):
@@ -38,8 +42,6 @@ def judge_places(scene: Scene, sizes: tuple[float, float, float] | None, faults:
         _judge_packing(packing, scene.domain, scene.gate, faults)
         if packing.settle:
             _judge_settling(scene, faults)
-    names, x, r = placed(scene)
-    judge_rectangles(scene, x, r, names, faults)
     if not names:
         return
     box, inner = np.array([scene.domain.width, scene.domain.height]), r[:, None] * (1 - TOUCH)
@@ -174,13 +176,13 @@ def _loose_sides(scene: Scene, packing: Packing) -> str:
     """Sides on which no wall or gate stands within a diameter of the packing, in words; a full period holds itself."""
     if scene.domain.periodic[0] and packing.width > scene.domain.width - packing.diameter:
         return ""
-    domain, gate = scene.domain, scene.gate
+    domain, gate, held = scene.domain, scene.gate, beside(scene, packing)
     ends = {"left": (packing.left, 0.0), "right": (packing.left + packing.width, domain.width)}
     loose = []
-    for side, (edge, wall) in ends.items():
+    for (side, (edge, wall)), near_face in zip(ends.items(), held, strict=True):
         near_wall = not domain.periodic[0] and abs(edge - wall) < packing.diameter
         near_gate = gate is not None and abs(edge - gate.x) < packing.diameter
-        if not near_wall and not near_gate and not beside(scene, edge, packing.diameter):
+        if not near_wall and not near_gate and not near_face:
             loose.append(side)
     return " and ".join(loose)
 

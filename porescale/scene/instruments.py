@@ -75,7 +75,7 @@ class Instruments:
         for k, section in enumerate(self.fluxes):
             name = self.scene.flux[k].name or f"section {k}"
             row[f"{name} volume flux (m²/s)"] = section.integral(ux, uy)
-            if self.scene.grains or self.scene.disc:
+            if self.scene.grains or self.scene.disc or self.scene.rectangle:
                 row[f"{name} flux of solid (m²/s)"] = section.integral(ux * solid, uy * solid)
         return row
 

@@ -1,52 +1,88 @@
-"""What is known of where a computation is right and where it is stable: every threshold that ``check`` warns from.
+"""Every threshold that ``check`` warns from: those of the map of stability (coupling/limits.py), and a few that no map
+has.
 
-A table on purpose: what a study of stability finds is entered here, and the warnings follow.
+A scene is judged before it runs, by the largest speed to expect: its cell Reynolds number |u| h/nu, its Mach number,
+its pressures, and the cells that its grains have.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from porescale.coupling import limits
+from porescale.lbm.scales import Scales
 
-DENSITY_WARN, DENSITY_REFUSE = 0.05, 0.3
+DENSITY_WARN, DENSITY_REFUSE = 0.05, limits.DENSITY
 """Density variation by the weight of a column: measured runs varied by twice this estimate (0.05: 4-10 %)."""
-MACH_WARN, MACH_REFUSE = 0.1, 0.3
-"""Errors of compressibility grow as the square of the Mach number: 1 % and 9 %."""
-TAU_COARSE = 1.5
-"""Relaxation time above which the drag at 10 cells per diameter is more than a tenth too small."""
-CELLS_COARSE = 4.0
-"""Cells per hydraulic diameter below which drag is off by a tenth or more."""
-LIGHT, LIGHT_CELLS = 0.5, 16.0
-"""Density ratio below which free grains need so many cells: 0.3 is stable at 16 and diverges at 10 (measured)."""
+MACH_WARN, MACH_REFUSE = 0.1, limits.MACH
+"""Errors of compressibility grow as the square of the Mach number: 1 % at the first."""
+TAU_COARSE = {"exact-wall": 2.0}
+"""Relaxation time up to which the lattice's own viscosity is right (lbm.shear), and with exact walls the drag: at
+10 cells per diameter within 1.5 % even at 3."""
+TAU_COARSE_OTHERS = 1.5
+"""With other solid operators the drag at 10 cells per diameter is more than a tenth too small from here on."""
+CELLS_THICK = 2.0
+"""A rectangle thinner than this may fill no cell wholly, wherever it lies, and lets fluid through."""
 SINGLE_PRECISION = 1e-5
 """Speed in cells per step at which the round-off of float32, 6e-8 of populations of order 0.1 and collected over a
 momentum's memory of some hundred steps, is about a hundredth of it."""
 
 
-@dataclass(frozen=True)
-class Stability:
-    """floor : relaxation time below which fast flow (cell Reynolds numbers of tens) goes wrong;  words : how;
-    repair : what helps."""
-
-    floor: float
-    words: str
-    repair: str
-
-
-FINER = "refine the spacing or raise the viscosity"
-STABILITY = {
-    "trt": Stability(0.505, "two relaxation times ring", f"{FINER}, or take operator = 'central'"),
-    "bgk": Stability(0.505, "a single relaxation time blows up", f"{FINER}, or take operator = 'central'"),
-    "mrt": Stability(0.505, "multiple relaxation times ring", f"{FINER}, or take operator = 'central'"),
-    "central": Stability(0.5005, "nothing has been tried", FINER),
-}
-"""By operator.  Double shear layer and impulsive lid on 128² at Reynolds 10⁴: at 0.5005 central moments hold where two
-relaxation times and one do not."""
-EDDY = Stability(0.5005, "nothing has been tried", FINER)
-"""With an eddy viscosity: a column collapse at 0.5005 with Smagorinsky's constant 0.1 survived."""
-UNKNOWN = Stability(0.505, "this operator has not been tried", FINER)
+def thin(scales: Scales, speed: float, operator: str, *, eddies: bool, lid: bool) -> str:
+    """Where a speed (m/s) is more than the viscosity damps, what is known and what repairs it; "" where not."""
+    reynolds, holds = speed * scales.spacing / scales.viscosity, limits.cell_reynolds(operator, eddies=eddies, lid=lid)
+    if reynolds <= holds:
+        return ""
+    what = f"{operator!r}{' with eddies' if eddies else ''}{' under a moving lid' if lid else ''}"
+    best = ""
+    if limits.cell_reynolds("central", eddies=eddies, lid=lid) >= reynolds:
+        best = ", or take operator = 'central'"
+    elif not eddies and limits.cell_reynolds("central", eddies=True, lid=lid) >= reynolds:
+        best = ", or take operator = 'central' with smagorinsky = 0.1"
+    return (
+        f"relaxation time {scales.relaxation_time:.4f} at a speed of {speed:.3g} m/s: cell Reynolds number"
+        f" {reynolds:.3g}, and {what} is known to hold up to {holds:g};"
+        f" a spacing of {0.95 * holds / reynolds * scales.spacing:.2g} m keeps below it{best}"
+    )
 
 
-def stability(operator: str, *, eddy: bool) -> Stability:
-    """What is known of an operator, with or without an eddy viscosity: the lower floor of the two."""
-    own = STABILITY.get(operator, UNKNOWN)
-    return EDDY if eddy and EDDY.floor < own.floor else own
+def light(ratio: float, cells: float, solid_operator: str, weighting: str, spacing: float) -> str:
+    """Where free grains of a density ratio and size (cells per diameter) are not known to last, and what repairs it."""
+    least = limits.lightest(cells, solid_operator, weighting)
+    if ratio >= least:
+        return ""
+    sizes = sorted({size for rows in limits.LIGHTEST.values() for size, _ in rows})
+    enough = [size for size in sizes if limits.lightest(size, solid_operator, weighting) <= ratio]
+    finer = (
+        f"a spacing of {spacing * cells / enough[0]:.2g} m gives them {enough[0]:g}" if enough else "take heavier ones"
+    )
+    return (
+        f"density ratio {ratio:.3g} with {cells:.3g} cells per grain: less than {least:g} is not known to hold with so"
+        f" few; {finer}"
+    )
+
+
+def coarse(cells: float, solid_operator: str, weighting: str, spacing: float, solid_fraction: float = 0.0) -> str:
+    """Where bodies have too few cells per diameter for their drag to be within a tenth, and what repairs it.
+
+    solid_fraction : of a bed, as the fluid sees it; 0 for single bodies.
+    """
+    name = f"{solid_operator} {weighting}"
+    needed = limits.CELLS_RIGHT.get(name, max(limits.CELLS_RIGHT.values()))
+    if solid_fraction:
+        needed = max(needed, limits.cells_in_bed(solid_fraction, solid_operator, weighting))
+    if cells >= needed:
+        return ""
+    bed = f" in a bed of solid fraction {solid_fraction:.2g}" if solid_fraction else ""
+    if needed == float("inf"):
+        return f"{bed.strip()} drag is off by a tenth or more at any resolution tried; [permeability] measures it"
+    return (
+        f"{cells:.3g} cells per diameter{bed}: below {needed:g} the drag is off by a tenth;"
+        f" a spacing of {spacing * cells / needed:.2g} m gives as many"
+    )
+
+
+def slow(relaxation_time: float, solid_operator: str) -> str:
+    """Where the relaxation time is too long for drag to be right."""
+    most = TAU_COARSE.get(solid_operator, TAU_COARSE_OTHERS)
+    if relaxation_time <= most:
+        return ""
+    return f"relaxation time {relaxation_time:.3g}: above {most:g} viscosity or drag is off; shorten the step"

@@ -66,7 +66,7 @@ class Loads(Section):
     def _complete(self) -> Loads:
         faults = []
         if not self.discs and not self.grains and not self.rectangles:
-            faults.append(Fault("discs, grains", None, "name no body", repair="write discs = [0] or grains = [0]"))
+            faults.append(Fault("discs, grains, rectangles", None, "name no body", repair="write discs = [0], say"))
         if (self.speed is None) != (self.length is None):
             faults.append(Fault("speed, length", None, "coefficients need both", repair="give both, or leave both out"))
         if self.direction == (0.0, 0.0):

@@ -20,12 +20,10 @@ from porescale.workbench.sections import Refused, Section, quantity
 
 if TYPE_CHECKING:
     from porescale.coupling.step import Coupled
-    from porescale.scene.sections import Scene
+    from porescale.scene.sections import Packing, Scene
 
 PLACE: Any = {"ge": -1e3, "le": 1e3}
 SPEED: Any = {"ge": -1e4, "le": 1e4}
-EDGE = 1e-9
-"""Relative slack of edges that meet."""
 MAKE_GOOD = 64
 """Steps after which what left with rectangles is made good: even, and too few for a density to change that is seen."""
 
@@ -68,9 +66,15 @@ class Rectangle(Section):
 
     def travelled(self, time: float) -> tuple[float, float]:
         """How far it has gone at ``time`` (s), m."""
-        end = time if self.stops_at is None else min(time, self.stops_at)
-        moving = max(0.0, end - self.starts_at)
-        return self.velocity[0] * moving, self.velocity[1] * moving
+        return travelled(self.velocity, self.starts_at, self.stops_at, time)
+
+
+def travelled(
+    velocity: tuple[float, float], starts_at: float, stops_at: float | None, time: float
+) -> tuple[float, float]:
+    """Way (m) until ``time`` of what moves at ``velocity`` (m/s) from starts_at to stops_at (s; None: for ever)."""
+    moving = max(0.0, (time if stops_at is None else min(time, stops_at)) - starts_at)
+    return velocity[0] * moving, velocity[1] * moving
 
 
 class Movers:
@@ -134,13 +138,26 @@ def on_the_lattice(scene: Scene, scales: Scales) -> list[LatticeRectangle]:
     return [LatticeRectangle(np.array(it.lower) / h, np.array(it.upper) / h) for it in scene.rectangle]
 
 
-def stand_ins(scene: Scene) -> list[Plate]:
-    """Plates on the upright faces, between which a packing settles: two for each rectangle."""
+def stand_ins(scene: Scene, packing: Packing) -> list[Plate]:
+    """Plates on the upright faces between which a packing settles: on those next to it, at its height."""
+    edges = packing.left, packing.left + packing.width
     return [
         Plate(x, it.lower[1], it.upper[1], friction=it.friction, name=f"rectangle {k} {side}")
         for k, it in enumerate(scene.rectangle)
-        for side, x in (("left", it.lower[0]), ("right", it.upper[0]))
+        for side, x, edge in (("left", it.lower[0], edges[1]), ("right", it.upper[0], edges[0]))
+        if holds(it, packing) and abs(x - edge) < packing.diameter
     ]
+
+
+def holds(it: Rectangle, packing: Packing) -> bool:
+    """Whether a rectangle stands at the height of the packing."""
+    return it.lower[1] < packing.bottom + packing.height and it.upper[1] > packing.bottom
+
+
+def beside(scene: Scene, packing: Packing) -> tuple[bool, bool]:
+    """Whether a face holds the packing on its left, and on its right, while it settles."""
+    names = [plate.name for plate in stand_ins(scene, packing)]
+    return any(name.endswith("right") for name in names), any(name.endswith("left") for name in names)
 
 
 def take_over(scene: Scene, grains: Grains) -> None:
@@ -154,25 +171,3 @@ def take_over(scene: Scene, grains: Grains) -> None:
             if name in grains.plate_names:
                 grains.rectangle_spring[k] += grains.plate_spring[grains.plate(name)]
                 grains.remove_plate(name)
-
-
-def judge_rectangles(scene: Scene, places: Array, radii: Array, names: Sequence[str], faults: list[Fault]) -> None:
-    """Add a fault for a packing, and for the first grain, that a rectangle is in; places (n, 2) m, radii (n,) m."""
-    packing = scene.grains.packing if scene.grains else None
-    for k, it in enumerate(scene.rectangle):
-        if packing:
-            wide = min(it.upper[0], packing.left + packing.width) - max(it.lower[0], packing.left)
-            high = min(it.upper[1], packing.bottom + packing.height) - max(it.lower[1], packing.bottom)
-            if wide > EDGE * packing.width and high > EDGE * packing.height:
-                faults.append(Fault(f"rectangle[{k}]", None, "stands in the packing", repair="move one of them"))
-        if len(names):
-            off = places - np.clip(places, it.lower, it.upper)
-            inside = np.hypot(*off.T) < radii * (1 - 1e-3)
-            if inside.any():
-                name = names[int(inside.argmax())]
-                faults.append(Fault(name, None, f"stands in rectangle {k}", repair="move one of them"))
-
-
-def beside(scene: Scene, edge: float, within: float) -> bool:
-    """Whether an upright face stands within so many m of ``edge``."""
-    return any(abs(edge - x) < within for it in scene.rectangle for x in (it.lower[0], it.upper[0]))

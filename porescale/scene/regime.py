@@ -5,21 +5,22 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from porescale.coupling.limits import HELD_ONLY
 from porescale.ground.check import Fault
 from porescale.lbm.collision.choose import choose
 from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
 from porescale.lbm.scales import Scales
 from porescale.scene.limits import (
-    CELLS_COARSE,
+    CELLS_THICK,
     DENSITY_REFUSE,
     DENSITY_WARN,
-    LIGHT,
-    LIGHT_CELLS,
     MACH_REFUSE,
     MACH_WARN,
     SINGLE_PRECISION,
-    TAU_COARSE,
-    stability,
+    coarse,
+    light,
+    slow,
+    thin,
 )
 from porescale.scene.sections import Scene
 
@@ -139,33 +140,20 @@ def judge(
     """
     _judge_mach(scales, speed, faults, warnings)
     _judge_operator(scene, scales, speed, sizes, warnings)
+    _judge_thickness(scene, scales, warnings)
     if sizes is None:
         return 0.0
-    if scene.grains is None:
-        across = sizes[1] / scales.spacing
-        if across < CELLS_COARSE:
-            warnings.append(
-                f"{across:.3g} cells per diameter of a disc: below {CELLS_COARSE:g} the drag is off by a tenth"
-            )
-        return 0.0
-    ratio = scene.grains.hydraulic_radius_ratio or 1.0
-    across = sizes[1] * ratio / scales.spacing
-    if across < CELLS_COARSE:
-        warnings.append(
-            f"the fluid sees {across:.3g} cells per grain: below {CELLS_COARSE:g} the drag is off by a tenth"
-        )
-    lightness = scene.grains.density / scales.density
-    if lightness < LIGHT and sizes[0] * ratio / scales.spacing < LIGHT_CELLS:
-        warnings.append(
-            f"density ratio {lightness:.3g} with {sizes[0] * ratio / scales.spacing:.3g} cells per grain: grains below "
-            f"{LIGHT} were unstable with fewer than {LIGHT_CELLS:g} cells; refine the spacing"
-        )
-    if scales.relaxation_time > TAU_COARSE:
-        warnings.append(
-            f"relaxation time {scales.relaxation_time:.3g}: above {TAU_COARSE} the drag is a tenth too small or more; "
-            "shorten the step"
-        )
-    if scene.grains.packing is None:
+    assert scene.fluid
+    laws = scene.fluid.solid_operator, scene.fluid.weight
+    packing = scene.grains.packing if scene.grains else None
+    ratio = (scene.grains.hydraulic_radius_ratio or 1.0) if scene.grains else 1.0
+    smallest, mean = (size * ratio / scales.spacing for size in sizes[:2])
+    filled = packing.packing_fraction * ratio**2 if packing else 0.0
+    found = [coarse(mean, *laws, scales.spacing, filled), slow(scales.relaxation_time, laws[0])]
+    if scene.grains:
+        found.append(light(scene.grains.density / scales.density, smallest, *laws, scales.spacing))
+    warnings += filter(None, found)
+    if scene.grains is None or packing is None:
         return 0.0
     if ratio == 1:
         warnings.append(
@@ -178,20 +166,21 @@ def judge(
 def _judge_operator(scene: Scene, scales: Scales, speed: float, sizes: Sizes | None, warnings: list[str]) -> None:
     """Where the operators that the scene names are known to ring, to blow up or to be beside their purpose."""
     assert scene.fluid
-    fluid, tau = scene.fluid, scales.relaxation_time
-    known = stability(fluid.operator, eddy=fluid.smagorinsky is not None)
-    if tau < known.floor:
-        warnings.append(f"relaxation time {tau:.4f}: {known.words} below {known.floor} in fast flow; {known.repair}")
+    fluid, lid = scene.fluid, any(side.speed for side in scene.domain.sides.values())
+    doubt = thin(scales, speed, fluid.operator, eddies=fluid.smagorinsky is not None, lid=lid)
+    if doubt:
+        warnings.append(doubt)
     if fluid.magic != MAGIC_MIDWAY_WALL and "magic" not in choose(**fluid.laws, **UNIT)._fields:
         warnings.append(
             f"fluid.magic = {fluid.magic:g} is not used: the operator {fluid.operator!r} has no such parameter"
         )
     default = type(fluid).model_fields["solid_operator"].default
-    if sizes is None and (fluid.solid_operator != default or fluid.weighting):
+    if sizes is None and not scene.rectangle and (fluid.solid_operator != default or fluid.weighting):
         warnings.append("fluid.solid_operator and fluid.weighting are not used: there is nothing solid in the fluid")
-    if fluid.solid_operator == "SC3" and scene.grains is not None:
+    if fluid.solid_operator in HELD_ONLY and scene.grains is not None:
         warnings.append(
-            "fluid.solid_operator = 'SC3': free grains ran away with it in every trial; it is for held discs"
+            f"fluid.solid_operator = {fluid.solid_operator!r}: free grains ran away with it in every trial; it is for"
+            " held discs"
         )
     slowness = speed / scales.velocity
     if fluid.precision == "float32" and 0 < slowness < SINGLE_PRECISION:
@@ -199,6 +188,17 @@ def _judge_operator(scene: Scene, scales: Scales, speed: float, sizes: Sizes | N
             f"fluid.precision = 'float32': speeds of {slowness:.2g} cells a step are near its round-off; take float64 "
             "or longer steps"
         )
+
+
+def _judge_thickness(scene: Scene, scales: Scales, warnings: list[str]) -> None:
+    """Rectangles that may fill no cell wholly."""
+    for k, it in enumerate(scene.rectangle):
+        thinnest = min(it.upper[a] - it.lower[a] for a in range(2))
+        if thinnest < CELLS_THICK * scales.spacing * (1 - 1e-9):
+            warnings.append(
+                f"rectangle {k} is {thinnest / scales.spacing:.3g} cells thick: below {CELLS_THICK:g} it may fill no"
+                f" cell and lets fluid through; a spacing of {thinnest / CELLS_THICK:.2g} m fills some"
+            )
 
 
 def _judge_mach(scales: Scales, speed: float, faults: list[Fault], warnings: list[str]) -> None:

@@ -43,7 +43,7 @@ def report(scene: Scene) -> Report:
 def _parts(scene: Scene, out: Report) -> None:
     out.heading("Parts")
     parts = (
-        "fluid", "grains", "contact", "gate", "disc", "lubrication", "probe", "line", "flux", "loads",
+        "fluid", "grains", "contact", "gate", "disc", "rectangle", "lubrication", "probe", "line", "flux", "loads",
         "permeability",
     )  # fmt: skip
     out.row("built", ", ".join(name for name in parts if getattr(scene, name)))
@@ -74,7 +74,7 @@ def _operators(scene: Scene, out: Report) -> None:
     out.row("collision", fluid.operator, "", OPERATORS[fluid.operator])
     out.row("magic parameter", fluid.magic, "", "3/16: walls half-way between nodes")
     out.row("Smagorinsky constant", fluid.smagorinsky or "none")
-    if scene.grains or scene.disc:
+    if scene.grains or scene.disc or scene.rectangle:
         out.row("solid", fluid.solid_operator, "", SOLID_OPERATORS[fluid.solid_operator])
         out.row("rim", "soft" if fluid.soft_rim else "sharp", "", "soft: for grains that the fluid passes fast")
         out.row("weight", fluid.weight, "", WEIGHTINGS[fluid.weight])

@@ -249,11 +249,11 @@ def test_the_repair_of_the_pore_pressure_removes_the_warning():
 
 
 def test_doubts_about_resolution_and_relaxation_time_are_warnings():
-    assert any("3.2 cells per grain" in it for it in derive(column()).warnings)
+    assert any("3.2 cells per diameter" in it for it in derive(column()).warnings)
     low = derive(column(fluid__viscosity=1e-6)).warnings  # tau = 0.503
     assert any(it.startswith("relaxation time 0.5030") for it in low)
-    high = derive(column(fluid__viscosity=4e-4)).warnings  # tau = 1.7
-    assert any(it.startswith("relaxation time 1.7: above 1.5") for it in high)
+    high = derive(column(fluid__viscosity=6e-4)).warnings  # tau = 2.3
+    assert any(it.startswith("relaxation time 2.3: above 2") for it in high)
 
 
 def hand(*grains: dict[str, Any], **changes: Any) -> Scene:

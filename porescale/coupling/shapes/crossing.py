@@ -17,6 +17,10 @@ sides carry it at density 1, and grows denser still.  So the density of cells de
 is led back to 1 (``relieve``), at rest and in equilibrium, which fluid outside does not notice; this is booked too.
 Sides that move at the density of what fills the body instead were unstable.
 
+A link that a free-slip side mirrors joins two cells: it leaves one and comes back to the other, in even steps the one
+way and in odd steps the other (lbm/stream.py).  So e is the mean of both; that of one of them gives the even steps
+another side than the odd ones, and velocities along the side alternate from cell to cell and step to step.
+
 A gap below a cell is unresolved: by the cell's fraction the side moves with the body before they touch, and lets in, in
 part, what a body needs that lifts off it.  Through a free-slip side only the part of v across
 it counts.
@@ -47,14 +51,15 @@ class SideLinks(NamedTuple):
     """Links out of the box through walls and free-slip sides.
 
     link (k,): number among those of the rim;  cell, beside (k, 2): the cells (x, y), from 0, whose fractions count;
-    at (k, 2): where it crosses, from the first one's centre;  across, along (k, 2): c of the way back, its parts across
-    and along the side, none along a free-slip side;  size (k,): 6 w;
-    own (k,): what the side itself adds;  halo, inner (k,): flat slots of what comes back and went out.
+    share (k,): of the second one's in the mean;  at (k, 2): where it crosses, from the first one's centre;
+    across, along (k, 2): c of the way back, its parts across and along the side, none along a free-slip side;
+    size (k,): 6 w;  own (k,): what the side itself adds;  halo, inner (k,): flat slots of what comes back and went out.
     """
 
     link: NDArray[np.int64]
     cell: NDArray[np.int64]
     beside: NDArray[np.int64]
+    share: NDArray[np.float64]
     at: NDArray[np.float64]
     across: NDArray[np.float64]
     along: NDArray[np.float64]
@@ -67,7 +72,7 @@ class SideLinks(NamedTuple):
 def side_links(fluid: Fluid) -> SideLinks:
     """Those of a fluid's box, as its rim holds them."""
     bounds = Bounds(fluid.nx, fluid.ny, fluid.sides)
-    number, cell, beside, at, across, along, size = [], [], [], [], [], [], []
+    number, cell, beside, share, at, across, along, size = [], [], [], [], [], [], [], []
     links = [link for link in bounds.links() if bounds.owner(link) != "pressure"]
     for k, link in enumerate(links):
         kind, owners = bounds.owner(link), bounds.owners(link)
@@ -79,6 +84,7 @@ def side_links(fluid: Fluid) -> SideLinks:
         cell.append((link.x - 1, link.y - 1))
         lean = (0 if link.across else int(cx)), (0 if link.along else int(cy))
         beside.append(((link.x - 1 + lean[0]) % fluid.nx, (link.y - 1 + lean[1]) % fluid.ny))
+        share.append(0.5 if mirrored else 0.0)
         at.append((0.5 * cx, 0.5 * cy))
         across.append((-cx if link.across else 0.0, -cy if link.along else 0.0))
         along.append((0.0 if link.across or mirrored else -cx, 0.0 if link.along or mirrored else -cy))
@@ -90,8 +96,9 @@ def side_links(fluid: Fluid) -> SideLinks:
     which = np.array(number, np.int64)
     rim = fluid.rim
     return SideLinks(
-        which, pairs(cell, np.int64), pairs(beside, np.int64), pairs(at, float), pairs(across, float),
-        pairs(along, float), np.array(size, float), rim.added[which].astype(float), rim.halo[which], rim.inner[which],
+        which, pairs(cell, np.int64), pairs(beside, np.int64), np.array(share, float), pairs(at, float),
+        pairs(across, float), pairs(along, float), np.array(size, float), rim.added[which].astype(float),
+        rim.halo[which], rim.inner[which],
     )  # fmt: skip
 
 
@@ -136,7 +143,7 @@ def move_sides(first, nx, ny, periodic_x, periodic_y, patches, centre, velocity,
             other = fraction_of(n, links.beside[k, 0], links.beside[k, 1], nx, ny, periodic_x, periodic_y, patches)
             if own + other > 0.0:
                 touching[n - first] = True
-                e = min(own, 1.0 - covered)
+                e = min(own + links.share[k] * (other - own), 1.0 - covered)
                 e_along = min(max(own, other), 1.0 - covered_along)
                 vx = velocity[n, 0] - spin[n] * (y + 0.5 + links.at[k, 1] - centre[n, 1])
                 vy = velocity[n, 1] + spin[n] * (x + 0.5 + links.at[k, 0] - centre[n, 0])
@@ -163,6 +170,9 @@ def take_sides(first, nx, ny, periodic_x, periodic_y, patches, centre, velocity,
         covered = 0.0
         for n in range(first, patches.height.shape[0]):
             e = fraction_of(n, x, y, nx, ny, periodic_x, periodic_y, patches)
+            if links.share[k] > 0.0:
+                other = fraction_of(n, links.beside[k, 0], links.beside[k, 1], nx, ny, periodic_x, periodic_y, patches)
+                e += links.share[k] * (other - e)
             if e > 0.0:
                 e = min(e, 1.0 - covered)
                 covered += e
