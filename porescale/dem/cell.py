@@ -1,9 +1,11 @@
-"""Periodic cells as the contact loop sees them: one that stands still, or one that is strained.
+"""Periodic cells as pairs see them: one that stands still, or one that is strained.
 
 A strained cell has the edges (width, 0) and (tilt, height).  Velocities of discs are then those relative to the affine
 motion G x of the cell, G = [[gxx, gxy], [0, gyy]] in 1/s, so that every image of a disc has the same velocity, and two
-discs that are d apart pass each other with v_i - v_j - G d, across a boundary or not (Evans & Morriss, Statistical
-Mechanics of Nonequilibrium Liquids, 1990, section 6.3; Lees & Edwards, J. Phys. C 5 (1972) 1921).
+discs that are d apart pass each other with v_i - v_j - G d, across a boundary or not.
+Sources: Lees & Edwards, J. Phys. C 5 (1972) 1921; Evans & Morriss, Statistical Mechanics of Nonequilibrium Liquids
+(1990), section 6.3.
+
 The loop is compiled once for each kind of cell: a cell that stands still costs what it cost before there were others.
 """
 
@@ -17,7 +19,9 @@ from numpy.typing import NDArray
 from porescale.ground.jit import by_law
 from porescale.particles.cells import minimum_image, tilted_image
 
-XX, XY, YX, YY, STIFF = range(5)
+Array = NDArray[np.float64]
+
+XX, XY, YX, YY, SQUARES = range(5)
 """Columns of ``load``: sums over contacts of g_x d_x, g_x d_y, g_y d_x, g_y d_y (J/m) and of d^2 (m^2)."""
 
 
@@ -37,7 +41,7 @@ class Straining(NamedTuple):
     gxx: float
     gxy: float
     gyy: float
-    load: NDArray[np.float64]
+    load: Array
 
 
 @by_law
@@ -76,7 +80,7 @@ def drift_straining(dx, dy, cell):
 
 @by_law
 def note(gx, gy, dx, dy, cell):
-    """Add a contact to the sums of a strained cell: (gx, gy) N/m on i, (dx, dy) m from i to j.  One thread at a time."""
+    """Add a contact to the sums of a strained cell: (gx, gy) N/m on i, (dx, dy) m from i to j.  For one thread only."""
 
 
 @note.of(Still)
@@ -91,4 +95,4 @@ def note_straining(gx, gy, dx, dy, cell):
     cell.load[XY] += gx * dy
     cell.load[YX] += gy * dx
     cell.load[YY] += gy * dy
-    cell.load[STIFF] += dx * dx + dy * dy
+    cell.load[SQUARES] += dx * dx + dy * dy

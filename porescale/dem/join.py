@@ -7,6 +7,7 @@ import numpy as np
 from porescale.dem.discs import FIELDS, Discs
 from porescale.dem.system import Grains
 from porescale.dem.walls import HIGH, LOW, VELOCITY, Plate, X
+from porescale.ground.check import Fault, InputError
 from porescale.particles.search import carry
 
 
@@ -21,6 +22,10 @@ def joined(grains: Grains, more: Discs) -> Grains:
     The tangential springs of pairs, walls and plates, the forces on walls and plates and the external loads of
     ``grains`` are kept (m, N/m, N m/m); those of ``more`` start at zero.  Its pair list is up to date.
     """
+    if grains.steered:
+        raise InputError(
+            Fault("grains", "clumps, controls or a strained cell", "join them before", repair="join first")
+        )
     count = grains.discs.count
     plates = [
         Plate(row[X], row[LOW], row[HIGH], row[VELOCITY], friction, name)

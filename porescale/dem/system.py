@@ -4,18 +4,24 @@ together.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from porescale.dem import resume
+from porescale.dem.cell import Still
 from porescale.dem.contact.law import BOOK, COLUMNS, KernelLaw, memory_of
 from porescale.dem.contact.materials import Law, Materials
 from porescale.dem.discs import Discs
 from porescale.dem.health import Health
 from porescale.dem.integrate import contact_steps, stable_step
+from porescale.dem.motion import Arrays
 from porescale.dem.rectangle import Rectangle
+from porescale.dem.steering import Steering
+from porescale.dem.strain import Deforming
 from porescale.dem.sweep import Sweeps
 from porescale.dem.walls import HIGH, LOW, PRESENT, VELOCITY, Box, Plate, X
 from porescale.ground.check import Fault, InputError
@@ -24,8 +30,6 @@ from porescale.particles.pairs import PairList
 Array = NDArray[np.float64]
 
 SKIN = 0.5  # of the mean radius: measured 12 % faster than 0.3 in a dry collapse, 2 % slower in a pile at rest
-RECTANGLES = ("rectangles", "rectangle_spring", "rectangle_force")
-"""What of the state belongs to rectangles, where there are any."""
 
 
 class Grains:
@@ -37,7 +41,8 @@ class Grains:
 
     Positions are not wrapped on periodic sides.  The first step starts from velocities half a step back;
     for a start from rest that is the same.  ``steps`` and ``time`` count contact steps and seconds.
-    Arrays: wall_force (w, 2), plate_force (p, 2) N/m of the last step, wall_spring (w, n, s), plate_spring (p, n, s) m,
+    Arrays: wall_force (w, 2), plate_force (p, 2) N/m of the last step, wall_moment (w,) N m/m about the walls' points,
+    wall_spring (w, n, s), plate_spring (p, n, s) m,
     the springs: tangential and, with rolling resistance, rolling;  rectangles (m, 6): see rectangle.py, with
     rectangle_force (m, 2), rectangle_spring (m, n, s); see ``set_rectangles``;
     held (n, 3): not 0 where x, y, rotation of a disc is held, see ``hold``;  withheld (n, 3) N/m, N/m, N m/m: force
@@ -66,6 +71,7 @@ class Grains:
         mean_radius = float(discs.radius.mean()) if count else 1.0
         self._skin = SKIN * mean_radius if skin is None else skin
         self.wall_names, self.walls = box.walls()
+        self._wall_frictions: list[float | None] = [None] * len(self.walls)
         self.plate_names = [plate.name for plate in plates]
         self.plates = np.array([plate.row() for plate in plates]).reshape(-1, 5)
         self.plate_frictions = [plate.friction for plate in plates]
@@ -75,7 +81,7 @@ class Grains:
         self.wall_spring = np.zeros((len(self.walls), count, 0))
         self.plate_spring = np.zeros((len(self.plates), count, 0))
         self.set_law(law, wall_law)
-        self.wall_force = np.zeros((len(self.walls), 2))
+        self._load_walls()
         self.plate_force = np.zeros((len(self.plates), 2))
         self.external_force = np.zeros((count, 2))
         self.external_torque = np.zeros(count)
@@ -85,6 +91,9 @@ class Grains:
         self.steps, self.last_dt = 0, 0.0
         self._time, self._steps_of_dt = 0.0, 0  # seconds before dt last changed, steps since
         self._health = Health(len(self.plates), count)
+        self._steering: Steering | None = None
+        self._still = Still(*box.period)
+        self.last_count = 0  # steps of the last call
         self._stale = True  # the pair list must be looked at before the next step
 
     def set_law(self, law: Law | Materials, wall_law: Law | None = None) -> None:
@@ -109,7 +118,7 @@ class Grains:
         kind = used[0].kind(self._memory > 1 or any(each.rolls for each in used))
         self.contact: KernelLaw = kind(table, self.material, self.discs.mass, self.book)
         self._widen(memory_of(self.contact))
-        self.wall_laws = self._own_laws([None] * len(self.walls))
+        self.wall_laws = self._own_laws(self._wall_frictions)
         self.plate_laws = self._own_laws(self.plate_frictions)
         self.rectangle_laws = self._own_laws(self._rectangle_frictions)
 
@@ -148,12 +157,49 @@ class Grains:
         pairs = PairList(self.discs.count, self._skin, box.lower, box.upper, box.periodic, carried=memory)
         if self._memory > 0:
             state = self.pairs.state()
+            pairs.group = self.pairs.group
             pairs.restore({**state, "carried": np.pad(state["carried"], ((0, 0), (0, more)))})
         self.pairs: PairList = pairs
         self._sweeps.forget()
         self._memory = memory
         for name in ("wall_spring", "plate_spring", "rectangle_spring"):
             setattr(self, name, np.pad(getattr(self, name), ((0, 0), (0, 0), (0, more))))
+
+    @property
+    def steering(self) -> Steering:
+        """Clumps, controlled bodies, moving walls and the strain of the cell: there from the first use on."""
+        if self._steering is None:
+            self._steering = Steering(self)
+        return self._steering
+
+    @property
+    def steered(self) -> bool:
+        """Whether ``steering`` has been used."""
+        return self._steering is not None
+
+    def add_wall(
+        self, name: str, point: tuple[float, float], normal: tuple[float, float], friction: float | None = None
+    ) -> None:
+        """Another straight wall without end through ``point`` (m), with ``normal`` into the domain, of any length.
+
+        friction : None: that of the sides.  Raises InputError at a name that is taken or a normal of no length.
+        """
+        length = math.hypot(*normal)
+        if name in self.wall_names or not length > 0.0:
+            problem = "is taken" if name in self.wall_names else "has a normal of no length"
+            raise InputError(Fault("wall", name, problem))
+        row = [*point, normal[0] / length, normal[1] / length, 0.0, 0.0, 0.0]
+        self.walls = np.concatenate((self.walls, [row]))
+        self.wall_names.append(name)
+        self._wall_frictions.append(friction)
+        self.wall_laws = self._own_laws(self._wall_frictions)
+        self.wall_spring = np.pad(self.wall_spring, ((0, 1), (0, 0), (0, 0)))
+        self._load_walls()
+
+    def _load_walls(self) -> None:
+        """Room for what acts on the walls."""
+        self.wall_load = np.zeros((len(self.walls), 3))
+        self.wall_force, self.wall_moment = self.wall_load[:, :2], self.wall_load[:, 2]
 
     def set_rectangles(self, rectangles: Sequence[Rectangle]) -> None:
         """Put these rectangles, and no others, into the box; without contacts so far."""
@@ -173,10 +219,13 @@ class Grains:
         self.steps, self._time, self._steps_of_dt = 0, 0.0, 0
 
     def stable_step(self, *, safety: float = 0.8, steps_per_contact: float = 10.0) -> float:
-        """A safe contact step, s; see integrate.stable_step."""
+        """A safe contact step, s; see integrate.stable_step.  Clumps count as the disc that answers as fast."""
+        mass = self.discs.mass
+        if self._steering is not None and self._steering.clumps.count:
+            mass = np.concatenate((mass[self._steering.clumps.group < 0], [self._steering.lightest(self.laws)]))
         return stable_step(
             self.laws,
-            float(self.discs.mass.min()),
+            float(mass.min()),
             float(self.discs.radius.min()),
             safety=safety,
             steps_per_contact=steps_per_contact,
@@ -214,23 +263,33 @@ class Grains:
             self.current_pairs()
             self.book_start = open_book(self, self.book, dt)
         surfaces = len(self.walls) + len(self.plates) + len(self.rectangles)
+        motion: Arrays | None = None
+        cell: Still | Deforming = self._still
+        if self._steering is not None:
+            self._steering.start(self._time, self._steps_of_dt)
+            motion, cell = self._steering.arrays, self._steering.now()
+        strained = cell is not self._still
+        self.last_count = count
         while left > 0:
             pairs = self.current_pairs()
             done, self._stale = contact_steps(
                 left, dt, drag,
                 d.position, d.angle, d.velocity, d.spin, d.radius, d.mass, d.inertia, d.force, d.torque,
                 self.external_force, self.external_torque,
-                pairs.start, pairs.partner, pairs.carried, pairs.anchor, limit, *self.box.period,
+                pairs.start, pairs.partner, pairs.carried, pairs.anchor, limit,
                 self.contact,
-                self.walls, self.wall_laws, self.wall_spring, self.wall_force,
+                self.walls, self.wall_laws, self.wall_spring, self.wall_load,
                 self.plates, self.plate_laws, self.plate_spring, self.plate_force,
                 self.rectangles, self.rectangle_laws, self.rectangle_spring, self.rectangle_force,
                 self.held, self.withheld, left == count,
-                self._sweeps.now(pairs, surfaces, self.book is not None),
+                self._sweeps.now(pairs, surfaces, self.book is not None, strained),
+                motion, cell,
             )  # fmt: skip
             left -= done
             self.steps += done
             self._steps_of_dt += done
+            if self._steering is not None:
+                self._steering.start(self._time, self._steps_of_dt)
         if len(self.held):
             self.withheld /= count
 
@@ -240,6 +299,8 @@ class Grains:
         A held component keeps its value until the owner writes another between steps, whatever the forces; they are in
         ``withheld``.  Contacts with other discs go on.
         """
+        if self._steering is not None and np.any(self._steering.clumps.group[disc] >= 0):
+            raise InputError(Fault("disc", str(disc), "belongs to a clump", repair="control the clump"))
         if not len(self.held):
             self.held, self.withheld = np.zeros((self.discs.count, 3), np.uint8), np.zeros((self.discs.count, 3))
         self.held[disc] = x, y, rotation
@@ -261,14 +322,27 @@ class Grains:
             self._rebuild()
         return self.pairs
 
-    def refresh(self) -> None:
-        """Bring the pair list up to date; call it after moving or resizing discs by hand."""
+    def refresh(self, anew: bool = False) -> None:
+        """Bring the pair list up to date; call it after moving or resizing discs by hand.  anew: whatever it says."""
         self._health.forget()
-        self._rebuild()
+        self._rebuild(anew)
 
-    def _rebuild(self) -> None:
+    def hardest(self) -> tuple[float, float]:
+        """Normal stiffness (N/m) and dashpot (N s/m) of the hardest contact there can be."""
+        d = self.discs
+        found = [law.stiffest(float(d.mass.min()), float(d.radius.min())) for law in self.laws]
+        return max(law.stiffness for law in found), max(law.damping for law in found)
+
+    def _rebuild(self, anew: bool = False) -> None:
         self._health.check_finite(self)
-        self.pairs.update(self.discs.position, self.discs.radius if self.reach is None else self.reach)
+        reach = self.discs.radius if self.reach is None else self.reach
+        if self._steering is not None and self._steering.cell is not None:
+            self._steering.listed()
+            anew = True  # the list judges by how far points went, not by how far beside the strain
+        if anew:
+            self.pairs.build(self.discs.position, reach)
+        else:
+            self.pairs.update(self.discs.position, reach)
         self._stale = False
 
     def plate(self, name: str) -> int:
@@ -298,50 +372,11 @@ class Grains:
 
     def state(self) -> dict[str, Any]:
         """Everything needed to go on bit for bit (law, box and the number of plates are the scene's)."""
-        return {
-            "discs": self.discs.state(),
-            "pairs": self.pairs.state(),
-            "wall_spring": self.wall_spring.copy(),
-            "wall_force": self.wall_force.copy(),
-            "plates": self.plates.copy(),
-            "plate_spring": self.plate_spring.copy(),
-            "plate_force": self.plate_force.copy(),
-            "external_force": self.external_force.copy(),
-            "external_torque": self.external_torque.copy(),
-            "held": self.held.copy(),
-            "withheld": self.withheld.copy(),
-            **({name: getattr(self, name).copy() for name in RECTANGLES} if len(self.rectangles) else {}),
-            **({} if self.book is None else {"book": self.book.copy(), "book_start": self._start_of_book()}),
-            "steps": self.steps,
-            "time": self._time,
-            "steps_of_dt": self._steps_of_dt,
-            "last_dt": self.last_dt,
-            "stale": int(self._stale),
-        }
-
-    def _start_of_book(self) -> Array:
-        """Copy of the start of the energy book, empty before the first step."""
-        return np.zeros(0) if self.book_start is None else self.book_start.copy()
+        return resume.state_of(self)
 
     def restore(self, state: dict[str, Any]) -> None:
         """Go on exactly from ``state()`` of a system made alike; raises InputError when the numbers
         differ.
         """
-        self.discs.restore(state["discs"])
-        for name in ("wall_spring", "wall_force", "plates", "plate_spring", "plate_force", "external_force",
-                     "external_torque", *(RECTANGLES if len(self.rectangles) else ())):  # fmt: skip
-            own, given = getattr(self, name), np.asarray(state[name])
-            if own.shape != given.shape:
-                raise InputError(Fault(f"state.{name}", given.shape, "wrong shape", allowed=str(own.shape)))
-            own[...] = given
-        if self.book is not None:
-            self.book[:] = state["book"]
-            start = np.array(state["book_start"])
-            self.book_start = start if len(start) else None
-        self.held, self.withheld = np.array(state["held"], np.uint8), np.array(state["withheld"])
-        self.pairs.restore(state["pairs"])
-        self._sweeps.forget()
-        self.steps, self._time = int(state["steps"]), float(state["time"])
-        self._steps_of_dt = int(state["steps_of_dt"])
-        self.last_dt, self._stale = float(state["last_dt"]), bool(state["stale"])
+        resume.restore(self, state)
         self._health.forget()

@@ -45,6 +45,14 @@ def wrapped(x, lower, period):
 
 
 @inline
+def untilted(x, y, lower_y, period_y, tilt):
+    """First coordinate (m) of the image of (x, y) that lies in the box along y: ``tilt`` further left per period."""
+    if tilt != 0.0:
+        x -= tilt * np.floor((y - lower_y) / period_y)
+    return x
+
+
+@inline
 def cell_of(x, lower, inverse_size, number):
     """Index 0 … number-1 of the cell that holds coordinate ``x``, clamped to the grid.
 
@@ -71,17 +79,20 @@ def grid_shape(lower: tuple[float, float], upper: tuple[float, float], size: flo
 
 
 @kernel
-def sort_into_cells(x, lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y, cell, start, order):
+def sort_into_cells(
+    x, lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y, tilt, cell, start, order
+):  # fmt: skip
     """Counting sort of points ``x`` (n, 2) m into ``rows`` × ``columns`` cells, row after row.
 
     Overwrites ``cell`` (n,) cell of each point, ``start`` (columns rows + 1,) first slot of each cell and
     ``order`` (n,) points by cell, ascending inside a cell.  ``inverse_*``: cells per metre; ``period_*`` m or
-    0. Not checked: positions must be finite.
+    0; ``tilt`` m: see tilted_image.  Not checked: positions must be finite.
     """
     n = x.shape[0]
     start[:] = 0
     for i in range(n):
-        column = cell_of(wrapped(x[i, 0], lower_x, period_x), lower_x, inverse_x, columns)
+        across = untilted(x[i, 0], x[i, 1], lower_y, period_y, tilt)
+        column = cell_of(wrapped(across, lower_x, period_x), lower_x, inverse_x, columns)
         row = cell_of(wrapped(x[i, 1], lower_y, period_y), lower_y, inverse_y, rows)
         cell[i] = row * columns + column
         start[cell[i] + 1] += 1

@@ -28,6 +28,9 @@ class PairList:
     periodic : per axis, distances are then between nearest images;  full : list every pair from both ends, else only
     partner > i;  carried : numbers that each listed pair keeps over rebuilds (new pairs start at 0).
 
+    group : (n,) int or None, settable: points of the same group >= 0 are not paired, from the next build on;
+    tilt : m, see ``set_cell``.
+
     After a build (all replaced by the next one: fetch them again after ``update`` returns True)
 
     start : (n + 1,) int64, row i is ``partner[start[i]:start[i + 1]]``, ascending;  partner : (m,) int32;
@@ -56,6 +59,8 @@ class PairList:
         self.periodic = (bool(periodic[0]), bool(periodic[1]))
         width, height = self.upper[0] - self.lower[0], self.upper[1] - self.lower[1]
         self.period = (width if self.periodic[0] else 0.0, height if self.periodic[1] else 0.0)  # m, 0: none
+        self.tilt = 0.0
+        self.group: NDArray[np.int32] | None = None
         self.builds = 0
         self.anchor: Floats = np.zeros((count, 2))
         self._anchor_reach: Floats = np.zeros(count)
@@ -83,6 +88,14 @@ class PairList:
             size = max(total, have + have // 2, 4 * self.count)
             self._partners[which] = np.empty(size, np.int32)
             self._carrieds[which] = np.zeros((size, self._carrieds[which].shape[1]))
+
+    def set_cell(self, width: float, height: float, tilt: float) -> None:
+        """Another size of a box that is periodic both ways, from the same lower corner, and how far right (m) the image
+        one height above lies.  Said by whoever strains the box, who also knows when to build anew.
+        """
+        assert all(self.periodic)
+        self.upper = (self.lower[0] + width, self.lower[1] + height)
+        self.period, self.tilt = (width, height), tilt
 
     def update(self, x: Floats, reach: Floats) -> bool:
         """Build if some point of ``x`` (n, 2) m moved, or its reach (n,) m grew, by skin/2 since the last build.
@@ -114,7 +127,7 @@ class PairList:
         new = 1 - self._current
         old_start, old_partner, old_carried = self.start, self.partner, self.carried
         where: tuple[Any, ...] = (x, reach, *self._sorted, self._order, self._cell_start, *self.lower, *shape)
-        where += (*self.period, float(reach.max(initial=0.0)), self.skin, self.full)
+        where += (*self.period, self.tilt, float(reach.max(initial=0.0)), self.skin, self.full)
         start = self._starts[new]
         if self.count < SERIAL_BELOW:
             total = search.fill_serial(start, self._partners[new], *where)
@@ -125,6 +138,8 @@ class PairList:
             total = search.count_parallel(start, self._partners[new], *where)
             self._reserve(new, total)
             search.fill_parallel(start, self._partners[new], *where)
+        if self.group is not None:
+            total = search.leave_out(self.group, start, self._partners[new])
         self._current = new
         self._publish(total)
         if self.carried.shape[1]:
@@ -156,7 +171,7 @@ class PairList:
         inverse_x = columns / (self.upper[0] - self.lower[0])
         inverse_y = rows / (self.upper[1] - self.lower[1])
         sort_into_cells(
-            x, *self.lower, inverse_x, inverse_y, columns, rows, *self.period,
+            x, *self.lower, inverse_x, inverse_y, columns, rows, *self.period, self.tilt,
             self._cell, self._cell_start[: columns * rows + 1], self._order,
         )  # fmt: skip
         search.gather_sorted(x, reach, self._order, self._sorted)

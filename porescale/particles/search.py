@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from porescale.ground.jit import inline, kernel, parallel_kernel, prange
-from porescale.particles.cells import cell_of, minimum_image, wrapped
+from porescale.particles.cells import cell_of, minimum_image, tilted_image, untilted, wrapped
 
 
 @kernel
@@ -60,12 +60,11 @@ def window(at, range_, lower, inverse_size, number, period):
 
 
 @inline
-def count_stretch(i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, period_x, period_y, full):
+def count_stretch(i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, period_x, period_y, tilt, full):
     """Number of partners of point i among slots k0 … k1-1 of the cell order.  Without writing, so it vectorises."""
     found = 0
     for k in range(np.uint64(k0), np.uint64(k1)):  # unsigned: no wraparound of negative indices
-        dx = minimum_image(xi - sx[k], period_x)
-        dy = minimum_image(yi - sy[k], period_y)
+        dx, dy = tilted_image(xi - sx[k], yi - sy[k], period_x, period_y, tilt)
         reached = reach_i + sreach[k] + skin
         j = order[k]
         found += (dx * dx + dy * dy < reached * reached) & ((j > i) | (full & (j != i)))
@@ -74,7 +73,7 @@ def count_stretch(i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, perio
 
 @inline
 def fill_stretch(
-    i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, period_x, period_y, full, partner, slot, end
+    i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, period_x, period_y, tilt, full, partner, slot, end
 ):  # fmt: skip
     """As count_stretch, writing partners from ``partner[slot]`` on, never at ``end`` or beyond; returns their number.
 
@@ -83,8 +82,7 @@ def fill_stretch(
     """
     begin = slot
     for k in range(np.uint64(k0), np.uint64(k1)):  # unsigned: no wraparound of negative indices
-        dx = minimum_image(xi - sx[k], period_x)
-        dy = minimum_image(yi - sy[k], period_y)
+        dx, dy = tilted_image(xi - sx[k], yi - sy[k], period_x, period_y, tilt)
         reached = reach_i + sreach[k] + skin
         j = order[k]
         if slot < end:
@@ -97,7 +95,7 @@ def fill_stretch(
 def search_row(
     write, i, x, reach, sx, sy, sreach, order, cell_start,
     lower_x, lower_y, inverse_x, inverse_y, columns, rows,
-    period_x, period_y, largest, skin, full, partner, begin, end,
+    period_x, period_y, tilt, largest, skin, full, partner, begin, end,
 ):  # fmt: skip
     """Number of partners of point i; if ``write``, they are put ascending into ``partner[begin:end]``.
 
@@ -108,26 +106,36 @@ def search_row(
     xi = x[i, 0]
     yi = x[i, 1]
     range_ = reach[i] + largest + skin
-    first_column, width = window(wrapped(xi, lower_x, period_x), range_, lower_x, inverse_x, columns, period_x)
+    at_x = untilted(xi, yi, lower_y, period_y, tilt)
+    first_column, width = window(wrapped(at_x, lower_x, period_x), range_, lower_x, inverse_x, columns, period_x)
     first_row, height = window(wrapped(yi, lower_y, period_y), range_, lower_y, inverse_y, rows, period_y)
     first_column %= columns  # like Python's, the modulo of a negative index counts from the end
     # Cells of one row follow each other in the sorted order, so a row of the window is one stretch, or two
     # where it runs over a periodic end.
     inside = min(width, columns - first_column)
     found = 0
+    if tilt != 0.0 and height == rows:  # a row may hold both images of a point: all of it
+        first_column, width = 0, columns
+        inside = width
     for step in range(height):
         base = (first_row + step) % rows * columns
+        if tilt != 0.0 and height < rows:  # a row beyond the end is that of an image, seen from ``tilt`` aside
+            turns = np.floor((first_row + step) / rows)
+            seen_x = wrapped(at_x - turns * tilt, lower_x, period_x)
+            first_column, width = window(seen_x, range_, lower_x, inverse_x, columns, period_x)
+            first_column %= columns
+            inside = min(width, columns - first_column)
         for part in range(1 + (width > inside)):
             k0 = cell_start[base + first_column] if part == 0 else cell_start[base]
             k1 = cell_start[base + first_column + inside] if part == 0 else cell_start[base + width - inside]
             if write:
                 found += fill_stretch(
-                    i, k0, k1, xi, yi, reach[i], skin, sx, sy, sreach, order, period_x, period_y, full,
+                    i, k0, k1, xi, yi, reach[i], skin, sx, sy, sreach, order, period_x, period_y, tilt, full,
                     partner, begin + found, end,
                 )  # fmt: skip
             else:
                 found += count_stretch(
-                    i, k0, k1, xi, yi, reach[i], skin, sx, sy, sreach, order, period_x, period_y, full
+                    i, k0, k1, xi, yi, reach[i], skin, sx, sy, sreach, order, period_x, period_y, tilt, full
                 )  # fmt: skip
     if write:
         for slot in range(begin + 1, min(begin + found, end)):  # insertion sort: rows come out nearly ascending
@@ -143,7 +151,7 @@ def search_row(
 def fill_serial(
     start, partner, x, reach, sx, sy, sreach, order, cell_start,
     lower_x, lower_y, inverse_x, inverse_y, columns, rows,
-    period_x, period_y, largest, skin, full,
+    period_x, period_y, tilt, largest, skin, full,
 ):  # fmt: skip
     """All rows in one thread: overwrites ``start`` (n + 1,) and ``partner``; returns the number of pairs.
 
@@ -154,7 +162,7 @@ def fill_serial(
         begin = start[i]
         found = search_row(
             True, i, x, reach, sx, sy, sreach, order, cell_start,
-            lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y,
+            lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y, tilt,
             largest, skin, full, partner, begin, partner.shape[0],
         )  # fmt: skip
         start[i + 1] = begin + found
@@ -165,14 +173,14 @@ def fill_serial(
 def count_parallel(
     start, partner, x, reach, sx, sy, sreach, order, cell_start,
     lower_x, lower_y, inverse_x, inverse_y, columns, rows,
-    period_x, period_y, largest, skin, full,
+    period_x, period_y, tilt, largest, skin, full,
 ):  # fmt: skip
     """Row lengths over threads, summed in order: overwrites ``start`` (n + 1,); returns the number of pairs."""
     n = x.shape[0]
     for i in prange(n):
         start[i + 1] = search_row(
             False, i, x, reach, sx, sy, sreach, order, cell_start,
-            lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y,
+            lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y, tilt,
             largest, skin, full, partner, 0, 0,
         )  # fmt: skip
     start[0] = 0
@@ -185,15 +193,31 @@ def count_parallel(
 def fill_parallel(
     start, partner, x, reach, sx, sy, sreach, order, cell_start,
     lower_x, lower_y, inverse_x, inverse_y, columns, rows,
-    period_x, period_y, largest, skin, full,
+    period_x, period_y, tilt, largest, skin, full,
 ):  # fmt: skip
     """Rows over threads into the places that ``start`` (n + 1,) names: overwrites ``partner``."""
     for i in prange(x.shape[0]):
         search_row(
             True, i, x, reach, sx, sy, sreach, order, cell_start,
-            lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y,
+            lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y, tilt,
             largest, skin, full, partner, start[i], start[i + 1],
         )  # fmt: skip
+
+
+@kernel
+def leave_out(group, start, partner):
+    """Take pairs of one ``group`` (n,) >= 0 out of the rows: overwrites both; returns the number that are left."""
+    kept, first = 0, start[0]
+    for i in range(start.shape[0] - 1):
+        last = start[i + 1]
+        for k in range(first, last):
+            j = partner[k]
+            if group[i] < 0 or group[i] != group[j]:
+                partner[kept] = j
+                kept += 1
+        first = last
+        start[i + 1] = kept
+    return kept
 
 
 @kernel

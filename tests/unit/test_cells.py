@@ -14,7 +14,7 @@ def sort(x, columns=4, rows=3, period=(0.0, 0.0), compiled=True):
     cell, order = np.empty(n, np.int32), np.empty(n, np.int32)
     start = np.empty(columns * rows + 1, np.int64)
     run = sort_into_cells if compiled else sort_into_cells.py_func
-    run(x, 0.0, 0.0, 1.0, 1.0, columns, rows, *period, cell, start, order)
+    run(x, 0.0, 0.0, 1.0, 1.0, columns, rows, *period, 0.0, cell, start, order)
     return cell, start, order
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.dem import forces, integrate, measure, walls
+from porescale.dem import forces, integrate, kick, measure, walls
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
 from porescale.dem.settle import pack, unpack
@@ -105,7 +105,7 @@ def test_kernels_do_the_same_as_plain_python():
             d.position, d.velocity, d.spin, d.radius, force, torque, grains.plates, grains.plate_laws,
             grains.plate_spring, grains.plate_force, grains.contact, 1e-5,
         )  # fmt: skip
-        call(integrate.kick_drift)(
+        call(kick.kick_drift)(
             d.position,
             d.angle,
             d.velocity,

@@ -200,7 +200,7 @@ def test_kernels_as_plain_python():
     start, partner = np.zeros(26, np.int64), np.empty(len(listed.partner), np.int32)
     total = search.fill_serial.py_func(
         start, partner, x, reach, *listed._sorted, listed._order, listed._cell_start,
-        *LOWER, *shape, *listed.period,
+        *LOWER, *shape, *listed.period, 0.0,
         reach.max(), 0.1, True,
     )  # fmt: skip
     assert total == listed.start[-1]
