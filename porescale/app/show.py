@@ -27,7 +27,8 @@ def show(folder: Path) -> list[Path]:
         title=title(scene, run.name),
         cloud="grains",
         label="speed of the fluid",
-        lines=gate_lines(scene),
+        lines=solid_lines(scene),
+        walls="solid_fraction" if scene.get("rectangle") else "",
         streamlines=scene.get("fluid") is not None,
         colour="speed" if scene.get("fluid") is None else None,
         view=(0.0, scene["domain"]["width"], 0.0, scene["domain"]["height"]),
@@ -59,5 +60,20 @@ def gate_lines(scene: dict[str, Any]) -> Callable[[Snapshot], list[Line]]:
             return []
         low = max(0.0, since) * (gate["lift_speed"] or 0.0)
         return [((gate["x"], low), (gate["x"], height))] if low < height else []
+
+    return lines
+
+
+def solid_lines(scene: dict[str, Any]) -> Callable[[Snapshot], list[Line]]:
+    """The gate and the outlines of rectangles, at any time, from the scene on a run card."""
+    from porescale.scene.rectangles import outline
+
+    gate, size = gate_lines(scene), (scene["domain"]["width"], scene["domain"]["height"])
+
+    def lines(snapshot: Snapshot) -> list[Line]:
+        found = gate(snapshot)
+        for section in scene.get("rectangle") or ():
+            found += outline(section, snapshot.time, size)
+        return found
 
     return lines

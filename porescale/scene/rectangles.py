@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -75,6 +75,21 @@ def travelled(
     """Way (m) until ``time`` of what moves at ``velocity`` (m/s) from starts_at to stops_at (s; None: for ever)."""
     moving = max(0.0, (time if stops_at is None else min(time, stops_at)) - starts_at)
     return velocity[0] * moving, velocity[1] * moving
+
+
+def outline(
+    section: Mapping[str, Any], time: float, size: tuple[float, float]
+) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+    """Edges, pairs of points (m), of a section as run cards keep it, at ``time`` (s) in a box of ``size`` (m)."""
+    gone = travelled(section["velocity"], section["starts_at"], section["stops_at"], time)
+    (left, bottom), (right, top) = (
+        tuple(at + by for at, by in zip(section[corner], gone, strict=True)) for corner in ("lower", "upper")
+    )
+    x0, x1, y0, y1 = max(left, 0.0), min(right, size[0]), max(bottom, 0.0), min(top, size[1])
+    if x0 >= x1 or y0 >= y1:
+        return []
+    upright = [((x, y0), (x, y1)) for x in (left, right) if 0.0 < x < size[0]]
+    return upright + [((x0, y), (x1, y)) for y in (bottom, top) if 0.0 < y < size[1]]
 
 
 class Movers:
