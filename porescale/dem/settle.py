@@ -56,6 +56,7 @@ class Pile:
 
     They are placed from ``corner`` (m) upwards over ``width`` (m) at ``fraction`` of area, with ``seed``,
     and settle under ``gravity`` (m/s^2) with ``friction``: little of it packs densely, much of it loosely.
+    given : radii (count,) m instead of those that diameter and spread say; diameter is their mean then.
     """
 
     corner: tuple[float, float]
@@ -68,10 +69,13 @@ class Pile:
     fraction: float = 0.75
     seed: int = 0
     gravity: float = GRAVITY
+    given: tuple[float, ...] = ()
 
     def top(self) -> float:
         """Upper edge of the rectangle in which discs are placed, m."""
         area = self.count * math.pi / 4.0 * self.diameter**2 * (1.0 + self.spread**2 / 3.0)
+        if self.given:
+            area = math.pi * math.fsum(r * r for r in self.given)
         # One diameter more: a short rectangle loses a strip of pores along each wall.
         return self.corner[1] + area / (self.fraction * self.width) + self.diameter
 
@@ -83,7 +87,9 @@ class Pile:
         return make_discs(placed.position[order], placed.radius[order], self.density)
 
     def radii(self) -> Array:
-        """Radii, (n,) m, uniform in diameter (1 ± spread)."""
+        """Radii, (n,) m, uniform in diameter (1 ± spread), or those given."""
+        if self.given:
+            return np.array(self.given)
         rng = np.random.default_rng([self.seed, self.count])
         return 0.5 * self.diameter * (1.0 + self.spread * rng.uniform(-1.0, 1.0, self.count))
 

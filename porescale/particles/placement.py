@@ -23,6 +23,7 @@ Floats = NDArray[np.float64]
 DENSEST = 0.80  # packing fraction; above it random starts jam before their overlaps are gone
 INFLATED = 0.81  # fraction with the radii that are slid apart, larger than the real ones so that these end clear
 ROOMIEST = 1.05  # most that radii are enlarged by
+CLEAR = 1e-4  # least enlargement of radii: the end is then reached in finite time
 MOST_SWEEPS = 20_000
 
 
@@ -84,6 +85,20 @@ def place(
     return Placement(position + np.array(lower), radius, fraction, sweeps)
 
 
+def part(position: Floats, radius: Floats) -> Floats:
+    """Places (n, 2) m near ``position`` where no disc of ``radius`` (n,) m overlaps another: for measured circles.
+
+    The rectangle around all of them holds them, with a mean diameter more at its top.  Raises InputError, with the
+    overlap left, where they do not fit.
+    """
+    low, high = (position - radius[:, None]).min(axis=0), (position + radius[:, None]).max(axis=0)
+    high[1] += 2.0 * float(radius.mean())
+    size = float(high[0] - low[0]), float(high[1] - low[1])
+    fraction = float(np.pi * np.sum(radius**2)) / (size[0] * size[1])
+    moved, _ = slide_apart(position - low, radius, size, (False, False), fraction, 1.0 + CLEAR)
+    return np.asarray(moved + low)
+
+
 def draw_radii(
     area: float,
     diameter: float | None,
@@ -138,15 +153,19 @@ def slide_apart(
     size: tuple[float, float],
     periodic: tuple[bool, bool],
     fraction: float,
+    roomiest: float = ROOMIEST,
 ) -> tuple[Floats, int]:
-    """Positions (n, 2) m in a box from the origin to ``size`` without overlap, near ``start``; sweeps it took."""
+    """Positions (n, 2) m in a box from the origin to ``size`` without overlap, near ``start``; sweeps it took.
+
+    roomiest : factor of the radii that are slid apart, or less where the box is full.
+    """
     n = len(radius)
     if n == 0:
         return start, 0
     unit = 2.0 * float(radius.mean())  # lengths in mean diameters: springs and steps then suit any size
     x = start / unit
     real = radius / unit
-    grown = real * min(ROOMIEST, float(np.sqrt(INFLATED / fraction)))
+    grown = real * max(1.0 + CLEAR, min(roomiest, float(np.sqrt(INFLATED / fraction))))
     box = (size[0] / unit, size[1] / unit)
     pairs = PairList(n, 0.3, (0.0, 0.0), box, periodic)
     velocity, force = np.zeros((n, 2)), np.zeros((n, 2))

@@ -25,6 +25,7 @@ from porescale.particles.placement import place
 from porescale.scene.cost import refuse_too_large
 from porescale.scene.derive import Derived, derive, grain_count
 from porescale.scene.geometry import refuse_overlaps
+from porescale.scene.packing import compressed, radii_of
 from porescale.scene.rectangle_places import refuse_buried
 from porescale.scene.rectangles import Movers, on_the_lattice, stand_ins, take_over
 from porescale.scene.sections import Packing, Scene
@@ -132,6 +133,10 @@ def _grains(scene: Scene, derived: Derived) -> Grains:
         grains = prepared(scene, packing, box, derived, [*plates, *stand_ins(scene, packing)])
         if parts:
             grains = joined(grains, together(*parts))
+    elif packing and packing.compress:
+        grains = compressed(scene, packing, law).grains
+        grains = joined(grains, together(*parts)) if parts else grains
+        grains.set_law(law, wall_law)
     else:
         parts = [_placed(scene, packing), *parts] if packing else parts
         grains = Grains(together(*parts) if parts else NO_DISCS, law, box, wall_law=wall_law, plates=plates)
@@ -160,11 +165,12 @@ def prepared(scene: Scene, packing: Packing, box: Box, derived: Derived, plates:
     """The packing settled dry, then at rest under the run's contact law and its weight in the fluid."""
     assert scene.grains
     assert derived.law
-    placed = len(scene.grains.grain) + len(scene.disc)
+    placed, radii = len(scene.grains.grain) + len(scene.disc), radii_of(packing)
     pile = Pile(
         corner=(packing.left, packing.bottom), width=packing.width, count=grain_count(scene) - placed,
         diameter=packing.diameter, density=scene.grains.density, spread=packing.size_spread,
         friction=packing.settling_friction, seed=packing.seed, gravity=-scene.gravity[1],
+        given=() if radii is None else tuple(radii.tolist()),
     )  # fmt: skip
     lighter = scene.fluid.density if scene.fluid else 0.0
     return prepare(
@@ -174,11 +180,15 @@ def prepared(scene: Scene, packing: Packing, box: Box, derived: Derived, plates:
 
 def _placed(scene: Scene, packing: Packing) -> Discs:
     assert scene.grains
+    radii = radii_of(packing)
+    sizes: dict[str, Any] = (
+        {"diameter": packing.diameter, "spread": packing.size_spread, "packing_fraction": packing.packing_fraction}
+        if radii is None else {"radii": radii}
+    )  # fmt: skip
     try:
         placed = place(
             (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height),
-            diameter=packing.diameter, spread=packing.size_spread, packing_fraction=packing.packing_fraction,
-            seed=packing.seed,
+            seed=packing.seed, **sizes,
         )  # fmt: skip
     except InputError as error:
         raise InputError([replace(fault, key=f"grains.packing.{fault.key}") for fault in error.faults]) from None

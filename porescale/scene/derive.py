@@ -15,6 +15,7 @@ from porescale.lbm.scales import NAMES, Scales, implied
 from porescale.scene.fluid import Fluid
 from porescale.scene.geometry import judge_places
 from porescale.scene.lattice import is_whole
+from porescale.scene.packing import judge_compressed, radii_of
 from porescale.scene.regime import expected_speed, judge
 from porescale.scene.sections import Contact, Scene
 
@@ -50,6 +51,7 @@ def derive(scene: Scene) -> Derived:
     scales, cells, column = _lattice(scene, faults) if scene.fluid else (None, None, None)
     if scene.gate and any(scene.domain.periodic):
         faults.append(Fault("gate", None, "stands in a periodic box", repair="give the box walls"))
+    judge_compressed(scene, faults)
     judge_places(scene, diameters(scene), faults)
     sizes = diameters(scene, held=False) or diameters(scene)
     law = wall_law = limit = step = steps = None
@@ -108,6 +110,9 @@ def grain_count(scene: Scene) -> int:
     packing = scene.grains.packing if scene.grains else None
     if packing is None:
         return placed
+    radii = radii_of(packing)
+    if radii is not None:
+        return placed + len(radii)
     area = math.pi / 4 * packing.diameter**2 * (1 + packing.size_spread**2 / 3)
     return placed + max(1, round(packing.packing_fraction * packing.width * packing.height / area))
 
@@ -123,7 +128,10 @@ def diameters(scene: Scene, *, held: bool = True) -> tuple[float, float, float] 
     if packing is None and not sizes:
         return None
     mean = packing.diameter if packing else sum(sizes) / len(sizes)
-    if packing:
+    radii = radii_of(packing) if packing else None
+    if radii is not None:
+        sizes += [2 * float(radii.min()), 2 * float(radii.max())]
+    elif packing:
         sizes += [packing.diameter * (1 - packing.size_spread), packing.diameter * (1 + packing.size_spread)]
     return min(sizes), mean, max(sizes)
 

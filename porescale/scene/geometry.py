@@ -132,7 +132,7 @@ def _judge_packing(packing: Packing, domain: Domain, gate: Gate | None, faults: 
         if end > size * (1 + EDGE):
             problem = f"the packing reaches to {end:g} m, out of the box of {size:g} m"
             faults.append(Fault(f"grains.packing.{key}", value, problem, "m", repair="move it inside or shrink it"))
-    if not packing.settle and packing.packing_fraction > DENSEST:
+    if not packing.settle and not packing.compress and packing.packing_fraction > DENSEST:
         problem = "is denser than discs can be placed at random"
         key, repair = "grains.packing.packing_fraction", "let it settle, or lower it"
         faults.append(Fault(key, packing.packing_fraction, problem, "", f"<= {DENSEST:g}", repair))

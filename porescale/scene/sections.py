@@ -13,6 +13,7 @@ from porescale.scene.bodies import Disc, Lubrication
 from porescale.scene.fluid import Fluid
 from porescale.scene.lattice import disagreements
 from porescale.scene.measures import FieldName, Flux, Line, Loads, Permeability, Probe
+from porescale.scene.packing import Circles, judged_grading, with_circles, with_consequences
 from porescale.scene.rectangles import Rectangle
 from porescale.scene.regions import CoarseGraining, Region
 from porescale.scene.sides import Domain
@@ -69,7 +70,26 @@ class Packing(Section):
     packing_fraction: float = quantity("", 0.81, ge=1e-3, le=0.84, help="grain area over the rectangle's area")
     seed: int = pydantic.Field(1, ge=0, description="seed of the random placement")
     settle: bool = pydantic.Field(True, description="let the grains settle dry before the run")
-    settling_friction: float = quantity("", 0.3, **FRICTION, help="friction while settling: little packs densely")
+    settling_friction: float = quantity("", 0.3, **FRICTION, help="friction while preparing: little packs densely")
+    void_ratio: float | None = quantity("", None, gt=0, lt=1e3, help="pores over grains, instead of packing_fraction")
+    grading: tuple[tuple[float, float], ...] = quantity(
+        "m", (), help="grading curve, [diameter, percent finer by mass] from 0 to 100, instead of diameter"
+    )
+    log_spread: float | None = quantity(
+        "", None, ge=0, le=0.46, help="deviation of the logarithm of lognormal diameters, instead of size_spread"
+    )
+    compress: bool = pydantic.Field(False, description="grow in place to packing_fraction, without gravity")
+    pressure: float | None = quantity("Pa", None, gt=0, le=1e12, help="mean stress to compress to, without gravity")
+
+    @pydantic.model_validator(mode="before")
+    @classmethod
+    def _consequences(cls, table: Any) -> Any:
+        return with_consequences(table)
+
+    @pydantic.field_validator("grading")
+    @classmethod
+    def _a_curve(cls, curve: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
+        return judged_grading(curve)
 
 
 class Grain(Section):
@@ -91,6 +111,12 @@ class Grains(Section):
     )
     packing: Packing | None = None
     grain: tuple[Grain, ...] = ()
+    circles: Circles | None = None
+
+    @pydantic.model_validator(mode="before")
+    @classmethod
+    def _from_file(cls, table: Any, info: pydantic.ValidationInfo) -> Any:
+        return with_circles(table, (info.context or {}).get("folder"))
 
     @pydantic.model_validator(mode="after")
     def _some(self) -> Grains:

@@ -1,0 +1,100 @@
+"""Packings of a scene: graded, lognormal, compressed, from files; each refusal names its key and what to do."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from porescale.dem.packing import mean_stress, write_packing
+from porescale.ground.check import InputError
+from porescale.particles.grading import percent_finer
+from porescale.scene.build import build
+from porescale.scene.derive import derive
+from porescale.scene.sections import Scene
+from porescale.workbench.sections import scene_as_dict, validate
+from tests.reference.scenes import dry, table
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+CURVE = [[0.0003, 0.0], [0.0006, 40.0], [0.0009, 100.0]]
+BOX = {"left": 0.0, "width": 0.012, "height": 0.008}
+ROUND = {f"domain__{side}": "periodic" for side in ("left", "right", "bottom", "top")}
+
+
+def grains_of(scene) -> Any:
+    """The grains of a scene, built."""
+    return build(scene).grains
+
+
+def packed(**keys) -> Any:
+    """The dry column with other keys of its packing."""
+    return dry(**{f"grains__packing__{key}": value for key, value in keys.items()})
+
+
+def pressed(**keys) -> Any:
+    """A periodic box full of grains under 500 Pa, no gravity."""
+    given = {**BOX, "compress": True, "pressure": 500, "packing_fraction": 0.82, "diameter": 0.001, **keys}
+    changes = {f"grains__packing__{key}": value for key, value in given.items()}
+    return dry(**ROUND, **{"grains__packing__settle": None, "gravity": [0.0, 0.0], **changes})
+
+
+@pytest.mark.parametrize("settle", [False, True])
+def test_grains_follow_their_grading_curve(settle):
+    gate = {"x": 0.008, "opens_at": 0.01, "lift_speed": 0.4} if settle else None
+    keys = {"grading": CURVE, "diameter": None, "settle": settle}
+    scene: Any = dry(gate=gate, **{f"grains__packing__{key}": value for key, value in keys.items()})
+    assert derive(scene).grain_count == grains_of(scene).discs.count
+    radius = grains_of(scene).discs.radius
+    own = 100 * 0.0009**2 / np.sum((2 * radius) ** 2)  # a disc of the largest, of some seventy
+    assert percent_finer(radius, np.array([0.0006]))[0] == pytest.approx(40.0, abs=own)
+    assert scene.grains.packing.diameter == pytest.approx(2 * radius.mean(), rel=1e-12)
+
+
+def test_lognormal_grains_and_void_ratio():
+    scene = packed(log_spread=0.2, void_ratio=1.0, packing_fraction=None)
+    assert scene.grains.packing.packing_fraction == 0.5
+    radius = grains_of(scene).discs.radius
+    assert 2 * radius.mean() == pytest.approx(0.0008, rel=1e-12)
+    assert np.pi * np.sum(radius**2) / (0.004 * 0.0055) == pytest.approx(0.5, abs=0.02)  # whole discs of 2.7 %
+
+
+def test_a_packing_is_compressed_to_its_pressure():
+    scene = pressed(settling_friction=0.0)
+    simulation: Any = build(scene)
+    assert mean_stress(simulation.grains) == pytest.approx(500.0, rel=5e-3)
+    start = simulation.grains.discs.position.copy()
+    simulation.advance(200)
+    assert np.median(np.hypot(*(simulation.grains.discs.position - start).T)) < 1e-3 * 0.001
+    assert mean_stress(simulation.grains) == pytest.approx(500.0, rel=0.02)
+
+
+def test_circles_of_a_file_are_grains_of_the_scene_and_of_its_card(tmp_path):
+    position = np.array([(0.002, 0.0005), (0.004, 0.0005)])
+    write_packing(tmp_path / "bed.csv", position, np.array([0.0005, 0.0004]))
+    given = table(fluid=None, gate=None, grains={"density": 2500, "circles": {"file": "bed.csv", "left": 0.001}})
+    scene: Any = validate(Scene, given, folder=tmp_path)
+    assert [(it.x, it.y, it.diameter) for it in scene.grains.grain] == [(0.003, 0.0005, 0.001), (0.005, 0.0005, 0.0008)]
+    again = validate(Scene, scene_as_dict(scene))  # elsewhere, without the file
+    assert again == scene
+    np.testing.assert_array_equal(grains_of(again).discs.radius, [0.0005, 0.0004])
+
+
+@pytest.mark.parametrize(("keys", "said"), [
+    ({"grading": [[0.0003, 0.0], [0.0006, 40.0]], "diameter": None}, r"grading.*0 to 100"),
+    ({"grading": CURVE}, r"grains.packing.diameter.*follows from grading.*leave diameter or grading out"),
+    ({"grading": CURVE, "diameter": None, "log_spread": 0.1}, r"log_spread.*leave one out"),
+    ({"void_ratio": 0.2}, r"packing_fraction.*follows from void_ratio: 0.8333"),
+    ({"pressure": 100.0, "settle": True}, r"settle.*compressed does not settle"),
+    ({"pressure": 100.0, "settle": None}, r"packing.width.*fills the box.*as large as the box"),
+    ({"log_spread": 0.9}, r"log_spread.*<= 0.46"),
+])  # fmt: skip
+def test_packings_that_contradict_themselves_are_refused(keys, said):
+    with pytest.raises(InputError, match=said):
+        derive(packed(**keys))
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path):
+    given = table(fluid=None, gate=None, grains={"density": 2500, "circles": {"file": "none.csv"}})
+    with pytest.raises(InputError, match=r"grains.circles.file.*none.csv.*cannot be read"):
+        validate(Scene, given, folder=tmp_path)
