@@ -7,12 +7,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from porescale.dem.measure import elastic_energy, max_overlap, survey_rectangles
 from porescale.ground.check import InputError, Unstable
+from porescale.runs.checkpoint import read_checkpoint, write_checkpoint
 from porescale.scene import rectangles
 from porescale.scene.build import build
 from porescale.scene.derive import derive
 from porescale.scene.rectangle_places import Body, first_meeting, nearest
-from porescale.scene.rectangles import Rectangle
+from porescale.scene.rectangles import Rectangle, outline
 from porescale.scene.report import report
 from porescale.scene.sections import Scene
 from porescale.workbench.sections import scene_as_dict, validate
@@ -226,10 +228,11 @@ def test_the_book_of_a_closed_box_is_right_and_made_good():
 @pytest.mark.parametrize(
     "scene", [behind_gate, lambda: tank(PISTON, loads={"rectangles": [0]})], ids=["gate", "piston"]
 )
-def test_a_run_goes_on_bit_for_bit_from_the_middle_of_a_motion(scene, steps):
+def test_a_run_goes_on_bit_for_bit_from_a_checkpoint_in_the_middle_of_a_motion(scene, steps, tmp_path):
     one, two = build(scene()), build(scene())
     one.advance(steps)
-    state = one.state()
+    write_checkpoint(tmp_path / "checkpoint.h5", one.state())
+    state = read_checkpoint(tmp_path / "checkpoint.h5")
     two.restore(state)
     for simulation in (one, two):
         simulation.advance(140)
@@ -266,6 +269,31 @@ def test_a_piston_pushes_grains_as_it_does_alone():
         face = 0.004 + 0.1 * wet.time
         assert wet.grains.discs.position[0, 0] > face + 0.99 * 0.0005
     assert wet.grains.discs.position[0, 0] > 0.0055
+
+
+def test_an_overlap_with_a_rectangle_counts_among_the_others():
+    simulation = build(dry(grains=ONE, rectangle=[{"lower": [0.004, 0.0015], "upper": [0.006, 0.002]}]))
+    grains = simulation.grains
+    assert grains
+    grains.discs.position[0] = 0.005, 0.0012
+    # 0.2 mm of 0.5, and k d²/2 at a stiffness of 2e5; the centre 0.1 mm inside makes it 1.2 radii.
+    assert max_overlap(grains).against == "rectangle 0"
+    assert max_overlap(grains).share == pytest.approx(0.4, rel=1e-12)
+    assert elastic_energy(grains) == pytest.approx(0.5 * 2e5 * 2e-4**2, rel=1e-12)
+    grains.discs.position[0] = 0.005, 0.0016
+    given = grains.discs.position, grains.discs.radius, grains.rectangles, grains.rectangle_laws
+    for survey in (survey_rectangles, survey_rectangles.py_func):
+        assert survey(*given, grains.rectangle_spring, grains.contact)[0] == pytest.approx(1.2, rel=1e-12)
+
+
+def test_pictures_show_a_rectangle_where_it_is_and_within_the_box():
+    (section,) = scene_as_dict(tank({**PISTON, "stops_at": 0.02}))["rectangle"]
+    assert outline(section, 0.0, (0.012, 0.008)) == [((0.002, 0.0), (0.002, 0.008))]  # all else is beyond the sides
+    ((low, _),) = outline(section, 1.0, (0.012, 0.008))
+    assert low == (pytest.approx(0.003), 0.0)
+    block = scene_as_dict(tank(BLOCK))["rectangle"][0]
+    assert len(outline(block, 5.0, (0.012, 0.008))) == 4
+    assert outline({**block, "velocity": [0.0, 1.0]}, 5.0, (0.012, 0.008)) == []
 
 
 def test_grains_squeezed_between_a_rectangle_and_a_wall_are_named():
