@@ -18,6 +18,7 @@ def show(folder: Path) -> list[Path]:
     from porescale.runs.look import Look
     from porescale.runs.open_run import open_run
     from porescale.runs.picture import paint_last, pictures
+    from porescale.scene.grain_pictures import write_grain_pictures
     from porescale.scene.lines import write_lines
     from porescale.scene.surface import write_surface
 
@@ -37,7 +38,7 @@ def show(folder: Path) -> list[Path]:
     for name in scene["output"].get("fields", ()):
         written.append(paint_last(folder, name, replace(look, field=name, label="")))
     if scene.get("grains") is not None:
-        written.append(write_surface(run, folder))
+        written += [write_surface(run, folder), *write_grain_pictures(run, folder, look)]
     return [*written, *write_lines(run, folder)]
 
 

@@ -22,17 +22,17 @@ BOX = {"left": 0.0, "width": 0.012, "height": 0.008}
 ROUND = {f"domain__{side}": "periodic" for side in ("left", "right", "bottom", "top")}
 
 
-def grains_of(scene) -> Any:
+def grains_of(scene: Scene) -> Any:
     """The grains of a scene, built."""
     return build(scene).grains
 
 
-def packed(**keys) -> Any:
+def packed(**keys: Any) -> Any:
     """The dry column with other keys of its packing."""
     return dry(**{f"grains__packing__{key}": value for key, value in keys.items()})
 
 
-def pressed(**keys) -> Any:
+def pressed(**keys: Any) -> Any:
     """A periodic box full of grains under 500 Pa, no gravity."""
     given = {**BOX, "compress": True, "pressure": 500, "packing_fraction": 0.82, "diameter": 0.001, **keys}
     changes = {f"grains__packing__{key}": value for key, value in given.items()}
