@@ -31,7 +31,9 @@ def test_finer_levels_have_finer_spacing_and_the_same_physics(case):
         # Compressibility: expected Mach number below a tenth at every level, and no refusal.
         derived = derive(scene)
         assert derived.speed / derived.scales.sound_speed < 0.1
-        assert derived.warnings == ()
+        # The one doubt of a coarse level is that a dense bed needs 15 cells per grain.
+        assert [it for it in derived.warnings if "in a bed of solid fraction" not in it] == []
+    assert derived.warnings == ()  # of the finest
 
 
 def test_the_default_quality_of_the_column_is_draft():
