@@ -85,7 +85,7 @@ def take_row(begin, end, rows, patches, centre, velocity, spin, shift, periodic_
                 if soft:
                     slip = scratch[3, x : x + BLOCK]
                     for i in range(BLOCK):
-                        edge = e[i] * (1 - e[i])
+                        edge = e[i] * (1 - e[i]) * (rho[i] > 0)  # none of what lies beyond the box
                         partial[5 * BLOCK + i] = edge * slip[i]
                         partial[6 * BLOCK + i] = edge
                     slipping += total(partial, 5 * BLOCK)
