@@ -44,7 +44,7 @@ def judge_places(scene: Scene, sizes: tuple[float, float, float] | None, faults:
             _judge_settling(scene, faults)
     if not names:
         return
-    box, inner = np.array([scene.domain.width, scene.domain.height]), r[:, None] * (1 - TOUCH)
+    box, inner = np.array([scene.domain.width, scene.domain.height]), r[:, None] * (1 - _touch(scene))
     beyond = np.where(_periodic(scene.domain), (x < 0) | (x > box), (x < inner) | (x > box - inner)).any(axis=1)
     if beyond.any():
         k = int(beyond.argmax())
@@ -54,7 +54,7 @@ def judge_places(scene: Scene, sizes: tuple[float, float, float] | None, faults:
         if across.any():
             k = int(across.argmax())
             faults.append(_misplaced(names[k], x[k], "stands across the gate", "move one of them"))
-    _judge_overlap(x, r, scene.domain, names, 0, faults)
+    _judge_overlap(x, r, scene, names, 0, faults)
 
 
 def placed(scene: Scene) -> tuple[list[str], NDArray[np.float64], NDArray[np.float64]]:
@@ -73,7 +73,7 @@ def refuse_overlaps(discs: Discs, scene: Scene, packed: int) -> None:
     """
     faults: list[Fault] = []
     names, _, _ = placed(scene)
-    _judge_overlap(discs.position, discs.radius, scene.domain, names, packed, faults)
+    _judge_overlap(discs.position, discs.radius, scene, names, packed, faults)
     if faults:
         raise InputError(faults)
 
@@ -188,15 +188,20 @@ def _loose_sides(scene: Scene, packing: Packing) -> str:
 
 
 def _judge_overlap(
-    x: NDArray[np.float64], r: NDArray[np.float64], domain: Domain, names: list[str], packed: int, faults: list[Fault]
+    x: NDArray[np.float64], r: NDArray[np.float64], scene: Scene, names: list[str], packed: int, faults: list[Fault]
 ) -> None:
     """Name the deepest overlap; discs from ``packed`` on have ``names``."""
-    found = deepest(x, r, domain, packed)
-    if found is None or found[2] <= TOUCH * 2 * min(r[found[0]], r[found[1]]):
+    found = deepest(x, r, scene.domain, packed)
+    if found is None or found[2] <= _touch(scene) * 2 * min(r[found[0]], r[found[1]]):
         return
     i, j, depth = found
     other = _plain(names[j - packed]) if j >= packed else "a grain of the packing"
     faults.append(Fault(names[i - packed], None, f"overlaps {other} by {depth:.3g} m", repair="move one of them"))
+
+
+def _touch(scene: Scene) -> float:
+    """Overlap, over the smaller diameter, up to which what is placed may start."""
+    return scene.grains.overlap if scene.grains else TOUCH
 
 
 def _plain(name: str) -> str:

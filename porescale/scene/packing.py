@@ -17,7 +17,7 @@ from porescale.ground.check import Fault, InputError
 from porescale.ground.units import to_si
 from porescale.particles.grading import graded_radii, judge_curve, lognormal_radii
 from porescale.particles.placement import part
-from porescale.workbench.sections import Refused, Section, quantity
+from porescale.workbench.sections import Refused, Section, quantity, validate
 
 if TYPE_CHECKING:
     from porescale.scene.sections import Packing, Scene
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 PLACE: Any = {"ge": -1e3, "le": 1e3}
+PRESSED = 0.02
+"""Overlap over diameter with which circles of a file may start: what presses a packing together, or measures it."""
 SAME = 1e-9
 """Relative difference within which two keys that say the same agree."""
 
@@ -69,8 +71,12 @@ def with_circles(table: Any, folder: Path | None) -> Any:
     if not isinstance(table, Mapping) or table.get("circles") is None:
         return table
     given = table["circles"]
-    circles = given if isinstance(given, Circles) else Circles.model_validate(given)
-    return {**table, "circles": None, "grain": [*(table.get("grain") or ()), *circles.grains(folder)]}
+    try:
+        circles = given if isinstance(given, Circles) else validate(Circles, given)
+    except InputError as error:
+        raise Refused(*(replace(fault, key=f"circles.{fault.key}") for fault in error.faults)) from None
+    grains = [*(table.get("grain") or ()), *circles.grains(folder)]
+    return {"overlap": PRESSED, **table, "circles": None, "grain": grains}
 
 
 def with_consequences(table: Any) -> Any:

@@ -110,6 +110,9 @@ class Grains(Section):
         "", None, ge=0.01, le=1, help="radius that the fluid sees over the mechanical radius, 0.7 to 0.9 in dense beds"
     )
     packing: Packing | None = None
+    overlap: float = quantity(
+        "", 1e-3, ge=0, le=0.1, help="overlap over diameter up to which grains placed by hand may start (circles: 0.02)"
+    )
     grain: tuple[Grain, ...] = ()
     circles: Circles | None = None
 

@@ -80,6 +80,18 @@ def test_circles_of_a_file_are_grains_of_the_scene_and_of_its_card(tmp_path):
     np.testing.assert_array_equal(grains_of(again).discs.radius, [0.0005, 0.0004])
 
 
+def test_a_packing_kept_under_pressure_is_taken_up_again(tmp_path):
+    first: Any = grains_of(pressed(settling_friction=0.0))
+    write_packing(tmp_path / "bed.h5", first.discs.position % (0.012, 0.008), first.discs.radius)
+    sides: dict[str, Any] = {**ROUND, "gravity": [0.0, 0.0], "fluid": None, "gate": None}
+    given = table(**sides, grains={"density": 2500, "circles": {"file": "bed.h5"}})
+    again = grains_of(validate(Scene, given, folder=tmp_path))
+    assert mean_stress(again) == pytest.approx(500.0, rel=5e-3)  # springs along the contacts are not kept
+    given["grains"]["overlap"] = 1e-4
+    with pytest.raises(InputError, match=r"grains.grain.*overlaps grain"):
+        grains_of(validate(Scene, given, folder=tmp_path))
+
+
 @pytest.mark.parametrize(("keys", "said"), [
     ({"grading": [[0.0003, 0.0], [0.0006, 40.0]], "diameter": None}, r"grading.*0 to 100"),
     ({"grading": CURVE}, r"grains.packing.diameter.*follows from grading.*leave diameter or grading out"),
@@ -92,6 +104,12 @@ def test_circles_of_a_file_are_grains_of_the_scene_and_of_its_card(tmp_path):
 def test_packings_that_contradict_themselves_are_refused(keys, said):
     with pytest.raises(InputError, match=said):
         derive(packed(**keys))
+
+
+def test_a_section_of_circles_that_is_wrong_is_named():
+    given = table(fluid=None, gate=None, grains={"density": 2500, "circles": {"file": "a.csv", "unit": "inch"}})
+    with pytest.raises(InputError, match=r"grains.circles.unit"):
+        validate(Scene, given)
 
 
 def test_a_file_that_is_not_there_is_named(tmp_path):
