@@ -10,8 +10,12 @@ circles is read with its own units and direction of y by ``read_circles``.
 
 from __future__ import annotations
 
+import contextlib
 import csv
+import dataclasses
+import hashlib
 import io
+import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,6 +31,7 @@ from porescale.dem.discs import make_discs
 from porescale.dem.measure import max_overlap
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress, principal
+from porescale.dem.settle import UNREADABLE, cache_folder, pack, sources, unpack
 from porescale.dem.system import Grains
 from porescale.dem.walls import Box
 from porescale.ground.check import Fault, InputError, PorescaleError
@@ -110,6 +115,13 @@ class Press:
             self._rest(grains)
         return self._made(grains, radius)
 
+    def grains(self, position: Array, radius: Array) -> Grains:
+        """Discs in the rectangle under the law with the friction of preparation, walls without."""
+        across, up = ("periodic" if it else "solid" for it in self.periodic)
+        box = Box(self.lower, self.upper, across, across, up, up)
+        law = self.law.with_friction(self.friction)
+        return Grains(make_discs(position, radius, self.density), law, box, wall_law=law.with_friction(0.0))
+
     @property
     def _region(self) -> Region:
         return Region(self.lower, self.upper)
@@ -119,12 +131,7 @@ class Press:
         covered = float(np.pi * np.sum(radius**2)) / self._region.area
         scale = min(1.0, math.sqrt(START / covered))
         placed = place(self.lower, self.upper, radii=scale * radius, periodic=self.periodic, seed=self.seed)
-        across, up = ("periodic" if it else "solid" for it in self.periodic)
-        box = Box(self.lower, self.upper, across, across, up, up)
-        law = self.law.with_friction(self.friction)
-        grains = Grains(
-            make_discs(placed.position, placed.radius, self.density), law, box, wall_law=law.with_friction(0.0)
-        )
+        grains = self.grains(placed.position, placed.radius)
         # The same mass for all while they are prepared: small discs would else set the step, and large ones crawl.
         d = grains.discs
         d.mass[:] = d.mass.mean()
@@ -184,6 +191,28 @@ class Press:
         fraction = float(d.area.sum()) / self._region.area
         scale = float(d.radius[0] / radius[0])
         return Compressed(grains, scale, fraction, mean_stress(grains), 0.5 * max_overlap(grains).share)
+
+
+def kept(press: Press, radius: Array, pressure: float | None, folder: Path | None = None) -> Compressed:
+    """``press.to_pressure``, or ``to_size`` without one; from disk if it was made before, with the bits it had.
+
+    folder : of the cache, default that of settled packings.  A damaged file is made anew, a folder that cannot be
+    written is done without.
+    """
+    of = [dataclasses.asdict(press), np.asarray(radius).tolist(), pressure, sources()]
+    name = hashlib.sha256(json.dumps(of).encode()).hexdigest()[:16]
+    path = (folder or cache_folder()) / f"{name}.npz"
+    with contextlib.suppress(*UNREADABLE):
+        state = unpack(path)
+        grains = press.grains(np.zeros((len(radius), 2)), radius)
+        grains.set_law(press.law, press.law)
+        grains.restore(state)
+        numbers = state["made"]
+        return Compressed(grains, *(float(numbers[key]) for key in Compressed._fields[1:]))
+    made = press.to_size(radius) if pressure is None else press.to_pressure(radius, pressure)
+    with contextlib.suppress(OSError):  # no room or no right to write: the next run presses again
+        pack(path, {**made.grains.state(), "made": dict(zip(Compressed._fields[1:], made[1:], strict=True))})
+    return made
 
 
 def mean_stress(grains: Grains) -> float:

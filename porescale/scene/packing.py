@@ -12,7 +12,7 @@ import pydantic
 from numpy.typing import NDArray
 
 from porescale.dem.contact.linear import Linear
-from porescale.dem.packing import Compressed, Press, read_circles, read_packing
+from porescale.dem.packing import Compressed, Press, kept, read_circles, read_packing
 from porescale.ground.check import Fault, InputError
 from porescale.ground.units import to_si
 from porescale.particles.grading import graded_radii, judge_curve, lognormal_radii
@@ -185,8 +185,6 @@ def compressed(scene: Scene, packing: Packing, law: Linear) -> Compressed:
     box = (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height)
     press = Press(*box, law, scene.domain.periodic, packing.settling_friction, scene.grains.density, packing.seed)
     try:
-        if packing.pressure is None:
-            return press.to_size(radius)
-        return press.to_pressure(radius, packing.pressure)
+        return kept(press, radius, packing.pressure)
     except InputError as error:
         raise InputError([replace(fault, key=f"grains.packing.{fault.key}") for fault in error.faults]) from None

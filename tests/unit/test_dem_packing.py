@@ -14,6 +14,7 @@ from porescale.dem.packing import (
     BALANCE,
     NEAR,
     Press,
+    kept,
     mean_stress,
     out_of_balance,
     read_circles,
@@ -52,6 +53,20 @@ def test_pressure_is_reached_at_rest_and_friction_makes_it_loose():
     assert dense.fraction - loose.fraction > 0.02
     stress = contact_stress(Region((0.0, 0.0), SIZE), dense.grains.discs, contacts(dense.grains), SIZE)
     assert abs(stress[0, 0] / stress[1, 1] - 1.0) < 0.25  # isotropic but for the chance of 150 discs
+
+
+def test_a_packing_from_disk_has_the_bits_it_was_made_with(tmp_path, monkeypatch):
+    press = Press((0.0, 0.0), SIZE, LAW, friction=0.5, seed=2)
+    made = kept(press, sizes(), 1000.0, tmp_path)
+    monkeypatch.setattr(Press, "to_pressure", None)  # it must not be pressed again
+    found = kept(press, sizes(), 1000.0, tmp_path)
+    assert found[1:] == made[1:]
+    for grains in (made.grains, found.grains):
+        grains.step(1e-6, count=20)
+    np.testing.assert_array_equal(found.grains.discs.position, made.grains.discs.position)
+    np.testing.assert_array_equal(found.grains.discs.mass, made.grains.discs.mass)
+    with pytest.raises(TypeError):
+        kept(press, sizes(), 1001.0, tmp_path)  # the twin: another pressure is another packing
 
 
 def test_walls_hold_a_packing_too():
