@@ -123,7 +123,7 @@ class Clumps:
         self.mass[c], self.inertia[c], self.position[c] = body.mass, body.inertia, body.centroid
         offset = discs.position[own] - self.position[c]
         weight = discs.radius[own] * np.maximum(union.exposed, LEAST * discs.radius[own])
-        share = shares(weight, offset) if body.mass > 0.0 else None
+        share = shares(weight, offset, float(discs.radius[own].max())) if body.mass > 0.0 else None
         if share is None:
             raise InputError(Fault(f"{name}.centroid", body.centroid, "must lie amid the members", "m"))
         momentum = discs.mass[own] @ discs.velocity[own]
@@ -155,13 +155,14 @@ class Clumps:
             own[...] = given
 
 
-def shares(weight: Array, offset: Array) -> Array | None:
+def shares(weight: Array, offset: Array, radius: float) -> Array | None:
     """Positive shares w exp(l.o) of 1 whose centre is the origin of ``offset`` (k, 2) m; None if there are none.
+    radius (m): offsets below 1e-12 of it are none.
 
     Newton's method for the smallest of the convex sum w exp(l.o); collinear members need a least-squares step.
     """
     size = float(np.abs(offset).max())
-    if size == 0.0:
+    if size < 1e-12 * radius:
         return np.asarray(weight / weight.sum())
     way, tilt = offset / size, np.zeros(2)
     share: Array = weight / weight.sum()

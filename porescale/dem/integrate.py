@@ -72,8 +72,8 @@ def contact_steps(
         note_step(law.book, velocity, spin, mass, inertia, external_force, external_torque, drag, dt)
         if motion is not None:
             govern(
-                motion, walls, wall_force, position, velocity, spin, radius, mass, inertia, force, torque, step, dt,
-                drag, first and step == 0, law.book,
+                motion, walls, wall_force, position, velocity, spin, radius, mass, inertia, force, torque,
+                external_force, external_torque, step, dt, drag, first and step == 0, law.book,
             )  # fmt: skip
         withhold(held, withheld, velocity, spin, mass, inertia, force, torque, drag, first and step == 0, law.book, dt)
         steer(velocity, mass, step, dt, cell)

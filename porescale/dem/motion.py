@@ -59,8 +59,29 @@ FIRST_CONTROL = 3
 
 
 @kernel
+def watch(a, force, torque, external_force, external_torque):
+    """Add what contacts do to every watched body to ``a.watched_load``: all forces on it so far less the external."""
+    for k in range(a.watched.shape[0]):
+        i = a.watched[k, 1]
+        if a.watched[k, 0]:
+            x, y, moment = a.body_force[i, 0], a.body_force[i, 1], a.body_torque[i]
+            for m in range(a.start[i], a.start[i + 1]):
+                j = a.member[m]
+                x -= external_force[j, 0]
+                y -= external_force[j, 1]
+                moment -= external_torque[j] + a.arm[m, 0] * external_force[j, 1] - a.arm[m, 1] * external_force[j, 0]
+        else:
+            x, y, moment = force[i, 0] - external_force[i, 0], force[i, 1] - external_force[i, 1], torque[i]
+            moment -= external_torque[i]
+        a.watched_load[k, 0] += x
+        a.watched_load[k, 1] += y
+        a.watched_load[k, 2] += moment
+
+
+@kernel
 def govern(
-    a, walls, wall_force, position, velocity, spin, radius, mass, inertia, force, torque, step, dt, drag, first, book
+    a, walls, wall_force, position, velocity, spin, radius, mass, inertia, force, torque, external_force,
+    external_torque, step, dt, drag, first, book,
 ):  # fmt: skip
     """Between forces and kick, step ``step`` of the call: see module.  ``a`` Arrays; the discs' arrays as elsewhere.
 
@@ -73,15 +94,7 @@ def govern(
     if first:
         a.given[:, 0] = 0.0
         a.watched_load[:, :] = 0.0
-    for k in range(a.watched.shape[0]):
-        i = a.watched[k, 1]
-        if a.watched[k, 0]:
-            x, y, moment = a.body_force[i, 0], a.body_force[i, 1], a.body_torque[i]
-        else:
-            x, y, moment = force[i, 0], force[i, 1], torque[i]
-        a.watched_load[k, 0] += x
-        a.watched_load[k, 1] += y
-        a.watched_load[k, 2] += moment
+    watch(a, force, torque, external_force, external_torque)
     schedules = a.schedules[FIRST_CONTROL:]
     for k in range(a.control.shape[0]):
         i, pushed = a.control[k, INDEX], a.control[k, KIND] == PUSH

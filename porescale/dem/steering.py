@@ -136,7 +136,7 @@ class Steering:
         rows, count = [], max(self._grains.last_count, 1)
         for k, body in enumerate(self._watched):
             where = self._locate(body)
-            met = self._watched_load[k] / count - self._external(*where)
+            met = self._watched_load[k] / count
             supply = np.zeros(3)
             for row, given in zip(self._controls, self._given, strict=True):
                 if row[:2] == where:
@@ -158,16 +158,6 @@ class Steering:
     def _place(self, clump: int, index: int) -> Array:
         body: Any = self.clumps if clump else self._grains.discs
         return np.array([*body.position[index], body.angle[index]])
-
-    def _external(self, clump: int, index: int) -> Array:
-        """External force and torque on a body, (3,) N/m, N/m, N m/m."""
-        force, torque = self._grains.external_force, self._grains.external_torque
-        if not clump:
-            return np.array([*force[index], torque[index]])
-        own = self.clumps.discs_of(index)
-        arm = self.clumps.arm[self.clumps.start[index] : self.clumps.start[index + 1]]
-        moment = arm[:, 0] * force[own, 1] - arm[:, 1] * force[own, 0] + torque[own]
-        return np.array([*force[own].sum(axis=0), moment.sum()])
 
     # -- walls
 
