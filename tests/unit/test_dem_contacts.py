@@ -89,7 +89,9 @@ def test_geometry_of_contacts():
 
 def test_two_discs_pressed_together_by_hand():
     n = np.array([math.cos(0.7), math.sin(0.7)])
-    grains = Grains(make_discs([(0.5, 0.5), 0.5 + 0.0299 * n], [0.01, 0.02], 2500.0), LAW, Box((0, 0), (1, 1)))
+    grains = Grains(
+        make_discs(np.array([(0.5, 0.5), 0.5 + 0.0299 * n]), [0.01, 0.02], 2500.0), LAW, Box((0, 0), (1, 1))
+    )
     found = contacts(grains)
     assert found.count == 1
     assert found.overlap[0] == pytest.approx(1e-4, rel=1e-11)
