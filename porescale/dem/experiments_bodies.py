@@ -71,23 +71,26 @@ def stored(grains: Grains) -> float:
     return float(sum(parts))
 
 
-def dumbbell_bounce(angle: float, spin: float = 0.0, steps_per_contact: float = 1000.0) -> tuple[float, float]:
-    """A dumbbell whose lower end hits a floor without friction or loss, falling at 1 m/s, turning at ``spin`` (rad/s).
+def dumbbell_bounce(
+    angle: float, spin: float = 0.0, speed: float = 1e-3, steps_per_contact: float = 1000.0
+) -> tuple[float, float]:
+    """A dumbbell whose lower end hits a floor without friction or loss, falling at ``speed`` (m/s).
 
-    Two discs that touch, the way between them at ``angle`` (rad) to the floor.  Returns speed up and spin after.
+    Two discs that touch, the way between them at ``angle`` (rad) to the floor, turning at ``spin`` (1/m) times the
+    speed.  Returns speed up and spin after, over the speed.
     """
     law = law_at(0.0)
     way = RADIUS * np.array([math.cos(angle), math.sin(angle)])
-    gap = 1e-6 * RADIUS
+    lever = 2.0 * MASS * way[0] ** 2 / (3.0 * MASS * RADIUS**2)
+    dt = law.contact_time(2.0 * MASS / (1.0 + lever)) / steps_per_contact
+    gap = 0.5 * speed * dt
     grains = free(np.add([-way, way], (0.0, RADIUS + abs(way[1]) + gap)), law, floor=True)
+    rate = spin * speed
+    grains.discs.velocity[:] = rate * np.array([[way[1], -way[0]], [-way[1], way[0]]]) + (0.0, -speed)
+    grains.discs.spin[:] = rate
     clump = grains.steering.bind([[0, 1]], DENSITY)
-    clump.velocity[0], clump.spin[0] = (0.0, -1.0), spin
-    grains.discs.velocity[:], grains.discs.spin[:] = (0.0, -1.0), spin
-    grains.discs.velocity[:] += spin * np.array([[way[1], -way[0]], [-way[1], way[0]]])
-    effective = 1.0 / (1.0 / clump.mass[0] + way[0] ** 2 / clump.inertia[0])
-    dt = law.contact_time(effective) / steps_per_contact
     grains.step(dt, count=int(1.2 * steps_per_contact) + 3)
-    return float(clump.velocity[0, 1]), float(clump.spin[0])
+    return float(clump.velocity[0, 1]) / speed, float(clump.spin[0]) / speed
 
 
 def dumbbell_exact(angle: float, spin: float = 0.0) -> tuple[float, float]:
@@ -147,14 +150,15 @@ def lattice_moduli(shear: float, strain: float = 1e-7, steps: int = 100) -> Arra
     Discs do not turn; the pressure at the start is taken off.
     """
     found = []
-    for component in ("xx", "xy"):
+    for stretch, slide in ((1.0, 0.0), (0.0, 1.0)):
         grains = lattice(Linear(STIFFNESS, 0.0, shear * STIFFNESS, friction=1e6), 6)
         grains.hold(slice(None), x=False, y=False)
         dt = grains.stable_step()
         grains.steering.strain_cell()
         grains.step(dt)
         before = grains.steering.cell_pressure()
-        grains.steering.strain_cell(**{component: -strain / (steps * dt)})
+        rate = -strain / (steps * dt)
+        grains.steering.strain_cell(xx=stretch * rate, xy=slide * rate)
         grains.step(dt, count=steps + 1)
         found.append((grains.steering.cell_pressure() - before) / (strain * STIFFNESS))
     return np.array([found[0][0], found[0][2], found[1][1]])

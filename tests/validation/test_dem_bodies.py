@@ -1,0 +1,38 @@
+"""Validations of clumps, servo walls and strained cells hold, and their twins fail."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from porescale.dem import experiments_bodies as lab
+from porescale.dem.verify_bodies import VALIDATIONS
+
+ROWS = {row.name: row for row in VALIDATIONS}
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_row_holds(name):
+    row = ROWS[name]
+    assert row.measure().error <= row.tolerance
+
+
+def test_a_dumbbell_does_not_bounce_like_a_disc():  # the twin that must fail
+    up, spin = lab.dumbbell_bounce(0.5)
+    assert abs(up - 1.0) > 0.1
+    assert abs(spin * lab.RADIUS) > 0.1
+
+
+def test_a_fast_dumbbell_turns_while_it_touches():  # the twin that must fail
+    up, spin = lab.dumbbell_bounce(0.5, speed=1.0)
+    exact = lab.dumbbell_exact(0.5)
+    assert max(abs(up - exact[0]), abs(spin - exact[1]) * lab.RADIUS) > 1e-3
+
+
+def test_a_pendulum_that_swings_wide_is_no_harmonic_one():  # the twin that must fail
+    assert abs(lab.pendulum_period(1.0, steps=2000) / lab.pendulum_exact(1e-6) - 1.0) > 0.05
+
+
+def test_with_free_rotation_the_shear_modulus_is_another():  # the twin that must fail
+    with_held, without = lab.lattice_exact(0.5)[2], np.sqrt(3.0) / 4.0 * 1.5
+    assert abs(lab.lattice_moduli(0.5)[2] - with_held) < 4e-4 < abs(with_held - without)
