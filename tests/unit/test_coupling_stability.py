@@ -64,13 +64,14 @@ def test_light_discs_hold_from_the_density_ratio_of_the_map_on(rows, law):
         least = limits.lightest(cells, *law.split())
         ratios = {row.x for row in fall if row.y == cells}
         assert not {x for x in ratios if x >= least and (cells, x) in failed}
-        assert (cells, max(x for x in ratios if x < least)) in failed
+        lighter = [x for x in ratios if x < least]
+        assert not lighter or (cells, max(lighter)) in failed
     right = {row.y for row in fall if all(it.verdict != STABLE for it in fall if it.y == row.y)}
     assert min(right) == limits.CELLS_RIGHT[law]
 
 
 def test_light_discs_between_the_sizes_of_the_map_count_as_the_smaller():
-    assert limits.lightest(12.0, "odd-SC1", "B2") == 0.5
+    assert limits.lightest(12.0, "odd-SC1", "B2") == 0.2
     assert limits.lightest(2.0) == 1.0
     assert limits.lightest(10.0, "SC9", "B9") == max(limits.lightest(10.0, *law.split()) for law in limits.LIGHTEST)
 
@@ -89,11 +90,11 @@ def test_free_discs_run_away_with_what_is_for_held_ones(rows):
         ({"relaxation_time": 0.5001, "operator": "central"}, "none that is known of"),
         ({"speed": 0.3, "relaxation_time": 1.0}, "too fast for the lattice, Mach 0.52"),
         ({"density_change": 0.45}, "too much for the sound speed"),
-        ({"density_ratio": 0.15}, "density ratio 0.15 at 16 cells"),
-        ({"density_ratio": 0.4, "cells_per_diameter": 10.0}, "density ratio 0.4 at 10 cells"),
+        ({"density_ratio": 0.05}, "density ratio 0.05 at 16 cells"),
+        ({"density_ratio": 0.15, "cells_per_diameter": 10.0}, "density ratio 0.15 at 10 cells"),
         (
-            {"density_ratio": 0.4, "cells_per_diameter": 10.0, "relaxation_time": 0.5001},
-            "density ratio 0.4 at 10 cells",
+            {"density_ratio": 0.15, "cells_per_diameter": 10.0, "relaxation_time": 0.5001},
+            "density ratio 0.15 at 10 cells",
         ),
         ({"solid_operator": "SC3"}, "take 'exact-wall'"),
         ({"solid_operator": "SC3", "density_ratio": None}, "none that is known of"),

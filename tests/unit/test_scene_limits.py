@@ -75,7 +75,7 @@ def test_light_grains_are_warned_of_below_what_their_size_bears(law, cells):
     laws = {"fluid__solid_operator": law[0], "fluid__weighting": law[1]}
     assert not said(alone(1000 * least * 1.001, cells, **laws), "density ratio")
     (line,) = said(alone(1000 * least * 0.999, cells, **laws), "density ratio")
-    if cells < 10:
+    if min(limits.lightest(size, *law) for size in (5.0, 10.0, 16.0)) < least:
         finer = float(line.partition("a spacing of ")[2].partition(" m")[0])
         assert limits.lightest(cells * H / finer * 1.05, *law) < least  # two digits of the spacing
     else:
