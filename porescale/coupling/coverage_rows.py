@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.ground.jit import inline, parallel_kernel, prange
+from porescale.ground.jit import inline, parallel_kernel, part, prange
 
 BLOCK = 16
 """Cells done at once: the widest vector of float32."""
@@ -95,8 +95,8 @@ def list_rows(patches, periodic_y, rows):
         here += start[y]
         start[y] = total
         total += here
-    for part in prange(LISTING):
-        list_part(patches, periodic_y, rows, part * ny // LISTING, (part + 1) * ny // LISTING)
+    for piece in prange(LISTING):
+        list_part(patches, periodic_y, rows, piece * ny // LISTING, (piece + 1) * ny // LISTING)
     for y in range(ny, 0, -1):
         start[y] = start[y - 1]
     start[0] = 0
@@ -167,18 +167,18 @@ def lay_row(begin, end, rows, patches, centre, velocity, spin, shift, theta, per
             for b in range(first, last, BLOCK):
                 vy = ramp.dtype.type(vy0 + spin[n] * b)
                 cy = ramp.dtype.type(cy0 + shift[n, 2] * b)
-                e = patches.fraction[at + b : at + b + BLOCK]
+                e = part(patches.fraction, at + b, BLOCK)
                 x = base + b + BLOCK
-                t = s[x : x + BLOCK]
-                tx = sx[x : x + BLOCK]
-                ty = sy[x : x + BLOCK]
+                t = part(s, x, BLOCK)
+                tx = part(sx, x, BLOCK)
+                ty = part(sy, x, BLOCK)
                 for i in range(BLOCK):
                     t[i] += e[i]
                     tx[i] += e[i] * (vx + e[i] * cx)
                     ty[i] += e[i] * (vy + turning * ramp[i] + e[i] * (cy + twist * ramp[i]))
                 if scratch.shape[0] > 3:
                     softness = ramp.dtype.type(theta[n])
-                    summed = scratch[3, x : x + BLOCK]
+                    summed = part(scratch[3], x, BLOCK)
                     for i in range(BLOCK):
                         summed[i] += e[i] * softness
             if first < last:

@@ -8,15 +8,9 @@ order afterwards, so that loads do not depend on threads.
 """
 
 from porescale.coupling.coverage_rows import BLOCK, blocks_inside
-from porescale.ground.jit import inline, kernel, parallel_kernel, prange
+from porescale.ground.jit import inline, kernel, parallel_kernel, part, prange, sum_by_halves
 
-
-@inline
-def total(p, k):
-    """Sum of the BLOCK = 16 numbers from ``k`` on, by halves."""
-    even = ((p[k] + p[k + 8]) + (p[k + 4] + p[k + 12])) + ((p[k + 2] + p[k + 10]) + (p[k + 6] + p[k + 14]))
-    odd = ((p[k + 1] + p[k + 9]) + (p[k + 5] + p[k + 13])) + ((p[k + 3] + p[k + 11]) + (p[k + 7] + p[k + 15]))
-    return even + odd
+total = sum_by_halves(BLOCK)
 
 
 @inline
@@ -62,11 +56,11 @@ def take_row(begin, end, rows, patches, centre, velocity, spin, shift, periodic_
                 arm = ramp.dtype.type(rx + b)
                 vy = ramp.dtype.type(vy0 + spin[n] * b)
                 cy = ramp.dtype.type(cy0 + shift[n, 2] * b)
-                e = patches.fraction[at + b : at + b + BLOCK]
+                e = part(patches.fraction, at + b, BLOCK)
                 x = base + b + BLOCK
-                rho = density[x : x + BLOCK]
-                kx = jx[x : x + BLOCK]
-                ky = jy[x : x + BLOCK]
+                rho = part(density, x, BLOCK)
+                kx = part(jx, x, BLOCK)
+                ky = part(jy, x, BLOCK)
                 for i in range(BLOCK):
                     gy = e[i] * (ky[i] - rho[i] * (vy + turning * ramp[i] + e[i] * (cy + twist * ramp[i])))
                     gx = e[i] * (kx[i] - rho[i] * (vx + e[i] * cx))
@@ -83,7 +77,7 @@ def take_row(begin, end, rows, patches, centre, velocity, spin, shift, periodic_
                 mass += total(partial, 3 * BLOCK)
                 inertia += total(partial, 4 * BLOCK)
                 if soft:
-                    slip = scratch[3, x : x + BLOCK]
+                    slip = part(scratch[3], x, BLOCK)
                     for i in range(BLOCK):
                         edge = e[i] * (1 - e[i]) * (rho[i] > 0)  # none of what lies beyond the box
                         partial[5 * BLOCK + i] = edge * slip[i]

@@ -1,5 +1,6 @@
 """The partially saturated cells of a lattice: what discs cover of it, and one fluid step with them in it."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -15,8 +16,9 @@ from porescale.coupling.shapes.rectangle import Rectangle
 from porescale.coupling.shapes.ring import Ring
 from porescale.coupling.shapes.shape import Shape
 from porescale.coupling.solid.choose import choose_solid
-from porescale.coupling.solid_collision import sweep_even, sweep_odd
+from porescale.coupling.solid_collision import AT_ONCE, sweep
 from porescale.coupling.weighting import choose_weight, fitting_weight, weights_of
+from porescale.ground.jit import most_threads
 from porescale.lbm.collision.choose import third_order_rate
 from porescale.lbm.fluid import Fluid
 
@@ -63,10 +65,10 @@ class Saturated:
         exact = solid_operator == "exact-wall"
         third_order = third_order_rate(fluid.law)
         shift = RADIUS_SHIFT * (fluid.relaxation_time - 0.5) * (1 / third_order - 0.5) * exact
-        self.covering_radius = self.radius + shift / np.maximum(self.radius, 1.0)
-        across = 2 * self.covering_radius.max(initial=0)
-        if (self.periodic_x and across > nx) or (self.periodic_y and across > ny):
+        widest = 0.5 * min(nx if self.periodic_x else math.inf, ny if self.periodic_y else math.inf)
+        if self.radius.max(initial=0) > widest * (1 + 1e-12):
             raise ValueError("a disc is wider than the periodic box")
+        self.covering_radius = np.minimum(self.radius + shift / np.maximum(self.radius, 1.0), widest)
         width = (np.floor(2 * self.covering_radius) + 2).astype(np.int64)
         if soft_rim and not exact:
             raise ValueError("soft rims go with the solid operator exact-wall")
@@ -88,8 +90,9 @@ class Saturated:
         bands = -(-ny // BAND_HEIGHT)
         self._band_order = np.argsort(np.arange(bands) * SPREAD % 1).astype(np.int64)
         self._ramp = np.arange(BLOCK).astype(dtype)
-        self._scratch = np.zeros((bands, 4 if soft_rim else 3, BLOCK + nx + BLOCK), dtype)
-        self._partial = np.zeros((bands, (7 if soft_rim else 5) * BLOCK), dtype)
+        threads = most_threads()
+        self._scratch = np.zeros((threads, 4 if soft_rim else 3, BLOCK + nx + BLOCK), dtype)
+        self._weights = np.zeros((threads, 5, max(min(nx, AT_ONCE), 7 * BLOCK)), dtype)
         self._laws = (
             choose_weight(fitting_weight(solid_operator, weighting), fluid.relaxation_time, dtype, soft=soft_rim),
             choose_solid(solid_operator, fluid.relaxation_time, third_order, dtype, soft=soft_rim),
@@ -188,8 +191,8 @@ class Saturated:
         if self.bodies:
             self.bodies.before(fluid, patches, self._shift, self._slow_load)
         fluid.advance(
-            sweep_even, sweep_odd, self._band_order, BAND_HEIGHT, self._rows, patches, *motion, self._shift,
-            self._theta, self.periodic_x, self._ramp, self._row_load, self._scratch, self._partial, *self._laws,
+            sweep, self._band_order, BAND_HEIGHT, self._rows, patches, *motion, self._shift,
+            self._theta, self.periodic_x, self._ramp, self._row_load, self._scratch, self._weights, *self._laws,
         )  # fmt: skip
         add_rows(
             patches.corner, patches.height, fluid.ny, self.periodic_y, self._row_load, self._load, self._inside

@@ -8,82 +8,106 @@ import numpy as np
 
 from porescale.coupling.coverage_rows import BLOCK, lay_row
 from porescale.coupling.load import take_row
-from porescale.coupling.solid.law import force_share, is_soft, mix, taken
+from porescale.coupling.solid.law import collide_beside, force_share, is_soft, rates, taken
 from porescale.coupling.weighting import weight
-from porescale.ground.jit import inline, parallel_kernel, prange
-from porescale.lbm.collision.law import collide, collide_row, moments, numbers, shear_rate
-from porescale.lbm.stream import even_slots, odd_slots
+from porescale.ground.jit import inline, parallel_kernel, part, prange, thread
+from porescale.lbm.collision.law import collide_row, moments, numbers, shear_rate
+from porescale.lbm.stream import slots
 
+AT_ONCE = 512
+"""Cells of a row whose weights are worked out, then used: they stay in the nearest cache."""
 STRETCH = 64
 """Cells of a row that are saturated or plain together."""
 
 
 @inline
-def collide_saturated_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, st, first, last, weighting, solid, law):
+def weigh_row(s, sx, sy, inverse, b, even, kept, weighting, solid):
+    """What saturated cells need that follows from the bodies alone.
+
+    s, sx, sy (nx,) as in collide_saturated_row: sx, sy become the mean solid velocity.  Overwrites inverse, 1 over the
+    sum of the solid fractions, or 1;  b, weight;  even, kept: ``rates``.  A loop of its own, since in one with
+    the collision divisions would wait for each other.
+    """
+    c = numbers(weighting[0])
+    for x in range(s.shape[0]):
+        e = s[x]
+        share = c.one / (e if e > c.zero else c.one)
+        e = min(c.one, e)
+        inverse[x] = share
+        sx[x] *= share
+        sy[x] *= share
+        b[x] = weight(e, c.zero, c.zero, c.zero, weighting)
+        even[x], kept[x] = rates(e, b[x], c.zero, c.zero, c.zero, solid)
+
+
+@inline
+def collide_saturated_row(
+    a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, st, weights, first, last, weighting, solid, law,
+):  # fmt: skip
     """Collide cells ``first`` to ``last`` - 1 of a row in which grains lie.
 
     a_i (nx,): slots, as in collide_row;  weighting, solid, law: laws of weight, solid and fluid operator.  s, sx, sy
     (nx,): sum of the solid fractions e and of e times solid velocity; overwritten with what loads are made of, the
     three numbers of ``taken`` over sum e.  st (nx,): sum of e times theta where rims are soft, overwritten with
-    |u - v|; not touched elsewhere.
+    |u - v|; not touched elsewhere.  weights (4 or more, as many cells): scratch.
     """
+    # Cut to the range first: an index that might be negative keeps the loop from being vectorised.
+    n = last - first
+    a0, a1, a2 = part(a0, first, n), part(a1, first, n), part(a2, first, n)
+    a3, a4, a5 = part(a3, first, n), part(a4, first, n), part(a5, first, n)
+    a6, a7, a8 = part(a6, first, n), part(a7, first, n), part(a8, first, n)
+    s, sx, sy, st = part(s, first, n), part(sx, first, n), part(sy, first, n), part(st, first, n)
+    inverse, b = part(weights[0], 0, n), part(weights[1], 0, n)
+    even, kept = part(weights[2], 0, n), part(weights[3], 0, n)
+    weigh_row(s, sx, sy, inverse, b, even, kept, weighting, solid)
     c = numbers(law.rate)
     one, half = c.one, c.half
-    # Cut to the range first: an index that might be negative keeps the loop from being vectorised.
-    a0, a1, a2, a3, a4 = a0[first:last], a1[first:last], a2[first:last], a3[first:last], a4[first:last]
-    a5, a6, a7, a8 = a5[first:last], a6[first:last], a7[first:last], a8[first:last]
-    s, sx, sy, st = s[first:last], sx[first:last], sy[first:last], st[first:last]
     soft = is_soft(solid)
     for x in range(s.shape[0]):
         f0, f1, f2, f3, f4 = a0[x], a1[x], a2[x], a3[x], a4[x]
         f5, f6, f7, f8 = a5[x], a6[x], a7[x], a8[x]
-        e = s[x]
         d, jx, jy = moments(f0, f1, f2, f3, f4, f5, f6, f7, f8)
         rho = one + d
-        share = e if e > c.zero else one
-        both = one / (rho * share)  # one division for two: they cost more than all else here
-        part, lightness = both * rho, both * share
-        e = min(one, e)
-        vx, vy = sx[x] * part, sy[x] * part
-        theta = c.zero
+        lightness = one / rho
+        share, held, evenly, remaining = inverse[x], b[x], even[x], kept[x]
+        e, vx, vy = min(one, s[x]), sx[x], sy[x]
         if soft:
-            theta = st[x] * part
-        slip_x = (jx + half * law.fx) * lightness - vx
-        slip_y = (jy + half * law.fy) * lightness - vy
-        b = weight(e, theta, slip_x, slip_y, weighting)
-        if soft:
+            theta = st[x] * share
+            slip_x = (jx + half * law.fx) * lightness - vx
+            slip_y = (jy + half * law.fy) * lightness - vy
+            held = weight(e, theta, slip_x, slip_y, weighting)
+            evenly, remaining = rates(e, held, theta, slip_x, slip_y, solid)
             st[x] = np.sqrt(slip_x * slip_x + slip_y * slip_y)
-        acting = half * force_share(b, solid)
+        acting = half * force_share(held, solid)
         hx = acting * law.fx
         hy = acting * law.fy
         kx, ky = jx + hx, jy + hy
         ux, uy = kx * lightness, ky * lightness
         rate = shear_rate(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, kx, ky, ux, uy, law)
-        g0, g1, g2, g3, g4, g5, g6, g7, g8 = collide(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, kx, ky, ux, uy, rate, law)
-        g0, g1, g2, g3, g4, g5, g6, g7, g8 = mix(
-            f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, theta, rho, ux, uy, vx, vy,
-            hx, hy, rate, solid,
+        g0, g1, g2, g3, g4, g5, g6, g7, g8 = collide_beside(
+            f0, f1, f2, f3, f4, f5, f6, f7, f8, e, held, evenly, remaining, rho, d, kx, ky, ux, uy, vx, vy, hx, hy,
+            rate, law, solid,
         )  # fmt: skip
         a0[x], a2[x], a1[x], a4[x], a3[x] = g0, g1, g2, g3, g4
         a6[x], a5[x], a8[x], a7[x] = g5, g6, g7, g8
-        ta, tx, ty = taken(e, b, rho, jx, jy, hx, hy, rate, solid)
-        s[x] = part * ta
-        sx[x] = part * tx
-        sy[x] = part * ty
+        ta, tx, ty = taken(e, held, rho, jx, jy, hx, hy, rate, solid)
+        s[x] = share * ta
+        sx[x] = share * tx
+        sy[x] = share * ty
 
 
 @inline
 def saturated_row(
     a0, a1, a2, a3, a4, a5, a6, a7, a8, begin, end, rows, patches, centre, velocity, spin, shift, theta,
-    periodic_x, ramp, row_load, scratch, partial, weighting, solid, law,
+    periodic_x, ramp, row_load, scratch, weights, weighting, solid, law,
 ):  # fmt: skip
     """One row of the lattice: lay out its bodies, collide, take their loads.
 
-    Plain fluid outside of what the bodies cover.  scratch (3, BLOCK + nx + BLOCK): zero before and after;  partial:
-    scratch too; other arguments as in coverage_rows.py and load.py.
+    Plain fluid outside of what the bodies cover.  scratch (3 or 4, BLOCK + nx + BLOCK): zero before and after;
+    weights (5, AT_ONCE): scratch, its last row the ``partial`` of take_row; other arguments as in coverage_rows.py and
+    load.py.
     """
     n = a0.shape[0]
-    s, sx, sy = scratch[0], scratch[1], scratch[2]
     left = n
     right = n
     if begin < end:
@@ -91,63 +115,48 @@ def saturated_row(
             begin, end, rows, patches, centre, velocity, spin, shift, theta, periodic_x, ramp, scratch
         )  # fmt: skip
     if left >= right:
-        collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, 0, n, law)
-        left = right
-    else:
-        # Short loops run cell by cell: the plain ends of the row are whole stretches, or nothing.
-        left, right = left // STRETCH * STRETCH, min((right + STRETCH - 1) // STRETCH * STRETCH, n)
-        cells, cells_x, cells_y = s[BLOCK : BLOCK + n], sx[BLOCK : BLOCK + n], sy[BLOCK : BLOCK + n]
-        softness = scratch[scratch.shape[0] - 1, BLOCK : BLOCK + n]
-        collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, 0, left, law)
-        collide_saturated_row(
-            a0, a1, a2, a3, a4, a5, a6, a7, a8, cells, cells_x, cells_y, softness, left, right, weighting, solid,
-            law,
+        left = n
+        right = n
+    # Short loops run cell by cell: the plain ends of the row are whole stretches, or nothing.
+    left, right = left // STRETCH * STRETCH, min((right + STRETCH - 1) // STRETCH * STRETCH, n)
+    for end_of_row in range(2):  # one loop for both ends: compiled once
+        first, last = (right, n) if end_of_row else (0, left)
+        collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, first, last, law)
+    if left < right:
+        s, sx, sy = part(scratch[0], BLOCK, n), part(scratch[1], BLOCK, n), part(scratch[2], BLOCK, n)
+        softness = part(scratch[scratch.shape[0] - 1], BLOCK, n)
+        for first in range(left, right, AT_ONCE):
+            collide_saturated_row(
+                a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, softness, weights, first, min(first + AT_ONCE, right),
+                weighting, solid, law,
+            )  # fmt: skip
+        for k in range(scratch.shape[0]):
+            scratch[k, :BLOCK] = 0
+            scratch[k, BLOCK + n :] = 0
+        take_row(
+            begin, end, rows, patches, centre, velocity, spin, shift, periodic_x, ramp, scratch, weights[4], row_load
         )  # fmt: skip
-        collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, right, n, law)
-        for beyond in (s, sx, sy):
-            beyond[:BLOCK] = 0
-            beyond[BLOCK + n :] = 0
-        if scratch.shape[0] > 3:
-            scratch[3, :BLOCK] = 0
-            scratch[3, BLOCK + n :] = 0
-    take_row(begin, end, rows, patches, centre, velocity, spin, shift, periodic_x, ramp, scratch, partial, row_load)
-    for used in (s, sx, sy):
-        used[BLOCK + left : BLOCK + right] = 0
-    if scratch.shape[0] > 3:
-        scratch[3, BLOCK + left : BLOCK + right] = 0
+        for k in range(scratch.shape[0]):
+            scratch[k, BLOCK + left : BLOCK + right] = 0
 
 
 @parallel_kernel
-def sweep_even(
-    f, band_order, height, rows, patches, centre, velocity, spin, shift, theta, periodic_x, ramp, row_load,
-    scratch, partial, weighting, solid, law,
+def sweep(
+    f, parity, band_order, height, rows, patches, centre, velocity, spin, shift, theta, periodic_x, ramp, row_load,
+    scratch, weights, weighting, solid, law,
 ):  # fmt: skip
-    """Even step with bodies; overwrites populations f and row_load.
+    """Step of ``parity`` with bodies; overwrites populations f and row_load.  The halo is filled before an odd one.
 
-    scratch (bands, 3, BLOCK + nx + BLOCK): zero before and after;  partial (bands, 3 * BLOCK): scratch.  Bands of
-    ``height`` rows are spread over the threads in ``band_order``; other arguments as in ``saturated_row``.
+    For each thread scratch (threads, 3 or 4, BLOCK + nx + BLOCK), zero before and after;  weights (threads, 5,
+    AT_ONCE): scratch.  Bands of ``height`` rows are spread over the threads in ``band_order``;
+    other arguments as in ``saturated_row``.
     """
     for turn in prange(band_order.shape[0]):
         band = band_order[turn]
+        mine = thread()
         for y in range(band * height, min((band + 1) * height, f.shape[1] - 2)):
-            a0, a1, a2, a3, a4, a5, a6, a7, a8 = even_slots(f, y + 1)
+            a0, a1, a2, a3, a4, a5, a6, a7, a8 = slots(f, y + 1, parity)
             saturated_row(
                 a0, a1, a2, a3, a4, a5, a6, a7, a8, rows.start[y], rows.start[y + 1], rows, patches, centre, velocity,
-                spin, shift, theta, periodic_x, ramp, row_load, scratch[band], partial[band], weighting, solid, law,
-            )  # fmt: skip
-
-
-@parallel_kernel
-def sweep_odd(
-    f, band_order, height, rows, patches, centre, velocity, spin, shift, theta, periodic_x, ramp, row_load,
-    scratch, partial, weighting, solid, law,
-):  # fmt: skip
-    """Odd step with bodies; the halo must have been filled."""
-    for turn in prange(band_order.shape[0]):
-        band = band_order[turn]
-        for y in range(band * height, min((band + 1) * height, f.shape[1] - 2)):
-            a0, a1, a2, a3, a4, a5, a6, a7, a8 = odd_slots(f, y + 1)
-            saturated_row(
-                a0, a1, a2, a3, a4, a5, a6, a7, a8, rows.start[y], rows.start[y + 1], rows, patches, centre, velocity,
-                spin, shift, theta, periodic_x, ramp, row_load, scratch[band], partial[band], weighting, solid, law,
+                spin, shift, theta, periodic_x, ramp, row_load, scratch[mine], weights[mine], weighting, solid, law,
             )  # fmt: skip

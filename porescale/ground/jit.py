@@ -46,7 +46,8 @@ os.environ.setdefault("GOMP_SPINCOUNT", "3000")
 import llvmlite.binding as llvm  # noqa: E402  (after the cache folder is set)
 import numba  # noqa: E402
 import numpy as np  # noqa: E402
-from numba.extending import overload  # noqa: E402
+from llvmlite import ir  # noqa: E402
+from numba.extending import intrinsic, overload  # noqa: E402
 
 # A row kernel reads and writes nine population rows: LLVM must compare 36 pairs of them before it vectorises,
 # and gives up at 8 by default.
@@ -55,6 +56,7 @@ llvm.set_option("porescale", "-runtime-memory-check-threshold=256")
 F = TypeVar("F", bound=Callable[..., Any])
 # Where the folder cannot be written numba would cache beside the sources, or give up: compile anew then.
 _FLAGS: dict[str, Any] = {"error_model": "numpy", "cache": writable(cache_folder()), "nogil": True}
+_INLINED: Any = {"error_model": "numpy", "nogil": True, "forceinline": True}
 
 
 def kernel(function: F) -> F:
@@ -103,7 +105,7 @@ def by_law(signature: F) -> Any:
         return add
 
     vars(chosen).update(__name__=signature.__name__, __doc__=signature.__doc__, of=of, py_func=plain)
-    overload(chosen, strict=False, jit_options={"error_model": "numpy", "nogil": True, "forceinline": True})(choose)
+    overload(chosen, strict=False, jit_options=_INLINED)(choose)
     return chosen
 
 
@@ -122,21 +124,106 @@ def by_precision(build: Callable[[type], Any]) -> Any:
         return None if known is None else lambda number: known
 
     vars(chosen).update(__name__=build.__name__, __doc__=build.__doc__)
-    overload(chosen, strict=False, jit_options={"error_model": "numpy", "nogil": True, "forceinline": True})(choose)
+    overload(chosen, strict=False, jit_options=_INLINED)(choose)
     return chosen
 
 
+def part(array: Any, first: Any, count: Any) -> Any:
+    """``count`` entries of a one-dimensional array from ``first`` on; for loops that take many short parts.
+
+    In kernels a view that owns nothing: a slice made the usual way counts references and is cut to the array, which
+    costs more than a part of a dozen entries.  Not checked: that the part lies in the array.
+    """
+    return array[first : first + count]
+
+
+def _view(typing: Any, array: Any, first: Any, count: Any) -> Any:
+    """``part`` in kernels."""
+    if not isinstance(array, numba.types.Array) or array.ndim != 1 or array.layout != "C":
+        return None
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        whole, made = (
+            context.make_array(array)(context, builder, values[0]),
+            context.make_array(array)(context, builder),
+        )
+        size = context.get_constant(numba.intp, context.get_abi_sizeof(context.get_data_type(array.dtype)))
+        context.populate_array(
+            made, data=builder.gep(whole.data, [values[1]], inbounds=True), shape=[values[2]], strides=[size],
+            itemsize=size, meminfo=None,
+        )  # fmt: skip
+        return made._getvalue()
+
+    return array(array, numba.intp, numba.intp), code
+
+
+_part: Any = intrinsic(_view)
+
+
+@overload(part, strict=False, jit_options=_INLINED)
+def _choose_part(array: Any, first: Any, count: Any) -> Any:
+    return lambda array, first, count: _part(array, first, count)
+
+
+def sum_by_halves(count: int) -> Any:
+    """Make an inline kernel (array, first) that sums ``count`` entries, a power of two, from ``first`` on.
+
+    The second half is added to the first until one is left: vector additions, in an order that no machine changes.
+    """
+
+    def total(array: Any, first: Any) -> Any:
+        left = array[first : first + count]
+        while left.shape[0] > 1:
+            half = left.shape[0] // 2
+            left = left[:half] + left[half:]
+        return left[0]
+
+    def vector(typing: Any, array: Any, first: Any) -> Any:
+        def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            start = builder.gep(context.make_array(array)(context, builder, values[0]).data, [values[1]], inbounds=True)
+            kind = ir.VectorType(context.get_data_type(array.dtype), count)
+            left = builder.load(builder.bitcast(start, kind.as_pointer()), align=4)
+            size = count
+            while size > 1:
+                size //= 2
+                none = ir.Constant(left.type, ir.Undefined)
+                halves = [
+                    builder.shuffle_vector(left, none, ir.Constant(ir.VectorType(ir.IntType(32), size), lanes))
+                    for lanes in (list(range(size)), list(range(size, 2 * size)))
+                ]
+                left = builder.fadd(*halves)
+            return builder.extract_element(left, ir.Constant(ir.IntType(32), 0))
+
+        return array.dtype(array, numba.intp), code
+
+    vector_total: Any = intrinsic(vector)
+
+    def choose(array: Any, first: Any) -> Any:
+        return lambda array, first: vector_total(array, first)
+
+    vars(total)["py_func"] = total
+    overload(total, strict=False, jit_options=_INLINED)(choose)
+    return total
+
+
 prange = numba.prange
+thread: Any = vars(numba)["get_thread_id"]
+"""Number, below ``most_threads()``, of the thread that runs an iteration of a prange loop: for scratch, not results."""
 
 
 def set_threads(count: int | None) -> int:
     """Use ``count`` threads (None: all cores) in parallel kernels; returns it.  InputError unless there are as many."""
-    limit = int(vars(numba.config)["NUMBA_NUM_THREADS"])
+    limit = most_threads()
     chosen = limit if count is None else count
     if not 1 <= chosen <= limit:
         raise InputError(Fault("--threads", count, "is out of range", allowed=f"1 to {limit}"))
     numba.set_num_threads(chosen)
     return chosen
+
+
+def most_threads() -> int:
+    """Most threads that parallel kernels can be given."""
+    return int(vars(numba.config)["NUMBA_NUM_THREADS"])
 
 
 def threads() -> int:

@@ -16,7 +16,7 @@ from porescale.lbm.moments import moment_fields
 from porescale.lbm.plate import Plate, exchange
 from porescale.lbm.rim import Rim
 from porescale.lbm.sides import Sides
-from porescale.lbm.stream import sweep_even, sweep_odd
+from porescale.lbm.stream import sweep
 
 Sweep = Callable[..., None]
 
@@ -72,12 +72,12 @@ class Fluid:
             inside[:, rows] = equilibrium(rho[rows], ux[rows], uy[rows], rho[rows].shape)
         self.step = 0
 
-    def advance(self, even: Sweep = sweep_even, odd: Sweep = sweep_odd, *extra: Any) -> None:
-        """One step.  ``even`` and ``odd`` sweep the cells, given populations, ``extra`` and the law."""
+    def advance(self, cells: Sweep = sweep, *extra: Any) -> None:
+        """One step.  ``cells`` sweeps them, given populations, the step's parity, ``extra`` and the law."""
         parity = self.step % 2
         if parity:
             self._exchange(+1.0)
-        (odd if parity else even)(self.populations, *extra, self.law)
+        cells(self.populations, parity, *extra, self.law)
         if parity:
             self._exchange(-1.0)
         self.rim.close(self._flat, parity, (self.law.fx, self.law.fy))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from porescale.ground.check import InputError
-from porescale.ground.jit import set_threads, threads
+from porescale.ground.jit import kernel, part, set_threads, sum_by_halves, threads
 
 
 @pytest.mark.usefixtures("one_thread")
@@ -18,3 +19,26 @@ def test_threads_are_those_asked_for_or_refused_with_the_range():
         with pytest.raises(InputError, match=rf"--threads = {count}: is out of range \(allowed: 1 to {most}\)"):
             set_threads(count)
         assert threads() == most  # nothing was set
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_parts_are_slices_and_sums_by_halves_are_those_of_plain_python(dtype):
+    total = sum_by_halves(8)
+
+    @kernel
+    def both(values):
+        for i in range(8):
+            part(values, 3, 8)[i] *= 2
+        return total(values, 3)
+
+    values = np.random.default_rng(1).uniform(-1, 1, 20).astype(dtype)
+    expected = values.copy()
+    expected[3:11] *= 2
+    found = both(values)
+    np.testing.assert_array_equal(values, expected)
+    np.testing.assert_array_equal(part(values, 3, 8), values[3:11])
+    by_halves = ((values[3] + values[7]) + (values[5] + values[9])) + (
+        (values[4] + values[8]) + (values[6] + values[10])
+    )
+    assert found == total(values, 3) == by_halves  # to the bit: the order is part of the result
+    assert by_halves.dtype == dtype

@@ -259,14 +259,16 @@ def test_a_step_of_plain_python_is_the_compiled_one(monkeypatch):
     for _ in range(2):
         compiled.advance()
     for module, name in (
-        (stream, "collide_row"), (stream, "even_slots"), (stream, "odd_slots"), (law, "moments"), (moments, "moments"),
-        (law, "shear_rate"), (law, "collide"), (trt, "relax_halves"), (rim, "fill_halo"), (rim, "empty_halo"),
+        (stream, "collide_row"), (stream, "even_slots"), (stream, "odd_slots"), (stream, "slots"),
+        (law, "moments"), (moments, "moments"),
+        (law, "shear_rate"), (law, "collide"), (trt, "relax_halves"), (trt, "relax_to"), (trt, "odd_rate_here"),
+        (rim, "fill_halo"), (rim, "empty_halo"),
         (room, "exchange"), (moments, "_moment_row"),
     ):  # fmt: skip
         monkeypatch.setattr(module, name, getattr(module, name).py_func)
     plain = made()
     for _ in range(2):
-        plain.advance(stream.sweep_even.py_func, stream.sweep_odd.py_func)
+        plain.advance(stream.sweep.py_func)
     np.testing.assert_allclose(plain.populations, compiled.populations, rtol=0, atol=2 * ROUND_OFF)
     d, jx, jy = np.zeros((3, 3, 4))
     moments._moments_even.py_func(plain.populations, d, jx, jy)

@@ -111,12 +111,21 @@ def test_an_operator_of_plain_python_is_the_compiled_one(operator, smagorinsky, 
     f = dense.random_populations(2, 3)
     compiled = collided(operator, f, smagorinsky=smagorinsky)
     body = importlib.import_module(f"porescale.lbm.collision.{operator}")
-    patches = [(stream, "collide_row"), (stream, "even_slots"), (law, "moments"), (law, "shear_rate"), (law, "collide")]
-    patches += [(body, name) for name in ("relax_halves", "relax_moments") if hasattr(body, name)]
+    patches = [
+        (stream, "collide_row"),
+        (stream, "even_slots"),
+        (stream, "slots"),
+        (law, "moments"),
+        (law, "shear_rate"),
+        (law, "collide"),
+    ]
+    patches += [
+        (body, name) for name in ("relax_halves", "relax_to", "odd_rate_here", "relax_moments") if hasattr(body, name)
+    ]
     patches += [(importlib.import_module("porescale.lbm.collision.smagorinsky"), "stress")]
     for module, name in patches:
         monkeypatch.setattr(module, name, getattr(module, name).py_func)
-    plain = collided(operator, f, smagorinsky=smagorinsky, sweep=stream.sweep_even.py_func)
+    plain = collided(operator, f, smagorinsky=smagorinsky, sweep=stream.sweep.py_func)
     np.testing.assert_allclose(plain, compiled, rtol=0, atol=round_off(np.float64))
 
 

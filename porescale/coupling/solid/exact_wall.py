@@ -27,9 +27,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.coupling.solid.law import force_share, is_soft, mix, taken
-from porescale.ground.jit import by_law
-from porescale.lbm.collision.law import numbers
+from porescale.coupling.solid.law import collide_beside, force_share, is_soft, mix, rates, taken
+from porescale.ground.jit import by_law, inline
+from porescale.lbm.collision.law import add_shares, collide_in_shares, numbers
 
 ONSET = 0.05
 """E: solid fraction over which the rate of q turns from the fluid's to that of a wall."""
@@ -91,50 +91,61 @@ def _whole(b, solid):
     return numbers(b).one
 
 
+@rates.of(ExactWall, SoftWall)
+def _rates(e, b, theta, slip_x, slip_y, solid):
+    """Share s_e tau of the even half, and kept: 1 - s_q less the share t of q after the fluid operator.
+
+    With that share e = 0 is plain fluid.
+    """
+    c = numbers(b)
+    k = _stiffness(theta, slip_x, slip_y, solid)
+    t = c.one - e
+    n = k * e
+    lam0 = c.one / solid.third_order - c.half
+    # Divisions cost more than all else here: lambda = dip/turns stays a quotient, and one division serves both rates.
+    onset, smooth = e + solid.onset, t * t + solid.smoothing
+    turns = onset * smooth
+    dip = t * (lam0 * turns + e * ((c.c38 / k - lam0) * (c.one + solid.onset) * smooth + c.half * onset))
+    q = (c.half * n + c.c34 * t * t) * turns + c.two * n * dip
+    beneath, above = (c.half * t + k) * q - c.c34 * t * n * turns, c.half * turns + dip
+    both = c.one / (beneath * above)
+    even, third = t * q * both * above, turns * both * beneath
+    third += theta * ((c.one - b) * solid.third_order + c.two * b - third)
+    return even * (solid.k + c.half), c.one - third - t * (c.one - solid.third_order)
+
+
+@inline
+def _momentum(e, b, kept, rho, jx, jy, vx, vy, hx, hy):
+    """Momentum that a cell lacks once its odd half has the shares: j + F + b (rho v - j - h) less theirs; j with h."""
+    fx, fy = jx + hx, jy + hy
+    return (
+        e * fx + b * (rho * vx - jx) - kept * (jx - hx),
+        e * fy + b * (rho * vy - jy) - kept * (jy - hy),
+    )
+
+
 @mix.of(ExactWall, SoftWall)
 def _mix(
     f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, theta, rho, ux, uy, vx, vy, hx,
     hy, rate, solid,
 ):  # fmt: skip
-    """Each part at its own rate; q after the fluid operator has a share t, so that e = 0 is plain fluid."""
-    c = numbers(b)
-    k = _stiffness(theta, ux - vx, uy - vy, solid)
-    t = c.one - e
-    tt = c.c34 * t * t
-    n = k * e
-    lam0 = c.one / solid.third_order - c.half
-    # Divisions cost more than all else here: quotients share them, s_e = 1/(1/2 + k0) and s_q = 1/(1/2 + lambda) too.
-    onset, smooth = e + solid.onset, t * t + solid.smoothing
-    lam = t * (lam0 + e * ((c.c38 / k - lam0) * (c.one + solid.onset) * smooth + c.half * onset) / (onset * smooth))
-    q = c.half * n + tt + c.two * lam * n
-    beneath, above = (c.half * t + k) * q - c.c34 * t * n, c.half + lam
-    both = c.one / (beneath * above)
-    even, third = t * q * both * above, both * beneath
-    third += theta * ((c.one - b) * solid.third_order + c.two * b - third)
-    share = even * (solid.k + c.half)
-    free = c.one - share
-    psi = c.one - third - t * (c.one - solid.third_order)
-    jx, jy = rho * ux - hx, rho * uy - hy
-    fx, fy = c.two * hx, c.two * hy
-    px = c.three * (jx + fx + b * (rho * (vx - ux)) - t * (jx + fx) - psi * jx)
-    py = c.three * (jy + fy + b * (rho * (vy - uy)) - t * (jy + fy) - psi * jy)
-    half = c.half
-    ea, eb, oa, ob = half * free, half * share, half * psi, half * t
-    q1, m1 = ea * (f1 + f2) + eb * (g1 + g2), oa * (f1 - f2) + ob * (g1 - g2) + c.w1 * px
-    q3, m3 = ea * (f3 + f4) + eb * (g3 + g4), oa * (f3 - f4) + ob * (g3 - g4) + c.w1 * py
-    q5, m5 = ea * (f5 + f6) + eb * (g5 + g6), oa * (f5 - f6) + ob * (g5 - g6) + c.w2 * (px + py)
-    q7, m7 = ea * (f7 + f8) + eb * (g7 + g8), oa * (f7 - f8) + ob * (g7 - g8) + c.w2 * (py - px)
-    return (
-        free * f0 + share * g0,
-        q1 + m1,
-        q1 - m1,
-        q3 + m3,
-        q3 - m3,
-        q5 + m5,
-        q5 - m5,
-        q7 + m7,
-        q7 - m7,
-    )
+    """Each part at its own rate."""
+    even, kept = rates(e, b, theta, ux - vx, uy - vy, solid)
+    px, py = _momentum(e, b, kept, rho, rho * ux, rho * uy, vx, vy, hx, hy)
+    return add_shares(
+        f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, even, numbers(e).one - e, kept, px, py
+    )  # fmt: skip
+
+
+@collide_beside.of(ExactWall, SoftWall)
+def _collide_beside(
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, e, b, even, kept, rho, d, jx, jy, ux, uy, vx, vy, hx, hy, rate, law, solid,
+):  # fmt: skip
+    """The same in one with the fluid operator."""
+    px, py = _momentum(e, b, kept, rho, jx, jy, vx, vy, hx, hy)
+    return collide_in_shares(
+        f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, even, numbers(e).one - e, kept, px, py, law
+    )  # fmt: skip
 
 
 @taken.of(ExactWall, SoftWall)

@@ -9,7 +9,8 @@ with half the force that acts, h.  Those of the literature are of the form
 with the share 1 - B.  A fluid operator relaxes the odd moments that are not momentum with the rate ``third_order``.
 """
 
-from porescale.ground.jit import by_law
+from porescale.ground.jit import by_law, inline
+from porescale.lbm.collision.law import collide, numbers
 
 
 @by_law
@@ -32,6 +33,39 @@ def mix(
     f before, g after the fluid operator (shifted);  e solid fraction, b weight, theta softness of the rim (rim.py);
     u velocity with h;  v of the solid;  rate 1/tau.
     """
+
+
+@by_law
+def rates(e, b, theta, slip_x, slip_y, solid):
+    """Two numbers of a cell that its law makes of the solid fraction alone where rims are sharp; slip: u - v."""
+
+
+@by_law
+def collide_beside(
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, e, b, even, kept, rho, d, jx, jy, ux, uy, vx, vy, hx, hy, rate, law, solid,
+):  # fmt: skip
+    """``mix`` with what ``collide`` of the fluid's law makes of f: the nine populations after the step.
+
+    even, kept: ``rates``;  d density excess, j first moment with h;  law: of the fluid operator.
+    """
+
+
+@inline
+def no_rates(e, b, theta, slip_x, slip_y, solid):
+    """``rates`` of an operator that needs none."""
+    return numbers(e).zero, numbers(e).zero
+
+
+@inline
+def collide_then_mix(
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, e, b, even, kept, rho, d, jx, jy, ux, uy, vx, vy, hx, hy, rate, law, solid,
+):  # fmt: skip
+    """``collide_beside`` of any operator that has sharp rims."""
+    g0, g1, g2, g3, g4, g5, g6, g7, g8 = collide(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, law)
+    return mix(
+        f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, numbers(e).zero, rho, ux, uy, vx,
+        vy, hx, hy, rate, solid,
+    )  # fmt: skip
 
 
 @by_law

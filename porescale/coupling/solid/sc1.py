@@ -14,7 +14,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.coupling.solid.law import force_share, is_soft, mix, taken
+from porescale.coupling.solid.law import (
+    collide_beside,
+    collide_then_mix,
+    force_share,
+    is_soft,
+    mix,
+    no_rates,
+    rates,
+    taken,
+)
 from porescale.lbm.collision.law import numbers
 
 
@@ -28,6 +37,10 @@ class Sc1(NamedTuple):
     """one : the number 1, for its precision."""
 
     one: np.floating
+
+
+collide_beside.of(OddSc1, Sc1)(collide_then_mix)
+rates.of(OddSc1, Sc1)(no_rates)
 
 
 @force_share.of(OddSc1, Sc1)

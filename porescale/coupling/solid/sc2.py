@@ -10,7 +10,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.coupling.solid.law import force_share, is_soft, mix, taken
+from porescale.coupling.solid.law import (
+    collide_beside,
+    collide_then_mix,
+    force_share,
+    is_soft,
+    mix,
+    no_rates,
+    rates,
+    taken,
+)
 from porescale.lbm.collision.law import moments, numbers
 
 
@@ -18,6 +27,10 @@ class Sc2(NamedTuple):
     """one : the number 1, for its precision."""
 
     one: np.floating
+
+
+collide_beside.of(Sc2)(collide_then_mix)
+rates.of(Sc2)(no_rates)
 
 
 @force_share.of(Sc2)

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.lbm.collision.law import collide, shear_rate
+from porescale.lbm.collision.law import collide, collide_in_shares, shear_rate
 from porescale.lbm.collision.smagorinsky import eddy_version
-from porescale.lbm.collision.trt import relax_halves
+from porescale.lbm.collision.trt import relax_halves, relax_shares
 
 
 class Bgk(NamedTuple):
@@ -34,3 +34,13 @@ def _molecular(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, law):
 def _collide(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, law):
     """Both halves relax with the same rate."""
     return relax_halves(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, rate, law)
+
+
+@collide_in_shares.of(Bgk, EddyBgk)
+def _collide_in_shares(
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, even, odd, kept, px, py, law,
+):  # fmt: skip
+    """Both halves at the same rate."""
+    return relax_shares(
+        f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, rate, even, odd, kept, px, py, law
+    )  # fmt: skip

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.lbm.collision.law import collide, numbers, shear_rate
+from porescale.lbm.collision.law import collide, collide_in_shares, collide_then_add, numbers, shear_rate
 from porescale.lbm.collision.smagorinsky import eddy_version
 
 
@@ -27,6 +27,7 @@ class Central(NamedTuple):
 
 
 EddyCentral = eddy_version(Central)
+collide_in_shares.of(Central, EddyCentral)(collide_then_add)
 
 
 @shear_rate.of(Central)

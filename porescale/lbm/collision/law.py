@@ -71,6 +71,43 @@ def collide(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, law):
     """
 
 
+@by_law
+def collide_in_shares(
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, even, odd, kept, px, py, law,
+):  # fmt: skip
+    """What is left of a collision in a cell that is partly solid: (1 - even) f+ + even g+,  kept f- + odd g- + 3 w c.p.
+
+    f+, f-: even and odd half of the populations before, g+, g- after ``collide``, whose arguments the others are.
+    """
+
+
+@inline
+def add_shares(
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, even, odd, kept, px, py,
+):  # fmt: skip
+    """The same from the populations f before and g after any collision."""
+    c = numbers(f0)
+    half = c.half
+    ea, eb, oa, ob = half * (c.one - even), half * even, half * kept, half * odd
+    t1, t2 = c.three * c.w1, c.three * c.w2
+    q1, m1 = ea * (f1 + f2) + eb * (g1 + g2), oa * (f1 - f2) + ob * (g1 - g2) + t1 * px
+    q3, m3 = ea * (f3 + f4) + eb * (g3 + g4), oa * (f3 - f4) + ob * (g3 - g4) + t1 * py
+    q5, m5 = ea * (f5 + f6) + eb * (g5 + g6), oa * (f5 - f6) + ob * (g5 - g6) + t2 * (px + py)
+    q7, m7 = ea * (f7 + f8) + eb * (g7 + g8), oa * (f7 - f8) + ob * (g7 - g8) + t2 * (py - px)
+    return (c.one - even) * f0 + even * g0, q1 + m1, q1 - m1, q3 + m3, q3 - m3, q5 + m5, q5 - m5, q7 + m7, q7 - m7
+
+
+@inline
+def collide_then_add(
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, even, odd, kept, px, py, law,
+):  # fmt: skip
+    """``collide_in_shares`` for any operator."""
+    g0, g1, g2, g3, g4, g5, g6, g7, g8 = collide(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, law)
+    return add_shares(
+        f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, even, odd, kept, px, py
+    )  # fmt: skip
+
+
 @inline
 def collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, first, last, law):
     """Collide cells ``first`` to ``last`` - 1 of one row; overwrites its nine slots.

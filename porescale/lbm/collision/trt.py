@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from porescale.ground.jit import inline
-from porescale.lbm.collision.law import collide, numbers, shear_rate
+from porescale.lbm.collision.law import collide, collide_in_shares, numbers, shear_rate
 from porescale.lbm.collision.smagorinsky import eddy_version
 
 MAGIC_MIDWAY_WALL = 3 / 16
@@ -39,32 +39,75 @@ def _molecular(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, law):
     return law.rate
 
 
+@inline
+def odd_rate_here(rate, law):
+    """w- of a cell with w+ = ``rate``; one division, since with eddies every cell has its own."""
+    c = numbers(rate)
+    spread = c.one - c.half * rate  # (tau - 1/2)/tau
+    return spread / (c.half * spread + law.magic * rate)
+
+
 @collide.of(Trt, EddyTrt)
 def _collide(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, law):
     """Each half relaxes with its own rate."""
-    c = numbers(rate)
-    spread = c.one - c.half * rate  # (tau - 1/2)/tau; one division, since with eddies every cell has its own
-    odd = spread / (c.half * spread + law.magic * rate)
-    return relax_halves(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, odd, law)
+    return relax_halves(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, odd_rate_here(rate, law), law)
+
+
+@collide_in_shares.of(Trt, EddyTrt)
+def _collide_in_shares(
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, even, odd, kept, px, py, law,
+):  # fmt: skip
+    """Each half at its own rate."""
+    return relax_shares(
+        f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, odd_rate_here(rate, law), even, odd, kept, px, py,
+        law,
+    )  # fmt: skip
 
 
 @inline
 def relax_halves(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, even, odd, law):
     """The nine collided populations for rates ``even`` and ``odd`` of the two halves of each pair.
 
-    The even half of direction c relaxes to w (q + cx² xx + cy² yy + cx cy xy), the odd one to 3 w (cx mx + cy my);
-    these contain rate times equilibrium, and the forcing with (1 - rate/2).
+    Equilibrium with the rate, the forcing with (1 - rate/2).
+    """
+    c = numbers(even)
+    se, so = c.one - c.half * even, c.one - c.half * odd
+    return relax_to(
+        f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, even, se, odd, odd * jx + so * law.fx,
+        odd * jy + so * law.fy, law,
+    )  # fmt: skip
+
+
+@inline
+def relax_shares(
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, even, odd, even_share, odd_share, kept, px, py, law,
+):  # fmt: skip
+    """``collide_in_shares`` for rates ``even`` and ``odd``: each half relaxes at a rate that has its share in it."""
+    c = numbers(even)
+    se, so = even_share * (c.one - c.half * even), c.one - c.half * odd
+    mx = odd_share * (odd * jx + so * law.fx) + px
+    my = odd_share * (odd * jy + so * law.fy) + py
+    lost = c.one - kept - odd_share * (c.one - odd)
+    return relax_to(
+        f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, even_share * even, se, lost, mx, my, law
+    )  # fmt: skip
+
+
+@inline
+def relax_to(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, even, se, odd, mx, my, law):
+    """Populations that lose shares ``even`` and ``odd`` of their halves.
+
+    The even half of direction c gains w (q + cx² xx + cy² yy + cx cy xy), ``even`` times equilibrium and ``se`` times
+    the forcing; the odd one 3 w (cx mx + cy my).
     """
     c, fx, fy = numbers(even), law.fx, law.fy
     half = c.half
-    se, so = c.one - half * even, c.one - half * odd
     jxx = jx * ux
     jyy = jy * uy
     q = even * (d - c.c15 * (jxx + jyy)) - c.three * se * (ux * fx + uy * fy)
     xx = c.c45 * even * jxx + c.nine * se * ux * fx
     yy = c.c45 * even * jyy + c.nine * se * uy * fy
     xy = c.nine * (even * jx * uy + se * (ux * fy + uy * fx))
-    mx, my = odd * jx + so * fx, odd * jy + so * fy
     w1, w2 = c.w1, c.w2
     t1, t2 = c.three * w1, c.three * w2
     he = half * even
