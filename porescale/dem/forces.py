@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from porescale.dem.cell import Still, drift, image, note
-from porescale.dem.contact.law import contact, material_of, moments, note_contact, recall, remember
+from porescale.dem.contact.law import contact, material_of, moments, note_contact, note_parting, recall, remember
 from porescale.ground.jit import inline, kernel
 
 
@@ -34,18 +34,10 @@ def add_pair_forces(
 
 
 @inline
-def pair_contact(i, j, k, position, velocity, spin, radius, carried, law, dt, cell):
-    """Listed pair k of discs i and j: (whether they touch, force on i along x, y N/m, torques on i, j N m/m).
-
-    Arguments as in pair_forces; overwrites row k of ``carried`` and adds to the load of ``cell``.
-    """
+def approach(i, j, dx, dy, velocity, spin, radius, cell):
+    """Discs i and j, (dx, dy) m apart: (distance m, normal, lever arms m, closing and slip speed m/s)."""
     ri, rj = radius[i], radius[j]
-    dx, dy = image(position[j, 0] - position[i, 0], position[j, 1] - position[i, 1], cell)
-    square = dx * dx + dy * dy
-    if square >= (ri + rj) * (ri + rj):
-        remember(carried, k, 0.0, 0.0, law)
-        return False, 0.0, 0.0, 0.0, 0.0
-    distance = np.sqrt(square)
+    distance = np.sqrt(dx * dx + dy * dy)
     inverse = 1.0 / distance
     nx, ny = dx * inverse, dy * inverse
     arm_i = 0.5 * (distance + (ri - rj) * (ri + rj) * inverse)
@@ -55,6 +47,39 @@ def pair_contact(i, j, k, position, velocity, spin, radius, carried, law, dt, ce
     dv = velocity[i, 1] - velocity[j, 1] - drift_y
     closing = du * nx + dv * ny
     slip = dv * nx - du * ny + spin[i] * arm_i + spin[j] * arm_j
+    return distance, nx, ny, arm_i, arm_j, closing, slip
+
+
+@inline
+def leave_pair(i, j, k, dx, dy, velocity, spin, radius, carried, book, law, dt, cell):
+    """Enter into ``book`` what a pair (dx, dy) m apart lost that touched a step ago; nothing where it is None."""
+    if book is None:
+        return
+    before, roll_before = recall(carried, k, law)
+    if before != 0.0 or roll_before != 0.0:
+        distance, _, _, _, _, closing, slip = approach(i, j, dx, dy, velocity, spin, radius, cell)
+        reduced = radius[i] * radius[j] / (radius[i] + radius[j])
+        p = law.table[material_of(law.material, i), material_of(law.material, j)]
+        note_parting(
+            i, radius[i] + radius[j] - distance, closing, slip, reduced * (spin[i] - spin[j]), before, roll_before,
+            reduced, dt, p, book, law,
+        )  # fmt: skip
+
+
+@inline
+def pair_contact(i, j, k, position, velocity, spin, radius, carried, law, dt, cell):
+    """Listed pair k of discs i and j: (whether they touch, force on i along x, y N/m, torques on i, j N m/m).
+
+    Arguments as in pair_forces; overwrites row k of ``carried`` and adds to the load of ``cell``.
+    """
+    ri, rj = radius[i], radius[j]
+    dx, dy = image(position[j, 0] - position[i, 0], position[j, 1] - position[i, 1], cell)
+    square = dx * dx + dy * dy
+    if square >= (ri + rj) * (ri + rj):
+        leave_pair(i, j, k, dx, dy, velocity, spin, radius, carried, law.book, law, dt, cell)
+        remember(carried, k, 0.0, 0.0, law)
+        return False, 0.0, 0.0, 0.0, 0.0
+    distance, nx, ny, arm_i, arm_j, closing, slip = approach(i, j, dx, dy, velocity, spin, radius, cell)
     overlap, reduced = ri + rj - distance, ri * rj / (ri + rj)
     turning = reduced * (spin[i] - spin[j])
     mass = law.mass[i] * law.mass[j] / (law.mass[i] + law.mass[j])

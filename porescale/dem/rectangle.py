@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.contact.law import SURFACES, note_work, remember
-from porescale.dem.walls import surface_contact
+from porescale.dem.contact.law import SURFACES, note_work
+from porescale.dem.walls import leave_surface, surface_contact
 from porescale.ground.check import Fault, InputError
 from porescale.ground.jit import inline, kernel
 
@@ -103,7 +103,10 @@ def add_rectangle_forces(
                 sum_y -= fy
                 note_work(law.book, i, SURFACES, fx * across + fy * up, dt)
             else:
-                remember(memory, i, 0.0, 0.0, law)
+                leave_surface(
+                    i, dx, dy, radius[i], velocity[i, 0] - rectangles[w, VELOCITY_X],
+                    velocity[i, 1] - rectangles[w, VELOCITY_Y], spin[i], memory, dt, laws[w], law.book, law,
+                )  # fmt: skip
         rectangle_force[w, 0] = sum_x
         rectangle_force[w, 1] = sum_y
 

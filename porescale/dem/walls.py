@@ -20,6 +20,7 @@ from porescale.dem.contact.law import (
     material_of,
     moments,
     note_contact,
+    note_parting,
     note_work,
     recall,
     remember,
@@ -148,6 +149,24 @@ def surface_contact(i, nx, ny, distance, radius, vx, vy, spin, memory, dt, laws,
     return -normal * nx - tangential * ny, -normal * ny + tangential * nx, moment
 
 
+@inline
+def leave_surface(i, dx, dy, radius, vx, vy, spin, memory, dt, laws, book, law):
+    """Disc i away from a surface: clears its springs, and enters into ``book``, if any, what they still held.
+
+    (dx, dy) m from its centre to the nearest point of the surface; the rest as in surface_contact.
+    """
+    if book is not None:
+        before, roll_before = recall(memory, i, law)
+        if before != 0.0 or roll_before != 0.0:
+            distance = np.sqrt(dx * dx + dy * dy)
+            nx, ny = dx / distance, dy / distance
+            note_parting(
+                i, radius - distance, vx * nx + vy * ny, vy * nx - vx * ny + spin * distance, spin * radius,
+                before, roll_before, radius, dt, laws[material_of(law.material, i)], book, law,
+            )  # fmt: skip
+    remember(memory, i, 0.0, 0.0, law)
+
+
 @kernel
 def add_wall_forces(
     position, velocity, spin, radius, force, torque, walls, laws, spring, wall_force, law, dt
@@ -181,7 +200,10 @@ def add_wall_forces(
                 moments_sum += along * (ny * fy + nx * fx)
                 note_work(law.book, i, SURFACES, fx * at_x + fy * at_y, dt)
             else:
-                remember(memory, i, 0.0, 0.0, law)
+                leave_surface(
+                    i, -distance * nx, -distance * ny, radius[i], velocity[i, 0] - wall_x, velocity[i, 1] - wall_y,
+                    spin[i], memory, dt, laws[w], law.book, law,
+                )  # fmt: skip
         wall_force[w, 0] = sum_x
         wall_force[w, 1] = sum_y
         if wall_force.shape[1] > 2:
@@ -220,7 +242,10 @@ def add_plate_forces(
                     sum_y -= fy
                     note_work(law.book, i, SURFACES, fy * rise, dt)
                 else:
-                    remember(memory, i, 0.0, 0.0, law)
+                    leave_surface(
+                        i, dx, dy, radius[i], velocity[i, 0], velocity[i, 1] - rise, spin[i], memory, dt, laws[w],
+                        law.book, law,
+                    )  # fmt: skip
         plate_force[w, 0] = sum_x
         plate_force[w, 1] = sum_y
 

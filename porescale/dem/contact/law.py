@@ -260,6 +260,20 @@ def note_contact(
 
 
 @inline
+def note_parting(i, overlap, closing, slip, turning, before, roll_before, radius, dt, p, book, law):
+    """Enter into ``book`` (n, BOOK), row i, what springs lost that let go within the step; nothing where it is None.
+
+    overlap (m) < 0;  the other arguments as in ``contact``, springs before.  The force of a step ago does half a step's
+    work more, and what the springs held is gone.
+    """
+    if book is None:
+        return
+    old = scale_at(max(overlap - closing * dt, 0.0), radius, law)
+    book[i, FRICTION] += element_losses(before, 0.0, 0.0, slip, p[KT] * old, 0.0, dt)[1]
+    book[i, ROLLING_FRICTION] += element_losses(roll_before, 0.0, 0.0, turning, p[KR] * old, 0.0, dt)[1]
+
+
+@inline
 def note_work(book, i, column, power, dt):
     """Add ``power`` (W/m) over ``dt`` (s) to a column of ``book`` (n, BOOK), row i; nothing where it is None."""
     if book is None:

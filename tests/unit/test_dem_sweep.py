@@ -1,0 +1,84 @@
+"""The sweep over blocks adds the same numbers in the same order as the loop over the list."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from porescale.dem import sweep
+from porescale.dem.cell import Still
+from porescale.dem.contact.law import BOOK, LinearSliding
+from porescale.dem.contact.linear import Linear
+from porescale.dem.forces import pair_forces, start_forces
+from porescale.particles.pairs import PairList
+
+LAW = Linear(1e6, 5.0, 3e5, 4.0, 0.4)
+
+
+def crowded(seed, count=30, book=False):
+    """Arguments of the loop: discs pressed together, in no order, with contacts between most neighbours."""
+    rng = np.random.default_rng(seed)
+    position, radius = rng.uniform(0.0, 0.1, (count, 2)), 0.01 * rng.uniform(0.5, 1.0, count)
+    pairs = PairList(count, 2e-3, (0.0, 0.0), (0.1, 0.1), carried=1)
+    pairs.build(position, radius)
+    law = LinearSliding(LAW.row()[None, None], None, np.ones(count), np.zeros((count, BOOK)) if book else None)
+    moving = rng.normal(0.0, 1.0, (count, 2)), rng.normal(0.0, 100.0, count)
+    given = rng.normal(0.0, 10.0, (count, 2)), rng.normal(0.0, 1.0, count)
+    return (position, *moving, radius), pairs, law, given
+
+
+@pytest.mark.parametrize("block", [1, 4, 7, 30, 64])
+def test_blocks_of_any_size_give_the_bits_of_the_loop(block, monkeypatch):
+    monkeypatch.setattr(sweep, "BLOCK", block)
+    discs, pairs, law, given = crowded(block)
+    count, cell = len(discs[3]), Still(0.0, 0.0)
+    force, torque, springs = np.zeros((count, 2)), np.zeros(count), pairs.carried.copy()
+    start_forces.py_func(force, torque, *given)
+    pair_forces.py_func(*discs, force, torque, pairs.start, pairs.partner, springs, law, 1e-5, cell)
+    far_start, incoming_start = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
+    total = sweep.list_far.py_func(pairs.start, pairs.partner, far_start, incoming_start, np.zeros(0, np.int64))
+    incoming, far = np.zeros(total, np.int64), np.zeros((total, 4))
+    assert sweep.list_far.py_func(pairs.start, pairs.partner, far_start, incoming_start, incoming) == total
+    assert sorted(incoming) == list(range(total))
+    again, twist, kept = np.full((count, 2), np.nan), np.full(count, np.nan), pairs.carried.copy()
+    listed = (pairs.start, pairs.partner, kept, law, 1e-5, cell)
+    sweep.far_forces.py_func(*discs, *listed, far_start, far)
+    sweep.near_forces.py_func(*discs, again, twist, *given, *listed, far_start, incoming_start, incoming, far)
+    if block < 30:
+        assert total > 0
+        assert np.isfinite(far[:, 0]).any()
+    for one, other in ((force, again), (torque, twist), (springs, kept)):
+        np.testing.assert_array_equal(one, other)
+    assert np.abs(springs).max() > 0.0
+
+
+def test_the_external_force_added_last_gives_other_bits():  # the twin that must fail
+    discs, pairs, law, given = crowded(4)
+    count = len(discs[3])
+    force, torque, wrong = np.zeros((count, 2)), np.zeros(count), np.zeros((count, 2))
+    start_forces.py_func(force, torque, *given)
+    for total in (force, wrong):
+        listed = (pairs.start, pairs.partner, pairs.carried.copy(), law, 1e-5, Still(0.0, 0.0))
+        pair_forces.py_func(*discs, total, torque, *listed)
+    wrong += given[0]
+    np.testing.assert_allclose(force, wrong, rtol=1e-9, atol=1e-6)
+    assert (force != wrong).any()
+
+
+def test_small_systems_and_one_thread_go_through_one_loop():
+    pairs = crowded(0)[1]
+    small = sweep.Sweeps(30).now(pairs, 4, booked=True)
+    assert isinstance(small, sweep.Serial)
+    assert small.partial.shape == (1, 4, 3)
+
+
+def test_a_large_system_with_a_book_goes_block_by_block(monkeypatch):
+    monkeypatch.setattr(sweep, "SERIAL_BELOW", 10)
+    monkeypatch.setattr(sweep, "threads", lambda: 1)
+    _, pairs, _, _ = crowded(0)
+    sweeps = sweep.Sweeps(30)
+    assert isinstance(sweeps.now(pairs, 0, booked=False), sweep.Serial)
+    assert isinstance(sweeps.now(pairs, 0, booked=True), sweep.Threads)
+    assert isinstance(sweeps.now(pairs, 0, booked=True, alone=True), sweep.Serial)
+    monkeypatch.setattr(sweep, "threads", lambda: 2)
+    assert isinstance(sweeps.now(pairs, 0, booked=False), sweep.Threads)
