@@ -54,8 +54,8 @@ def ordered(discs: Discs) -> Discs:
 
 @BENCHMARKS.row("dem")
 def bench_dem(size: int | None, threads: int, dtype: Dtype) -> Work:
-    """Contact steps of a settled pile, serial at any number of ``threads``; raises InputError for
-    float32.
+    """Contact steps of a settled pile; ``threads`` share it where it is large enough, see sweep.py.  Raises InputError
+    for float32.
     """
     if dtype != "float64":
         raise InputError(Fault("--dtype", dtype, "overlaps are 1e-3 of positions and less", allowed="float64 for dem"))
