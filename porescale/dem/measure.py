@@ -10,19 +10,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.dem.cell import image
 from porescale.dem.contact.law import material_of, recall, stored
 from porescale.dem.discs import Discs
 from porescale.dem.rectangle import BOTTOM, LEFT, RIGHT, TOP, nearest_face
 from porescale.dem.system import Grains
 from porescale.dem.walls import HIGH, LOW, NX, NY, PRESENT, PX, PY, X
 from porescale.ground.jit import inline, kernel
-from porescale.particles.cells import minimum_image
 
 Array = NDArray[np.float64]
 
 
 @kernel
-def survey_pairs(position, radius, start, partner, carried, period_x, period_y, law, touching):
+def survey_pairs(position, radius, start, partner, carried, cell, law, touching):
     """(largest overlap over the smaller radius, its i, its j, elastic energy J/m) over the listed pairs.
 
     Overwrites touching (n,): number of discs that touch each disc.  Arrays as in add_pair_forces.
@@ -32,8 +32,7 @@ def survey_pairs(position, radius, start, partner, carried, period_x, period_y, 
     for i in range(radius.shape[0]):
         for k in range(start[i], start[i + 1]):
             j = partner[k]
-            dx = minimum_image(position[j, 0] - position[i, 0], period_x)
-            dy = minimum_image(position[j, 1] - position[i, 1], period_y)
+            dx, dy = image(position[j, 0] - position[i, 0], position[j, 1] - position[i, 1], cell)
             overlap = radius[i] + radius[j] - np.sqrt(dx * dx + dy * dy)
             if overlap > 0.0:
                 touching[i] += 1
@@ -192,7 +191,7 @@ def _survey(grains: Grains) -> tuple[float, int, int, float]:
     """survey_pairs of ``grains``; fills ``grains.touching``."""
     result: tuple[float, int, int, float] = survey_pairs(
         grains.discs.position, grains.discs.radius, grains.pairs.start, grains.pairs.partner,
-        grains.pairs.carried, *grains.box.period, grains.contact, grains.touching,
+        grains.pairs.carried, grains.cell, grains.contact, grains.touching,
     )  # fmt: skip
     return result
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from porescale.dem import servo as servos
 from porescale.dem import strain as cells
-from porescale.dem.cell import Still
+from porescale.dem.cell import Still, Straining
 from porescale.dem.clumps import Body, Clumps, fastest
 from porescale.dem.contact.materials import Law
 from porescale.dem.control import KINDS, PUSH, WORK, Control, schedule_of
@@ -239,6 +239,8 @@ class Steering:
         grains = self._grains
         if not all(grains.box.periodic):
             raise InputError(Fault("box", grains.box.left, "a cell can only be strained when all sides are periodic"))
+        if grains.book is not None:
+            raise InputError(Fault("energy", True, "the energy book knows no strained cell", repair="leave one out"))
         wanted = (*pressure, shear_stress)
         if any(each is not None for each in wanted) and not (limit > 0.0 and 0.0 < share < 2.0):
             bad, what, allowed = (share, "share", "> 0, < 2") if limit > 0.0 else (limit, "limit", "> 0")
@@ -261,6 +263,13 @@ class Steering:
             return (width, 0.0), (0.0, height)
         c = self.cell
         return (float(c[cells.WIDTH]), 0.0), (float(c[cells.TILT]), float(c[cells.HEIGHT]))
+
+    def shape(self) -> Still | Straining:
+        """The cell at this moment, see ``Grains.cell``."""
+        if self.cell is None:
+            return Still(*self._grains.box.period)
+        width, height, tilt, gxx, gxy, gyy = (float(value) for value in self.cell[: cells.GYY + 1])
+        return Straining(width, height, tilt, gxx, gxy, gyy, np.zeros(5))
 
     def gradient(self) -> Array:
         """Velocity gradient of the cell, (2, 2) 1/s."""

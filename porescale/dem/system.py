@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from porescale.dem import resume
-from porescale.dem.cell import Still
+from porescale.dem.cell import Still, Straining
 from porescale.dem.contact.law import BOOK, COLUMNS, KernelLaw, memory_of
 from porescale.dem.contact.materials import Law, Materials
 from porescale.dem.discs import Discs
@@ -171,6 +171,11 @@ class Grains:
         if self._steering is None:
             self._steering = Steering(self)
         return self._steering
+
+    @property
+    def cell(self) -> Still | Straining:
+        """The periodic cell now, as kernels over pairs take it (cell.image), strained or not."""
+        return self._still if self._steering is None else self._steering.shape()
 
     @property
     def steered(self) -> bool:

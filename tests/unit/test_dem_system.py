@@ -121,7 +121,7 @@ def test_kernels_do_the_same_as_plain_python():
         )
         d.force[:], d.torque[:] = force, torque
         grains.kept = call(measure.survey_pairs)(
-            d.position, d.radius, p.start, p.partner, p.carried, 0.0, 0.0, grains.contact, grains.touching
+            d.position, d.radius, p.start, p.partner, p.carried, grains.cell, grains.contact, grains.touching
         ) + call(measure.survey_walls)(
             d.position, d.radius, grains.walls, grains.wall_laws, grains.wall_spring, grains.contact
         )  # fmt: skip
