@@ -52,13 +52,19 @@ def measure_window(scene: Scene, grains: Cloud) -> Measured:
     lower = window.left, window.bottom
     upper = lower[0] + window.width, lower[1] + window.height
     near = 0.5 * spacing
+    box = (scene.domain.width, scene.domain.height)
+    across, low, high = (1, "bottom", "top") if scene.permeability.direction == "x" else (0, "left", "right")
+    walls = (
+        lower[across] < near and scene.domain.sides[low].kind == "wall",
+        upper[across] > box[across] - near and scene.domain.sides[high].kind == "wall",
+    )
     return measure(
         grains.position, grains.data["hydraulic_radius"], lower, upper, spacing,
         direction=scene.permeability.direction, periodic=(
             periodic_x and window.width > scene.domain.width - near,
             periodic_y and window.height > scene.domain.height - near,
         ),
-        relaxation_time=scales.relaxation_time, laws=scene.fluid.laws, solid_laws=scene.fluid.solid_laws,
+        walls=walls, relaxation_time=scales.relaxation_time, laws=scene.fluid.laws, solid_laws=scene.fluid.solid_laws,
     )  # fmt: skip
 
 

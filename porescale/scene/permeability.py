@@ -79,6 +79,7 @@ def measure(
     *,
     direction: str = "y",
     periodic: tuple[bool, bool] = (False, False),
+    walls: tuple[bool, bool] = (False, False),
     relaxation_time: float = TAU,
     laws: Mapping[str, Any] | None = None,
     solid_laws: Mapping[str, Any] | None = None,
@@ -86,8 +87,9 @@ def measure(
     """Permeability of the discs at ``position`` (n, 2) m with the ``radius`` (n,) m that the fluid sees.
 
     lower, upper : corners of the window, m;  spacing : of the lattice, m;  direction : of the flow, "x" or "y";
-    periodic : whether the window is a whole period along x and y;  relaxation_time, laws, solid_laws : of the lattice,
-    keyword arguments of ``Fluid`` and ``Saturated``: a run's own show what its bed lets through in that run.
+    periodic : whether the window is a whole period along x and y;  walls : whether a no-slip wall stands at its lower
+    and its upper flank (otherwise the bed goes on like its mirror image);  relaxation_time, laws, solid_laws : of the
+    lattice, keyword arguments of ``Fluid`` and ``Saturated``: a run's own show what its bed lets through in that run.
 
     Raises InputError for a window without discs or, unless it is periodic, shorter than four diameters.
     """
@@ -114,11 +116,12 @@ def measure(
     if not whole[0]:
         at = np.concatenate([at, np.stack([2 * length - at[:, 0], at[:, 1]], axis=1)])
         size = np.concatenate([size, size])
-    side: Kind = "periodic" if whole[1] else "slip"
+    low: Kind = "periodic" if whole[1] else "wall" if walls[0] else "slip"
+    high: Kind = "periodic" if whole[1] else "wall" if walls[1] else "slip"
     nu = viscosity(relaxation_time)
     fluid = Fluid(
         length if whole[0] else 2 * length, cells[1], relaxation_time, force=(SLOWNESS * nu, 0.0),
-        sides=Sides("periodic", "periodic", side, side), **(laws or {}),
+        sides=Sides("periodic", "periodic", low, high), **(laws or {}),
     )  # fmt: skip
     wet = Saturated(fluid, size, **(solid_laws or {}))
     k, share, steady = _flow(fluid, wet, at, length, margin)

@@ -32,7 +32,8 @@ FLOWS = {
     "lid_driven_cavity": (CAVITY, "fluid.viscosity=2e-3", CAVITY),
     "permeameter": ({"permeability", "flux at the outlet"}, "grains.hydraulic_radius_ratio=0.6",
                     {"permeability", "flux at the outlet"}),
-    "towed_cylinder": ({"drag"}, "fluid.viscosity=1.1e-3", {"drag"}),
+    "towed_cylinder": (set(), "fluid.viscosity=1.1e-3", {"drag"}),
+    "vortex_street": ({"lift coefficient"}, "fluid.viscosity=2e-3", {"lift coefficient", "period of the lift"}),
 }  # fmt: skip
 """Cases of flow past what is held: the rows that their draft quality is too coarse for, a setting that
 makes it another flow, and the rows that this one misses (both at draft quality)."""
@@ -57,7 +58,7 @@ def measured(columns: Columns, row: Mapping[str, Any]) -> float:
     at : "end", "max", "min", a time in s (interpolated), or a table with first_below or last_above and a value: the
     time in s at which the column falls to it for the first time, or is above it for the last; as a share of where it
     goes with share_of = "fall" (1 at the start, 0 at the end) or "peak" (of its largest value); with quantile, what
-    that share of the rows does not exceed.  Nan beyond the end of the run, infinity where it never falls so low.
+    that share of the rows does not exceed; period_from: mean period (s) about the mean from a time on.  Nan beyond the end of the run, infinity where it never falls so low.
     """
     time, values, at = columns["time (s)"], columns[row["column"]], row["at"]
     if "minus" in row:
@@ -77,6 +78,14 @@ def measured(columns: Columns, row: Mapping[str, Any]) -> float:
         return float(np.quantile(values, at["quantile"]))
     if "mean_from" in at:
         return float(values[time >= at["mean_from"]].mean())
+    if "max_from" in at:
+        return float(values[time >= at["max_from"]].max())
+    if "period_from" in at:
+        late = time >= at["period_from"]
+        late_time, swing = time[late], values[late] - values[late].mean()
+        rising = np.flatnonzero((swing[:-1] < 0) & (swing[1:] >= 0))
+        zero = late_time[rising] - swing[rising] * np.diff(late_time)[rising] / np.diff(swing)[rising]
+        return float(np.diff(zero).mean()) if len(zero) > 1 else np.inf
     if "rms_from" in at:
         return float(values[time >= at["rms_from"]].std())
     share = at.get("share_of")
@@ -162,6 +171,10 @@ def test_numbers_are_read_from_the_series_as_stated():
     assert at({"last_above": 0.45, "share_of": "peak"}) == 3.0  # 4/8
     assert at({"first_below": 1.0}) == np.inf
     assert at({"quantile": 0.5}) == 5.0  # half-way between 4 and 6
+    assert at({"max_from": 1.0}) == 6.0
+    assert at({"period_from": 0.0}) == np.inf  # it does not swing
+    columns |= {"z (m)": np.array([-1.0, 1.0, -1.0, 1.0])}  # rises through its mean at 0.5 s and 2.5 s
+    assert measured(columns, {"column": "z (m)", "at": {"period_from": 0.0}}) == 2.0
     assert np.isnan(at(3.5))
     row = {"name": "y", "column": "y (m)", "at": "end", "value": 4.1, "tolerance": 0.05, "unit": "m"}
     assert missed(columns, [row]) == ["y: 4, expected 4.1 ± 0.05 m"]
@@ -232,8 +245,8 @@ def test_what_moves_through_a_side_does_as_expected(porescale, tmp_path, case):
 @pytest.mark.slow
 def test_a_bed_lets_through_in_a_run_what_its_permeability_says(porescale, tmp_path):
     # Darcy: flux over width = K/mu times the gradient between two taps, a centimetre apart.  The taps are means over
-    # the fluid of one row each, of a bed 13 grains wide: K varies over the bed by some per cent, 1/sqrt(13 * 7) of the
-    # pores' own spread; walls hold back a share of about sqrt(K)/width, half a per cent.  A tenth holds both.
+    # the fluid of one row each, of a bed 13 grains wide: pressure differs from pore to pore by what it falls over a
+    # grain, 3 Pa of the 20 Pa between them: 3/sqrt(13) each, 6 % for both.
     out = tmp_path / "out"
     run(porescale, "permeameter", out)
     ran = open_run(out)
@@ -247,7 +260,7 @@ def test_a_bed_lets_through_in_a_run_what_its_permeability_says(porescale, tmp_p
     flux = ran.table("flux")["outlet volume flux (m²/s)"][-1]
     darcy = 0.1 * flux / 0.02 / gradient
     bed = ran.table("permeability")
-    assert darcy == pytest.approx(bed["permeability (m²)"][-1], rel=0.1)
+    assert darcy == pytest.approx(bed["permeability (m²)"][-1], rel=0.06)
     assert bed["hydraulic radius ratio ()"][-1] == 0.8
     assert bed["steady ()"].all()
 
