@@ -10,7 +10,7 @@ import numpy as np
 from porescale.coupling.saturated import Saturated
 from porescale.lbm.bench import RELAXATION_TIME, bytes_of, side_of, steps_of
 from porescale.lbm.fluid import Fluid
-from porescale.workbench.benchmarks import Benchmarks, Dtype, Work
+from porescale.workbench.benchmarks import PLAIN, Benchmarks, Dtype, Work
 
 BENCHMARKS = Benchmarks()
 
@@ -61,7 +61,7 @@ def plain(side: int, dtype: Dtype) -> Callable[[int], None]:
 def bench_psm(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
     """A box of ``size`` by ``size`` cells, 22 % of it solid and moving, and ``psm.plain``: the same box without discs.
 
-    Both are measured in turns with the machine's bandwidth: the ratio of their shares is the price of the discs.
+    The ratio of their rates, measured in turns, is what the discs leave of the fluid's rate.
     """
     side = side_of(size)
     steps = steps_of(side**2)
@@ -69,5 +69,5 @@ def bench_psm(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
     updates, moved = float(steps * side**2), bytes_of(dtype)
     return [
         Work(lambda: wet(steps), updates, "cells/s", side, moved),
-        Work(lambda: dry(steps), updates, "cells/s", side, moved, "plain"),
+        Work(lambda: dry(steps), updates, "cells/s", side, moved, PLAIN),
     ]

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from porescale.coupling.bench import plain
 from porescale.ground.check import Fault, InputError
+from porescale.lbm.bench import bytes_of
 from porescale.scene.build import build
 from porescale.scene.sections import Scene
-from porescale.workbench.benchmarks import Benchmarks, Dtype, Work
+from porescale.workbench.benchmarks import PLAIN, Benchmarks, Dtype, Work
 from porescale.workbench.sections import validate
 
 BENCHMARKS = Benchmarks()
@@ -19,14 +21,14 @@ FALLEN = 0.05
 STEPS = 40
 
 
-def column(size: int) -> Scene:
+def column(size: int, dtype: Dtype) -> Scene:
     """The column collapse of cases/column_collapse on ``size``² cells, the step scaled with the spacing."""
     spacing = 0.12 / size
     table: dict[str, Any] = {
         "domain": {"width": 0.12, "height": 0.12, "top": "slip"},
         "time": {"end": 1.2},
         "output": {"snapshot_interval": 0.02, "series_interval": 0.005},
-        "fluid": {"viscosity": 1e-4, "spacing": spacing, "step": 0.125 * spacing},
+        "fluid": {"viscosity": 1e-4, "spacing": spacing, "step": 0.125 * spacing, "precision": dtype},
         "grains": {
             "density": 2500,
             "hydraulic_radius_ratio": 0.8,
@@ -39,15 +41,15 @@ def column(size: int) -> Scene:
 
 
 @BENCHMARKS.row("column")
-def bench_column(size: int | None, threads: int, dtype: Dtype) -> Work:
-    """Coupled steps of the collapsing column; raises InputError for float32 and sizes that do not fit the gate."""
-    if dtype != "float64":
-        raise InputError(
-            Fault("--dtype", dtype, "scenes run in float64", allowed="float64", repair="leave --dtype out")
-        )
+def bench_column(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
+    """Coupled steps of the collapsing column, and plain fluid of its size; InputError if the gate fits no cell side."""
     cells = SIZE if size is None else size
     if cells % 4 or cells < 100:
         raise InputError(Fault("--size", cells, "the gate stands at three quarters", allowed="multiples of 4 from 100"))
-    simulation = build(column(cells))
+    simulation = build(column(cells, dtype))
     simulation.advance(max(2, round(FALLEN / simulation.step_seconds)))
-    return Work(lambda: simulation.advance(STEPS), cells * cells * STEPS, "cells/s", cells)
+    updates, fluid = float(cells * cells * STEPS), plain(cells, dtype)
+    return [
+        Work(lambda: simulation.advance(STEPS), updates, "cells/s", cells),
+        Work(lambda: fluid(STEPS), updates, "cells/s", cells, bytes_of(dtype), PLAIN),
+    ]

@@ -47,6 +47,9 @@ class Work:
     variant: str = ""
 
 
+PLAIN = "plain"
+"""Variant of the work that the others of its benchmark are held against."""
+
 Prepare = Callable[[int | None, int, Dtype], Work | Sequence[Work]]
 
 
@@ -74,10 +77,14 @@ class Row:
 
 
 class Benchmarks:
-    """A register of benchmarks, in the order of registration."""
+    """A register of benchmarks, in the order of registration.
+
+    remarks : of the last ``run``: what part of the rate of its ``PLAIN`` work a benchmark has, measured in turns.
+    """
 
     def __init__(self) -> None:
         self._known: dict[str, Prepare] = {}
+        self.remarks: list[str] = []
 
     def row(self, name: str) -> Callable[[Prepare], Prepare]:
         """Register the decorated function: ``(size | None, threads, dtype) -> Work``, one or several.
@@ -119,6 +126,7 @@ class Benchmarks:
         chosen = choose(names, self._known, "benchmark")
         if size is not None and size < 1:
             raise InputError(Fault("--size", size, "is out of range", "", ">= 1"))
+        self.remarks = []
         return self._rows(chosen, size, set_threads(threads), dtype, min_seconds)
 
     def _rows(
@@ -127,8 +135,16 @@ class Benchmarks:
         """Prepare and time each benchmark."""
         for name in names:
             made = self._known[name](size, count, dtype)
-            for work in [made] if isinstance(made, Work) else made:
+            works = [made] if isinstance(made, Work) else list(made)
+            for work in works:
                 yield _measured(f"{name}.{work.variant}" if work.variant else name, work, count, dtype, min_seconds)
+            for work in works[:-1] if works[-1].variant == PLAIN else []:
+                self.remarks.append(f"{name}: {_part_of(works[-1], work):.2f} of the rate of {name}.{PLAIN}, in turns")
+
+
+def _part_of(plain: Work, work: Work) -> float:
+    """Rate of ``work`` over that of ``plain``, the median of rounds in which both are timed."""
+    return interleaved(work.call, plain.call).ratio * work.updates / plain.updates
 
 
 def _measured(name: str, work: Work, threads: int, dtype: Dtype, min_seconds: float) -> Row:

@@ -205,6 +205,19 @@ def test_bandwidth_counts_read_and_write() -> None:
     assert copy_bandwidth(1, "float64", 2**16) > 0
 
 
+def test_a_benchmark_is_held_against_its_plain_work_in_turns(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = Benchmarks()
+
+    @made.row("wet")
+    def _(size: int | None, threads: int, dtype: str) -> list[Work]:
+        return [Work(lambda: None, 30.0, "cells/s", 3), Work(lambda: None, 20.0, "cells/s", 3, variant="plain")]
+
+    # A call of the plain work takes a quarter of the other's time, for two thirds of its updates.
+    monkeypatch.setattr(benchmarks, "interleaved", lambda a, b: benchmarks.Comparison(4.0, 1.0, 0.25))
+    assert [row.name for row in made.run(threads=1, min_seconds=0.0)] == ["wet", "wet.plain"]
+    assert made.remarks == ["wet: 0.38 of the rate of wet.plain, in turns"]
+
+
 def test_benchmark_rows_have_exactly_the_promised_keys() -> None:
     made = Benchmarks()
 
@@ -227,5 +240,6 @@ def test_benchmark_rows_have_exactly_the_promised_keys() -> None:
     assert streams.name == "streams.all"
     assert streams.share_of_bandwidth > 0
     assert "streams.all" in printed(benchmarks.table(rows))
+    assert made.remarks == []
     with pytest.raises(InputError, match="--size = 0"):
         made.run(size=0)

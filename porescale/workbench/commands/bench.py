@@ -41,6 +41,8 @@ def command(package: Package) -> Callable[..., int]:
             from porescale.workbench.benchmarks import table
 
             Console().print(table(rows))
+        for remark in register.remarks:
+            print(remark, file=sys.stderr if json else sys.stdout)
         return 0
 
     return bench
