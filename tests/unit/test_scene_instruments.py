@@ -185,7 +185,7 @@ def test_the_bed_beside_a_window_is_its_mirror_image_or_a_wall():
     disc = np.array([[8.2, 7.1]])
     image = np.array([[8.2, -7.1]])
     beside = measure(disc, np.array([radius]), (0.0, 0.0), (size, size), 1.0, direction="x", periodic=(True, False))
-    both = np.concatenate([disc, image]) + [0.0, size]
+    both = np.concatenate([disc, image]) + np.array([0.0, size])
     whole = measure(both, np.full(2, radius), (0.0, 0.0), (size, 2 * size), 1.0, direction="x", periodic=(True, True))
     assert beside.permeability == pytest.approx(whole.permeability, rel=1e-4)
     walled, one = (
