@@ -58,7 +58,8 @@ def measured(columns: Columns, row: Mapping[str, Any]) -> float:
     at : "end", "max", "min", a time in s (interpolated), or a table with first_below or last_above and a value: the
     time in s at which the column falls to it for the first time, or is above it for the last; as a share of where it
     goes with share_of = "fall" (1 at the start, 0 at the end) or "peak" (of its largest value); with quantile, what
-    that share of the rows does not exceed; period_from: mean period (s) about the mean from a time on.  Nan beyond the end of the run, infinity where it never falls so low.
+    that share of the rows does not exceed; period_from: mean period (s) about the mean from a time on.  Nan beyond the end
+    of the run, infinity where it never falls so low.
     """
     time, values, at = columns["time (s)"], columns[row["column"]], row["at"]
     if "minus" in row:
@@ -305,8 +306,8 @@ def test_the_column_collapses_as_expected(collapse):
     ],
 )
 def test_another_column_does_not(porescale, tmp_path, setting, end, names):
-    # The twins that must fail: fluid ten times as thick is slow, and half of the fall comes later; with pores sealed the
-    # water in them is torn instead of flowing in, and presses the grains together.
+    # The twins that must fail: fluid ten times as thick is slow, and half of the fall comes later; with pores sealed
+    # the water in them is torn instead of flowing in, and presses the grains together.
     columns = run(porescale, "column_collapse", tmp_path / "out", setting, f"time.end={end}")
     rows = [row for row in expected("column_collapse") if row["name"] in EARLY]
     assert {row["name"] for row in rows} == EARLY
