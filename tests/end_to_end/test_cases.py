@@ -58,8 +58,8 @@ def measured(columns: Columns, row: Mapping[str, Any]) -> float:
     at : "end", "max", "min", a time in s (interpolated), or a table with first_below or last_above and a value: the
     time in s at which the column falls to it for the first time, or is above it for the last; as a share of where it
     goes with share_of = "fall" (1 at the start, 0 at the end) or "peak" (of its largest value); with quantile, what
-    that share of the rows does not exceed; period_from: mean period (s) about the mean from a time on.  Nan beyond the end
-    of the run, infinity where it never falls so low.
+    that share of the rows does not exceed; period_from: mean period (s) about the mean from a time on.  Nan beyond the
+    end of the run, infinity where it never falls so low.
     """
     time, values, at = columns["time (s)"], columns[row["column"]], row["at"]
     if "minus" in row:
