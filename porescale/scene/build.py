@@ -25,6 +25,7 @@ from porescale.particles.placement import place
 from porescale.scene.cost import refuse_too_large
 from porescale.scene.derive import Derived, derive, grain_count
 from porescale.scene.geometry import refuse_overlaps
+from porescale.scene.outfit import fit_out
 from porescale.scene.packing import compressed, radii_of
 from porescale.scene.rectangle_places import refuse_buried
 from porescale.scene.rectangles import Movers, on_the_lattice, stand_ins, take_over
@@ -146,6 +147,7 @@ def _grains(scene: Scene, derived: Derived) -> Grains:
         refuse_buried(scene, grains.discs)
     if scene.disc:
         grains.hold(slice(grains.discs.count - len(scene.disc), None))
+    fit_out(scene, grains)
     added = len(scene.disc) + (len(scene.grains.grain) if scene.grains else 0)
     if added:
         refuse_overlaps(grains.discs, scene, grains.discs.count - added)

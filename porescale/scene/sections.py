@@ -52,6 +52,7 @@ class Output(Section):
     forces: bool = pydantic.Field(
         False, description="force and moment of grains on every wall, plate, rectangle and held disc: forces.csv"
     )
+    energy: bool = pydantic.Field(False, description="energy book of the grains, as columns of series.csv")
 
 
 class Packing(Section):
@@ -241,7 +242,8 @@ class Scene(Section):
                        for name, section in given.items() if section]  # fmt: skip
         if self.grains is None:
             asked = {"region": self.region, "coarse_graining": self.coarse_graining,
-                     "output.contacts": self.output.contacts, "output.forces": self.output.forces}  # fmt: skip
+                     "output.contacts": self.output.contacts, "output.forces": self.output.forces,
+                     "output.energy": self.output.energy}  # fmt: skip
             faults += [Fault(name, None, "there are no grains to measure", repair="add [grains] or leave it out")
                        for name, section in asked.items() if section]  # fmt: skip
         if self.lubrication and not (self.fluid and (self.grains or self.disc)):

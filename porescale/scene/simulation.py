@@ -18,6 +18,7 @@ from porescale.scene import observe
 from porescale.scene.derive import Derived
 from porescale.scene.grain_fields import GrainInstruments
 from porescale.scene.instruments import LAMBDA, Instruments, total_pressure
+from porescale.scene.outfit import energy_row
 from porescale.scene.rectangles import Movers
 from porescale.scene.sections import Scene
 
@@ -161,6 +162,8 @@ class Simulation:
             row["fluid mass change ()"] = (self.fluid.mass_excess() - self._mass) / cells
             if self.movers and self.coupled:
                 row |= self.movers.row(self.coupled)
+        if self.grains and self.scene.output.energy:
+            row |= energy_row(self.grains, self.scene.gravity)
         return row
 
     def tables(self) -> dict[str, dict[str, float]]:
