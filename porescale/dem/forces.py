@@ -11,7 +11,16 @@ from __future__ import annotations
 import numpy as np
 
 from porescale.dem.cell import Still, drift, image, note
-from porescale.dem.contact.law import contact, material_of, moments, note_contact, note_parting, recall, remember
+from porescale.dem.contact.law import (
+    contact,
+    holds,
+    material_of,
+    moments,
+    note_contact,
+    note_parting,
+    recall,
+    remember,
+)
 from porescale.ground.jit import inline, kernel
 
 
@@ -52,11 +61,11 @@ def approach(i, j, dx, dy, velocity, spin, radius, cell):
 
 @inline
 def leave_pair(i, j, k, dx, dy, velocity, spin, radius, carried, book, law, dt, cell):
-    """Enter into ``book`` what a pair (dx, dy) m apart lost that touched a step ago; nothing where it is None."""
+    """Enter into ``book``, if any, what the springs of a pair (dx, dy) m apart still held that touched a step ago."""
     if book is None:
         return
-    before, roll_before = recall(carried, k, law)
-    if before != 0.0 or roll_before != 0.0:
+    if holds(carried, k, law):
+        before, roll_before = recall(carried, k, law)
         distance, _, _, _, _, closing, slip = approach(i, j, dx, dy, velocity, spin, radius, cell)
         reduced = radius[i] * radius[j] / (radius[i] + radius[j])
         p = law.table[material_of(law.material, i), material_of(law.material, j)]

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.contact.law import SURFACES, note_work
-from porescale.dem.walls import leave_surface, surface_contact
+from porescale.dem.contact.law import SURFACES, booked, holds, note_work, remember
+from porescale.dem.walls import note_leaving, surface_contact
 from porescale.ground.check import Fault, InputError
 from porescale.ground.jit import inline, kernel
 
@@ -77,7 +77,7 @@ def add_rectangle_forces(
             rectangles[w, RIGHT],
             rectangles[w, TOP],
         )
-        memory = spring[w]
+        memory, own, book = spring[w], laws[w], law.book
         sum_x, sum_y = 0.0, 0.0
         for i in range(radius.shape[0]):
             x, y = position[i, 0], position[i, 1]
@@ -94,19 +94,21 @@ def add_rectangle_forces(
                 across, up = rectangles[w, VELOCITY_X], rectangles[w, VELOCITY_Y]
                 fx, fy, moment = surface_contact(
                     i, nx, ny, distance, radius[i], velocity[i, 0] - across, velocity[i, 1] - up, spin[i], memory, dt,
-                    laws[w], law,
+                    own, law,
                 )  # fmt: skip
                 force[i, 0] += fx
                 force[i, 1] += fy
                 torque[i] += moment
                 sum_x -= fx
                 sum_y -= fy
-                note_work(law.book, i, SURFACES, fx * across + fy * up, dt)
+                note_work(book, i, SURFACES, fx * across + fy * up, dt)
             else:
-                leave_surface(
-                    i, dx, dy, radius[i], velocity[i, 0] - rectangles[w, VELOCITY_X],
-                    velocity[i, 1] - rectangles[w, VELOCITY_Y], spin[i], memory, dt, laws[w], law.book, law,
-                )  # fmt: skip
+                if booked(book) and holds(memory, i, law):
+                    note_leaving(
+                        i, dx, dy, radius[i], velocity[i, 0] - rectangles[w, VELOCITY_X],
+                        velocity[i, 1] - rectangles[w, VELOCITY_Y], spin[i], memory, dt, own, book, law,
+                    )  # fmt: skip
+                remember(memory, i, 0.0, 0.0, law)
         rectangle_force[w, 0] = sum_x
         rectangle_force[w, 1] = sum_y
 

@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 
 from porescale.dem.contact.law import (
     SURFACES,
+    booked,
     contact,
+    holds,
     material_of,
     moments,
     note_contact,
@@ -149,22 +151,20 @@ def surface_contact(i, nx, ny, distance, radius, vx, vy, spin, memory, dt, laws,
     return -normal * nx - tangential * ny, -normal * ny + tangential * nx, moment
 
 
-@inline
-def leave_surface(i, dx, dy, radius, vx, vy, spin, memory, dt, laws, book, law):
-    """Disc i away from a surface: clears its springs, and enters into ``book``, if any, what they still held.
+@kernel
+def note_leaving(i, dx, dy, radius, vx, vy, spin, memory, dt, laws, book, law):
+    """Enter into ``book``, if any, what the springs of disc i still held when it left a surface.
 
-    (dx, dy) m from its centre to the nearest point of the surface; the rest as in surface_contact.
+    (dx, dy) m from its centre to the nearest point of the surface; the rest as in surface_contact.  A function of its
+    own, and called seldom: merged into the loops over all discs it makes them count references at every disc.
     """
-    if book is not None:
-        before, roll_before = recall(memory, i, law)
-        if before != 0.0 or roll_before != 0.0:
-            distance = np.sqrt(dx * dx + dy * dy)
-            nx, ny = dx / distance, dy / distance
-            note_parting(
-                i, radius - distance, vx * nx + vy * ny, vy * nx - vx * ny + spin * distance, spin * radius,
-                before, roll_before, radius, dt, laws[material_of(law.material, i)], book, law,
-            )  # fmt: skip
-    remember(memory, i, 0.0, 0.0, law)
+    before, roll_before = recall(memory, i, law)
+    distance = np.sqrt(dx * dx + dy * dy)
+    nx, ny = dx / distance, dy / distance
+    note_parting(
+        i, radius - distance, vx * nx + vy * ny, vy * nx - vx * ny + spin * distance, spin * radius,
+        before, roll_before, radius, dt, laws[material_of(law.material, i)], book, law,
+    )  # fmt: skip
 
 
 @kernel
@@ -181,7 +181,7 @@ def add_wall_forces(
     for w in range(walls.shape[0]):
         px, py, nx, ny = walls[w, PX], walls[w, PY], walls[w, NX], walls[w, NY]
         wall_x, wall_y, turn = walls[w, VX], walls[w, VY], walls[w, TURN]
-        memory = spring[w]
+        memory, own, book = spring[w], laws[w], law.book
         sum_x, sum_y, moments_sum = 0.0, 0.0, 0.0
         for i in range(radius.shape[0]):
             distance = (position[i, 0] - px) * nx + (position[i, 1] - py) * ny
@@ -190,7 +190,7 @@ def add_wall_forces(
                 at_x, at_y = wall_x - turn * along * nx, wall_y - turn * along * ny
                 fx, fy, moment = surface_contact(
                     i, -nx, -ny, distance, radius[i], velocity[i, 0] - at_x, velocity[i, 1] - at_y, spin[i], memory,
-                    dt, laws[w], law,
+                    dt, own, law,
                 )  # fmt: skip
                 force[i, 0] += fx
                 force[i, 1] += fy
@@ -198,12 +198,14 @@ def add_wall_forces(
                 sum_x -= fx
                 sum_y -= fy
                 moments_sum += along * (ny * fy + nx * fx)
-                note_work(law.book, i, SURFACES, fx * at_x + fy * at_y, dt)
+                note_work(book, i, SURFACES, fx * at_x + fy * at_y, dt)
             else:
-                leave_surface(
-                    i, -distance * nx, -distance * ny, radius[i], velocity[i, 0] - wall_x, velocity[i, 1] - wall_y,
-                    spin[i], memory, dt, laws[w], law.book, law,
-                )  # fmt: skip
+                if booked(book) and holds(memory, i, law):
+                    note_leaving(
+                        i, -distance * nx, -distance * ny, radius[i], velocity[i, 0] - wall_x, velocity[i, 1] - wall_y,
+                        spin[i], memory, dt, own, book, law,
+                    )  # fmt: skip
+                remember(memory, i, 0.0, 0.0, law)
         wall_force[w, 0] = sum_x
         wall_force[w, 1] = sum_y
         if wall_force.shape[1] > 2:
@@ -224,7 +226,7 @@ def add_plate_forces(
         sum_x, sum_y = 0.0, 0.0
         if plates[w, PRESENT] != 0.0:
             x, low, high, rise = plates[w, X], plates[w, LOW], plates[w, HIGH], plates[w, VELOCITY]
-            memory = spring[w]
+            memory, own, book = spring[w], laws[w], law.book
             for i in range(radius.shape[0]):
                 dx = x - position[i, 0]
                 dy = min(max(position[i, 1], low), high) - position[i, 1]
@@ -233,19 +235,21 @@ def add_plate_forces(
                     distance = np.sqrt(square)
                     fx, fy, moment = surface_contact(
                         i, dx / distance, dy / distance, distance, radius[i],
-                        velocity[i, 0], velocity[i, 1] - rise, spin[i], memory, dt, laws[w], law,
+                        velocity[i, 0], velocity[i, 1] - rise, spin[i], memory, dt, own, law,
                     )  # fmt: skip
                     force[i, 0] += fx
                     force[i, 1] += fy
                     torque[i] += moment
                     sum_x -= fx
                     sum_y -= fy
-                    note_work(law.book, i, SURFACES, fy * rise, dt)
+                    note_work(book, i, SURFACES, fy * rise, dt)
                 else:
-                    leave_surface(
-                        i, dx, dy, radius[i], velocity[i, 0], velocity[i, 1] - rise, spin[i], memory, dt, laws[w],
-                        law.book, law,
-                    )  # fmt: skip
+                    if booked(book) and holds(memory, i, law):
+                        note_leaving(
+                            i, dx, dy, radius[i], velocity[i, 0], velocity[i, 1] - rise, spin[i], memory, dt, own,
+                            book, law,
+                        )  # fmt: skip
+                    remember(memory, i, 0.0, 0.0, law)
         plate_force[w, 0] = sum_x
         plate_force[w, 1] = sum_y
 

@@ -199,6 +199,19 @@ def _remember_rolling(memory, k, spring, roll, law):
 
 
 @inline
+def holds(memory, k, law):
+    """Whether contact k of ``memory`` (m, 1 or 2) has a spring that is not at rest."""
+    spring, roll = recall(memory, k, law)
+    return spring != 0.0 or roll != 0.0
+
+
+@inline
+def booked(book):
+    """Whether there is an energy book."""
+    return book is not None
+
+
+@inline
 def material_of(material, i):
     """Material of disc i; 0 where there is one."""
     if material is None:
