@@ -7,8 +7,8 @@ Each row of a body's patch is summed when the lattice row has been collided and 
 order afterwards, so that loads do not depend on threads.
 """
 
-from porescale.coupling.coverage_rows import BLOCK, blocks_inside
-from porescale.ground.jit import inline, kernel, parallel_kernel, part, prange, sum_by_halves
+from porescale.coupling.coverage_rows import AHEAD, BLOCK, blocks_inside
+from porescale.ground.jit import fetch, inline, kernel, parallel_kernel, part, prange, sum_by_halves
 
 total = sum_by_halves(BLOCK)
 
@@ -26,6 +26,8 @@ def take_row(begin, end, rows, patches, centre, velocity, spin, shift, periodic_
     nx = scratch.shape[1] - 2 * BLOCK
     density, jx, jy = scratch[0], scratch[1], scratch[2]
     for k in range(begin, end):
+        if k + AHEAD < rows.body.shape[0]:
+            fetch(row_load, (rows.body[k + AHEAD] * row_load.shape[1] + rows.line[k + AHEAD]) * row_load.shape[2])
         n = rows.body[k]
         j = rows.line[k]
         stride = patches.stride[n]

@@ -165,6 +165,36 @@ def _choose_part(array: Any, first: Any, count: Any) -> Any:
     return lambda array, first, count: _part(array, first, count)
 
 
+def fetch(array: Any, at: Any) -> None:
+    """Ask for the entry ``at`` of a contiguous array, counted as if it were flat, to be brought to the nearest cache.
+
+    For entries that a loop comes to in an order that no machine foresees.  Does nothing else, nor in plain Python.
+    """
+
+
+def _prefetch(typing: Any, array: Any, at: Any) -> Any:
+    """``fetch`` in kernels."""
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        data = context.make_array(array)(context, builder, values[0]).data
+        byte, number = ir.IntType(8).as_pointer(), ir.IntType(32)
+        kind = ir.FunctionType(ir.VoidType(), [byte, number, number, number])
+        ask = builder.module.declare_intrinsic("llvm.prefetch", (byte,), kind)
+        place = builder.bitcast(builder.gep(data, [values[1]]), byte)
+        builder.call(ask, [place, number(0), number(3), number(1)])  # to read, near, data
+        return context.get_dummy_value()
+
+    return numba.types.none(array, numba.intp), code
+
+
+_fetch: Any = intrinsic(_prefetch)
+
+
+@overload(fetch, strict=False, jit_options=_INLINED)
+def _choose_fetch(array: Any, at: Any) -> Any:
+    return lambda array, at: _fetch(array, at)
+
+
 def sum_by_halves(count: int) -> Any:
     """Make an inline kernel (array, first) that sums ``count`` entries, a power of two, from ``first`` on.
 

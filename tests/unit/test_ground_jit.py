@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from porescale.ground.check import InputError
-from porescale.ground.jit import kernel, part, set_threads, sum_by_halves, threads
+from porescale.ground.jit import fetch, kernel, part, set_threads, sum_by_halves, threads
 
 
 @pytest.mark.usefixtures("one_thread")
@@ -27,6 +27,7 @@ def test_parts_are_slices_and_sums_by_halves_are_those_of_plain_python(dtype):
 
     @kernel
     def both(values):
+        fetch(values, 3)  # which changes nothing
         for i in range(8):
             part(values, 3, 8)[i] *= 2
         return total(values, 3)
