@@ -17,7 +17,8 @@ from porescale.workbench.application import application, main
 from porescale.workbench.package import Package
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
-FILES = sorted(CASES.glob("*/expected.toml"))
+FILES = sorted(path for path in CASES.glob("*/expected.toml") if (path.parent / "scene.toml").exists())
+"""Of cases that are scenes; those that are scripts have test_dem_cases.py."""
 KEYS = {"name", "column", "at", "value", "tolerance", "unit", "because"}
 MORE = {"file", "minus", "where"}
 """Keys that a row may have besides: which table it speaks of, another column to take away, rows to look at."""

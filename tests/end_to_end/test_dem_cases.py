@@ -1,0 +1,106 @@
+"""Cases of grains that are scripts: each measures what its expected.toml says, and would say so if it did not."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import sys
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from porescale.scene.case import conclude, expected, missed, stage
+
+CASES = Path(__file__).resolve().parents[2] / "cases"
+SCRIPTS = sorted(path.parent.name for path in CASES.glob("*/*.py"))
+KEYS = {"name", "value", "tolerance", "unit", "because"}
+
+
+def script(case: str) -> ModuleType:
+    """The script of a case, as a module of its own."""
+    spec = importlib.util.spec_from_file_location(f"case_{case}", CASES / case / f"{case}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("case", SCRIPTS)
+def test_every_script_says_what_it_is_what_it_expects_and_shows_it(case):
+    rows = expected(CASES / case)
+    assert len({row["name"] for row in rows}) == len(rows) > 0
+    for row in rows:
+        assert row.keys() == KEYS
+        assert row["tolerance"] > 0
+        assert len(row["because"].split()) > 2
+    text = (CASES / case / "README.md").read_text(encoding="utf-8")
+    assert text.startswith("# ")
+    assert "## Source" in text
+    assert f"python cases/{case}/{case}.py" in text
+    assert len((CASES / case / "picture.png").read_bytes()) < 150_000
+    assert re.search(r"!\[.+\]\(picture\.png\)", text)
+
+
+def test_a_case_is_concluded_by_table_picture_and_exit_code(tmp_path):
+    (tmp_path / "expected.toml").write_text(
+        '[[expected]]\nname = "a"\nvalue = 1\ntolerance = 0.1\nunit = "m"\nbecause = "so it is"\n', encoding="utf-8"
+    )
+    said: list[str] = []
+    figure, axes = stage(2)
+    assert len(axes) == 2
+    assert conclude(tmp_path, {"a": 1.05}, figure, tmp_path / "out", said.append) == 0
+    assert conclude(tmp_path, {"a": 1.2}, figure, tmp_path / "out", said.append) == 1
+    assert said[0] == "ok      a: 1.05, expected 1 ± 0.1 m"
+    assert said[2] == "MISSED  a: 1.2, expected 1 ± 0.1 m"
+    assert (tmp_path / "out" / "picture.png").read_bytes().startswith(b"\x89PNG")
+    assert missed(tmp_path, {"a": float("nan")}) == ["a"]  # no number is not within tolerance
+    with pytest.raises(KeyError):
+        missed(tmp_path, {})
+
+
+@pytest.mark.slow
+def test_a_disc_bounces_as_high_as_its_restitution_says():
+    case = script("bouncing_disc")
+    numbers, _ = case.measure()
+    assert missed(CASES / "bouncing_disc", numbers) == []
+
+
+def test_a_disc_under_the_other_rule_bounces_otherwise():
+    # The twin that must fail: with the tutorial's damping, a contact that never pulls does not fall to a quarter.
+    case = script("bouncing_disc")
+    name = "the tutorial's c, ends without overlap"
+    law = replace(case.LAWS[name], release="force")
+    high = case.tops(case.path(law, lasts=0.3, steps_per_contact=100)[1])
+    row = next(row for row in expected(CASES / "bouncing_disc") if row["name"] == f"{name}: first height")
+    assert abs(high[0] - row["value"]) > 10 * row["tolerance"]
+
+
+def test_a_pulse_runs_along_a_chain_as_bessel_functions_say():
+    numbers, _ = script("chain_pulse").measure()
+    assert missed(CASES / "chain_pulse", numbers) == []
+
+
+def test_a_pulse_that_parts_the_discs_does_not(monkeypatch):
+    # The twin that must fail: a kick that moves discs by more than their overlap, and springs only push.
+    case = script("chain_pulse")
+    monkeypatch.setattr(case, "KICK", 2000.0)
+    numbers, _ = case.measure()
+    assert "largest difference from the Bessel profile" in missed(CASES / "chain_pulse", numbers)
+
+
+def test_the_longest_step_is_that_of_lagged_damping():
+    numbers, _ = script("step_stability").measure()
+    assert missed(CASES / "step_stability", numbers) == []
+
+
+def test_the_longest_step_is_not_that_of_central_damping():
+    # The twin that must fail: 2 at any damping ratio is right at none but zero.
+    case = script("step_stability")
+    numbers = {row["name"]: row["value"] for row in expected(CASES / "step_stability")}
+    central = {name: 2.0 if name.startswith("longest") else value for name, value in numbers.items()}
+    assert missed(CASES / "step_stability", central) == [f"longest step, h = {h:g}" for h in case.RATIOS[1:]]
+    assert case.gains(0.45).max() > 0.1  # nor does a bounce forgive what a contact at rest does
