@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.dem.contact.linear import Linear
+from porescale.dem.contact.materials import Law
 from porescale.dem.discs import Discs, make_discs
 from porescale.dem.measure import kinetic_energy, max_overlap, unbalanced
 from porescale.dem.system import Grains
@@ -189,7 +190,7 @@ def scale_springs(grains: Grains, factor: float) -> None:
     grains.plate_spring *= factor
 
 
-def relax(grains: Grains, law: Linear, weights: Array, gravity: float, *, wall_law: Linear | None = None) -> None:
+def relax(grains: Grains, law: Law, weights: Array, gravity: float, *, wall_law: Law | None = None) -> None:
     """From rest under one law and weight to rest under ``law`` and ``weights`` (n, 2) N/m.
 
     The friction forces are carried over in proportion to the weights, so that the packing does not forget
@@ -212,9 +213,9 @@ def relax(grains: Grains, law: Linear, weights: Array, gravity: float, *, wall_l
 def prepare(
     pile: Pile,
     box: Box,
-    law: Linear,
+    law: Law,
     *,
-    wall_law: Linear | None = None,
+    wall_law: Law | None = None,
     plates: Sequence[Plate] = (),
     weight_density: float | None = None,
     folder: Path | None = None,

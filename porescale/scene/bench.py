@@ -42,14 +42,27 @@ def column(size: int, dtype: Dtype) -> Scene:
 
 @BENCHMARKS.row("column")
 def bench_column(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
-    """Coupled steps of the collapsing column, and plain fluid of its size; InputError if the gate fits no cell side."""
+    """Coupled steps of the collapsing column; beside them plain fluid of its size, and the contact steps alone.
+
+    What neither of these takes is coverage, the cells that grains lie in and their loads.  Raises InputError if the
+    gate fits no cell side.
+    """
     cells = SIZE if size is None else size
     if cells % 4 or cells < 100:
         raise InputError(Fault("--size", cells, "the gate stands at three quarters", allowed="multiples of 4 from 100"))
     simulation = build(column(cells, dtype))
     simulation.advance(max(2, round(FALLEN / simulation.step_seconds)))
     updates, fluid = float(cells * cells * STEPS), plain(cells, dtype)
+    coupled = simulation.coupled
+    assert coupled
+
+    def contacts() -> None:
+        step = simulation.step_seconds / coupled.contact_steps
+        for _ in range(STEPS):
+            coupled.grains.step(step, coupled.force, coupled.torque, coupled.contact_steps)
+
     return [
         Work(lambda: simulation.advance(STEPS), updates, "cells/s", cells),
+        Work(contacts, updates, "cells/s", cells, variant="contacts"),
         Work(lambda: fluid(STEPS), updates, "cells/s", cells, bytes_of(dtype), PLAIN),
     ]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import pydantic
+
 from porescale.workbench.sections import Section, quantity
 
 PLACE: Any = {"ge": -1e3, "le": 1e3}
@@ -22,6 +24,7 @@ class Disc(Section):
     diameter: float = quantity("m", **LENGTH, help="diameter")
     velocity: tuple[float, float] = quantity("m/s", (0.0, 0.0), **SPEED, help="velocity; [0, 0] is a fixed disc")
     spin: float = quantity("rad/s", 0.0, ge=-1e7, le=1e7, help="angular velocity, counter-clockwise")
+    material: str = pydantic.Field("", description="name of its material (default: that of the walls)")
 
     @property
     def fastest(self) -> float:

@@ -22,6 +22,7 @@ from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
 from porescale.lbm.sides import Sides
 from porescale.particles.placement import place
+from porescale.scene.contact import density_of
 from porescale.scene.cost import refuse_too_large
 from porescale.scene.derive import Derived, derive, grain_count
 from porescale.scene.geometry import refuse_overlaps
@@ -147,7 +148,7 @@ def _grains(scene: Scene, derived: Derived) -> Grains:
         refuse_buried(scene, grains.discs)
     if scene.disc:
         grains.hold(slice(grains.discs.count - len(scene.disc), None))
-    fit_out(scene, grains)
+    fit_out(scene, grains, derived.mean_mass)
     added = len(scene.disc) + (len(scene.grains.grain) if scene.grains else 0)
     if added:
         refuse_overlaps(grains.discs, scene, grains.discs.count - added)
@@ -170,13 +171,13 @@ def prepared(scene: Scene, packing: Packing, box: Box, derived: Derived, plates:
     placed, radii = len(scene.grains.grain) + len(scene.disc), radii_of(packing)
     pile = Pile(
         corner=(packing.left, packing.bottom), width=packing.width, count=grain_count(scene) - placed,
-        diameter=packing.diameter, density=scene.grains.density, spread=packing.size_spread,
+        diameter=packing.diameter, density=density_of(scene, packing.material), spread=packing.size_spread,
         friction=packing.settling_friction, seed=packing.seed, gravity=-scene.gravity[1],
         given=() if radii is None else tuple(radii.tolist()),
     )  # fmt: skip
     lighter = scene.fluid.density if scene.fluid else 0.0
     return prepare(
-        pile, box, derived.law, wall_law=derived.wall_law, plates=plates, weight_density=scene.grains.density - lighter
+        pile, box, derived.law, wall_law=derived.wall_law, plates=plates, weight_density=pile.density - lighter
     )
 
 
@@ -194,13 +195,14 @@ def _placed(scene: Scene, packing: Packing) -> Discs:
         )  # fmt: skip
     except InputError as error:
         raise InputError([replace(fault, key=f"grains.packing.{fault.key}") for fault in error.faults]) from None
-    return make_discs(placed.position, placed.radius, scene.grains.density)
+    return make_discs(placed.position, placed.radius, density_of(scene, packing.material))
 
 
 def _by_hand(scene: Scene) -> Discs:
     assert scene.grains
     grains = scene.grains.grain
     return make_discs(
-        [(g.x, g.y) for g in grains], np.array([g.diameter / 2 for g in grains]), scene.grains.density,
+        [(g.x, g.y) for g in grains], np.array([g.diameter / 2 for g in grains]),
+        np.array([density_of(scene, g.material) for g in grains]),
         np.array([g.velocity for g in grains]), np.array([g.spin for g in grains]),
     )  # fmt: skip

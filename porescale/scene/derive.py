@@ -8,16 +8,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from porescale.dem.contact.linear import Linear
+from porescale.dem.contact.materials import Law
 from porescale.dem.integrate import packing_limit, stable_step
 from porescale.ground.check import Fault, InputError
 from porescale.lbm.scales import NAMES, Scales, implied
+from porescale.scene.contact import Contact, density_of, laws
 from porescale.scene.fluid import Fluid
 from porescale.scene.geometry import judge_places
 from porescale.scene.lattice import is_whole
 from porescale.scene.packing import judge_compressed, radii_of
 from porescale.scene.regime import expected_speed, judge
-from porescale.scene.sections import Contact, Scene
+from porescale.scene.sections import Scene
 
 MANY = 1e6
 """Contact steps in a step of the fluid beyond which somebody slipped in a unit."""
@@ -30,8 +31,8 @@ class Derived:
     scales: Scales | None = None
     cells: tuple[int, int] | None = None
     gate_column: int | None = None
-    law: Linear | None = None
-    wall_law: Linear | None = None
+    law: Law | None = None  # of the packing, or the first material, with itself
+    wall_law: Law | None = None
     contact_limit: float | None = None  # s, stability limit in a packing
     contact_step: float | None = None  # s
     contact_steps: int | None = None  # per model step
@@ -57,11 +58,12 @@ def derive(scene: Scene) -> Derived:
     law = wall_law = limit = step = steps = None
     model_step, mean_mass = scales.step if scales else 0.0, 0.0
     if scene.grains and scene.contact and sizes:
-        mass = math.pi / 4 * sizes[0] ** 2 * scene.grains.density
+        lightest = min([density_of(scene, it.name) for it in scene.material] or [scene.grains.density])
+        smallest = math.pi / 4 * sizes[0] ** 2 * lightest, sizes[0] / 2
         mean_mass = math.pi / 4 * sizes[1] ** 2 * scene.grains.density
-        law, wall_law = laws(scene.contact, mean_mass)
-        limit = min(packing_limit(law, mass), packing_limit(wall_law, mass))
-        step, steps = _contact_step(scene.contact, stable_step([law, wall_law], mass), limit, scales, faults)
+        law, wall_law, every = laws(scene, mean_mass)
+        limit = min(packing_limit(it, *smallest) for it in every)
+        step, steps = _contact_step(scene.contact, stable_step(every, *smallest), limit, scales, faults)
         model_step = scales.step if scales else step
     speed = expected_speed(scene, scales, sizes)
     variation = 0.0
@@ -90,18 +92,6 @@ def fluid_scales(fluid: Fluid) -> Scales:
     given = {name: getattr(fluid, name) for name in NAMES if getattr(fluid, name) is not None}
     full = {**implied(**given), **given}
     return Scales(full["spacing"], full["step"], full["relaxation_time"], fluid.density)
-
-
-def laws(contact: Contact, mass: float) -> tuple[Linear, Linear]:
-    """Contact law between grains and at walls; a restitution is that of two grains of mean ``mass`` (kg/m)."""
-    rest = (contact.tangential_stiffness, contact.tangential_damping, contact.friction, contact.release)
-    if contact.damping is not None:
-        law = Linear(contact.stiffness, contact.damping, *rest)
-    else:
-        assert contact.restitution is not None
-        law = Linear.from_restitution(contact.restitution, mass / 2, contact.stiffness, *rest)
-    wall = contact.friction if contact.wall_friction is None else contact.wall_friction
-    return law, law.with_friction(wall)
 
 
 def grain_count(scene: Scene) -> int:
@@ -169,9 +159,9 @@ def _contact_step(
     if steps > MANY:
         problem = f"takes {steps:.3g} contact steps of {wanted:.3g} s"
         repair = "lower contact.stiffness, give the grains a size in metres, or shorten the step of the fluid"
-        faults.append(
-            Fault("contact.stiffness", contact.stiffness, f"{problem} in a step of the fluid", "N/m", repair=repair)
-        )
+        key, unit = ("stiffness", "N/m") if contact.law == "linear" else ("young", "Pa")
+        what = getattr(contact, key)
+        faults.append(Fault(f"contact.{key}", what, f"{problem} in a step of the fluid", unit, repair=repair))
     if step > limit:
         faults.append(
             Fault("contact.step", step, "is beyond the stability limit of a packing", "s", f"< {limit:.3g}",

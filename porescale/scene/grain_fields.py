@@ -46,7 +46,7 @@ class GrainInstruments:
         self.scene, self.grains = scene, grains
         self.regions = [(it.name or f"region {k}", Region(it.lower, it.upper)) for k, it in enumerate(scene.region)]
         self.held = np.arange(grains.discs.count) >= grains.discs.count - len(scene.disc)
-        friction = scene.contact.friction if scene.contact else 0.0
+        friction = max(law.friction for law in grains.laws)
         self.least = LEAST_WITH_FRICTION if friction > 0.0 else LEAST_WITHOUT
 
     def tables(self, time: float) -> dict[str, Row]:

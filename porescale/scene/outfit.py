@@ -1,4 +1,4 @@
-"""What a scene gives its grains besides places and a law: the energy book."""
+"""What a scene gives its grains besides places and a law: materials and the energy book."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from porescale.dem.contact.law import BOOK
 from porescale.dem.energy import energy_book
 from porescale.dem.system import Grains
+from porescale.scene.contact import materials_of
 
 if TYPE_CHECKING:
     from porescale.scene.sections import Scene
@@ -16,11 +17,31 @@ if TYPE_CHECKING:
 RESIDUAL = "residual (J/m)"
 
 
-def fit_out(scene: Scene, grains: Grains) -> None:
-    """Give ``grains``, all discs in place, what the scene asks for; nothing is made of what it does not name."""
+def fit_out(scene: Scene, grains: Grains, mass: float) -> None:
+    """Give ``grains``, all discs in place, what the scene asks for; nothing is made of what it does not name.
+
+    mass (kg/m): of a mean grain, whose restitution is meant where a material gives one.
+    """
+    materials = materials_of(scene, mass)
     if scene.output.energy:
         grains.book = np.zeros((grains.discs.count, BOOK))
+    if materials:
+        names = names_of(scene, grains.discs.count)
+        if len(materials.names) > 1:
+            grains.material = np.array([materials.names.index(name or materials.names[0]) for name in names], np.uint8)
+        grains.set_law(materials)
+    elif scene.output.energy:
         grains.set_law(grains.law, grains.wall_law)  # kernels find the book beside the law
+
+
+def names_of(scene: Scene, count: int) -> list[str]:
+    """The material of each of ``count`` discs by name, "" for the first."""
+    by_hand = [it.material for it in scene.grains.grain] if scene.grains else []
+    walls = scene.contact.wall_material if scene.contact else ""
+    held = [it.material or walls for it in scene.disc]
+    packing = scene.grains.packing if scene.grains else None
+    packed = count - len(by_hand) - len(held)
+    return [packing.material if packing else ""] * packed + by_hand + held
 
 
 def energy_row(grains: Grains, acceleration: tuple[float, float]) -> dict[str, float]:

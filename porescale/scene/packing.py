@@ -12,6 +12,7 @@ import pydantic
 from numpy.typing import NDArray
 
 from porescale.dem.contact.linear import Linear
+from porescale.dem.contact.materials import Law
 from porescale.dem.packing import Compressed, Press, kept, read_circles, read_packing
 from porescale.ground.check import Fault, InputError
 from porescale.ground.units import to_si
@@ -167,6 +168,9 @@ def judge_compressed(scene: Scene, faults: list[Fault]) -> None:
     packing = scene.grains.packing if scene.grains else None
     if packing is None or not packing.compress:
         return
+    if scene.contact and scene.contact.law != "linear":
+        problem = "packings are compressed under the linear law only"
+        faults.append(Fault("contact.law", scene.contact.law, problem, repair='let it settle, or take "linear"'))
     domain = scene.domain
     for key, start, length, size in (
         ("width", packing.left, packing.width, domain.width), ("height", packing.bottom, packing.height, domain.height),
@@ -177,9 +181,10 @@ def judge_compressed(scene: Scene, faults: list[Fault]) -> None:
             faults.append(Fault(f"grains.packing.{key}", length, problem, "m", f"{size:g}", repair))
 
 
-def compressed(scene: Scene, packing: Packing, law: Linear) -> Compressed:
+def compressed(scene: Scene, packing: Packing, law: Law) -> Compressed:
     """The packing of a scene, pressed to its pressure or fraction; keys of faults are those of the scene."""
     assert scene.grains
+    assert isinstance(law, Linear)  # judge_compressed has made sure
     radius = radii_of(packing)
     assert radius is not None
     box = (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height)

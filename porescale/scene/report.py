@@ -6,6 +6,7 @@ import math
 
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting import WEIGHTINGS
+from porescale.dem.contact.linear import Linear
 from porescale.lbm.collision.choose import OPERATORS
 from porescale.scene.cost import expected_seconds, memory, refuse_too_large
 from porescale.scene.derive import Derived, derive
@@ -43,8 +44,8 @@ def report(scene: Scene) -> Report:
 def _parts(scene: Scene, out: Report) -> None:
     out.heading("Parts")
     parts = (
-        "fluid", "grains", "contact", "gate", "disc", "rectangle", "lubrication", "probe", "line", "flux", "loads",
-        "permeability",
+        "fluid", "grains", "contact", "material", "gate", "disc", "rectangle", "lubrication", "probe", "line",
+        "flux", "loads", "permeability",
     )  # fmt: skip
     out.row("built", ", ".join(name for name in parts if getattr(scene, name)))
     out.row("absent, not built", ", ".join(name for name in parts if not getattr(scene, name)) or "none")
@@ -127,9 +128,14 @@ def _contact(derived: Derived, out: Report) -> None:
     assert derived.contact_step is not None
     out.heading("Contact")
     mass = derived.mean_mass / 2
-    out.row("damping ratio of a pair", law.damping_ratio(mass))
+    if isinstance(law, Linear):
+        out.row("damping ratio of a pair", law.damping_ratio(mass))
+        out.row("contact time of a pair", law.contact_time(mass), "s")
+    else:
+        radius = derived.diameters[1] / 4  # reduced, of two mean grains
+        out.row("damping ratio of a pair", law.damping_ratio)
+        out.row("contact time of a pair", law.contact_time(mass, radius, 0.01), "s", "at 1 cm/s; longer when slower")
     out.row("restitution of a pair", law.restitution(mass))
-    out.row("contact time of a pair", law.contact_time(mass), "s")
     out.row("stability limit in a packing", derived.contact_limit, "s")
     out.row("contact step", derived.contact_step, "s")
     out.row("contact steps per model step", derived.contact_steps or 1)

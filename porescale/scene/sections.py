@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any
 
 import pydantic
 
@@ -10,6 +10,7 @@ from porescale.ground.check import Fault
 from porescale.ground.constants import GRAVITY
 from porescale.lbm.scales import NAMES
 from porescale.scene.bodies import Disc, Lubrication
+from porescale.scene.contact import Contact, Material, judge_contact
 from porescale.scene.fluid import Fluid
 from porescale.scene.lattice import disagreements
 from porescale.scene.measures import FieldName, Flux, Line, Loads, Permeability, Probe
@@ -31,6 +32,7 @@ PLACE = 1e3
 SPEED = 1e4
 SPIN = 1e7
 FORCE = 1e12
+MATERIAL = pydantic.Field("", description="name of its material (default: the first)")
 
 
 class Time(Section):
@@ -81,6 +83,7 @@ class Packing(Section):
     )
     compress: bool = pydantic.Field(False, description="grow in place to packing_fraction, without gravity")
     pressure: float | None = quantity("Pa", None, gt=0, le=1e12, help="mean stress to compress to, without gravity")
+    material: str = MATERIAL
 
     @pydantic.model_validator(mode="before")
     @classmethod
@@ -101,6 +104,7 @@ class Grain(Section):
     diameter: float = quantity("m", **LENGTH, help="diameter")
     velocity: tuple[float, float] = quantity("m/s", (0.0, 0.0), ge=-SPEED, le=SPEED, help="velocity at the start")
     spin: float = quantity("rad/s", 0.0, ge=-SPIN, le=SPIN, help="angular velocity at the start, counter-clockwise")
+    material: str = MATERIAL
 
 
 class Grains(Section):
@@ -129,39 +133,6 @@ class Grains(Section):
         return self
 
 
-class Contact(Section):
-    """Linear contact, per metre of depth; the same law between grains and at walls."""
-
-    stiffness: float = quantity("N/m", ge=1e-6, le=1e15, help="normal stiffness per metre of depth")
-    damping: float | None = quantity("N s/m", None, ge=0, le=1e12, help="normal damping per metre of depth")
-    restitution: float | None = quantity(
-        "", None, ge=1e-3, le=1, help="normal coefficient of restitution, instead of damping"
-    )
-    tangential_stiffness: float = quantity("N/m", 0.0, ge=0, le=1e15, help="tangential stiffness per metre of depth")
-    tangential_damping: float = quantity("N s/m", 0.0, ge=0, le=1e12, help="tangential damping per metre of depth")
-    friction: float = quantity("", 0.0, **FRICTION, help="friction coefficient between grains")
-    wall_friction: float | None = quantity(
-        "", None, **FRICTION, help="friction coefficient at walls (default: that between grains)"
-    )
-    release: Literal["force", "overlap"] = "force"
-    step: float | None = quantity(
-        "s", None, ge=1e-15, le=1e3, help="contact step (default: from the contact's stability)"
-    )
-
-    @pydantic.model_validator(mode="after")
-    def _damped_once(self) -> Contact:
-        if (self.damping is None) == (self.restitution is None):
-            raise Refused(
-                Fault(
-                    "damping, restitution",
-                    None,
-                    "exactly one of the two is needed",
-                    repair="give one, leave the other out",
-                )
-            )
-        return self
-
-
 class Gate(Section):
     """An upright plate without thickness, over the whole height, that holds grains and water until it opens."""
 
@@ -184,6 +155,7 @@ class Scene(Section):
     fluid: Fluid | None = None
     grains: Grains | None = None
     contact: Contact | None = None
+    material: tuple[Material, ...] = ()
     gate: Gate | None = None
     disc: tuple[Disc, ...] = ()
     rectangle: tuple[Rectangle, ...] = ()
@@ -246,6 +218,10 @@ class Scene(Section):
                      "output.energy": self.output.energy}  # fmt: skip
             faults += [Fault(name, None, "there are no grains to measure", repair="add [grains] or leave it out")
                        for name, section in asked.items() if section]  # fmt: skip
+        if self.grains is None and self.material:
+            faults.append(Fault("material", None, "there are no grains", repair="add [grains] or leave it out"))
+        if self.grains and self.contact:
+            faults += judge_contact(self)
         if self.lubrication and not (self.fluid and (self.grains or self.disc)):
             faults.append(Fault("lubrication", None, "there are no grains in fluid", repair="leave it out"))
         if self.permeability and self.fluid and self.grains is None:
