@@ -136,10 +136,11 @@ class Benchmarks:
         for name in names:
             made = self._known[name](size, count, dtype)
             works = [made] if isinstance(made, Work) else list(made)
-            for work in works:
-                yield _measured(f"{name}.{work.variant}" if work.variant else name, work, count, dtype, min_seconds)
-            for work in works[:-1] if works[-1].variant == PLAIN else []:
-                self.remarks.append(f"{name}: {_part_of(works[-1], work):.2f} of the rate of {name}.{PLAIN}, in turns")
+            titles = [f"{name}.{work.variant}" if work.variant else name for work in works]
+            for title, work in zip(titles, works, strict=True):
+                yield _measured(title, work, count, dtype, min_seconds)
+            for title, work in zip(titles[:-1], works, strict=False) if works[-1].variant == PLAIN else ():
+                self.remarks.append(f"{title}: {_part_of(works[-1], work):.2f} of the rate of {name}.{PLAIN}, in turns")
 
 
 def _part_of(plain: Work, work: Work) -> float:
@@ -193,9 +194,9 @@ def table(rows: Sequence[Row]) -> Table:
             row.size,
             row.threads,
             row.dtype,
-            row.rate,
+            f"{row.rate:.4g}",
             row.unit,
-            row.seconds,
+            f"{row.seconds:.3g}",
             row.bytes or None,
         )
         made.add_row(*(Text(shown(cell)) for cell in (*cells, share)))
