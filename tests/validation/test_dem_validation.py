@@ -12,8 +12,10 @@ from porescale.dem.verify import VALIDATIONS
 from porescale.ground.constants import GRAVITY
 from tests.reference.dem import Body, World
 
+ROWS = [pytest.param(row, id=row.name, marks=[pytest.mark.slow] if row.slow else []) for row in VALIDATIONS]
 
-@pytest.mark.parametrize("validation", list(VALIDATIONS), ids=lambda validation: validation.name)
+
+@pytest.mark.parametrize("validation", ROWS)
 def test_the_validation_holds(validation):
     row = validation.run()
     assert row.passed, row
