@@ -14,7 +14,7 @@ of far pairs come first in it.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -153,9 +153,22 @@ def near_forces(
 
 @by_law
 def sweep_pairs(
-    position: Any, velocity: Any, spin: Any, radius: Any, force: Any, torque: Any, external_force: Any,
-    external_torque: Any, start: Any, partner: Any, carried: Any, law: Any, dt: Any, cell: Any, sweep: Any,
-) -> Any:  # fmt: skip
+    position,
+    velocity,
+    spin,
+    radius,
+    force,
+    torque,
+    external_force,
+    external_torque,
+    start,
+    partner,
+    carried,
+    law,
+    dt,
+    cell,
+    sweep,
+):
     """Overwrite force (n, 2) N/m and torque (n,) N m/m with the external ones and those between discs."""
 
 
@@ -164,6 +177,7 @@ def _pairs_serial(
     position, velocity, spin, radius, force, torque, external_force, external_torque, start, partner, carried, law, dt,
     cell, sweep,
 ):  # fmt: skip
+    """One loop over the list."""
     start_forces(force, torque, external_force, external_torque)
     pair_forces(position, velocity, spin, radius, force, torque, start, partner, carried, law, dt, cell)
 
@@ -173,6 +187,7 @@ def _pairs_threads(
     position, velocity, spin, radius, force, torque, external_force, external_torque, start, partner, carried, law, dt,
     cell, sweep,
 ):  # fmt: skip
+    """Pairs across blocks first, then block by block."""
     far_forces(position, velocity, spin, radius, start, partner, carried, law, dt, cell, sweep.far_start, sweep.far)
     near_forces(
         position, velocity, spin, radius, force, torque, external_force, external_torque, start, partner, carried, law,
@@ -189,27 +204,31 @@ def cut(array, first, last):
 
 
 @by_law
-def law_of_block(first: Any, last: Any, law: Any) -> Any:
+def law_of_block(first, last, law):
     """The law of discs first to last."""
 
 
 @law_of_block.of(LinearSliding)
 def _linear_sliding(first, last, law):
+    """Of its kind."""
     return LinearSliding(law.table, cut(law.material, first, last), law.mass[first:last], cut(law.book, first, last))
 
 
 @law_of_block.of(LinearRolling)
 def _linear_rolling(first, last, law):
+    """Of its kind."""
     return LinearRolling(law.table, cut(law.material, first, last), law.mass[first:last], cut(law.book, first, last))
 
 
 @law_of_block.of(HertzSliding)
 def _hertz_sliding(first, last, law):
+    """Of its kind."""
     return HertzSliding(law.table, cut(law.material, first, last), law.mass[first:last], cut(law.book, first, last))
 
 
 @law_of_block.of(HertzRolling)
 def _hertz_rolling(first, last, law):
+    """Of its kind."""
     return HertzRolling(law.table, cut(law.material, first, last), law.mass[first:last], cut(law.book, first, last))
 
 
@@ -250,10 +269,25 @@ def surfaces_threads(
 
 @by_law
 def sweep_blocks(
-    position: Any, velocity: Any, spin: Any, radius: Any, force: Any, torque: Any, walls: Any, wall_laws: Any,
-    wall_spring: Any, plates: Any, plate_laws: Any, plate_spring: Any, rectangles: Any, rectangle_laws: Any,
-    rectangle_spring: Any, law: Any, dt: Any, sweep: Any,
-) -> Any:  # fmt: skip
+    position,
+    velocity,
+    spin,
+    radius,
+    force,
+    torque,
+    walls,
+    wall_laws,
+    wall_spring,
+    plates,
+    plate_laws,
+    plate_spring,
+    rectangles,
+    rectangle_laws,
+    rectangle_spring,
+    law,
+    dt,
+    sweep,
+):
     """As surfaces_threads, by as many threads as ``sweep`` says."""
 
 
@@ -262,6 +296,7 @@ def _blocks_serial(
     position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws, plate_spring,
     rectangles, rectangle_laws, rectangle_spring, law, dt, sweep,
 ):  # fmt: skip
+    """One block after another."""
     for b in range(sweep.partial.shape[0]):
         surfaces_of_block(
             b, position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws,
@@ -274,6 +309,7 @@ def _blocks_threads(
     position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws, plate_spring,
     rectangles, rectangle_laws, rectangle_spring, law, dt, sweep,
 ):  # fmt: skip
+    """Blocks by threads."""
     surfaces_threads(
         position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws,
         plate_spring, rectangles, rectangle_laws, rectangle_spring, law, dt, sweep.partial,

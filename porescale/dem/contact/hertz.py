@@ -53,6 +53,7 @@ TANGENT = 2.0 * math.sqrt(5.0 / 6.0)
 
 @stiffness.of(HertzSliding, HertzRolling)
 def _stiffness(overlap, radius, mass, p, law):
+    """Tangents that grow with the square root of the overlap."""
     scale = np.sqrt(radius * overlap)
     root = np.sqrt(mass * scale)
     # K d^(3/2) = 4/3 E sqrt(R d) d; the columns of damping hold what sqrt(m sqrt(R d)) multiplies.
@@ -61,17 +62,20 @@ def _stiffness(overlap, radius, mass, p, law):
 
 @scale_at.of(HertzSliding, HertzRolling)
 def _scale_at(overlap, radius, law):
+    """Radius of the contact."""
     return np.sqrt(radius * overlap)
 
 
 @kept.of(HertzSliding, HertzRolling)
 def _kept(overlap, closing, dt, law):
+    """Springs shrink as the contact does while it is unloaded, never grow."""
     before = max(overlap - closing * dt, 0.0)
     return np.sqrt(min(before / overlap, 1.0))
 
 
 @stored_normal.of(HertzSliding, HertzRolling)
 def _stored_normal(overlap, radius, p, law):
+    """Integral of K d^(3/2)."""
     return 0.4 * p[KN] * np.sqrt(radius * overlap) * overlap * overlap
 
 

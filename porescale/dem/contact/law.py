@@ -25,7 +25,7 @@ rolling speed independent of the observer: Luding 2008, Granular Matter 10, 235.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,7 +97,7 @@ def memory_of(law: KernelLaw) -> int:
 
 
 @by_law
-def stiffness(overlap: Any, radius: Any, mass: Any, p: Any, law: Any) -> Any:
+def stiffness(overlap, radius, mass, p, law):
     """(elastic force N/m, normal damping N s/m, scale, 1/scale, tangential and rolling damping N s/m).
 
     overlap (m) > 0;  radius (m) and mass (kg/m) reduced;  p (COLUMNS,) row.  Tangential and rolling stiffness are
@@ -106,17 +106,17 @@ def stiffness(overlap: Any, radius: Any, mass: Any, p: Any, law: Any) -> Any:
 
 
 @by_law
-def scale_at(overlap: Any, radius: Any, law: Any) -> Any:
+def scale_at(overlap, radius, law):
     """What tangential and rolling stiffness are in proportion to, at ``overlap`` (m) >= 0, ``radius`` (m) reduced."""
 
 
 @by_law
-def kept(overlap: Any, closing: Any, dt: Any, law: Any) -> Any:
+def kept(overlap, closing, dt, law):
     """Share of a spring that is left when the overlap (m) has come to what it is at ``closing`` (m/s) over ``dt``."""
 
 
 @by_law
-def stored_normal(overlap: Any, radius: Any, p: Any, law: Any) -> Any:
+def stored_normal(overlap, radius, p, law):
     """Elastic energy (J/m) at ``overlap`` (m) > 0, reduced ``radius`` (m), row p (COLUMNS,)."""
 
 
@@ -134,8 +134,7 @@ def coulomb(spring, slip, limit, dt, stiff, soft, damping):
 
 
 @by_law
-def rolling(roll: Any, turning: Any, limit: Any, scale: Any, softness: Any, damping: Any, dt: Any, p: Any,
-            law: Any) -> Any:  # fmt: skip
+def rolling(roll, turning, limit, scale, softness, damping, dt, p, law):
     """Rolling resistance over the reduced radius and its new spring: (N/m, m).
 
     roll (m), turning R (w_i - w_j) (m/s), limit F (N/m) >= 0, scale, softness 1/scale, damping (N s/m), dt (s), p row.
@@ -144,56 +143,64 @@ def rolling(roll: Any, turning: Any, limit: Any, scale: Any, softness: Any, damp
 
 @rolling.of(LinearSliding, HertzSliding)
 def _no_rolling(roll, turning, limit, scale, softness, damping, dt, p, law):
+    """Discs roll freely."""
     return 0.0, 0.0
 
 
 @rolling.of(LinearRolling, HertzRolling)
 def _rolling(roll, turning, limit, scale, softness, damping, dt, p, law):
+    """Spring, slider and dashpot against rolling."""
     return coulomb(roll, turning, p[MUR] * limit, dt, p[KR] * scale, p[RYIELD] * softness, damping)
 
 
 @by_law
-def moments(tangential: Any, resisting: Any, arm_i: Any, arm_j: Any, radius: Any, law: Any) -> Any:
+def moments(tangential, resisting, arm_i, arm_j, radius, law):
     """Torques on both bodies, N m/m: tangential force (N/m) at lever arms (m), rolling resistance at the radius (m)."""
 
 
 @moments.of(LinearSliding, HertzSliding)
 def _moments_sliding(tangential, resisting, arm_i, arm_j, radius, law):
+    """Those of the tangential force."""
     return tangential * arm_i, tangential * arm_j
 
 
 @moments.of(LinearRolling, HertzRolling)
 def _moments_rolling(tangential, resisting, arm_i, arm_j, radius, law):
+    """Equal and opposite ones of rolling besides."""
     return tangential * arm_i + resisting * radius, tangential * arm_j - resisting * radius
 
 
 @by_law
-def recall(memory: Any, k: Any, law: Any) -> Any:
+def recall(memory, k, law):
     """(spring, rolling spring), m, of contact k of ``memory`` (m, 1 or 2)."""
 
 
 @recall.of(LinearSliding, HertzSliding)
 def _recall_sliding(memory, k, law):
+    """One spring a contact."""
     return memory[k, 0], 0.0
 
 
 @recall.of(LinearRolling, HertzRolling)
 def _recall_rolling(memory, k, law):
+    """Two springs a contact."""
     return memory[k, 0], memory[k, 1]
 
 
 @by_law
-def remember(memory: Any, k: Any, spring: Any, roll: Any, law: Any) -> Any:
+def remember(memory, k, spring, roll, law):
     """Overwrite both springs (m) of contact k of ``memory`` (m, 1 or 2)."""
 
 
 @remember.of(LinearSliding, HertzSliding)
 def _remember_sliding(memory, k, spring, roll, law):
+    """One spring a contact."""
     memory[k, 0] = spring
 
 
 @remember.of(LinearRolling, HertzRolling)
 def _remember_rolling(memory, k, spring, roll, law):
+    """Two springs a contact."""
     memory[k, 0] = spring
     memory[k, 1] = roll
 

@@ -32,21 +32,25 @@ from porescale.ground.check import Fault, InputError
 
 @stiffness.of(LinearSliding, LinearRolling)
 def _stiffness(overlap, radius, mass, p, law):
+    """The same at every overlap."""
     return p[KN] * overlap, p[CN], 1.0, 1.0, p[CT], p[CR]
 
 
 @scale_at.of(LinearSliding, LinearRolling)
 def _scale_at(overlap, radius, law):
+    """Constant."""
     return 1.0
 
 
 @kept.of(LinearSliding, LinearRolling)
 def _kept(overlap, closing, dt, law):
+    """All of it."""
     return 1.0
 
 
 @stored_normal.of(LinearSliding, LinearRolling)
 def _stored_normal(overlap, radius, p, law):
+    """Half k d²."""
     return 0.5 * p[KN] * overlap * overlap
 
 
