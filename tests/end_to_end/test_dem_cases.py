@@ -104,3 +104,17 @@ def test_the_longest_step_is_not_that_of_central_damping():
     central = {name: 2.0 if name.startswith("longest") else value for name, value in numbers.items()}
     assert missed(CASES / "step_stability", central) == [f"longest step, h = {h:g}" for h in case.RATIOS[1:]]
     assert case.gains(0.45).max() > 0.1  # nor does a bounce forgive what a contact at rest does
+
+
+def test_a_disc_rolls_alike_on_springs_a_hundred_times_as_stiff():
+    numbers, _ = script("rolling_on_a_slope").measure()
+    assert missed(CASES / "rolling_on_a_slope", numbers) == []
+
+
+def test_a_disc_that_slips_does_not(monkeypatch):
+    # The twin that must fail: tan 20° is more than three times a friction of 0.05.
+    case = script("rolling_on_a_slope")
+    monkeypatch.setattr(case.roll, "__defaults__", (0.05, *case.roll.__defaults__[1:]))
+    numbers, _ = case.measure()
+    names = [name for name in numbers if "acceleration" in name or "spin" in name]
+    assert set(missed(CASES / "rolling_on_a_slope", numbers)) >= set(names)
