@@ -26,6 +26,7 @@ from porescale.scene.contact import density_of
 from porescale.scene.cost import refuse_too_large
 from porescale.scene.derive import Derived, derive, grain_count
 from porescale.scene.geometry import refuse_overlaps
+from porescale.scene.grain_bodies import by_hand
 from porescale.scene.outfit import fit_out
 from porescale.scene.packing import compressed, radii_of
 from porescale.scene.rectangle_places import refuse_buried
@@ -129,7 +130,7 @@ def _grains(scene: Scene, derived: Derived) -> Grains:
         [Plate(scene.gate.x, 0.0, scene.domain.height, friction=scene.gate.friction, name=GATE)] if scene.gate else []
     )
     packing = scene.grains.packing if scene.grains else None
-    parts = [_by_hand(scene)] if scene.grains and scene.grains.grain else []
+    parts = [_by_hand(scene)] if by_hand(scene) else []
     parts += [_held(scene)] if scene.disc else []
     if packing and packing.settle:
         grains = prepared(scene, packing, box, derived, [*plates, *stand_ins(scene, packing)])
@@ -149,7 +150,7 @@ def _grains(scene: Scene, derived: Derived) -> Grains:
     if scene.disc:
         grains.hold(slice(grains.discs.count - len(scene.disc), None))
     fit_out(scene, grains, derived.mean_mass)
-    added = len(scene.disc) + (len(scene.grains.grain) if scene.grains else 0)
+    added = len(scene.disc) + len(by_hand(scene))
     if added:
         refuse_overlaps(grains.discs, scene, grains.discs.count - added)
     return grains
@@ -168,7 +169,7 @@ def prepared(scene: Scene, packing: Packing, box: Box, derived: Derived, plates:
     """The packing settled dry, then at rest under the run's contact law and its weight in the fluid."""
     assert scene.grains
     assert derived.law
-    placed, radii = len(scene.grains.grain) + len(scene.disc), radii_of(packing)
+    placed, radii = len(by_hand(scene)) + len(scene.disc), radii_of(packing)
     pile = Pile(
         corner=(packing.left, packing.bottom), width=packing.width, count=grain_count(scene) - placed,
         diameter=packing.diameter, density=density_of(scene, packing.material), spread=packing.size_spread,
@@ -199,8 +200,7 @@ def _placed(scene: Scene, packing: Packing) -> Discs:
 
 
 def _by_hand(scene: Scene) -> Discs:
-    assert scene.grains
-    grains = scene.grains.grain
+    grains = by_hand(scene)
     return make_discs(
         [(g.x, g.y) for g in grains], np.array([g.diameter / 2 for g in grains]),
         np.array([density_of(scene, g.material) for g in grains]),

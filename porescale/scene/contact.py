@@ -142,6 +142,7 @@ def _judge_names(scene: Scene, contact: Contact) -> list[Fault]:
     asked = [("contact.wall_material", contact.wall_material)]
     asked += [(f"contact.pair[{k}].materials", name) for k, it in enumerate(contact.pair) for name in it.materials]
     asked += [(f"disc[{k}].material", it.material) for k, it in enumerate(scene.disc)]
+    asked += [(f"clump[{k}].material", it.material) for k, it in enumerate(scene.clump)]
     if scene.grains:
         asked += [(f"grains.grain[{k}].material", it.material) for k, it in enumerate(scene.grains.grain)]
         if scene.grains.packing:

@@ -15,6 +15,7 @@ from porescale.lbm.scales import NAMES, Scales, implied
 from porescale.scene.contact import Contact, density_of, laws
 from porescale.scene.fluid import Fluid
 from porescale.scene.geometry import judge_places
+from porescale.scene.grain_bodies import by_hand, judge_bodies, lightest
 from porescale.scene.lattice import is_whole
 from porescale.scene.packing import judge_compressed, radii_of
 from porescale.scene.regime import expected_speed, judge
@@ -58,10 +59,12 @@ def derive(scene: Scene) -> Derived:
     law = wall_law = limit = step = steps = None
     model_step, mean_mass = scales.step if scales else 0.0, 0.0
     if scene.grains and scene.contact and sizes:
-        lightest = min([density_of(scene, it.name) for it in scene.material] or [scene.grains.density])
-        smallest = math.pi / 4 * sizes[0] ** 2 * lightest, sizes[0] / 2
+        least = min([density_of(scene, it.name) for it in scene.material] or [scene.grains.density])
+        smallest = math.pi / 4 * sizes[0] ** 2 * least, sizes[0] / 2
         mean_mass = math.pi / 4 * sizes[1] ** 2 * scene.grains.density
         law, wall_law, every = laws(scene, mean_mass)
+        if scene.clump:
+            smallest = min(smallest[0], lightest(scene, every)), smallest[1]
         limit = min(packing_limit(it, *smallest) for it in every)
         step, steps = _contact_step(scene.contact, stable_step(every, *smallest), limit, scales, faults)
         model_step = scales.step if scales else step
@@ -70,6 +73,7 @@ def derive(scene: Scene) -> Derived:
     if scales:
         variation = judge(scene, scales, speed, sizes, faults, warnings)
     _loads(scene, faults)
+    judge_bodies(scene, grain_count(scene) - len(scene.disc), faults)
     if faults:
         raise InputError(faults)
     return Derived(
@@ -96,7 +100,7 @@ def fluid_scales(fluid: Fluid) -> Scales:
 
 def grain_count(scene: Scene) -> int:
     """Number of grains and discs that are held."""
-    placed = len(scene.disc) + (len(scene.grains.grain) if scene.grains else 0)
+    placed = len(scene.disc) + len(by_hand(scene))
     packing = scene.grains.packing if scene.grains else None
     if packing is None:
         return placed
@@ -113,7 +117,7 @@ def diameters(scene: Scene, *, held: bool = True) -> tuple[float, float, float] 
     The mean is that of a packing where there is one.
     """
     packing = scene.grains.packing if scene.grains else None
-    sizes = [grain.diameter for grain in scene.grains.grain] if scene.grains else []
+    sizes = [grain.diameter for grain in by_hand(scene)]
     sizes += [disc.diameter for disc in scene.disc] if held else []
     if packing is None and not sizes:
         return None

@@ -11,6 +11,7 @@ from porescale.dem.system import SKIN
 from porescale.ground.check import Fault, InputError
 from porescale.particles.placement import DENSEST
 from porescale.scene.bodies import Disc
+from porescale.scene.grain_bodies import Member, by_hand, hand_names
 from porescale.scene.rectangle_places import judge_rectangles
 from porescale.scene.rectangles import beside
 from porescale.scene.sections import Gate, Grain, Packing, Scene
@@ -58,10 +59,9 @@ def judge_places(scene: Scene, sizes: tuple[float, float, float] | None, faults:
 
 
 def placed(scene: Scene) -> tuple[list[str], NDArray[np.float64], NDArray[np.float64]]:
-    """Keys, centres (n, 2) m and radii (n,) m of what is placed by hand: grains, then discs that are held."""
-    grains = scene.grains.grain if scene.grains else ()
-    names = [f"grains.grain[{k}]" for k in range(len(grains))] + [f"disc[{k}]" for k in range(len(scene.disc))]
-    bodies: list[Grain | Disc] = [*grains, *scene.disc]
+    """Keys, centres (n, 2) m and radii (n,) m of what is placed by hand: grains, clumps, then discs that are held."""
+    names = hand_names(scene)[0] + [f"disc[{k}]" for k in range(len(scene.disc))]
+    bodies: list[Grain | Member | Disc] = [*by_hand(scene), *scene.disc]
     x = np.array([(it.x, it.y) for it in bodies]).reshape(-1, 2)
     return names, x, np.array([it.diameter / 2 for it in bodies])
 
@@ -79,11 +79,16 @@ def refuse_overlaps(discs: Discs, scene: Scene, packed: int) -> None:
 
 
 def deepest(
-    x: NDArray[np.float64], r: NDArray[np.float64], domain: Domain, first: int = 0
+    x: NDArray[np.float64],
+    r: NDArray[np.float64],
+    domain: Domain,
+    first: int = 0,
+    group: NDArray[np.int64] | None = None,
 ) -> tuple[int, int, float] | None:
     """(i, j, overlap in m) of the deepest overlap, i > j and i >= ``first``, or None; also through periodic sides.
 
-    x : (n, 2) m;  r : (n,) m.  Grid search by scipy, outside the time loop.
+    x : (n, 2) m;  r : (n,) m;  group (n,): discs with the same number from 0 on may overlap.
+    Grid search by scipy, outside the time loop.
     """
     from scipy.spatial import cKDTree
 
@@ -96,6 +101,9 @@ def deepest(
     )
     pairs.sort(axis=1)
     pairs = pairs[pairs[:, 1] >= first]
+    if group is not None:
+        one, other = group[pairs].T
+        pairs = pairs[(one < 0) | (one != other)]
     if len(pairs) == 0:
         return None
     j, i = pairs.T
@@ -191,7 +199,10 @@ def _judge_overlap(
     x: NDArray[np.float64], r: NDArray[np.float64], scene: Scene, names: list[str], packed: int, faults: list[Fault]
 ) -> None:
     """Name the deepest overlap; discs from ``packed`` on have ``names``."""
-    found = deepest(x, r, scene.domain, packed)
+    group = np.full(len(r), -1)
+    own = hand_names(scene)[1]
+    group[packed : packed + len(own)] = own
+    found = deepest(x, r, scene.domain, packed, group)
     if found is None or found[2] <= _touch(scene) * 2 * min(r[found[0]], r[found[1]]):
         return
     i, j, depth = found

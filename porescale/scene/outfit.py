@@ -1,4 +1,4 @@
-"""What a scene gives its grains besides places and a law: materials and the energy book."""
+"""What a scene gives its grains besides places and a law: materials, the energy book, clumps and controls."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from porescale.dem.contact.law import BOOK
 from porescale.dem.energy import energy_book
 from porescale.dem.system import Grains
 from porescale.scene.contact import materials_of
+from porescale.scene.grain_bodies import add_clumps, add_controls, by_hand
 
 if TYPE_CHECKING:
     from porescale.scene.sections import Scene
@@ -32,16 +33,20 @@ def fit_out(scene: Scene, grains: Grains, mass: float) -> None:
         grains.set_law(materials)
     elif scene.output.energy:
         grains.set_law(grains.law, grains.wall_law)  # kernels find the book beside the law
+    if scene.clump:
+        add_clumps(scene, grains)
+    if scene.control:
+        add_controls(scene, grains)
 
 
 def names_of(scene: Scene, count: int) -> list[str]:
     """The material of each of ``count`` discs by name, "" for the first."""
-    by_hand = [it.material for it in scene.grains.grain] if scene.grains else []
+    placed = [it.material for it in by_hand(scene)]
     walls = scene.contact.wall_material if scene.contact else ""
     held = [it.material or walls for it in scene.disc]
     packing = scene.grains.packing if scene.grains else None
-    packed = count - len(by_hand) - len(held)
-    return [packing.material if packing else ""] * packed + by_hand + held
+    packed = count - len(placed) - len(held)
+    return [packing.material if packing else ""] * packed + placed + held
 
 
 def energy_row(grains: Grains, acceleration: tuple[float, float]) -> dict[str, float]:

@@ -10,6 +10,7 @@ from porescale.ground.check import Fault
 from porescale.lbm.collision.choose import choose
 from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
 from porescale.lbm.scales import Scales
+from porescale.scene.grain_bodies import by_hand
 from porescale.scene.limits import (
     CELLS_THICK,
     DENSITY_REFUSE,
@@ -45,7 +46,7 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None) -> 
     """
     g, speed = math.hypot(*scene.gravity), given_speed(scene)
     if scene.grains and sizes:
-        for grain in scene.grains.grain:
+        for grain in by_hand(scene):
             speed = max(speed, math.hypot(*grain.velocity) + abs(grain.spin) * grain.diameter / 2)
         packing = scene.grains.packing
         lighter = 1 - scales.density / scene.grains.density if scales else 1.0
@@ -97,7 +98,7 @@ def fall(scene: Scene, sense: float) -> tuple[float, bool]:
     along = [sense * component / g for component in scene.gravity]
     d = scene.domain
     unending = any(component != 0 and endless for component, endless in zip(along, d.periodic, strict=True))
-    starts = [(grain.x, grain.y) for grain in scene.grains.grain]
+    starts = [(grain.x, grain.y) for grain in by_hand(scene)]
     if packing := scene.grains.packing:
         right, top = packing.left + packing.width, packing.bottom + packing.height
         starts += [(x, y) for x in (packing.left, right) for y in (packing.bottom, top)]

@@ -12,6 +12,7 @@ from porescale.lbm.scales import NAMES
 from porescale.scene.bodies import Disc, Lubrication
 from porescale.scene.contact import Contact, Material, judge_contact
 from porescale.scene.fluid import Fluid
+from porescale.scene.grain_bodies import Clump, Controlled, by_hand
 from porescale.scene.lattice import disagreements
 from porescale.scene.measures import FieldName, Flux, Line, Loads, Permeability, Probe
 from porescale.scene.packing import Circles, judged_grading, with_circles, with_consequences
@@ -126,12 +127,6 @@ class Grains(Section):
     def _from_file(cls, table: Any, info: pydantic.ValidationInfo) -> Any:
         return with_circles(table, (info.context or {}).get("folder"))
 
-    @pydantic.model_validator(mode="after")
-    def _some(self) -> Grains:
-        if self.packing is None and not self.grain:
-            raise Refused(Fault("", None, "holds no grain", repair="add [grains.packing] or [[grains.grain]]"))
-        return self
-
 
 class Gate(Section):
     """An upright plate without thickness, over the whole height, that holds grains and water until it opens."""
@@ -156,6 +151,8 @@ class Scene(Section):
     grains: Grains | None = None
     contact: Contact | None = None
     material: tuple[Material, ...] = ()
+    clump: tuple[Clump, ...] = ()
+    control: tuple[Controlled, ...] = ()
     gate: Gate | None = None
     disc: tuple[Disc, ...] = ()
     rectangle: tuple[Rectangle, ...] = ()
@@ -218,8 +215,15 @@ class Scene(Section):
                      "output.energy": self.output.energy}  # fmt: skip
             faults += [Fault(name, None, "there are no grains to measure", repair="add [grains] or leave it out")
                        for name, section in asked.items() if section]  # fmt: skip
-        if self.grains is None and self.material:
-            faults.append(Fault("material", None, "there are no grains", repair="add [grains] or leave it out"))
+        if self.grains and self.grains.packing is None and not by_hand(self):
+            faults.append(Fault("grains", None, "holds no grain", repair="add [grains.packing] or [[grains.grain]]"))
+        of_grains = {"material": self.material, "clump": self.clump, "control": self.control}
+        if self.grains is None:
+            faults += [Fault(name, None, "there are no grains", repair="add [grains] or leave it out")
+                       for name, section in of_grains.items() if section]  # fmt: skip
+        if self.fluid:
+            faults += [Fault(name, None, "is for dry scenes", repair="leave [fluid] or it out")
+                       for name in ("clump", "control") if of_grains[name]]  # fmt: skip
         if self.grains and self.contact:
             faults += judge_contact(self)
         if self.lubrication and not (self.fluid and (self.grains or self.disc)):

@@ -16,6 +16,7 @@ from porescale.lbm.plate import Plate
 from porescale.runs.model import Cloud, Grid, Snapshot
 from porescale.scene import observe
 from porescale.scene.derive import Derived
+from porescale.scene.grain_bodies import control_row
 from porescale.scene.grain_fields import GrainInstruments
 from porescale.scene.instruments import LAMBDA, Instruments, total_pressure
 from porescale.scene.outfit import energy_row
@@ -172,6 +173,8 @@ class Simulation:
         tables = self._grain_instruments.tables(self.time) if self._grain_instruments else {}
         if self._instruments and (scene.probe or scene.flux or scene.loads):
             tables |= self._instruments.tables(self.time, self.fields(), self.coupled)
+        if self.grains and any(it.record for it in scene.control):
+            tables["control"] = {"time (s)": self.time} | control_row(scene, self.grains)
         return tables
 
     def snapshot(self) -> Snapshot:
