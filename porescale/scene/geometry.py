@@ -12,6 +12,7 @@ from porescale.ground.check import Fault, InputError
 from porescale.particles.placement import DENSEST
 from porescale.scene.bodies import Disc
 from porescale.scene.grain_bodies import Member, by_hand, hand_names
+from porescale.scene.grain_walls import across_walls
 from porescale.scene.rectangle_places import judge_rectangles
 from porescale.scene.rectangles import beside
 from porescale.scene.sections import Gate, Grain, Packing, Scene
@@ -44,6 +45,7 @@ def judge_places(scene: Scene, sizes: tuple[float, float, float] | None, faults:
         if packing.settle:
             _judge_settling(scene, faults)
     if not names:
+        faults += across_walls(scene, x, r, names, 0.0)
         return
     box, inner = np.array([scene.domain.width, scene.domain.height]), r[:, None] * (1 - _touch(scene))
     beyond = np.where(_periodic(scene.domain), (x < 0) | (x > box), (x < inner) | (x > box - inner)).any(axis=1)
@@ -55,6 +57,7 @@ def judge_places(scene: Scene, sizes: tuple[float, float, float] | None, faults:
         if across.any():
             k = int(across.argmax())
             faults.append(_misplaced(names[k], x[k], "stands across the gate", "move one of them"))
+    faults += across_walls(scene, x, r, names, _touch(scene))
     _judge_overlap(x, r, scene, names, 0, faults)
 
 

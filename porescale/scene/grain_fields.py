@@ -24,8 +24,9 @@ from porescale.dem.measures.stress import contact_stress, kinetic_stress, princi
 from porescale.dem.rectangle import BOTTOM, RIGHT, TOP
 from porescale.dem.rectangle import LEFT as LEFT_FACE
 from porescale.dem.system import Grains
-from porescale.dem.walls import HIGH, LOW, X
+from porescale.dem.walls import HIGH, LOW, SIDES, X
 from porescale.runs.model import Cloud, Grid, Snapshot
+from porescale.scene.grain_walls import middles, places
 
 if TYPE_CHECKING:
     from porescale.scene.sections import Scene
@@ -70,22 +71,20 @@ class GrainInstruments:
         return rattlers(found, self.grains.discs.count, self.least, self.held)
 
     def _forces(self, found: Contacts) -> Row:
-        """Force of the grains on every wall, plate and rectangle with its moment about the middle of it, and of all
-        contacts on every held disc, about its centre."""
+        """Force of the grains on every wall, plate and rectangle with its moment about the middle of it (a free wall:
+        about its point), where walls are that move, and of all contacts on every held disc, about its centre."""
         grains = self.grains
         row: Row = {}
-        (left, bottom), (right, top) = grains.box.lower, grains.box.upper
-        x, y = 0.5 * (left + right), 0.5 * (bottom + top)
-        sides = {"left": (left, y), "right": (right, y), "bottom": (x, bottom), "top": (x, top)}
-        middles = [sides[name] for name in grains.wall_names]
-        middles += [(float(it[X]), 0.5 * float(it[LOW] + it[HIGH])) for it in grains.plates]
-        middles += [
+        points = middles(grains)
+        points += [(float(it[X]), 0.5 * float(it[LOW] + it[HIGH])) for it in grains.plates]
+        points += [
             (0.5 * float(it[LEFT_FACE] + it[RIGHT]), 0.5 * float(it[BOTTOM] + it[TOP])) for it in grains.rectangles
         ]
-        for name, middle in zip(found.names, middles, strict=True):
-            shown = f"{name} wall" if name in sides else name
+        for name, middle in zip(found.names, points, strict=True):
+            shown = f"{name} wall" if name in SIDES else name
             fx, fy, moment = on_surface(found, name, middle)
             row |= {f"{shown} force x (N/m)": fx, f"{shown} force y (N/m)": fy, f"{shown} moment (N m/m)": moment}
+        row |= places(self.scene, grains)
         for k, (fx, fy, moment) in enumerate(on_discs(found, grains.discs, np.flatnonzero(self.held).tolist())):
             row |= {f"disc {k} force x (N/m)": float(fx), f"disc {k} force y (N/m)": float(fy),
                     f"disc {k} moment (N m/m)": float(moment)}  # fmt: skip

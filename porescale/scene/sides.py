@@ -7,6 +7,8 @@ from typing import Any, Literal, get_args
 import pydantic
 
 from porescale.ground.check import Fault
+from porescale.scene.courses import Course, with_courses
+from porescale.scene.grain_walls import SERVO, judge_servo
 from porescale.workbench.faults import nearest
 from porescale.workbench.sections import Refused, Section, quantity
 
@@ -24,6 +26,8 @@ class Side(Section):
     "wall" holds the fluid, and may slide along itself with ``speed``;  "slip" lets it slide (a flat water surface);
     "periodic" joins opposite sides;  "velocity" lets it in or out with a mean ``velocity``, uniform or as the parabola
     between two walls;  "pressure" holds the reduced ``pressure`` (what is above hydrostatic) and lets it in or out.
+    A "wall" of a dry scene may also move, with ``velocity``, or so that the grains press on it with a ``stress`` or
+    ``force``, > 0 for compression, no faster than ``fastest``.
     For grains every side but a periodic one is solid: an inlet or outlet is a screen.
     """
 
@@ -32,13 +36,16 @@ class Side(Section):
     velocity: tuple[float, float] | None = quantity("m/s", None, **SPEED, help="mean velocity of the fluid at the side")
     profile: Literal["uniform", "parabola"] = "uniform"
     pressure: float | None = quantity("Pa", None, ge=-1e9, le=1e9, help="pressure above hydrostatic")
+    stress: Course | None = None
+    force: Course | None = None
+    fastest: float | None = quantity("m/s", None, gt=0, le=1e4, help="largest speed under stress or force")
 
     @pydantic.model_validator(mode="before")
     @classmethod
     def _from_word(cls, value: Any) -> Any:
         """A word stands for a side of that kind without numbers."""
         if not isinstance(value, str):
-            return value
+            return with_courses(value, SERVO)
         if value not in KINDS:
             allowed = ", ".join(KINDS)
             raise Refused(Fault("", value, "unknown choice", "", allowed, nearest(value, KINDS, "choices")))
@@ -49,7 +56,9 @@ class Side(Section):
         """Every number belongs to a kind of side."""
         faults = []
         for key, owner, given in (
-            ("speed", "wall", self.speed != 0), ("velocity", "velocity", self.velocity is not None),
+            ("speed", "wall", self.speed != 0),
+            ("velocity", "velocity", self.velocity is not None and self.kind != "wall"),
+            ("stress", "wall", self.stress is not None), ("force", "wall", self.force is not None),
             ("profile", "velocity", self.profile != "uniform"), ("pressure", "pressure", self.pressure is not None),
         ):  # fmt: skip
             if given and self.kind != owner:
@@ -59,6 +68,8 @@ class Side(Section):
         if self.kind == "velocity" and self.velocity is None:
             repair = 'write { kind = "velocity", velocity = [0.01, 0] }'
             faults.append(Fault("velocity", None, "is missing", "m/s", repair=repair))
+        if self.kind == "wall":
+            faults += judge_servo(self, self.velocity is not None)
         if faults:
             raise Refused(*faults)
         return self
@@ -80,8 +91,11 @@ class Side(Section):
         """The side in words, for a report."""
         if self.kind == "wall" and self.speed:
             return f"wall moving at {self.speed:g} m/s"
+        if self.stress or self.force:
+            return "wall under stress" if self.stress else "wall under force"
         if self.velocity is not None:
-            return f"velocity ({self.velocity[0]:g}, {self.velocity[1]:g}) m/s, {self.profile}"
+            u, v = self.velocity
+            return f"velocity ({u:g}, {v:g}) m/s, {self.profile}" if self.open else f"wall moving at ({u:g}, {v:g}) m/s"
         return f"pressure {self.pressure or 0.0:g} Pa" if self.kind == "pressure" else self.kind
 
 
