@@ -212,5 +212,9 @@ def lay_out(rows, patches, centre, velocity, spin, shift, theta, periodic_x, ram
                 rows.start[y], rows.start[y + 1], rows, patches, centre, velocity, spin, shift, theta,
                 periodic_x, ramp, scratch[band],
             )  # fmt: skip
-            out[:, y] = scratch[band, :3, BLOCK : BLOCK + nx]
-            scratch[band] = 0
+            for k in range(3):  # element by element: assigned as slices it takes ten times as long to compile
+                for x in range(nx):
+                    out[k, y, x] = scratch[band, k, BLOCK + x]
+            for k in range(scratch.shape[1]):
+                for x in range(scratch.shape[2]):
+                    scratch[band, k, x] = 0
