@@ -1,4 +1,4 @@
-"""What a scene gives its grains besides places and a law: materials, the energy book, clumps, controls and walls."""
+"""What a scene gives its grains besides places and a law: materials, energy book, clumps, controls, walls, cell."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from porescale.dem.energy import energy_book
 from porescale.dem.system import Grains
 from porescale.scene.contact import materials_of
 from porescale.scene.grain_bodies import add_clumps, add_controls, by_hand
+from porescale.scene.grain_cell import strain
 from porescale.scene.grain_walls import add_walls, moving_sides
 
 if TYPE_CHECKING:
@@ -40,6 +41,8 @@ def fit_out(scene: Scene, grains: Grains, mass: float) -> None:
         add_controls(scene, grains)
     if scene.wall or moving_sides(scene):
         add_walls(scene, grains)
+    if scene.cell:
+        strain(scene, grains)
 
 
 def names_of(scene: Scene, count: int) -> list[str]:

@@ -44,8 +44,8 @@ def report(scene: Scene) -> Report:
 def _parts(scene: Scene, out: Report) -> None:
     out.heading("Parts")
     parts = (
-        "fluid", "grains", "contact", "material", "gate", "disc", "rectangle", "lubrication", "probe", "line",
-        "flux", "loads", "permeability",
+        "fluid", "grains", "contact", "material", "clump", "control", "wall", "cell", "gate", "disc", "rectangle",
+        "lubrication", "probe", "line", "flux", "loads", "permeability",
     )  # fmt: skip
     out.row("built", ", ".join(name for name in parts if getattr(scene, name)))
     out.row("absent, not built", ", ".join(name for name in parts if not getattr(scene, name)) or "none")

@@ -13,6 +13,7 @@ from porescale.scene.bodies import Disc, Lubrication
 from porescale.scene.contact import Contact, Material, judge_contact
 from porescale.scene.fluid import Fluid
 from porescale.scene.grain_bodies import Clump, Controlled, by_hand
+from porescale.scene.grain_cell import Cell, judge_cell
 from porescale.scene.grain_walls import Wall, judge_walls
 from porescale.scene.lattice import disagreements
 from porescale.scene.measures import FieldName, Flux, Line, Loads, Permeability, Probe
@@ -155,6 +156,7 @@ class Scene(Section):
     clump: tuple[Clump, ...] = ()
     control: tuple[Controlled, ...] = ()
     wall: tuple[Wall, ...] = ()
+    cell: Cell | None = None
     gate: Gate | None = None
     disc: tuple[Disc, ...] = ()
     rectangle: tuple[Rectangle, ...] = ()
@@ -228,7 +230,7 @@ class Scene(Section):
                        for name in ("clump", "control") if of_grains[name]]  # fmt: skip
         if self.grains and self.contact:
             faults += judge_contact(self)
-        faults += judge_walls(self)
+        faults += [*judge_walls(self), *judge_cell(self)]
         if self.lubrication and not (self.fluid and (self.grains or self.disc)):
             faults.append(Fault("lubrication", None, "there are no grains in fluid", repair="leave it out"))
         if self.permeability and self.fluid and self.grains is None:

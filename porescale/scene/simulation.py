@@ -17,6 +17,7 @@ from porescale.runs.model import Cloud, Grid, Snapshot
 from porescale.scene import observe
 from porescale.scene.derive import Derived
 from porescale.scene.grain_bodies import control_row
+from porescale.scene.grain_cell import Strained
 from porescale.scene.grain_fields import GrainInstruments
 from porescale.scene.instruments import LAMBDA, Instruments, total_pressure
 from porescale.scene.outfit import energy_row
@@ -82,6 +83,7 @@ class Simulation:
         self._mass = fluid.mass_excess() if fluid else 0.0
         self._watch = observe.Watch(scene, grains) if grains and scene.grains else None
         self._grain_instruments = GrainInstruments(scene, grains) if grains and scene.grains else None
+        self._strained = Strained(grains) if grains and scene.cell else None
         self._instruments = (
             Instruments(scene, derived.scales, derived.cells) if derived.scales and derived.cells else None
         )
@@ -121,6 +123,8 @@ class Simulation:
                 self.fluid.advance()
             elif self.grains:
                 self.grains.step(self.step_seconds, self.weight)
+                if self._strained:
+                    self._strained.advance(self.step_seconds)
             self.step += 1
             self.time = self.step * self.step_seconds
             if self.movers:
@@ -163,6 +167,8 @@ class Simulation:
             row["fluid mass change ()"] = (self.fluid.mass_excess() - self._mass) / cells
             if self.movers and self.coupled:
                 row |= self.movers.row(self.coupled)
+        if self._strained:
+            row |= self._strained.row()
         if self.grains and self.scene.output.energy:
             row |= energy_row(self.grains, self.scene.gravity)
         return row
@@ -185,13 +191,13 @@ class Simulation:
         if self.grains and self.grains.discs.count:
             d = self.grains.discs
             flat = np.zeros((d.count, 3))
-            flat[:, :2] = d.velocity
+            position, flat[:, :2] = self._strained.seen() if self._strained else (d.position, d.velocity)
             data = {"radius": d.radius, "angle": d.angle, "velocity": flat, "spin": d.spin}
             units = {"radius": "m", "angle": "rad", "velocity": "m/s", "spin": "rad/s"}
             if self.coupled:
                 data["hydraulic_radius"], units["hydraulic_radius"] = self.coupled.hydraulic_radius, "m"
-            period = np.array(self.grains.box.period)
-            inside = np.where(period > 0, np.mod(d.position, np.where(period > 0, period, 1.0)), d.position)
+            period = np.array([0.0, 0.0] if self._strained else self.grains.box.period)
+            inside = np.where(period > 0, np.mod(position, np.where(period > 0, period, 1.0)), position)
             snapshot.clouds["grains"] = Cloud(inside, data, units)
             if self._grain_instruments:
                 self._grain_instruments.add_to(snapshot)
@@ -229,6 +235,8 @@ class Simulation:
             state["gate_open"] = self.gate.open
         if self.movers:
             state["made_good"] = self.movers.made_good
+        if self._strained:
+            state["shear"] = self._strained.shear
         return state
 
     def restore(self, state: dict[str, Any]) -> None:
@@ -251,3 +259,5 @@ class Simulation:
             self.movers.place(self.step, self.step_seconds)
         if self._watch:
             self._watch.restore(state["watch"])
+        if self._strained:
+            self._strained.shear = float(state["shear"])

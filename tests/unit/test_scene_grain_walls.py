@@ -38,7 +38,7 @@ def test_a_lid_holds_its_stress_on_what_lies_below():
     simulation.advance(round(0.05 / simulation.step_seconds))
     row = simulation.tables()["forces"]
     weight = sum(simulation.grains.discs.mass) * GRAVITY
-    # The servo closes on its load in some tens of steps; 50 ms later waves in the grains, which lose 1 - e = 0.1 in each
+    # The servo closes on its load in some tens of steps; 50 ms later waves in the grains, which lose a tenth in each
     # half millisecond, are below 0.9^100 = 3e-5 of the load.
     assert row["top wall force y (N/m)"] == pytest.approx(100 * 0.004, rel=1e-4)
     assert row["bottom wall force y (N/m)"] == pytest.approx(-(100 * 0.004 + weight), rel=1e-4)

@@ -1,0 +1,103 @@
+"""A periodic cell that is strained: what a scene says of it holds, is in series.csv and snapshots, or is refused."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from porescale.scene.build import build
+from porescale.scene.sections import Scene
+from porescale.workbench.sections import scene_as_dict, validate
+from tests.reference.scenes import grain
+from tests.reference.scenes_of_grains import assert_same_bits, lines, loose, resumed
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+SIDES = dict.fromkeys(("left", "right", "bottom", "top"), "periodic")
+SIX = 0.006
+GRID = [grain(0.0005 + 0.001 * i, 0.0005 + 0.001 * j) for i in range(6) for j in range(6)]
+"""A square lattice of grains that just touch, in a square cell."""
+
+
+def square(cell: dict[str, Any] | None, **changes: Any) -> Scene:
+    """The lattice in its cell, without gravity and friction."""
+    return loose(*GRID, **{"domain": {"width": SIX, "height": SIX, **SIDES}, "gravity": [0.0, 0.0], "cell": cell,
+                           "contact__friction": 0.0, **changes})  # fmt: skip
+
+
+def test_a_cell_that_stands_leaves_the_grains_without_steering():
+    simulation = build(square(None))
+    assert not simulation.grains.steered
+    assert "strain xx ()" not in simulation.series()
+
+
+def test_the_stress_of_a_squeezed_lattice_is_that_of_its_springs():
+    simulation = build(square({"rate_yy": -0.1}))
+    simulation.advance(round(0.02 / simulation.step_seconds))
+    row = simulation.series()
+    # Each step multiplies by 1 + g dt: its logarithm is off by g dt/2 = 1e-6 of itself.
+    assert row["strain yy ()"] == pytest.approx(-0.1 * simulation.time, rel=1e-5)
+    assert row["cell height (m)"] == pytest.approx(SIX * math.exp(-0.1 * simulation.time), rel=1e-7)
+    assert row["cell width (m)"] == SIX
+    # Affine by symmetry: every upright contact is h = d (1 - H/H0) deep, and its force, k h and the dashpot's c v, is
+    # spread over one diameter.  The stress is that of the step before the last, one of 930 in which it grew: 1.1e-3.
+    overlap = 0.001 * (1 - row["cell height (m)"] / SIX)
+    damping = simulation.grains.laws[0].damping * 0.1 * 0.001
+    assert row["stress yy (Pa)"] == pytest.approx((2e5 * overlap + damping) / 0.001, rel=2e-3)
+    assert row["stress xx (Pa)"] == pytest.approx(0.0, abs=1e-3 * row["stress yy (Pa)"])
+    assert row["solid fraction ()"] == pytest.approx(math.pi / 4 * SIX / row["cell height (m)"], rel=1e-12)
+
+
+def test_a_cell_goes_to_the_stress_that_it_is_given():
+    simulation = build(square({"stress_xx": 500.0, "stress_yy": 1000.0, "fastest": 1.0}))
+    simulation.advance(round(0.05 / simulation.step_seconds))
+    row = simulation.series()
+    # Steered to its stress within tens of steps; waves lose a tenth in half a millisecond: 0.9^100 = 3e-5.
+    assert row["stress xx (Pa)"] == pytest.approx(500.0, rel=1e-4)
+    assert row["stress yy (Pa)"] == pytest.approx(1000.0, rel=1e-4)
+    assert row["strain yy ()"] < row["strain xx ()"] < 0
+
+
+def test_snapshots_show_a_sheared_cell_as_it_is():
+    simulation = build(square({"rate_xy": 5.0}))
+    simulation.advance(round(0.02 / simulation.step_seconds))
+    assert simulation.series()["strain xy ()"] == pytest.approx(5.0 * simulation.time, rel=1e-9)
+    cloud = simulation.snapshot().clouds["grains"]
+    x, y = cloud.position.T
+    tilt = simulation.series()["cell tilt (m)"]
+    assert ((y >= 0) & (y < SIX)).all()
+    along = x - tilt * y / SIX
+    assert ((along >= -1e-15) & (along < SIX)).all()
+    # All rows of a frictionless sheared lattice go with the shear: v_x = 5 y and little else while they hardly touch.
+    np.testing.assert_allclose(cloud.data["velocity"][:, 0], 5.0 * y, atol=0.02 * 5.0 * SIX)
+
+
+def test_a_strained_run_is_taken_up_again_to_the_bit():
+    scene = square({"rate_xy": {"amplitude": 5.0, "frequency": 40}, "stress_yy": [[0, 0], [0.01, 500]], "fastest": 1.0})
+    assert_same_bits(*resumed(scene, 300, 300))
+    assert validate(Scene, scene_as_dict(scene)) == scene
+
+
+PERIODIC = {"domain": {"width": SIX, "height": SIX, **SIDES}}
+
+
+@pytest.mark.parametrize(
+    ("changes", "line"),
+    [
+        ({"cell": {"rate_xx": 1.0}}, "cell: only a box that is periodic both ways can be strained"),
+        ({**PERIODIC, "cell": {}}, "cell: strains nothing"),
+        (
+            {**PERIODIC, "cell": {"rate_xx": 1.0, "stress_xx": 1.0, "fastest": 1.0}},
+            "cell.stress_xx: and rate_xx",
+        ),
+        ({**PERIODIC, "cell": {"stress_xx": 1.0}}, "cell.fastest: is missing"),
+        ({**PERIODIC, "cell": {"rate_xx": 1.0, "fastest": 1.0}}, "cell.fastest = 1.0 1/s: belongs to a stress"),
+        ({**PERIODIC, "cell": {"rate_xx": "1 Pa"}}, "cell.rate_xx = '1 Pa': 'Pa' does not measure"),
+        ({**PERIODIC, "cell": {"rate_xx": 1.0}, "output__energy": True}, "output.energy: does not go with a strained"),
+        ({**PERIODIC, "cell": {"rate_xx": 1.0}, "disc": [grain(0.004, 0.004)]}, "disc: does not go with a strained"),
+    ],
+)
+def test_cells_that_make_no_sense_are_refused(changes, line):
+    assert lines(**changes)[0].startswith(line), lines(**changes)
