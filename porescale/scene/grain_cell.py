@@ -20,15 +20,14 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-COMPONENTS = ("xx", "yy", "xy")
-RATES, STRESSES = tuple(f"rate_{c}" for c in COMPONENTS), tuple(f"stress_{c}" for c in COMPONENTS)
+RATES, STRESSES = ("rate_xx", "rate_yy", "rate_xy"), ("stress_xx", "stress_yy", "shear_stress")
 
 
 class Cell(Section):
     """Strain of a box that is periodic both ways: each of xx, yy, xy at a rate or by a stress; left out, it stays.
 
     rate_xx, rate_yy : of stretching, < 0 shrinks;  rate_xy : of shear, dv_x/dy;  stress_xx, stress_yy : compression
-    positive;  stress_xy : of the sign of the shear that it drives.  Dry scenes only.
+    positive;  shear_stress : of the sign of the shear that it drives.  Dry scenes only.
     """
 
     rate_xx: Course | None = None
@@ -36,7 +35,7 @@ class Cell(Section):
     rate_xy: Course | None = None
     stress_xx: Course | None = None
     stress_yy: Course | None = None
-    stress_xy: Course | None = None
+    shear_stress: Course | None = None
     fastest: float | None = quantity("1/s", None, gt=0, le=1e6, help="largest rate under a stress")
 
     UNITS: ClassVar[dict[str, tuple[str, str]]] = {
@@ -116,24 +115,24 @@ class Strained:
 
     def row(self) -> dict[str, float]:
         """Columns of the series: strain (logarithms of the stretch of the edges; shear), the stress of the last step
-        (compression positive), and the cell."""
+        (compression positive, shear of the sign of the strain that it drives), and the cell."""
         grains = self.grains
         (width, _), (tilt, height) = grains.steering.edges()
         xx, xy, yy = grains.steering.cell_pressure()
         return {
             "strain xx ()": math.log(width / grains.box.period[0]),
             "strain yy ()": math.log(height / grains.box.period[1]), "strain xy ()": self.shear,
-            "stress xx (Pa)": float(xx), "stress yy (Pa)": float(yy), "stress xy (Pa)": float(xy),
+            "stress xx (Pa)": float(xx), "stress yy (Pa)": float(yy), "shear stress (Pa)": -float(xy),
             "cell width (m)": width, "cell height (m)": height, "cell tilt (m)": tilt,
             "solid fraction ()": float(grains.discs.area.sum()) / (width * height),
         }  # fmt: skip
 
     def seen(self) -> tuple[Array, Array]:
-        """Positions (n, 2) m of the discs within the cell as it is, and their velocities (n, 2) m/s with its own."""
+        """Positions (n, 2) m of the discs within width and height of the cell; velocities (n, 2) with the cell's."""
         steering, discs = self.grains.steering, self.grains.discs
         (width, _), (tilt, height) = steering.edges()
         position = discs.position.copy()
         turns = np.floor(position[:, 1] / height)
         position -= turns[:, None] * np.array([tilt, height])
-        position[:, 0] -= width * np.floor((position[:, 0] - tilt * position[:, 1] / height) / width)
+        position[:, 0] -= width * np.floor(position[:, 0] / width)
         return position, discs.velocity + position @ steering.gradient().T

@@ -147,7 +147,9 @@ def test_every_expectation_is_complete_and_reasoned(case):
         assert KEYS <= row.keys() <= KEYS | MORE
         assert row["tolerance"] >= 0
         assert len(row["because"].split()) > 2
-        assert row["column"].endswith(f"({row['unit']})") or {"first_below", "last_above"} & set(row["at"])
+        assert row["column"].endswith(f"({row['unit']})") or (
+            {"first_below", "last_above", "period_from"} & set(row["at"]) and row["unit"] == "s"
+        )
 
 
 @pytest.mark.parametrize(
