@@ -44,6 +44,11 @@ class Straining(NamedTuple):
     load: Array
 
 
+def period_of(cell: Still | Straining) -> tuple[float, float, float]:
+    """Width and height of ``cell``, 0 where not periodic, and how far right the image one height up lies, m."""
+    return cell.period_x, cell.period_y, cell.tilt if isinstance(cell, Straining) else 0.0
+
+
 @by_law
 def image(dx, dy, cell):
     """Components (m) of the way between nearest images in ``cell``."""

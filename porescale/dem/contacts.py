@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.dem.contact.law import MU
-from porescale.dem.forces import add_pair_forces
+from porescale.dem.forces import pair_forces
 from porescale.dem.rectangle import BOTTOM, LEFT, RIGHT, TOP, add_rectangle_forces, nearest_face
 from porescale.dem.system import Grains
 from porescale.dem.walls import HIGH, LOW, NX, PRESENT, PX, X, add_plate_forces, add_wall_forces
@@ -101,10 +101,13 @@ def contacts(grains: Grains) -> Contacts:
     return Contacts(names=names, **joined)
 
 
-def nearest_image(difference: Array, period: tuple[float, float]) -> Array:
-    """Differences (n, 2) m between nearest periodic images, as cells.minimum_image; ``period`` 0: not periodic."""
+def nearest_image(difference: Array, period: tuple[float, float, float]) -> Array:
+    """Differences (n, 2) m between nearest periodic images, as cells.tilted_image; ``period``: see Grains.period."""
     near = np.array(difference, dtype=np.float64)
-    for axis, length in enumerate(period):
+    width, height, tilt = period
+    if tilt != 0.0:
+        near[:, 0] -= tilt * np.rint(near[:, 1] * (1.0 / height))
+    for axis, length in enumerate((width, height)):
         if length > 0.0:
             near[:, axis] -= length * np.rint(near[:, axis] * (1.0 / length))
     return near
@@ -115,7 +118,7 @@ def _pairs(grains: Grains) -> Contacts:
     pairs, d = grains.current_pairs(), grains.discs
     i = np.repeat(np.arange(d.count), np.diff(pairs.start))
     j = pairs.partner.astype(np.int64)
-    apart = nearest_image(d.position[j] - d.position[i], grains.box.period)
+    apart = nearest_image(d.position[j] - d.position[i], grains.period)
     near = np.sum(apart**2, axis=1) < (d.radius[i] + d.radius[j]) ** 2
     i, j, apart = i[near], j[near], apart[near]
     count = len(i)
@@ -123,10 +126,9 @@ def _pairs(grains: Grains) -> Contacts:
     force, torque = np.zeros((2 * count, 2)), np.zeros(2 * count)
     start = np.repeat(np.arange(count + 1), 2)[1:]  # discs 2k have one partner, 2k + 1 none
     carried = pairs.carried[near].copy()
-    add_pair_forces(
-        d.position[both], d.velocity[both], d.spin[both], d.radius[both], force, torque,
-        start, (2 * np.arange(count) + 1).astype(np.int32), carried, *grains.box.period, grains.law_of(both),
-        grains.last_dt,
+    pair_forces(
+        d.position[both], d.velocity[both], d.spin[both], d.radius[both], force, torque, start,
+        (2 * np.arange(count) + 1).astype(np.int32), carried, grains.law_of(both), grains.last_dt, grains.cell,
     )  # fmt: skip
     distance = np.hypot(*apart.T)
     normal = apart / distance[:, None]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from porescale.dem import resume
-from porescale.dem.cell import Still, Straining
+from porescale.dem.cell import Still, Straining, period_of
 from porescale.dem.contact.law import BOOK, COLUMNS, KernelLaw, memory_of
 from porescale.dem.contact.materials import Law, Materials
 from porescale.dem.discs import Discs
@@ -176,6 +176,11 @@ class Grains:
     def cell(self) -> Still | Straining:
         """The periodic cell now, as kernels over pairs take it (cell.image), strained or not."""
         return self._still if self._steering is None else self._steering.shape()
+
+    @property
+    def period(self) -> tuple[float, float, float]:
+        """Width and height of the periodic cell now, 0 where not periodic, and its tilt, m."""
+        return period_of(self.cell)
 
     @property
     def steered(self) -> bool:

@@ -80,7 +80,6 @@ def judge_cell(scene: Scene) -> list[Fault]:
         faults.append(Fault("cell", None, problem, repair='make all sides of [domain] "periodic"'))
     beside = {
         "disc": scene.disc, "rectangle": scene.rectangle, "wall": scene.wall, "gate": scene.gate,
-        "region": scene.region, "coarse_graining": scene.coarse_graining, "output.contacts": scene.output.contacts,
         "output.forces": scene.output.forces, "output.energy": scene.output.energy,
     }  # fmt: skip
     faults += [Fault(name, None, "does not go with a strained cell", repair="leave it or [cell] out")

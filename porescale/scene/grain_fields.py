@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.dem.cell import Straining
 from porescale.dem.contacts import Contacts, contacts
 from porescale.dem.measures.coarse_graining import CoarseGrained, Raster
 from porescale.dem.measures.fabric import LEAST_WITH_FRICTION, LEAST_WITHOUT, contact_numbers, loads, rattlers
 from porescale.dem.measures.fabric import coordination as coordination_of
 from porescale.dem.measures.fabric import fabric as fabric_of
 from porescale.dem.measures.loads import on_discs, on_surface
-from porescale.dem.measures.motion import motion
+from porescale.dem.measures.motion import Motion, motion
 from porescale.dem.measures.porosity import disc_areas, void_ratio
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress, kinetic_stress, principal
@@ -109,8 +110,10 @@ class GrainInstruments:
         asked, grains = self.scene.coarse_graining, self.grains
         assert asked
         width = asked.width or max(2.0 * KERNEL_WIDTH * float(grains.discs.radius.mean()), asked.spacing)
-        raster = Raster.over(grains.box.lower, grains.box.upper, asked.spacing, width, grains.box.periodic)
-        fields = CoarseGrained(raster, grains.discs, found)
+        cell = grains.cell if isinstance(grains.cell, Straining) else None
+        periodic = grains.box.periodic if cell is None else (False, False)
+        raster = Raster.over(grains.box.lower, grains.box.upper, asked.spacing, width, periodic)
+        fields = CoarseGrained(raster, grains.discs, found, conserve=cell is None, cell=cell)
         cells: dict[str, Array] = {}
         units: dict[str, str] = {}
         for name in asked.fields:
@@ -157,17 +160,26 @@ def contact_cloud(found: Contacts, grains: Grains) -> Cloud:
         data[name] = np.zeros((found.count, 3))
         data[name][:, :2] = getattr(found, name)
     units = dict(zip((*names, "branch", "force"), ("N/m", "N/m", "m", "m", "m", "N/m"), strict=True))
-    point = Region(grains.box.lower, grains.box.upper).near(found.point, grains.box.period)
+    point = Region(grains.box.lower, grains.box.upper).near(found.point, grains.period)
     return Cloud(point, data, units)
+
+
+def _moving(grains: Grains, region: Region, weight: Array) -> Motion:
+    """The affine motion of the discs of a region, (n,) weights, in a strained cell too."""
+    at, velocity = region.about(grains.discs.position, grains.period), grains.discs.velocity
+    if isinstance(grains.cell, Straining):
+        velocity = velocity + at @ grains.steering.gradient().T
+    return motion(at, velocity, weight)
 
 
 def region_row(grains: Grains, found: Contacts, region: Region, loose: Array, held: Array) -> Row:
     """What is known of a region, by column with unit.
 
+    A region stays where it is, also in a strained cell, whose images are measured wherever they reach into it.
     Porosity and velocities weigh discs by their area and mass inside; coordination and rattlers are of discs whose
     centre is inside, held ones left out; fabric and forces of contacts whose point is inside.
     """
-    d, period = grains.discs, grains.box.period
+    d, period = grains.discs, grains.period
     areas = disc_areas(region, d.position, d.radius, period)
     pores = 1.0 - float(areas.sum()) / region.area
     stress, kinetic = contact_stress(region, d, found, period), kinetic_stress(region, d, period)
@@ -175,7 +187,7 @@ def region_row(grains: Grains, found: Contacts, region: Region, loose: Array, he
     inside = region.holds(d.position, period) & ~held
     here = found.chosen(region.holds(found.point, period) & loads(found))
     fabric, force = fabric_of(found, region, period), here.normal_force
-    moving = motion(region.near(d.position, period), d.velocity, d.mass * areas / d.area)
+    moving = _moving(grains, region, d.mass * areas / d.area)
     nan = float("nan")
     return {
         "porosity ()": pores,

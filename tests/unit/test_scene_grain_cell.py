@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from porescale.scene.build import build
+from porescale.scene.grain_pictures import branches
 from porescale.scene.sections import Scene
 from porescale.workbench.sections import scene_as_dict, validate
 from tests.reference.scenes import grain
@@ -80,6 +81,42 @@ def test_a_strained_run_is_taken_up_again_to_the_bit():
     scene = square({"rate_xy": {"amplitude": 5.0, "frequency": 40}, "stress_yy": [[0, 0], [0.01, 500]], "fastest": 1.0})
     assert_same_bits(*resumed(scene, 300, 300))
     assert validate(Scene, scene_as_dict(scene)) == scene
+
+
+REGIONS = [{"name": "all", "lower": [0, 0], "upper": [SIX, SIX]}, {"lower": [0.001, 0.0042], "upper": [0.004, 0.0072]}]
+ASKED = {"region": REGIONS, "output__contacts": True,
+         "coarse_graining": {"spacing": 0.0005, "width": 0.003,
+                             "fields": ["solid_fraction", "velocity", "strain_rate", "stress"]}}  # fmt: skip
+
+
+def test_regions_and_fields_of_a_sheared_cell_show_its_stress_and_strain():
+    simulation = build(square({"rate_xy": 5.0, "rate_xx": -3.0, "rate_yy": -3.0}, **ASKED))
+    simulation.advance(round(0.003 / simulation.step_seconds))
+    row, whole = simulation.tables()["regions"], simulation.series()
+    # A region as large as the cell was: the cell is smaller by 1 %, so it holds that much of some images twice, and
+    # what is there may be pores or discs.  One three diameters wide has an edge of a tenth of a diameter's half share.
+    assert row["all porosity ()"] == pytest.approx(1 - whole["solid fraction ()"], abs=0.01)
+    for name, close in (("all", 0.03), ("region 1", 0.1)):
+        assert row[f"{name} stress yy (Pa)"] == pytest.approx(whole["stress yy (Pa)"], rel=close)
+        # Affine, so that the fit is exact: round-off alone.
+        assert row[f"{name} strain rate xx (1/s)"] == pytest.approx(-3.0, rel=1e-6)
+        assert row[f"{name} strain rate xy (1/s)"] == pytest.approx(2.5, rel=1e-6)
+        assert row[f"{name} rotation (rad/s)"] == pytest.approx(-2.5, rel=1e-6)
+    snapshot = simulation.snapshot()
+    cells = snapshot.grids["grain_fields"].cells
+    # Means over the box as it was: again a strip of 1 %, and kernels sampled twice a diameter.
+    assert float(cells["stress_yy"].mean()) == pytest.approx(whole["stress yy (Pa)"], rel=0.05)
+    assert float(cells["velocity"][..., 0].mean()) == pytest.approx(5.0 * SIX / 2 - 3.0 * SIX / 2, rel=0.05)
+    np.testing.assert_allclose(cells["strain_rate_xy"], 2.5, rtol=1e-5)
+    contacts, grains = snapshot.clouds["contacts"], snapshot.clouds["grains"]
+    ends = branches(grains, contacts)
+    width, height, tilt = simulation.grains.period
+    for end, bodies in ((ends[:, 0], contacts.data["first"]), (ends[:, 1], contacts.data["second"])):
+        away = end - grains.position[bodies]
+        up = np.rint(away[:, 1] / height)
+        along = (away[:, 0] - up * tilt) / width
+        np.testing.assert_allclose(away[:, 1], up * height, atol=1e-9)
+        np.testing.assert_allclose(along, np.rint(along), atol=1e-6)
 
 
 PERIODIC = {"domain": {"width": SIX, "height": SIX, **SIDES}}

@@ -15,6 +15,9 @@ over the grid is the mass, that of s the sum of F_a l_b, to round-off, and no ma
 of a wall it lies up to a width further in, and the balance of momentum does not hold there.  Without, kernels reach
 beyond the grid: the balance holds everywhere, mass near the edges is partly outside.
 
+In a strained cell (cell.py) velocities of discs are relative to its affine motion G x: V is then said with G x, the
+gradient with G, and the kinetic stress without.  The grid stays where it is, whatever period of the cell it shows.
+
 The strain rate is not the gradient of V, which shears where discs lie unevenly, but that of the affine motion that fits
 the velocities best around each point (motion.py), with weights m phi: zero for a rigid rotation.
 """
@@ -27,8 +30,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.dem.cell import Straining, period_of
 from porescale.dem.contacts import Contacts
 from porescale.dem.discs import Discs
+from porescale.dem.measures.region import Region
 from porescale.ground.check import Fault, InputError
 from porescale.ground.jit import inline, kernel
 
@@ -187,24 +192,51 @@ class Raster:
 
 
 class CoarseGrained:
-    """Fields of discs and contacts on a raster, (rows, columns); each is computed when it is first asked for."""
+    """Fields of discs and contacts on a raster, (rows, columns); each is computed when it is first asked for.
 
-    def __init__(self, raster: Raster, discs: Discs, contacts: Contacts, *, conserve: bool = True) -> None:
+    cell : the strained one that the discs are in, whose images are then shown on a raster that is not periodic, without
+    ``conserve``: a raster need not be one period of it.
+    """
+
+    def __init__(
+        self, raster: Raster, discs: Discs, contacts: Contacts, *, conserve: bool = True, cell: Straining | None = None
+    ) -> None:
+        assert cell is None or not (conserve or any(raster.periodic))
         self.raster, self.discs, self.contacts, self.conserve = raster, discs, contacts, conserve
         self._grid = np.array([*raster.lower, *raster.spacing])
         self._how: tuple[bool, bool, float, bool] = (*raster.periodic, raster.width, conserve)
+        self._cell = cell
+        gradient = [[cell.gxx, cell.gxy], [0.0, cell.gyy]] if cell else [[0.0, 0.0], [0.0, 0.0]]
+        self._affine = np.array(gradient)
+
+    def _images(self, points: Array) -> tuple[Array, NDArray[np.int64]]:
+        """Points (m, 2) m whose kernels reach the raster, images too, and which of ``points`` (n, 2) m each is."""
+        if self._cell is None:
+            return points, np.arange(len(points))
+        wide, (x, y), period = self.raster.width, self.raster.lower, period_of(self._cell)
+        size = [number * step for number, step in zip(self.raster.shape, self.raster.spacing, strict=True)]
+        seen = Region((x - wide, y - wide), (x + size[0] + wide, y + size[1] + wide))
+        near = seen.near(points, period)
+        found, which = [np.zeros((0, 2))], [np.zeros(0, np.int64)]
+        for shift in seen.shifts(near, near, period):
+            index = np.flatnonzero(seen.holds(near + shift))
+            found.append(near[index] + shift)
+            which.append(index)
+        return np.concatenate(found), np.concatenate(which)
 
     def _spread(self, points: Array, values: Array) -> Array:
         columns, rows = self.raster.shape
         fields = np.zeros((rows, columns, values.shape[1]))
-        spread(np.ascontiguousarray(points), np.ascontiguousarray(values), self._grid, *self._how, fields)
+        points, which = self._images(points)
+        spread(np.ascontiguousarray(points), np.ascontiguousarray(values[which]), self._grid, *self._how, fields)
         return fields
 
     @cached_property
     def _motion(self) -> Array:
         columns, rows = self.raster.shape
         sums, d = np.zeros((rows, columns, ENERGY_YY + 1)), self.discs
-        spread_motion(d.position, d.velocity, d.mass, self._grid, *self._how, sums)
+        position, which = self._images(d.position)
+        spread_motion(position, d.velocity[which], d.mass[which], self._grid, *self._how, sums)
         return sums
 
     @property
@@ -218,10 +250,20 @@ class CoarseGrained:
         return np.asarray(self._spread(self.discs.position, self.discs.area[:, None])[..., 0])
 
     @cached_property
-    def velocity(self) -> Array:
-        """(rows, columns, 2) m/s; nan where there is no disc."""
+    def _own_velocity(self) -> Array:
+        """(rows, columns, 2) m/s, relative to the cell's; nan where there is no disc."""
         with np.errstate(invalid="ignore"):
             return np.asarray(self._motion[..., U : V + 1] / self.density[..., None])
+
+    @cached_property
+    def velocity(self) -> Array:
+        """(rows, columns, 2) m/s; nan where there is no disc."""
+        if self._cell is None:
+            return self._own_velocity
+        x, y = np.meshgrid(*self.raster.centres)
+        with np.errstate(invalid="ignore"):
+            off = self.raster.width * self._motion[..., X : Y + 1] / self.density[..., None]
+        return np.asarray(self._own_velocity + (np.stack((x, y), axis=-1) + off) @ self._affine.T)
 
     @cached_property
     def velocity_gradient(self) -> Array:
@@ -240,7 +282,7 @@ class CoarseGrained:
                 cy = mean[..., up] - mean[..., one] * mean[..., Y]
                 gradient[..., a, 0] = np.where(spread_out, (cx * yy - cy * xy) / determinant, np.nan)
                 gradient[..., a, 1] = np.where(spread_out, (cy * xx - cx * xy) / determinant, np.nan)
-        return gradient / self.raster.width
+        return np.asarray(gradient / self.raster.width + self._affine)
 
     @property
     def strain_rate(self) -> Array:
@@ -260,7 +302,7 @@ class CoarseGrained:
     @cached_property
     def kinetic_stress(self) -> Array:
         """(rows, columns, 2, 2) Pa of the velocities about their mean there, compression positive."""
-        s, mean = self._motion, np.nan_to_num(self.velocity)
+        s, mean = self._motion, np.nan_to_num(self._own_velocity)
         stress = np.empty((*s.shape[:2], 2, 2))
         for a, b, column in ((0, 0, ENERGY_XX), (0, 1, ENERGY_XY), (1, 0, ENERGY_XY), (1, 1, ENERGY_YY)):
             stress[..., a, b] = s[..., column] - s[..., MASS] * mean[..., a] * mean[..., b]

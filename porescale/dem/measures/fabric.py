@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.dem.contacts import Contacts
-from porescale.dem.measures.region import Region
+from porescale.dem.measures.region import Period, Region
 from porescale.dem.measures.stress import principal
 
 Array = NDArray[np.float64]
@@ -47,7 +47,7 @@ def contact_numbers(contacts: Contacts, count: int) -> NDArray[np.int64]:
 
 
 def coordination(
-    contacts: Contacts, region: Region, position: Array, period: tuple[float, float], loose: Mask | None = None,
+    contacts: Contacts, region: Region, position: Array, period: Period, loose: Mask | None = None,
     apart: Mask | None = None,
 ) -> float:  # fmt: skip
     """Mean number of loaded contacts of the discs whose centre lies in the region; nan where there is none.
@@ -77,7 +77,7 @@ class Fabric(NamedTuple):
     contacts: int
 
 
-def fabric(contacts: Contacts, region: Region, period: tuple[float, float] = (0.0, 0.0)) -> Fabric:
+def fabric(contacts: Contacts, region: Region, period: Period = (0.0, 0.0)) -> Fabric:
     """Fabric of the loaded contacts whose point lies in the region; nan where there is none.
 
     Sources: Satake 1982; a = 2 (major - minor value) in two dimensions, Rothenburg & Bathurst 1989, Geotechnique 39,

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.measures.region import Region
+from porescale.dem.measures.region import Period, Region
 
 Array = NDArray[np.float64]
 
@@ -33,7 +33,7 @@ def corner_part(a: Array, b: Array) -> Array:
     return np.where(a * a + b * b <= 1.0, inside, outside)
 
 
-def disc_areas(region: Region, position: Array, radius: Array, period: tuple[float, float] = (0.0, 0.0)) -> Array:
+def disc_areas(region: Region, position: Array, radius: Array, period: Period = (0.0, 0.0)) -> Array:
     """Area (n,) m² of each disc inside the region, of all its periodic images together.
 
     position (n, 2), radius (n,) m;  period m, 0 where not periodic.
@@ -48,7 +48,7 @@ def disc_areas(region: Region, position: Array, radius: Array, period: tuple[flo
     return total
 
 
-def porosity(region: Region, position: Array, radius: Array, period: tuple[float, float] = (0.0, 0.0)) -> float:
+def porosity(region: Region, position: Array, radius: Array, period: Period = (0.0, 0.0)) -> float:
     """Area of pores over area, -; arrays as in disc_areas."""
     return 1.0 - float(disc_areas(region, position, radius, period).sum()) / region.area
 

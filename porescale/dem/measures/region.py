@@ -1,4 +1,8 @@
-"""A rectangle in which something is measured, and what of discs and of contacts lies within it, periodic images too."""
+"""A rectangle in which something is measured, and what of discs and of contacts lies within it, periodic images too.
+
+A ``period`` is (width, height) m, 0 where not periodic, or (width, height, tilt) where the image one height up lies
+``tilt`` to the right: see ``Grains.period``.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +16,12 @@ from numpy.typing import NDArray
 from porescale.ground.check import Fault, InputError
 
 Array = NDArray[np.float64]
+Period = tuple[float, float] | tuple[float, float, float]
+
+
+def edges_of(period: Period) -> tuple[float, float, float]:
+    """Width, height and tilt, m."""
+    return (*period, 0.0) if len(period) == 2 else period
 
 
 @dataclass(frozen=True)
@@ -40,37 +50,47 @@ class Region:
         width, height = self.size
         return width * height
 
-    def near(self, points: Array, period: tuple[float, float]) -> Array:
+    def near(self, points: Array, period: Period) -> Array:
         """The images (n, 2) m of ``points`` within a period of the lower corner; themselves where not periodic."""
         moved = np.array(points, dtype=np.float64)
-        for axis, length in enumerate(period):
+        width, height, tilt = edges_of(period)
+        for axis, length in ((1, height), (0, width)):
             if length > 0.0:
-                moved[:, axis] -= length * np.floor((moved[:, axis] - self.lower[axis]) / length)
+                turns = np.floor((moved[:, axis] - self.lower[axis]) / length)
+                moved[:, axis] -= length * turns
+                if axis == 1 and tilt != 0.0:
+                    moved[:, 0] -= tilt * turns
                 beyond = moved[:, axis] >= self.lower[axis] + length  # a tiny negative number less the floor of it
                 moved[beyond, axis] = self.lower[axis]
         return moved
 
-    def shifts(self, low: Array, high: Array, period: tuple[float, float]) -> Iterator[Array]:
+    def about(self, points: Array, period: Period) -> Array:
+        """The images (n, 2) m of ``points`` nearest to the middle, so that what reaches in lies beside the region."""
+        width, height, _ = edges_of(period)
+        x, y = (0.5 * (a + b) for a, b in zip(self.lower, self.upper, strict=True))
+        return Region((x - 0.5 * width, y - 0.5 * height), (x + width + 1.0, y + height + 1.0)).near(points, period)
+
+    def shifts(self, low: Array, high: Array, period: Period) -> Iterator[Array]:
         """Whole periods (2,) m by which something between corners ``low`` and ``high`` (n, 2) m may have to be moved
         to reach into the region: (0, 0) alone where nothing is periodic."""
-        ranges = []
-        for axis, length in enumerate(period):
-            if length == 0.0 or len(low) == 0:
-                ranges.append([0.0])
-                continue
-            first = math.ceil((self.lower[axis] - float(high[:, axis].max())) / length)
-            last = math.floor((self.upper[axis] - float(low[:, axis].min())) / length)
-            ranges.append([k * length for k in range(first, last + 1)])
-        for along in ranges[0]:
-            for up in ranges[1]:
-                yield np.array([along, up])
+        width, height, tilt = edges_of(period)
+        for up in self._turns(1, low, high, height, 0.0):
+            for along in self._turns(0, low, high, width, up * tilt):
+                yield np.array([along * width + up * tilt, up * height])
 
-    def holds(self, points: Array, period: tuple[float, float] = (0.0, 0.0)) -> NDArray[np.bool_]:
+    def _turns(self, axis: int, low: Array, high: Array, length: float, moved: float) -> range:
+        """How many whole periods along ``axis`` something may have to be moved that was ``moved`` (m) before."""
+        if length == 0.0 or len(low) == 0:
+            return range(1)
+        first = math.ceil((self.lower[axis] - moved - float(high[:, axis].max())) / length)
+        return range(first, math.floor((self.upper[axis] - moved - float(low[:, axis].min())) / length) + 1)
+
+    def holds(self, points: Array, period: Period = (0.0, 0.0)) -> NDArray[np.bool_]:
         """Which points (n, 2) m, or images of them, lie inside or on the lower and left edges, (n,) bool."""
         at = self.near(points, period)
         return np.asarray(np.all((at >= self.lower) & (at < self.upper), axis=1))
 
-    def share_of_branch(self, start: Array, branch: Array, period: tuple[float, float] = (0.0, 0.0)) -> Array:
+    def share_of_branch(self, start: Array, branch: Array, period: Period = (0.0, 0.0)) -> Array:
         """Share (n,) of the segments from ``start`` (n, 2) m along ``branch`` (n, 2) m that lies inside.
 
         Clipping after Liang & Barsky, ACM Trans. Graphics 3 (1984) 1; shares of all periodic images add up.

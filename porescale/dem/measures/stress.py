@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from porescale.dem.contacts import Contacts
 from porescale.dem.discs import Discs
 from porescale.dem.measures.porosity import disc_areas
-from porescale.dem.measures.region import Region
+from porescale.dem.measures.region import Period, Region
 
 Array = NDArray[np.float64]
 
@@ -35,13 +35,13 @@ class Principal(NamedTuple):
     angle: float
 
 
-def contact_stress(region: Region, discs: Discs, contacts: Contacts, period: tuple[float, float] = (0.0, 0.0)) -> Array:
+def contact_stress(region: Region, discs: Discs, contacts: Contacts, period: Period = (0.0, 0.0)) -> Array:
     """Love-Weber stress of contacts, (2, 2) Pa, without the kinetic part; periodic images of contacts count too."""
     share = region.share_of_branch(discs.position[contacts.first], contacts.branch, period)
     return np.asarray(np.einsum("c,ca,cb->ab", share, contacts.force, contacts.branch) / region.area)
 
 
-def kinetic_stress(region: Region, discs: Discs, period: tuple[float, float] = (0.0, 0.0)) -> Array:
+def kinetic_stress(region: Region, discs: Discs, period: Period = (0.0, 0.0)) -> Array:
     """Stress of the velocities about their mass mean, (2, 2) Pa; zeros where there is no disc."""
     mass = discs.mass * disc_areas(region, discs.position, discs.radius, period) / discs.area
     total = mass.sum()
