@@ -1,0 +1,218 @@
+"""Displacements between two pictures, or from many pairs of one steady flow."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.ground.check import Fault, InputError
+from porescale.piv.grid import Grid
+from porescale.piv.outliers import THRESHOLD, filled, residual
+from porescale.piv.passes import Updated, bell, correlation_pass, paths, update_pass
+from porescale.piv.prepare import Ready, ready
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How to measure.
+
+    window : px, of the last pass, even;  overlap : of neighbouring windows, 0 to below 1;  search : px, largest
+    displacement that the first pass looks for;  updates : Gauss-Newton updates after the last correlation;  width :
+    half-width of their bell, over the window;  robust : residual, over its standard deviation, from which a pixel counts
+    for less;  curved : paths bend as in a steady flow;  least_correlation : below it a vector is invalid.
+    """
+
+    window: int = 16
+    overlap: float = 0.5
+    search: int = 16
+    updates: int = 3
+    width: float = 0.65
+    robust: float = 1.0
+    curved: bool = True
+    least_correlation: float = 0.3
+
+    def check(self, size: tuple[int, int]) -> None:
+        """Raises InputError for what cannot be measured on pictures of ``size`` (rows, columns)."""
+        faults = []
+        if self.window < 4 or self.window % 2 or self.window > min(size):
+            allowed = f"even, 4 to {min(size)}"
+            faults.append(Fault("--window", self.window, "is not a window of these pictures", "px", allowed))
+        if not 0 <= self.overlap < 1:
+            faults.append(Fault("--overlap", self.overlap, "is out of range", allowed="0 to below 1"))
+        if not 1 <= self.search <= 256:
+            faults.append(Fault("--search", self.search, "is out of range", "px", "1 to 256"))
+        if faults:
+            raise InputError(faults)
+
+    @property
+    def step(self) -> int:
+        """Pixels from one vector to the next."""
+        return max(1, round(self.window * (1 - self.overlap)))
+
+
+@dataclass(frozen=True)
+class Vectors:
+    """Displacements on a grid; arrays (ny, nx), pixels, y down.
+
+    x (nx,), y (ny,) centres;  u, v : finite where not ``solid``;  valid : passed validation;  replaced : made of
+    neighbours;  solid : in a solid;  correlation, peak_ratio;  uncertainty : standard deviation of a component, px.
+    """
+
+    x: Array
+    y: Array
+    u: Array
+    v: Array
+    valid: Flags
+    replaced: Flags
+    solid: Flags
+    correlation: Array
+    peak_ratio: Array
+    uncertainty: Array
+
+
+FIRST = 64
+"""Window of the first pass, px, at least."""
+
+
+def measure(
+    first: NDArray[Any],
+    second: NDArray[Any],
+    solid: Flags | tuple[Flags, Flags] | None = None,
+    settings: Settings | None = None,
+) -> Vectors:
+    """Displacements between two grey pictures (rows, columns).
+
+    solid : True in solids, one mask for both pictures or one each.  InputError for pictures that cannot be measured.
+    """
+    settings = settings or Settings()
+    masks = solid if isinstance(solid, tuple) else (solid, solid)
+    refuse(first, second, masks, settings)
+    reach = 2 * max(16, settings.window)
+    return measure_ready([(ready(first, masks[0], reach), ready(second, masks[1], reach))], masks, settings)
+
+
+def refuse(first: NDArray[Any], second: NDArray[Any], masks: Sequence[Flags | None], settings: Settings) -> None:
+    """Raise InputError for sizes that differ, masks that do not fit or leave nothing, and pictures without contrast."""
+    if first.shape != second.shape or first.ndim != 2:
+        sizes = " and ".join("x".join(str(side) for side in it.shape[1::-1]) for it in (first, second))
+        raise InputError(Fault("pictures", sizes, "are not of one size"))
+    settings.check((first.shape[0], first.shape[1]))
+    for picture, mask in zip((first, second), masks, strict=True):
+        if mask is not None and mask.shape != picture.shape:
+            sizes = " and ".join("x".join(str(side) for side in it.shape[::-1]) for it in (mask, picture))
+            raise InputError(Fault("--mask", sizes, "the mask is not of the pictures' size"))
+        if mask is not None and mask.all():
+            raise InputError(Fault("--mask", None, "covers the whole picture", repair="solid is white, fluid black"))
+        seen = picture if mask is None else picture[~mask]
+        if float(seen.max()) - float(seen.min()) <= 0:
+            raise InputError(Fault("pictures", None, f"no tracers: every pixel of the fluid is {seen.flat[0]}"))
+
+
+def measure_ready(pairs: Sequence[tuple[Ready, Ready]], masks: Sequence[Flags | None], settings: Settings) -> Vectors:
+    """Displacements of prepared pairs of one steady flow.  masks : solids of both pictures, for the flag ``solid``."""
+    size = (pairs[0][0].fluid.shape[0], pairs[0][0].fluid.shape[1])
+    grid, u, v, good = _coarse(pairs, size, settings)
+    ratio = np.ones(grid.shape)
+    window = FIRST // 2
+    while True:
+        window = max(settings.window, min(window, min(size)))
+        last = window == settings.window
+        new = Grid(size, window, settings.step if last else window // 2)
+        u, v = grid.at(new, u), grid.at(new, v)
+        grid, fluid = new, _fluid(new, masks)
+        found = correlation_pass(pairs, grid, search=max(2, min(4, window // 4)), along=paths(grid, u, v, curved=False))
+        ratio = found.ratio
+        good = fluid & (found.value > 0.5 * settings.least_correlation)
+        good &= ~_outliers(u + found.u, v + found.v, found.u, found.v, good)
+        u, v = filled(u + found.u, v + found.v, good)
+        if last:
+            break
+        window //= 2
+    start_u, start_v = u, v
+    weights = bell(window, settings.width)
+    for _ in range(settings.updates):
+        update = update_pass(pairs, grid, weights, settings.robust, paths(grid, u, v, curved=settings.curved))
+        u, v, good = _updated(u, v, fluid, start_u, start_v, update, settings)
+    return _vectors(grid, u, v, good, fluid, update, ratio)
+
+
+def _coarse(
+    pairs: Sequence[tuple[Ready, Ready]], size: tuple[int, int], settings: Settings
+) -> tuple[Grid, Array, Array, Flags]:
+    """The first pass, at half the resolution: whole-pixel displacements as far as ``search``."""
+    window = min(max(FIRST, settings.window), min(size) // 2 * 2)
+    half = Grid((size[0] // 2, size[1] // 2), window // 2, max(1, window // 4))
+    small = [(_halved(first), _halved(second)) for first, second in pairs]
+    search = -(-settings.search // 2) + 1
+    found = correlation_pass(small, half, search, None)
+    good = found.value > 0.5 * settings.least_correlation
+    good &= residual(found.u, found.v, good, 0.5) < 2 * THRESHOLD
+    u, v = filled(2 * found.u, 2 * found.v, good)
+    return Grid(size, window, 2 * half.step), u, v, good
+
+
+def _halved(one: Ready) -> Ready:
+    """Contrast and fluid at half the resolution."""
+    rows, columns = one.fluid.shape
+    cut = slice(0, rows // 2 * 2), slice(0, columns // 2 * 2)
+    size = columns // 2, rows // 2
+    fluid = np.asarray(cv2.resize(one.fluid[cut], size, interpolation=cv2.INTER_AREA) > 0.5, np.float32)
+    contrast = cv2.resize(one.contrast[cut], size, interpolation=cv2.INTER_AREA)
+    return Ready(one.coefficients, fluid, contrast * fluid)
+
+
+def _fluid(grid: Grid, masks: Sequence[Flags | None]) -> Flags:
+    """Whether the pixel of a vector is fluid, in both pictures."""
+    found = np.ones(grid.shape, bool)
+    for mask in masks:
+        if mask is not None:
+            found &= ~mask[np.ix_(grid.y.astype(int), grid.x.astype(int))]
+    return found
+
+
+def _outliers(u: Array, v: Array, correction_u: Array, correction_v: Array, use: Flags) -> Flags:
+    """Vectors that are outliers in the total and in the correction: either alone condemns good ones in strong gradients."""
+    return (residual(u, v, use) > THRESHOLD) & (residual(correction_u, correction_v, use) > THRESHOLD)
+
+
+LARGEST = 1.0
+"""Most that one update may move a vector, px: beyond it the linearisation means nothing."""
+
+
+def _updated(
+    u: Array, v: Array, fluid: Flags, start_u: Array, start_v: Array, update: Updated, settings: Settings
+) -> tuple[Array, Array, Flags]:
+    """Add an update, validate, replace."""
+    length = np.hypot(update.u, update.v)
+    good = fluid & np.isfinite(length) & (np.nan_to_num(update.correlation) > settings.least_correlation)
+    short = np.where(good, np.minimum(1.0, LARGEST / np.maximum(length, 1e-12)), 0.0)
+    u, v = u + short * np.where(good, update.u, 0.0), v + short * np.where(good, update.v, 0.0)
+    good &= ~_outliers(u, v, u - start_u, v - start_v, good)
+    u, v = filled(u, v, good)
+    return u, v, good
+
+
+def _vectors(grid: Grid, u: Array, v: Array, good: Flags, fluid: Flags, update: Updated, ratio: Array) -> Vectors:
+    """The outcome; solids carry zeros."""
+    spread = np.sqrt(0.5 * (update.error_u**2 + update.error_v**2))
+    known = good & np.isfinite(spread)
+    return Vectors(
+        grid.x,
+        grid.y,
+        np.where(fluid, u, 0.0),
+        np.where(fluid, v, 0.0),
+        known,
+        fluid & ~known,
+        ~fluid,
+        np.where(fluid, np.nan_to_num(update.correlation), 0.0),
+        np.where(fluid, ratio, 0.0),
+        np.where(known, spread, np.inf),
+    )

@@ -1,0 +1,159 @@
+"""Passes over a pair, or over many pairs of one steady flow: coarse to fine correlation, then Gauss-Newton updates.
+
+Both pictures are deformed by half the last estimate each (symmetric window deformation; Scarano 2002, Meas. Sci. Technol.
+13, R1), so that what is left to measure is small, and interpolation errs alike in both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.piv.correlate import correlate, peaks
+from porescale.piv.grid import Grid
+from porescale.piv.interpolate import sample
+from porescale.piv.prepare import Ready
+from porescale.piv.refine import BLOCK, refine
+
+Array = NDArray[np.float64]
+Single = NDArray[np.float32]
+Pairs = Sequence[tuple[Ready, Ready]]
+
+SLOPE = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
+"""Fourth-order central difference."""
+
+
+@dataclass(frozen=True)
+class Correlated:
+    """What a correlation pass found on its grid, each (ny, nx): px, height of the peak, ratio to the second."""
+
+    u: Array
+    v: Array
+    value: Array
+    ratio: Array
+
+
+@dataclass(frozen=True)
+class Updated:
+    """A Gauss-Newton update on its grid, each (ny, nx): px, standard deviations px, correlation; nan where none."""
+
+    u: Array
+    v: Array
+    error_u: Array
+    error_v: Array
+    correlation: Array
+
+
+@dataclass(frozen=True)
+class Paths:
+    """Where each pixel of the pictures at mid time is in the first and in the second, less where it is: float32, px."""
+
+    first: tuple[Single, Single]
+    second: tuple[Single, Single]
+
+
+def paths(grid: Grid, u: Array, v: Array, *, curved: bool) -> Paths:
+    """Half a displacement back and half forward from every pixel, along a parabola where ``curved``.
+
+    In a steady flow the mid-point between X(-1/2) and X(+1/2) lies (d . grad) d/8 off the material's place at mid time.
+    """
+    bend_u, bend_v = np.zeros_like(u), np.zeros_like(v)
+    if curved and min(grid.shape) > 3:
+        (ux, uy), (vx, vy) = grid.slopes(u), grid.slopes(v)
+        bend_u, bend_v = (u * ux + v * uy) / 8, (u * vx + v * vy) / 8
+    back = grid.at_pixels(bend_u - 0.5 * u), grid.at_pixels(bend_v - 0.5 * v)
+    forward = grid.at_pixels(bend_u + 0.5 * u), grid.at_pixels(bend_v + 0.5 * v)
+    return Paths(back, forward)
+
+
+def correlation_pass(pairs: Iterable[tuple[Ready, Ready]], grid: Grid, search: int, along: Paths | None) -> Correlated:
+    """Correlate windows of all pairs, deformed along ``along``, over ``search`` px; peaks of the sum of correlations."""
+    ny, nx = grid.shape
+    size, pad = grid.window, search + 1
+    total = np.zeros((ny, nx, 2 * search + 1, 2 * search + 1), np.float32)
+    lanes = np.empty((ny, 4, size), np.float32)
+    for first, second in pairs:
+        arrays = []
+        for one, way in ((first, along and along.first), (second, along and along.second)):
+            grey, mask = one.contrast, one.fluid
+            if way is not None:
+                at = _places(way)
+                mask = _moved(mask, at, cv2.INTER_NEAREST)
+                grey = _moved(grey, at, cv2.INTER_CUBIC) * mask
+            grey = _padded(grey, pad)
+            energy = cv2.boxFilter(grey * grey, cv2.CV_32F, (size, size), anchor=(0, 0), normalize=False,
+                                   borderType=cv2.BORDER_CONSTANT)  # fmt: skip
+            arrays.append((grey, _padded(mask, pad), np.maximum(energy, 0)))
+        (a, ma, ea), (b, mb, eb) = arrays
+        correlate(a, b, ma, mb, ea, eb, pad, 0, grid.step, size, search, lanes, total)
+    found = Correlated(*(np.empty((ny, nx)) for _ in range(4)))
+    peaks(total, found.u, found.v, found.value, found.ratio)
+    return found
+
+
+def bell(window: int, width: float) -> Single:
+    """Weights (n,) along a side, n a multiple of BLOCK, at -n/2 … n/2 - 1 px: (1 - (s/l)^2)^2, l = ``width`` windows."""
+    reach = max(3.0, width * window)
+    half = BLOCK // 2 * -(-int(np.ceil(reach)) // (BLOCK // 2))
+    at = np.arange(-half, half)
+    return np.asarray(np.maximum(0.0, 1 - (at / reach) ** 2) ** 2, np.float32)
+
+
+def update_pass(pairs: Iterable[tuple[Ready, Ready]], grid: Grid, weights: Single, robust: float, along: Paths) -> Updated:
+    """One Gauss-Newton update of the displacement whose paths are ``along``, from all pairs together."""
+    ny, nx = grid.shape
+    n = len(weights)
+    pad = n
+    sums, lanes = np.zeros((ny, nx, 9)), np.empty((ny, 6, n), np.float32)
+    one, two = np.empty(grid.size, np.float32), np.empty(grid.size, np.float32)
+    count = 0
+    first_at, second_at = _places(along.first), _places(along.second)
+    for first, second in pairs:
+        sample(first.coefficients, *along.first, one)
+        sample(second.coefficients, *along.second, two)
+        mask = _moved(first.fluid, first_at, cv2.INTER_NEAREST) * _moved(second.fluid, second_at, cv2.INTER_NEAREST)
+        mean = 0.5 * (one + two)
+        gx = cv2.sepFilter2D(mean, cv2.CV_32F, SLOPE, np.ones(1))
+        gy = cv2.sepFilter2D(mean, cv2.CV_32F, np.ones(1), SLOPE)
+        a, b, m, gx, gy = (_padded(it, pad) for it in (one, two, mask, gx, gy))
+        refine(a, b, m, gx, gy, weights, pad, grid.start, grid.step, robust, lanes, sums)
+        count += 1
+    return _solved(sums, count)
+
+
+def _solved(sums: Array, count: int) -> Updated:
+    """Updates and their standard deviations from the sums of ``refine``."""
+    hxx, hxy, hyy, bx, by, qxx, qxy, qyy = (sums[..., k] for k in range(8))
+    det = hxx * hyy - hxy * hxy
+    good = det > 1e-6 * (hxx + hyy) ** 2
+    safe = np.where(good, det, np.nan)
+    ixx, ixy, iyy = hyy / safe, -hxy / safe, hxx / safe
+    return Updated(
+        ixx * bx + ixy * by,
+        ixy * bx + iyy * by,
+        np.sqrt(np.maximum(0, ixx * ixx * qxx + 2 * ixx * ixy * qxy + ixy * ixy * qyy)),
+        np.sqrt(np.maximum(0, ixy * ixy * qxx + 2 * ixy * iyy * qxy + iyy * iyy * qyy)),
+        np.where(good, sums[..., 8] / max(1, count), np.nan),
+    )
+
+
+def _places(way: tuple[Single, Single]) -> tuple[Single, Single]:
+    """Where each pixel comes from, for OpenCV."""
+    rows, columns = way[0].shape
+    return way[0] + np.arange(columns, dtype=np.float32), way[1] + np.arange(rows, dtype=np.float32)[:, None]
+
+
+def _moved(image: Single, at: tuple[Single, Single], how: int) -> Single:
+    """``image`` at places, zero outside."""
+    found: Any = cv2.remap(image, at[0], at[1], how, borderMode=cv2.BORDER_CONSTANT, borderValue=0)
+    return np.asarray(found)
+
+
+def _padded(image: Single, pad: int) -> Single:
+    """``image`` with a border of zeros."""
+    return np.asarray(cv2.copyMakeBorder(image, pad, pad, pad, pad, cv2.BORDER_CONSTANT, value=0))

@@ -1,0 +1,45 @@
+"""A picture made ready: spline coefficients, fluid mask, and grey values less their local mean."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.piv.interpolate import coefficients
+
+Array = NDArray[np.float32]
+Mask = NDArray[np.bool_]
+
+RIM = 1
+"""Pixels around a solid that its blurred edge brightens."""
+
+
+class Ready(NamedTuple):
+    """coefficients : of the spline, solids filled with the local mean;  fluid : 1 where fluid, the rim of solids left out;
+    contrast : less the local mean, 0 in solids.  All float32; (rows, columns), coefficients padded.
+    """
+
+    coefficients: Array
+    fluid: Array
+    contrast: Array
+
+
+def ready(picture: NDArray[Any], solid: Mask | None, reach: int) -> Ready:
+    """Prepare a grey picture (rows, columns); ``reach`` : px over which the local mean is taken."""
+    grey = np.ascontiguousarray(picture, np.float32)
+    side = (2 * (reach // 2) + 1,) * 2
+    if solid is None or not solid.any():
+        fluid = np.ones(grey.shape, np.float32)
+        return Ready(coefficients(grey), fluid, grey - cv2.blur(grey, side, borderType=cv2.BORDER_REFLECT_101))
+    grown = cv2.dilate(solid.astype(np.uint8), np.ones((2 * RIM + 1,) * 2, np.uint8))
+    fluid = np.asarray(grown == 0, np.float32)
+    share = cv2.blur(fluid, side, borderType=cv2.BORDER_REFLECT_101)
+    light = cv2.blur(grey * fluid, side, borderType=cv2.BORDER_REFLECT_101)
+    mean = np.where(share > 1e-3, light / np.maximum(share, 1e-3), np.float32(0))
+    whole = float((grey * fluid).sum() / max(1.0, float(fluid.sum())))
+    mean[share <= 1e-3] = whole
+    filled = np.where(fluid > 0, grey, mean)
+    return Ready(coefficients(filled), fluid, (grey - mean) * fluid)
