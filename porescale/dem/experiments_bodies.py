@@ -139,7 +139,7 @@ def column_under_servo(load: float, count: int = 10, gravity: float = GRAVITY) -
     weights = np.column_stack((np.zeros(count), np.full(count, -MASS * gravity)))
     slowest = math.sqrt(STIFFNESS / MASS) * math.pi / (2.0 * count + 1.0)
     dt = grains.stable_step()
-    grains.step(dt, weights, None, int(80.0 / (slowest * dt)), slowest)
+    grains.step(dt, weights, None, int(160.0 / (slowest * dt)), slowest)
     floor = -float(grains.wall_force[grains.wall_names.index("bottom"), 1])
     return floor, float(grains.wall_force[grains.wall_names.index("lid"), 1])
 

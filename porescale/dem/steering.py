@@ -61,7 +61,7 @@ class Steering:
         self._watched: list[int | Clump] = []
         self._watched_load, self._watched_from = np.zeros((0, 3)), np.zeros((0, 3))
         self._drives: list[tuple[int, int, int, int, Schedule]] = []
-        self._servo = np.zeros((0, 5))
+        self._servo = np.zeros((0, 6))
         self._clock = np.zeros(2)
         self._rates: list[Schedule] = [0.0, 0.0, 0.0]
         self._plan = np.zeros((3, 5))
@@ -192,7 +192,7 @@ class Steering:
         low, high = (self._wall(between[0]), self._wall(between[1])) if between else (-1, -1)
         mode, wanted = (servos.BY_FORCE, force) if stress is None else (servos.BY_STRESS, stress)
         assert wanted is not None
-        self._drive(name, [(mode, wanted)], low, high, [*self._grains.hardest(), share, speed, length or 0.0])
+        self._drive(name, [(mode, wanted)], low, high, [*self._grains.hardest(), share, speed, length or 0.0, 0.0])
 
     def _wall(self, name: str) -> int:
         names = self._grains.wall_names
@@ -206,7 +206,7 @@ class Steering:
         told: Sequence[tuple[int, Schedule]],
         low: int = -1,
         high: int = -1,
-        numbers: Sequence[float] = (0.0,) * 5,
+        numbers: Sequence[float] = (0.0,) * 6,
     ) -> None:
         wall = self._wall(name)
         kept = [k for k, row in enumerate(self._drives) if row[0] != wall]
@@ -350,6 +350,7 @@ class Steering:
             "watched_load": self._watched_load.copy(),
             "watched_from": self._watched_from.copy(),
             "walls": self._grains.walls.copy(),
+            "servo": self._servo.copy(),
             "load": self.load.copy(),
             **({} if self.cell is None else {"cell": self.cell.copy()}),
         }
@@ -358,7 +359,7 @@ class Steering:
         """Go on exactly from ``state()`` of one told alike; raises InputError where it was told otherwise."""
         self.clumps.restore({name[7:]: part for name, part in state.items() if name.startswith("clumps.")})
         own = {"given": self._given, "watched_load": self._watched_load, "watched_from": self._watched_from,
-               "walls": self._grains.walls, "load": self.load}  # fmt: skip
+               "walls": self._grains.walls, "servo": self._servo, "load": self.load}  # fmt: skip
         if (self.cell is None) != ("cell" not in state):
             raise InputError(Fault("state.steering.cell", "cell" in state, "strained in one, not in the other"))
         if self.cell is not None:

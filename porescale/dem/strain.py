@@ -5,9 +5,10 @@ With c the velocity relative to the cell's affine motion G x (cell.py),
 and the cell does the work  -A P : G,  P = (sum m c c - sum f d)/A  the pressure tensor, compression positive.
 Source: Evans & Morriss, Statistical Mechanics of Nonequilibrium Liquids (1990), section 6.3.
 
-A component under stress control has the rate  g = share (P - P_wanted)/(dt K + 2 C),  |g| <= limit, with K = k sum
+A component under stress control has the rate  g = U + share (P - P_wanted)/(dt K + 2 C),  |g| <= limit, with K = k sum
 d^2/A and C = c sum d^2/A over contacts, k and c the stiffness and dashpot of one: no less than the modulus against
-affine strain, where k_t <= k.  Stable for share < 2 by the argument of servo.py.
+affine strain, where k_t <= k; and U the mean of that rate, as of a servo's velocity.  Stable for share < 2 by the
+argument of servo.py.
 """
 
 from __future__ import annotations
@@ -20,14 +21,16 @@ from numpy.typing import NDArray
 from porescale.dem.cell import SQUARES, XX, XY, YY, Still, Straining
 from porescale.dem.kick import sweep_kick
 from porescale.dem.schedule import value_at
+from porescale.dem.servo import follow
 from porescale.ground.jit import by_law, kernel
 
 Array = NDArray[np.float64]
 
-WIDTH, HEIGHT, TILT, GXX, GXY, GYY, WIDTH_THEN, HEIGHT_THEN, TILT_THEN, REACH, SKIN, WORK = range(12)
+WIDTH, HEIGHT, TILT, GXX, GXY, GYY, WIDTH_THEN, HEIGHT_THEN, TILT_THEN, REACH, SKIN, WORK, AHEAD = range(13)
 """Columns of a strained cell's state: edges m and velocity gradient 1/s; edges when the pairs were listed, their
-largest reach and skin (m); work done by the cell since it began, J/m."""
-STATE = 12
+largest reach and skin (m); work done by the cell since it began, J/m; from the last on, mean rates of xx, yy, xy under
+a stress (1/s)."""
+STATE = AHEAD + 3
 STRESS, SHARE, LIMIT, STIFFNESS, DAMPING = range(5)
 """Columns of the plan of xx, yy, xy: 1 for a wanted stress;  share -, limit 1/s;  of one contact N/m, N s/m."""
 
@@ -117,16 +120,21 @@ def pressure(velocity, mass, load, area):
 @kernel
 def told_rate(found, k, time, dt, cell):
     """Rate (1/s) of component k (xx, yy, xy) of a Deforming cell at its pressure ``found`` (Pa); the stress that is
-    wanted is a pressure for the first two and that which drives the shear, -P_xy, for the third."""
+    wanted is a pressure for the first two and that which drives the shear, -P_xy, for the third.  Overwrites the mean
+    rate in ``cell.state``."""
     value = value_at(cell.schedules, cell.points, k, time if cell.plan[k, STRESS] != 0.0 else time + 0.5 * dt)
     if cell.plan[k, STRESS] == 0.0:
         return value
     squares, area = cell.load[SQUARES], cell.state[WIDTH] * cell.state[HEIGHT]
     excess = found + value if k == 2 else found - value
+    share, most, ahead = cell.plan[k, SHARE], cell.plan[k, LIMIT], cell.state[AHEAD + k]
     if squares == 0.0:
-        return np.sign(excess) * cell.plan[k, LIMIT]
+        cell.state[AHEAD + k] = 0.0
+        return np.sign(excess) * most
     resist = (cell.plan[k, STIFFNESS] * dt + 2.0 * cell.plan[k, DAMPING]) * squares / area
-    return min(max(cell.plan[k, SHARE] * excess / resist, -cell.plan[k, LIMIT]), cell.plan[k, LIMIT])
+    rate = min(max(ahead + share * excess / resist, -most), most)
+    cell.state[AHEAD + k] += follow(cell.plan[k, STIFFNESS], cell.plan[k, DAMPING], share, dt) * (rate - ahead)
+    return rate
 
 
 @kernel
