@@ -38,7 +38,7 @@ from porescale.dem.contact.law import (
     stored,
 )
 from porescale.dem.rectangle import BOTTOM, LEFT, RIGHT, TOP, VELOCITY_X
-from porescale.dem.walls import HIGH, LOW, NX, PRESENT, PX, VELOCITY, X
+from porescale.dem.walls import HIGH, LOW, NX, NY, PRESENT, PX, TURN, VELOCITY, VX, X
 from porescale.ground.check import Fault, InputError
 from porescale.ground.jit import kernel
 
@@ -99,7 +99,9 @@ def distances(grains: Grains, position: Array, dt: float) -> list[tuple[Array, A
     found = []
     x, y = position.T
     for row, memory, laws in zip(grains.walls, grains.wall_spring, grains.wall_laws, strict=True):
-        found.append(((position - row[PX : PX + 2]) @ row[NX : NX + 2], memory, laws))
+        cosine, sine = np.cos(dt * row[TURN]), -np.sin(dt * row[TURN])
+        normal = np.array([cosine * row[NX] - sine * row[NY], sine * row[NX] + cosine * row[NY]])
+        found.append(((position - row[PX : PX + 2] + dt * row[VX : VX + 2]) @ normal, memory, laws))
     for row, memory, laws in zip(grains.plates, grains.plate_spring, grains.plate_laws, strict=True):
         rise = row[VELOCITY] * row[PRESENT] * dt
         away = np.hypot(row[X] - x, np.clip(y, row[LOW] - rise, row[HIGH] - rise) - y)

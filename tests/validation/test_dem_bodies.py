@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from porescale.dem import experiments_bodies as lab
+from porescale.dem import experiments_energy as boxed
 from porescale.dem.verify_bodies import VALIDATIONS
 
 ROWS = {row.name: row for row in VALIDATIONS}
@@ -36,3 +37,9 @@ def test_a_pendulum_that_swings_wide_is_no_harmonic_one():  # the twin that must
 def test_with_free_rotation_the_shear_modulus_is_another():  # the twin that must fail
     with_held, without = lab.lattice_exact(0.5)[2], np.sqrt(3.0) / 4.0 * 1.5
     assert abs(lab.lattice_moduli(0.5)[2] - with_held) < 4e-4 < abs(with_held - without)
+
+
+def test_the_book_of_a_servo_without_its_work_does_not_close():  # the twin that must fail
+    book = boxed.book_of(("servo",), 200.0, 0)
+    without = abs(book["residual (J/m)"] + book["work of moving surfaces (J/m)"]) / book["turned over (J/m)"]
+    assert without > 10 * ROWS["dem.energy_book_of_driven_bodies"].tolerance
