@@ -7,7 +7,8 @@ members' rows hold shares of it, m_i > 0 with
 so that sums over discs of momentum, angular momentum, energy and weight are those of the bodies.  Such shares exist as
 the centroid of a union lies within the hull of its centres: reflected at a line beside all centres, what lies beyond
 the line falls on other parts of the union.  The ones taken are w_i exp(l.o_i), which stay closest (in relative entropy)
-to the lengths w_i of outline that the members show.
+to the lengths w_i of outline that the members show.  Frames of segments (frames.py) have their corners as members, far
+out: the shares I_i of their inertia come out negative, the sums hold all the same.
 
 Motion: forces of members are summed about the centroid at the whole step; the body is kicked and drifts like a disc;
 members then sit at their places, with the rigid body's velocity there.
@@ -37,11 +38,15 @@ MOVING = ("position", "angle", "velocity", "spin", "arm", "force", "torque", "he
 
 @dataclass(frozen=True)
 class Body:
-    """Mass kg/m, centroid (m) and moment of inertia about it (kg m^2/m) given by hand."""
+    """Mass kg/m, centroid (m) and moment of inertia about it (kg m^2/m) given by hand.
+
+    frame : the members are the corners of a frame of segments, and may be points.
+    """
 
     mass: float
     centroid: tuple[float, float]
     inertia: float
+    frame: bool = False
 
 
 class Clumps:
@@ -51,7 +56,8 @@ class Clumps:
     mass, inertia (b,) kg/m, kg m^2/m;  position (b, 2) m, angle (b,) rad at whole steps, velocity (b, 2) m/s, spin (b,)
     rad/s at half steps: of the centroid;  offset (k, 2) m from it to the members at angle 0, arm (k, 2) now;
     turn (k,) rad: a member's angle less the body's;  force (b, 2) N/m and torque (b,) N m/m of the last step;
-    held, withheld (b, 3) as of discs;  group (n,) int32: clump of every disc, -1 for none.
+    held, withheld (b, 3) as of discs;  group (n,) int32: clump of every disc, -1 for none;  crowd (k,): contacts
+    that a corner and its segments are reckoned to have, 0 for members that are discs.
     """
 
     def __init__(
@@ -81,6 +87,11 @@ class Clumps:
         for c in range(count):
             self._weigh(c, discs, float(heavy[c]), bodies[c] if len(bodies) else None)
         self.arm, self.turn = self.offset.copy(), discs.angle[self.member]
+        self.crowd = np.zeros(len(self.member))
+        self.place(discs)
+
+    def place(self, discs: Discs) -> None:
+        """Put the members of every clump where the body is, moving as it does: overwrites their rows."""
         place_members(
             self.start, self.member, self.offset, self.arm, self.turn, self.position, self.angle, self.velocity,
             self.spin, discs.position, discs.angle, discs.velocity, discs.spin, 0.0, 0.0, 0.0,
@@ -106,24 +117,32 @@ class Clumps:
         if np.any(times > 1):
             raise InputError(Fault("clump", int(number[times > 1][0]), "this disc is a member twice"))
 
-    def _weigh(self, c: int, discs: Discs, density: float, body: Body | None) -> None:
-        """Mass, place and motion of clump c, and the shares of its members."""
-        own, name = self.discs_of(c), f"clump[{c}]"
-        union = outline(discs.position[own], discs.radius[own])
+    def _check_hidden(self, own: NDArray[np.int64], name: str, discs: Discs) -> None:
         for k, i in enumerate(own):
             within = np.hypot(*(discs.position[own] - discs.position[i]).T) + discs.radius[i] <= discs.radius[own]
             within[k] = False
             if within.any():
                 where = f"lies within disc {own[within.argmax()]}"
                 raise InputError(Fault(f"{name}.disc", int(i), where, repair="leave it out: nothing can touch it"))
+
+    def _weigh(self, c: int, discs: Discs, density: float, body: Body | None) -> None:
+        """Mass, place and motion of clump c, and the shares of its members."""
+        own, name = self.discs_of(c), f"clump[{c}]"
+        frame = body is not None and body.frame
+        if not frame:
+            self._check_hidden(own, name, discs)
+        weight = np.ones(len(own))
+        if body is None or not frame:
+            union = outline(discs.position[own], discs.radius[own])
+            weight = discs.radius[own] * np.maximum(union.exposed, LEAST * discs.radius[own])
         if body is None:
             if not (density > 0.0 and np.isfinite(density)):
                 raise InputError(Fault(f"{name}.density", density, "", "kg/m^3", "> 0"))
             body = Body(density * union.area, tuple(union.centroid.tolist()), density * union.second_moment)
         self.mass[c], self.inertia[c], self.position[c] = body.mass, body.inertia, body.centroid
         offset = discs.position[own] - self.position[c]
-        weight = discs.radius[own] * np.maximum(union.exposed, LEAST * discs.radius[own])
-        share = shares(weight, offset, float(discs.radius[own].max())) if body.mass > 0.0 else None
+        size = max(float(discs.radius[own].max()), float(np.abs(offset).max()) if frame else 0.0)
+        share = shares(weight, offset, size) if body.mass > 0.0 else None
         if share is None:
             raise InputError(Fault(f"{name}.centroid", body.centroid, "must lie amid the members", "m"))
         momentum = discs.mass[own] @ discs.velocity[own]
@@ -136,10 +155,11 @@ class Clumps:
         self.spin[c] = turning / about
         mass = body.mass * share
         rest = body.inertia - float(mass @ np.sum(offset**2, axis=1))
-        if not rest > 0.0:
+        if not (rest > 0.0 or (frame and body.inertia > 0.0)):
             raise InputError(Fault(f"{name}.inertia", body.inertia, "", "kg m^2/m", f"> {body.inertia - rest:.6g}"))
         discs.mass[own] = mass
-        discs.inertia[own] = rest * weight * discs.radius[own] / (weight @ discs.radius[own])
+        around = weight if frame else weight * discs.radius[own]
+        discs.inertia[own] = rest * around / around.sum()
         self.offset[self.start[c] : self.start[c + 1]] = offset
 
     def state(self) -> dict[str, Any]:
@@ -222,13 +242,14 @@ def fastest(clumps: Clumps, radius: Array, normal: float, tangential: float, rol
     (N s/m), on the damping rate 1/s;  radius (n,) m of all discs.
 
     As in integrate.packing_factor each contact counts twice at each end, and a disc of radius r has at most
-    N = max(neighbours, pi (1 + r/r_min)) of them, spread so that the sum of n n^T is at most N/2.  With o the way
-    from the centroid to a member, the translation block of the body is at most N (k_n + k_t)/M summed over members, the
-    rotation block N (k_n |o|^2 + 2 k_t (|o|/sqrt 2 + r)^2 + 2 k_r r^2)/I, and the largest eigenvalue of both together
-    at most their sum.
+    N = max(neighbours, pi (1 + r/r_min)) of them (``crowd`` at a corner), spread so that the sum of n n^T is at most
+    N/2.  With o the way from the centroid to a member, the translation block of the body is at most N (k_n + k_t)/M
+    summed over members, the rotation block N (k_n |o|^2 + 2 k_t (|o|/sqrt 2 + r)^2 + 2 k_r r^2)/I, and the largest
+    eigenvalue of both together at most their sum.
     """
-    own = radius[clumps.member]
-    touch = np.maximum(float(neighbours), np.pi * (1.0 + own / float(radius.min())))
+    own, sizes = radius[clumps.member], radius[radius > 0.0]
+    smallest = float(sizes.min()) if len(sizes) else 1.0
+    touch = np.where(clumps.crowd > 0.0, clumps.crowd, np.maximum(float(neighbours), np.pi * (1.0 + own / smallest)))
     far = np.hypot(*clumps.offset.T)
     turning = normal * far**2 + 2.0 * tangential * (np.sqrt(0.5) * far + own) ** 2 + 2.0 * rolling * own**2
     body = clumps.group[clumps.member]

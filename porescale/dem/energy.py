@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.dem.bonds import stored_in_bonds
 from porescale.dem.cell import Still, image
 from porescale.dem.contact.law import (
     BEFORE_SPIN,
@@ -38,6 +39,7 @@ from porescale.dem.contact.law import (
     stored,
 )
 from porescale.dem.rectangle import BOTTOM, LEFT, RIGHT, TOP, VELOCITY_X
+from porescale.dem.segments import survey_segments
 from porescale.dem.walls import HIGH, LOW, NX, NY, PRESENT, PX, TURN, VELOCITY, VX, X
 from porescale.ground.check import Fault, InputError
 from porescale.ground.jit import kernel
@@ -115,7 +117,10 @@ def distances(grains: Grains, position: Array, dt: float) -> list[tuple[Array, A
 
 
 def elastic(grains: Grains, dt: float = 0.0) -> tuple[float, float, float]:
-    """Elastic energy of all contacts, J/m, ``dt`` (s) before now: (normal, tangential, rolling)."""
+    """Elastic energy of all contacts, J/m, ``dt`` (s) before now: (normal, tangential, rolling).
+
+    That of back tension (bonds.py), below zero, belongs to the normal part.
+    """
     d, pairs = grains.discs, grains.pairs
     position = d.position - dt * d.velocity
     parts = [
@@ -125,6 +130,12 @@ def elastic(grains: Grains, dt: float = 0.0) -> tuple[float, float, float]:
     ]
     for distance, memory, laws in distances(grains, position, dt):
         parts.append(elastic_surface(distance, d.radius, memory, laws, grains.contact))
+    segments = None if grains.segments is None else grains.segments.arrays
+    if segments is not None:
+        parts.append(survey_segments(position, d.radius, segments, grains.contact, grains.cell)[3:])
+    if grains.bonds is not None:
+        bonds = grains.bonds.now(0.0, 0)
+        parts.append((stored_in_bonds(position, d.radius, segments, bonds, grains.cell), 0.0, 0.0))
     normal, tangential, rolling = (float(part) for part in np.sum(parts, axis=0))
     return normal, tangential, rolling
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from porescale.dem.cell import Still, drift, image, note
 from porescale.dem.contact.law import (
+    booked,
     contact,
     holds,
     material_of,
@@ -43,36 +44,72 @@ def add_pair_forces(
 
 
 @inline
-def approach(i, j, dx, dy, velocity, spin, radius, cell):
-    """Discs i and j, (dx, dy) m apart: (distance m, normal, lever arms m, closing and slip speed m/s)."""
-    ri, rj = radius[i], radius[j]
+def approach(dx, dy, du, dv, spin_i, spin_j, ri, rj):
+    """Round bodies (dx, dy) m apart, from i to j, i moving at (du, dv) m/s relative to j: (distance m, normal, lever
+    arms m, closing and slip speed m/s).
+    """
     distance = np.sqrt(dx * dx + dy * dy)
     inverse = 1.0 / distance
     nx, ny = dx * inverse, dy * inverse
     arm_i = 0.5 * (distance + (ri - rj) * (ri + rj) * inverse)
     arm_j = distance - arm_i
-    drift_x, drift_y = drift(dx, dy, cell)
-    du = velocity[i, 0] - velocity[j, 0] - drift_x
-    dv = velocity[i, 1] - velocity[j, 1] - drift_y
     closing = du * nx + dv * ny
-    slip = dv * nx - du * ny + spin[i] * arm_i + spin[j] * arm_j
+    slip = dv * nx - du * ny + spin_i * arm_i + spin_j * arm_j
     return distance, nx, ny, arm_i, arm_j, closing, slip
 
 
 @inline
-def leave_pair(i, j, k, dx, dy, velocity, spin, radius, carried, book, law, dt, cell):
-    """Enter into ``book``, if any, what the springs of a pair (dx, dy) m apart still held that touched a step ago."""
-    if book is None:
-        return
-    if holds(carried, k, law):
-        before, roll_before = recall(carried, k, law)
-        distance, _, _, _, _, closing, slip = approach(i, j, dx, dy, velocity, spin, radius, cell)
-        reduced = radius[i] * radius[j] / (radius[i] + radius[j])
+def passing(i, j, dx, dy, velocity, cell):
+    """Velocity (m/s) of disc i relative to j, (dx, dy) m from it."""
+    drift_x, drift_y = drift(dx, dy, cell)
+    return velocity[i, 0] - velocity[j, 0] - drift_x, velocity[i, 1] - velocity[j, 1] - drift_y
+
+
+@inline
+def touch(i, k, overlap, dx, dy, du, dv, spin_i, spin_j, ri, rj, mass, p, memory, law, dt):
+    """A contact of round bodies: force on the first along x, y (N/m), torques on both (N m/m).
+
+    overlap (m) > 0;  mass (kg/m) reduced;  p (COLUMNS,) row of the law;  the rest as in approach.  Overwrites row k of
+    ``memory``; the energy book, if any, has it at disc i.
+    """
+    _, nx, ny, arm_i, arm_j, closing, slip = approach(dx, dy, du, dv, spin_i, spin_j, ri, rj)
+    reduced = ri * rj / (ri + rj)
+    turning = reduced * (spin_i - spin_j)
+    before, roll_before = recall(memory, k, law)
+    normal, tangential, resisting, spring, roll = contact(
+        overlap, closing, slip, turning, before, roll_before, reduced, mass, dt, p, law
+    )
+    remember(memory, k, spring, roll, law)
+    note_contact(
+        i, overlap, closing, slip, turning, before, roll_before, normal, tangential, resisting, spring, roll,
+        reduced, mass, dt, p, law.book, law,
+    )  # fmt: skip
+    moment_i, moment_j = moments(tangential, resisting, arm_i, arm_j, reduced, law)
+    return -normal * nx - tangential * ny, -normal * ny + tangential * nx, moment_i, moment_j
+
+
+@inline
+def let_go(i, k, overlap, dx, dy, du, dv, spin_i, spin_j, ri, rj, p, memory, law, dt):
+    """Enter into the energy book at disc i what the springs of row k of ``memory`` still held that touched a step ago.
+
+    Arguments as in touch, overlap <= 0;  a system without a book has no use for it.
+    """
+    before, roll_before = recall(memory, k, law)
+    _, _, _, _, _, closing, slip = approach(dx, dy, du, dv, spin_i, spin_j, ri, rj)
+    reduced = ri * rj / (ri + rj)
+    note_parting(
+        i, overlap, closing, slip, reduced * (spin_i - spin_j), before, roll_before, reduced, dt, p, law.book, law
+    )
+
+
+@inline
+def leave_pair(i, j, k, dx, dy, velocity, spin, radius, carried, law, dt, cell):
+    """Enter into the book, if any, what the springs of a pair (dx, dy) m apart still held that touched a step ago."""
+    if booked(law.book) and holds(carried, k, law):
+        du, dv = passing(i, j, dx, dy, velocity, cell)
         p = law.table[material_of(law.material, i), material_of(law.material, j)]
-        note_parting(
-            i, radius[i] + radius[j] - distance, closing, slip, reduced * (spin[i] - spin[j]), before, roll_before,
-            reduced, dt, p, book, law,
-        )  # fmt: skip
+        overlap = radius[i] + radius[j] - np.sqrt(dx * dx + dy * dy)
+        let_go(i, k, overlap, dx, dy, du, dv, spin[i], spin[j], radius[i], radius[j], p, carried, law, dt)
 
 
 @inline
@@ -85,27 +122,17 @@ def pair_contact(i, j, k, position, velocity, spin, radius, carried, law, dt, ce
     dx, dy = image(position[j, 0] - position[i, 0], position[j, 1] - position[i, 1], cell)
     square = dx * dx + dy * dy
     if square >= (ri + rj) * (ri + rj):
-        leave_pair(i, j, k, dx, dy, velocity, spin, radius, carried, law.book, law, dt, cell)
+        leave_pair(i, j, k, dx, dy, velocity, spin, radius, carried, law, dt, cell)
         remember(carried, k, 0.0, 0.0, law)
         return False, 0.0, 0.0, 0.0, 0.0
-    distance, nx, ny, arm_i, arm_j, closing, slip = approach(i, j, dx, dy, velocity, spin, radius, cell)
-    overlap, reduced = ri + rj - distance, ri * rj / (ri + rj)
-    turning = reduced * (spin[i] - spin[j])
+    du, dv = passing(i, j, dx, dy, velocity, cell)
     mass = law.mass[i] * law.mass[j] / (law.mass[i] + law.mass[j])
     p = law.table[material_of(law.material, i), material_of(law.material, j)]
-    before, roll_before = recall(carried, k, law)
-    normal, tangential, resisting, spring, roll = contact(
-        overlap, closing, slip, turning, before, roll_before, reduced, mass, dt, p, law
+    overlap = ri + rj - np.sqrt(square)
+    gx, gy, moment_i, moment_j = touch(
+        i, k, overlap, dx, dy, du, dv, spin[i], spin[j], ri, rj, mass, p, carried, law, dt
     )
-    remember(carried, k, spring, roll, law)
-    note_contact(
-        i, overlap, closing, slip, turning, before, roll_before, normal, tangential, resisting, spring, roll,
-        reduced, mass, dt, p, law.book, law,
-    )  # fmt: skip
-    gx = -normal * nx - tangential * ny
-    gy = -normal * ny + tangential * nx
     note(gx, gy, dx, dy, cell)
-    moment_i, moment_j = moments(tangential, resisting, arm_i, arm_j, reduced, law)
     return True, gx, gy, moment_i, moment_j
 
 

@@ -19,7 +19,8 @@ WORST_TRAVEL = 0.1  # of the smallest radius in one step: a contact would be met
 
 class Health:
     """What is beyond sense: a number that is none; a speed beyond 0.1 smallest radii per step; an overlap beyond 30 %
-    of the radius; a centre behind a solid side, or through a plate since the last check.
+    of the radius; a centre behind a solid side (a corner: by 30 % of its segments), or through a plate since the
+    last check.
     """
 
     def __init__(self, plates: int, count: int) -> None:
@@ -41,13 +42,16 @@ class Health:
         if grains.last_dt > 0.0:
             speed = np.hypot(discs.velocity[:, 0], discs.velocity[:, 1])
             fastest = int(speed.argmax())
-            if speed[fastest] * grains.last_dt > WORST_TRAVEL * float(discs.radius.min()):
+            smallest = float(discs.radius.min(where=discs.radius > 0.0, initial=np.inf))
+            if speed[fastest] * grains.last_dt > WORST_TRAVEL * smallest:
                 raise _unstable(
                     grains, f"grain {fastest}", "speed", float(speed[fastest]), "m/s",
                     f"more than {WORST_TRAVEL:g} of the smallest radius in a step: shorten the contact step",
                 )  # fmt: skip
         for name, wall in zip(grains.wall_names, grains.walls, strict=True):
             distance = (discs.position - wall[:2]) @ wall[2:4]
+            if grains.segments is not None:
+                distance = distance + WORST_OVERLAP * grains.segments.beside_corner
             out = int(distance.argmin())
             if distance[out] < 0.0:
                 raise _unstable(

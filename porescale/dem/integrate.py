@@ -12,11 +12,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from porescale.dem.bonds import pull_bonds
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Law
 from porescale.dem.kick import note_step, withhold
 from porescale.dem.motion import carry_bodies, govern
 from porescale.dem.rectangle import move_rectangles
+from porescale.dem.segments import add_segment_forces
 from porescale.dem.strain import at_present, move_discs, steer
 from porescale.dem.sweep import sweep_pairs, sweep_surfaces
 from porescale.dem.walls import move_plates
@@ -49,7 +51,7 @@ def contact_steps(
     external_force, external_torque, start, partner, carried, anchor, limit_square, law,
     walls, wall_laws, wall_spring, wall_force, plates, plate_laws, plate_spring, plate_force,
     rectangles, rectangle_laws, rectangle_spring, rectangle_force, held, withheld, first, sweep,
-    motion, cell,
+    motion, cell, segments, bonds,
 ):  # fmt: skip
     """Up to ``count`` contact steps; returns (steps done, whether the pair list must be rebuilt first to
     go on).
@@ -57,7 +59,8 @@ def contact_steps(
     Arrays as in add_pair_forces and the like, withhold and kick_drift; external_force (n, 2)
     N/m and external_torque (n,) N m/m are the same over all steps.  first: withheld forces are summed anew.
     sweep: by one thread or several, see sweep.py;  motion: of what is no free disc, None or motion.Arrays;  cell:
-    cell.Still or strain.Deforming.  Overwrites the state of discs, springs, plates, rectangles.
+    cell.Still or strain.Deforming;  segments, bonds: None or segments.Segments and bonds.Bonds, in a cell that stands
+    still.  Overwrites the state of discs, springs, plates, rectangles.
     """
     for step in range(count):
         sweep_pairs(
@@ -69,6 +72,10 @@ def contact_steps(
             plates, plate_laws, plate_spring, plate_force,
             rectangles, rectangle_laws, rectangle_spring, rectangle_force, law, dt, sweep,
         )  # fmt: skip
+        if segments is not None:
+            add_segment_forces(position, velocity, spin, radius, force, torque, segments, law, dt, cell)
+        if bonds is not None:
+            pull_bonds(position, radius, force, torque, segments, bonds, step, dt, cell)
         note_step(law.book, velocity, spin, mass, inertia, external_force, external_torque, drag, dt)
         if motion is not None:
             govern(

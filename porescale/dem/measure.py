@@ -14,6 +14,7 @@ from porescale.dem.cell import image
 from porescale.dem.contact.law import material_of, recall, stored
 from porescale.dem.discs import Discs
 from porescale.dem.rectangle import BOTTOM, LEFT, RIGHT, TOP, nearest_face
+from porescale.dem.segments import survey_segments
 from porescale.dem.system import Grains
 from porescale.dem.walls import HIGH, LOW, NX, NY, PRESENT, PX, PY, X
 from porescale.ground.jit import inline, kernel
@@ -134,9 +135,9 @@ def potential_energy(discs: Discs, acceleration: tuple[float, float]) -> float:
 
 
 def elastic_energy(grains: Grains) -> float:
-    """Stored in the normal and tangential springs of pairs, walls, plates and rectangles, J/m."""
+    """Stored in the normal and tangential springs of pairs, walls, plates, rectangles and segments, J/m."""
     surfaces = (_survey_walls(grains), _survey_plates(grains), _survey_rectangles(grains))
-    return float(_survey(grains)[3] + sum(found[3] for found in surfaces))
+    return float(_survey(grains)[3] + sum(found[3] for found in surfaces) + sum(_survey_segments(grains)[3:]))
 
 
 def momentum(discs: Discs) -> Array:
@@ -159,7 +160,9 @@ def centre_of_mass(discs: Discs) -> Array:
 
 
 def max_overlap(grains: Grains) -> Overlap:
-    """The deepest overlap of all pairs, walls, plates and rectangles, as a share of the (smaller) radius."""
+    """The deepest overlap of all pairs, walls, plates, rectangles and segments, as a share of the (smaller) radius; at
+    segments and corners of the larger of radius and thickness.
+    """
     share, i, j, _ = _survey(grains)
     deepest = Overlap(float(share), int(i), f"grain {j}")
     share, i, w, _ = _survey_walls(grains)
@@ -171,6 +174,9 @@ def max_overlap(grains: Grains) -> Overlap:
     share, i, w, _ = _survey_rectangles(grains)
     if share > deepest.share:
         deepest = Overlap(float(share), int(i), f"rectangle {w}")
+    share, i, e, *_ = _survey_segments(grains)
+    if share > deepest.share:
+        deepest = Overlap(float(share), int(i), f"segment {e}" if e >= 0 else f"corner {e + grains.discs.count}")
     return deepest
 
 
@@ -208,6 +214,16 @@ def _survey_plates(grains: Grains) -> tuple[float, int, int, float]:
     d = grains.discs
     result: tuple[float, int, int, float] = survey_plates(
         d.position, d.radius, grains.plates, grains.plate_laws, grains.plate_spring, grains.contact
+    )
+    return result
+
+
+def _survey_segments(grains: Grains) -> tuple[float, int, int, float, float, float]:
+    d = grains.discs
+    if grains.segments is None:
+        return 0.0, -1, 0, 0.0, 0.0, 0.0
+    result: tuple[float, int, int, float, float, float] = survey_segments(
+        d.position, d.radius, grains.segments.arrays, grains.contact, grains.cell
     )
     return result
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.dem.bonds import BondList
 from porescale.ground.check import Fault, InputError
 
 if TYPE_CHECKING:
@@ -35,6 +36,8 @@ def state_of(grains: Grains) -> dict[str, Any]:
         **({name: getattr(grains, name).copy() for name in RECTANGLES} if len(grains.rectangles) else {}),
         **({} if grains.book is None else {"book": grains.book.copy(), "book_start": _start_of_book(grains)}),
         **({} if grains._steering is None else {"steering": grains._steering.state()}),
+        **({} if grains.segments is None else {"segments": grains.segments.state()}),
+        **({} if grains.bonds is None else {"bonds": grains.bonds.state()}),
         "steps": grains.steps,
         "time": grains._time,
         "steps_of_dt": grains._steps_of_dt,
@@ -65,6 +68,9 @@ def restore(grains: Grains, state: dict[str, Any]) -> None:
     if grains._steering is not None:
         grains._steering.restore(state["steering"])
     grains.pairs.restore(state["pairs"])
+    if grains.segments is not None:
+        grains.segments.restore(state["segments"])
+    grains.bonds = BondList.restored(state["bonds"]) if "bonds" in state else None
     grains._sweeps.forget()
     grains.steps, grains._time = int(state["steps"]), float(state["time"])
     grains._steps_of_dt = int(state["steps_of_dt"])

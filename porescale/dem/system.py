@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,6 +26,10 @@ from porescale.dem.sweep import Sweeps
 from porescale.dem.walls import HIGH, LOW, PRESENT, VELOCITY, Box, Plate, X
 from porescale.ground.check import Fault, InputError
 from porescale.particles.pairs import PairList
+
+if TYPE_CHECKING:
+    from porescale.dem.bonds import BondList
+    from porescale.dem.segment_list import SegmentList
 
 Array = NDArray[np.float64]
 
@@ -92,6 +96,8 @@ class Grains:
         self._time, self._steps_of_dt = 0.0, 0  # seconds before dt last changed, steps since
         self._health = Health(len(self.plates), count)
         self._steering: Steering | None = None
+        self.segments: SegmentList | None = None  # see frames.framed
+        self.bonds: BondList | None = None  # see bonds.bond
         self._still = Still(*box.period)
         self.last_count = 0  # steps of the last call
         self._stale = True  # the pair list must be looked at before the next step
@@ -249,12 +255,10 @@ class Grains:
         count: int = 1,
         drag: float = 0.0,
     ) -> None:
-        """``count`` contact steps of ``dt`` (s) with the external force (n, 2) N/m and torque (n,) N m/m
-        held.
+        """``count`` contact steps of ``dt`` (s) with the external force (n, 2) N/m and torque (n,) N m/m (None: 0).
 
-        None: zero.  drag (1/s): background damping, for settling only.  Raises Unstable when the list must
-        be rebuilt and a position is no number.  No array is allocated, but a rebuild may grow the list's
-        buffers.
+        drag (1/s): background damping, for settling only.  Raises Unstable when the list must be rebuilt and a position
+        is no number.  No array is allocated, but a rebuild may grow the list's buffers.
         """
         if external_force is None:
             self.external_force[:] = 0.0
@@ -294,6 +298,8 @@ class Grains:
                 self.held, self.withheld, left == count,
                 self._sweeps.now(pairs, surfaces, self.book is not None, strained),
                 motion, cell,
+                None if self.segments is None else self.segments.arrays,
+                None if self.bonds is None else self.bonds.now(self._time, self._steps_of_dt),
             )  # fmt: skip
             left -= done
             self.steps += done
@@ -353,6 +359,8 @@ class Grains:
             self.pairs.build(self.discs.position, reach)
         else:
             self.pairs.update(self.discs.position, reach)
+        if self.segments is not None:
+            self.segments.update()
         self._stale = False
 
     def plate(self, name: str) -> int:
@@ -385,8 +393,6 @@ class Grains:
         return resume.state_of(self)
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Go on exactly from ``state()`` of a system made alike; raises InputError when the numbers
-        differ.
-        """
+        """Go on exactly from ``state()`` of a system made alike; raises InputError when the numbers differ."""
         resume.restore(self, state)
         self._health.forget()

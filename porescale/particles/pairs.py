@@ -28,7 +28,8 @@ class PairList:
     periodic : per axis, distances are then between nearest images;  full : list every pair from both ends, else only
     partner > i;  carried : numbers that each listed pair keeps over rebuilds (new pairs start at 0).
 
-    group : (n,) int or None, settable: points of the same group >= 0 are not paired, from the next build on;
+    group : (n,) int or None, settable: points of the same group >= 0 are not paired, those of groups below -1 with
+    no other, from the next build on;
     tilt : m, see ``set_cell``.
 
     After a build (all replaced by the next one: fetch them again after ``update`` returns True)

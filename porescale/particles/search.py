@@ -206,13 +206,15 @@ def fill_parallel(
 
 @kernel
 def leave_out(group, start, partner):
-    """Take pairs of one ``group`` (n,) >= 0 out of the rows: overwrites both; returns the number that are left."""
+    """Take pairs of one ``group`` (n,) >= 0, and all of groups below -1, out of the rows: overwrites both; returns the
+    number that are left.
+    """
     kept, first = 0, start[0]
     for i in range(start.shape[0] - 1):
         last = start[i + 1]
         for k in range(first, last):
             j = partner[k]
-            if group[i] < 0 or group[i] != group[j]:
+            if min(group[i], group[j]) >= -1 and (group[i] < 0 or group[i] != group[j]):
                 partner[kept] = j
                 kept += 1
         first = last

@@ -85,6 +85,13 @@ def test_pairs_of_one_group_are_left_out(compiled):
     assert partner[:5].tolist() == [1, 3, 2, 4, 3]
 
 
+def test_points_of_a_group_below_minus_one_are_in_no_pair():
+    listed = PairList(3, 0.1, (0.0, 0.0), (1.0, 1.0))
+    listed.group = np.array([-1, -2, -1], np.int32)
+    listed.build(np.array([[0.5, 0.5], [0.52, 0.5], [0.5, 0.52]]), np.full(3, 0.1))
+    assert rows_of(listed) == [[2], [], []]
+
+
 @pytest.mark.parametrize("full", [False, True])
 def test_a_list_with_groups_is_the_list_less_those_pairs_and_keeps_its_data(full):
     rng = np.random.default_rng(2)

@@ -1,0 +1,191 @@
+"""Small experiments with segments, polygons and bonds that have exact answers, in SI."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.dem.bonds import bond
+from porescale.dem.contact.linear import Linear
+from porescale.dem.control import Moved
+from porescale.dem.discs import Discs, make_discs
+from porescale.dem.energy import energy_book
+from porescale.dem.experiments import DENSITY, MASS, RADIUS, STIFFNESS, free, law_at
+from porescale.dem.frames import Frame, chain, framed, polygon
+from porescale.dem.steering import Clump
+from porescale.dem.system import Grains
+from porescale.dem.walls import Box
+from porescale.ground.constants import GRAVITY
+
+Array = NDArray[np.float64]
+
+THICKNESS = 0.1 * RADIUS
+OPEN = dict.fromkeys(("left", "right", "bottom", "top"), "open")
+REST = Moved()
+
+
+def regular(sides: int, at: tuple[float, float], turned: float = 0.0, size: float = RADIUS, **more: Any) -> Frame:
+    """A regular polygon about ``at`` (m), ``size`` (m) from there to its corners, with THICKNESS."""
+    angle = turned + 2.0 * math.pi * np.arange(sides) / sides
+    corners = np.asarray(at) + size * np.column_stack((np.cos(angle), np.sin(angle)))
+    return polygon(corners, THICKNESS, DENSITY, **more)
+
+
+def rod(at: tuple[float, float], turned: float, length: float = 2.0 * RADIUS, **more: Any) -> Frame:
+    """A single segment with THICKNESS about ``at`` (m)."""
+    half = 0.5 * length * np.array([math.cos(turned), math.sin(turned)])
+    return chain([np.asarray(at) - half, np.asarray(at) + half], THICKNESS, DENSITY, **more)
+
+
+def hilly(crests: int = 4, slope: float = 0.3) -> Frame:
+    """A container that rises and falls along x with ``slope`` (rad) by segments of 1.5 radii, edges up and down."""
+    x = 1.5 * RADIUS * np.arange(-crests, crests + 1)
+    return chain(np.column_stack((x, np.where(np.arange(len(x)) % 2, 0.0, -1.5 * RADIUS * math.tan(slope)))),
+                 THICKNESS, DENSITY, long=True)  # fmt: skip
+
+
+def hold(grains: Grains, *clumps: int) -> None:
+    """Let these clumps stand still."""
+    for clump in clumps:
+        grains.steering.control(Clump(clump), REST, REST, REST)
+
+
+def weights(discs: Discs) -> Array:
+    """Weight of every disc, (n, 2) N/m."""
+    return np.outer(discs.mass, (0.0, -GRAVITY))
+
+
+def bouncing(what: str, steps_per_contact: float, rule: str = "outline", seconds: float = 0.3, **law: float) -> Array:
+    """Energy book of a ``what`` ("segment", "polygon" or "disc") that bounces on a container with edges up and down.
+
+    It falls 3 radii, turning, off the middle, and meets edges and sides with its own; two walls keep it there.  Returns
+    the residual at 100 moments over the most energy that was turned over.
+    """
+    frames = [hilly()]
+    at, speed = (0.2 * RADIUS, 4.0 * RADIUS), {"velocity": (0.1, 0.0), "spin": 20.0}
+    discs = make_discs([at], RADIUS, DENSITY, [speed["velocity"]]) if what == "disc" else None
+    if what == "segment":
+        frames.append(rod(at, 0.4, **speed))
+    elif what == "polygon":
+        frames.append(regular(5, at, 0.1, **speed))
+    box = Box((-5.0 * RADIUS, -20.0 * RADIUS), (5.0 * RADIUS, 20.0 * RADIUS), top="open", bottom="open")
+    grains = framed(discs, frames, Linear(STIFFNESS, **law), box, rule=rule, energy=True)
+    hold(grains, 0)
+    return residuals(grains, seconds, steps_per_contact)
+
+
+def residuals(grains: Grains, seconds: float, steps_per_contact: float) -> Array:
+    """|residual| at 100 moments of ``seconds`` under gravity over the most energy that was turned over till then."""
+    lasts = grains.law.contact_time(MASS) if isinstance(grains.law, Linear) else 0.0
+    dt, load, found, most = lasts / steps_per_contact, weights(grains.discs), [], 0.0
+    for _ in range(100):
+        grains.step(dt, load, count=int(0.01 * seconds / dt))
+        book = energy_book(grains, (0.0, -GRAVITY))
+        most = max(most, book["turned over (J/m)"])
+        found.append(abs(book["residual (J/m)"]))
+    return np.array(found) / most
+
+
+def mixed_cloud(friction: float = 0.5, rule: str = "outline", seed: int = 3, **more: Any) -> Grains:
+    """Polygons, rods, discs and a clump thrown at each other and spinning, in free space, 36 bodies in all."""
+    rng = np.random.default_rng(seed)
+    places = (np.stack(np.meshgrid(np.arange(6), np.arange(6)), axis=-1).reshape(-1, 2) - 2.5) * 2.6 * RADIUS
+    order = rng.permutation(36)
+    law = law_at(0.1, tangential_stiffness=0.25 * STIFFNESS, friction=friction, tangential_damping=50.0)
+    if friction == 0.0:
+        law = Linear(STIFFNESS)
+
+    def thrown(at: Array) -> dict[str, Any]:
+        speed = -40.0 * at + rng.normal(0.0, 1.0, 2)
+        return {"velocity": (float(speed[0]), float(speed[1])), "spin": float(rng.normal(0.0, 100.0))}
+
+    frames = [
+        rod(tuple(places[k]), float(rng.uniform(0.0, 3.0)), **thrown(places[k]))
+        if number % 4 == 3
+        else regular(3 + number % 4, tuple(places[k]), float(rng.uniform(0.0, 3.0)), **thrown(places[k]))
+        for number, k in enumerate(order[:20])
+    ]
+    at = places[order[20:]]
+    at = np.concatenate((at, np.add(at[:2], (0.8 * RADIUS, 0.0))))
+    size = np.where(np.arange(len(at)) < 2, 0.6, rng.uniform(0.5, 1.0, len(at))) * RADIUS
+    size[-2:] = 0.5 * RADIUS
+    discs = make_discs(at, size, DENSITY, -40.0 * at + rng.normal(0.0, 1.0, at.shape), rng.normal(0.0, 100.0, len(at)))
+    box = Box((-1.0, -1.0), (1.0, 1.0), **OPEN)
+    clumps = [[0, len(at) - 2], [1, len(at) - 1]]
+    return framed(discs, frames, law, box, clumps=clumps, clump_density=DENSITY, rule=rule, **more)
+
+
+def bond_strength(what: str, pressed: float = 1e-3, steps: int = 20_000) -> float:
+    """Largest tension (N/m) of two bonded bodies pulled apart slowly, over k d0.
+
+    "discs": two of RADIUS;  "squares": two with faces, which are bonded at two corners;  overlapping by ``pressed``
+    radii when they are bonded.
+    """
+    law, far = Linear(STIFFNESS), 2.0 * RADIUS
+    box = Box((-1.0, -1.0), (1.0, 1.0), **OPEN)
+    if what == "discs":
+        grains = Grains(make_discs([(0.0, 0.0), (far - pressed * RADIUS, 0.0)], RADIUS, DENSITY), law, box)
+        bodies: list[int | Clump] = [0, 1]
+    else:
+        edge = np.array([(0.0, 0.0), (RADIUS, 0.0), (RADIUS, RADIUS), (0.0, RADIUS)])
+        beside = np.add(edge, (RADIUS + 2.0 * THICKNESS - pressed * RADIUS, 0.0))
+        grains = framed(None, [polygon(each, THICKNESS, DENSITY) for each in (edge, beside)], law, box)
+        bodies = [Clump(0), Clump(1)]
+    bond(grains, bodies)
+    dt = grains.stable_step()
+    grains.steering.control(bodies[0], REST, REST, REST)
+    grains.steering.control(bodies[1], Moved(1.1 * pressed * RADIUS / (steps * dt)), REST, REST)
+    grains.steering.watch(bodies[1])
+    most = 0.0
+    for _ in range(steps):
+        grains.step(dt)
+        most = max(most, -grains.steering.record()[0].contact[0])
+    return most / (STIFFNESS * pressed * RADIUS)
+
+
+def hanging_chain(count: int = 20, span: float = 0.7, relaxation: float = 1.0) -> Array:
+    """Places (count, 2) m of a chain of bonded discs without friction, its ends held ``span`` of its length apart, once
+    it has come to rest under gravity.
+
+    Laid out as an arc of a circle; drag at ``relaxation`` of critical for its slowest swing.
+    """
+    apart = 2.0 * RADIUS * (1.0 - 0.05)
+    links = count - 1
+    low, high = 1e-9, math.pi
+    for _ in range(60):  # half angle of the arc whose chord is the span
+        half = 0.5 * (low + high)
+        if math.sin(half) / (links * math.sin(half / links)) > span:
+            low = half
+        else:
+            high = half
+    arc = -half + 2.0 * half * np.arange(count) / links
+    ring = 0.5 * apart / math.sin(half / links)
+    at = ring * np.column_stack((np.sin(arc), math.cos(half) - np.cos(arc)))
+    grains = free(at, Linear(STIFFNESS))
+    bond(grains)
+    grains.hold(np.array([0, links]))
+    dt, load = grains.stable_step(), weights(grains.discs)
+    slow = math.sqrt(GRAVITY / (links * apart))
+    for _ in range(4):
+        grains.step(dt, load, count=int(5.0 / (slow * dt)), drag=4.0 * relaxation * slow)
+    return grains.discs.position.copy()
+
+
+def catenary(at: Array) -> Array:
+    """Heights (n,) m over the lower end of the catenary through the ends of a chain of discs ``at`` (n, 2) m, with as
+    much length as it has between them, at its places x.
+    """
+    span = float(at[-1, 0] - at[0, 0])
+    length = float(np.hypot(*np.diff(at, axis=0).T).sum())
+    low, high = 1e-6 * span, 1e3 * span
+    for _ in range(200):
+        size = math.sqrt(low * high)
+        if 2.0 * size * math.sinh(min(0.5 * span / size, 300.0)) > length:
+            low = size
+        else:
+            high = size
+    middle = 0.5 * (at[0, 0] + at[-1, 0])
+    return np.asarray(size * (np.cosh((at[:, 0] - middle) / size) - math.cosh(0.5 * span / size)))
