@@ -2,89 +2,96 @@
 
 R(s) = sum A(x) B(x + s) / sqrt(sum A^2 m_B(x + s)  sum B(x + s)^2 m_A): pictures less their local mean over fluid pixels
 and zero elsewhere, so that solids neither correlate nor count (Padfield 2012, IEEE Trans. Image Process. 21, 2706).
+Windows that overlap share their products: sums over blocks of one grid step are formed once and added up.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
 
 from porescale.ground.jit import inline, parallel_kernel, prange
 
-TINY = np.float32(1e-20)
+Single = NDArray[np.float32]
+
 SPARSE = 0.2
 """Share of a window that must be fluid in both pictures for a shift to count."""
 
 
-@inline
-def _products(a, ma, b, mb, top, left, down, right, size, lanes):
-    """Sum A B, sum A^2 m_B, sum B^2 m_A and sum m_A m_B of one window and shift, by lanes (4, size), in lanes[:, 0]."""
-    lanes[:] = np.float32(0)
-    for j in range(size):
-        p, mp = a[top + j], ma[top + j]
-        q, mq = b[down + j], mb[down + j]
-        for i in range(size):
-            f, g, mf, mg = p[left + i], q[right + i], mp[left + i], mq[right + i]
-            lanes[0, i] += f * g
-            lanes[1, i] += f * f * mg
-            lanes[2, i] += g * g * mf
-            lanes[3, i] += mf * mg
-    for k in range(4):
-        for i in range(1, size):
-            lanes[k, 0] += lanes[k, i]
-
-
-@inline
-def _product(a, b, top, left, down, right, size, lane):
-    """Sum A B of one window and shift, by lanes (size,), in lane[0]."""
-    lane[:] = np.float32(0)
-    for j in range(size):
-        p, q = a[top + j], b[down + j]
-        for i in range(size):
-            lane[i] += p[left + i] * q[right + i]
-    half = size
-    while half > 1 and half % 2 == 0:
-        half //= 2
-        for i in range(half):
-            lane[i] += lane[half + i]
-    for i in range(1, half):
-        lane[0] += lane[i]
-
-
 @parallel_kernel
-def correlate(a, b, ma, mb, energy_a, energy_b, pad, start, step, size, search, lanes, total):
-    """Add to ``total`` (ny, nx, 2 search + 1, 2 search + 1) the correlation of each window with each shift.
+def block_products(a, b, start, step, lane, found):
+    """found[j, i, sy, sx] = sum over block (j, i) of a(x) b(x + s); s = (sy, sx) less half the range.
 
-    a, b : pictures less their local means, (rows + 2 pad, columns + 2 pad) float32, zero in solids and beyond the edges;
-    ma, mb : 1 where fluid, else 0;  energy_a, energy_b : sums of a^2, b^2 over the window that begins at a pixel, of the
-    same shape;  start, step : first pixel of the first window, and from one to the next;  size : of windows;
-    lanes (ny, 4, size) : scratch.  Not checked: that windows and shifts stay within the padded pictures.
+    a, b (rows, columns) float32;  start : first pixel of the first block, at least half the range;  step : side of a
+    block;  lane (blocks down, columns) : scratch.  Not checked: that blocks and shifts stay within the pictures.
     """
-    ny, nx, width, _ = total.shape
-    least = SPARSE * size * size
-    for row in prange(ny):
-        top = pad + start + row * step
-        for column in range(nx):
-            left = pad + start + column * step
-            fluid = True
-            for j in range(top - search, top + size + search):
-                for i in range(left - search, left + size + search):
-                    fluid = fluid and ma[j, i] > 0 and mb[j, i] > 0
-            for sy in range(width):
-                down = top + sy - search
-                for sx in range(width):
-                    right = left + sx - search
-                    if fluid:
-                        _product(a, b, top, left, down, right, size, lanes[row, 0])
-                        below = energy_a[top, left] * energy_b[down, right]
-                    else:
-                        _products(a, ma, b, mb, top, left, down, right, size, lanes[row])
-                        below = lanes[row, 1, 0] * lanes[row, 2, 0]
-                        if lanes[row, 3, 0] < least:
-                            below = TINY
-                    if below > TINY:
-                        total[row, column, sy, sx] += lanes[row, 0, 0] / math.sqrt(below)
+    down, across, width, _ = found.shape
+    search = width // 2
+    count = across * step
+    for row in prange(down):
+        for sy in range(width):
+            for sx in range(width):
+                for x in range(count):
+                    lane[row, x] = 0
+                for j in range(step):
+                    y = start + row * step + j
+                    for x in range(count):
+                        lane[row, x] += a[y, start + x] * b[y + sy - search, start - search + sx + x]
+                for k in range(across):
+                    total = lane[row, k * step]
+                    for x in range(k * step + 1, (k + 1) * step):
+                        total += lane[row, x]
+                    found[row, k, sy, sx] = total
+
+
+class Layout(NamedTuple):
+    """Windows of ``blocks`` blocks a side, of ``step`` px; ``shape`` (ny, nx) windows, one block from one to the next.
+
+    start : first pixel of the first window, in the padded pictures;  search : px.
+    """
+
+    shape: tuple[int, int]
+    step: int
+    blocks: int
+    start: int
+    search: int
+
+    def sums(self, a: Single, b: Single) -> Single:
+        """Sum a(x) b(x + s) over every window, (ny, nx, 2 search + 1, 2 search + 1)."""
+        (ny, nx), n, width = self.shape, self.blocks, 2 * self.search + 1
+        found = np.empty((ny + n - 1, nx + n - 1, width, width), np.float32)
+        lane = np.empty((ny + n - 1, (nx + n - 1) * self.step), np.float32)
+        block_products(a, b, self.start, self.step, lane, found)
+        rows = sum((found[k : k + ny] for k in range(1, n)), found[:ny].copy())
+        return sum((rows[:, k : k + nx] for k in range(1, n)), rows[:, :nx].copy())
+
+    def shifted(self, energy: Single) -> Single:
+        """``energy`` (of the window that begins at a pixel) at every window and shift, a view."""
+        (ny, nx), width, first = self.shape, 2 * self.search + 1, self.start - self.search
+        every = sliding_window_view(energy, (width, width))
+        return every[first :: self.step, first :: self.step][:ny, :nx]
+
+
+def correlation(layout: Layout, a: Single, b: Single, masks: tuple[Single, Single] | None, energy: Single) -> Single:
+    """R of every window and shift, (ny, nx, 2 search + 1, 2 search + 1).
+
+    a, b : padded pictures less their local means, zero in solids and beyond the edges;  masks : 1 where fluid, None if
+    there is no solid;  energy : sums of b^2 over the window that begins at a pixel, used without masks.
+    """
+    top = layout.sums(a, b)
+    if masks is None:
+        middle = layout._replace(search=0)
+        below = middle.sums(a, a) * layout.shifted(energy)
+    else:
+        ma, mb = masks
+        below = layout.sums(a * a, mb) * layout.sums(ma, b * b)
+        below[layout.sums(ma, mb) < SPARSE * (layout.step * layout.blocks) ** 2] = 0
+    least = np.float32(1e-9) * max(float(below.max()), 1e-30)
+    return np.where(below > least, top / np.sqrt(np.maximum(below, least)), np.float32(0))
 
 
 @inline
@@ -102,28 +109,27 @@ def _vertex(low, middle, high):
 def peaks(total, u, v, value, ratio):
     """Place (px, to a fraction), height of each correlation peak, and its ratio to the highest one beyond 1 px from it.
 
-    total (ny, nx, n, n) as of ``correlate``; u, v, value, ratio (ny, nx) are overwritten.  A peak at the edge of the range
-    is kept whole.
+    total (ny, nx, n, n) : correlations;  u, v, value, ratio (ny, nx) are overwritten.  A peak at the edge of the range is
+    kept whole.
     """
     ny, nx, width, _ = total.shape
     for row in prange(ny):
         for column in range(nx):
-            plane = total[row, column]
-            best, py, px = plane[0, 0], 0, 0
+            best, py, px = total[row, column, 0, 0], 0, 0
             for j in range(width):
                 for i in range(width):
-                    if plane[j, i] > best:
-                        best, py, px = plane[j, i], j, i
+                    if total[row, column, j, i] > best:
+                        best, py, px = total[row, column, j, i], j, i
             second = 0.0
             for j in range(width):
                 for i in range(width):
-                    if (abs(j - py) > 1 or abs(i - px) > 1) and plane[j, i] > second:
-                        second = plane[j, i]
+                    if (abs(j - py) > 1 or abs(i - px) > 1) and total[row, column, j, i] > second:
+                        second = total[row, column, j, i]
             du = dv = 0.0
             if 0 < px < width - 1:
-                du = _vertex(plane[py, px - 1], best, plane[py, px + 1])
+                du = _vertex(total[row, column, py, px - 1], best, total[row, column, py, px + 1])
             if 0 < py < width - 1:
-                dv = _vertex(plane[py - 1, px], best, plane[py + 1, px])
+                dv = _vertex(total[row, column, py - 1, px], best, total[row, column, py + 1, px])
             u[row, column], v[row, column] = px - width // 2 + du, py - width // 2 + dv
             value[row, column] = best
             ratio[row, column] = best / max(second, 1e-3 * max(best, 1e-12))

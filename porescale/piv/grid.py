@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
+
+from porescale.ground.jit import parallel_kernel, prange
 
 Array = NDArray[np.float64]
 
@@ -46,8 +49,12 @@ class Grid:
 
     def at_pixels(self, values: Array) -> NDArray[np.float32]:
         """``values`` (ny, nx) at every pixel, float32: natural cubic splines, straight beyond the outer centres."""
-        down, across = (_at_pixels(self.start, self.step, n, side) for n, side in zip(self.shape, self.size, strict=True))
-        return (down @ values.astype(np.float32)) @ across.T
+        down, across = (_axis(self.start, self.step, n, side) for n, side in zip(self.shape, self.size, strict=True))
+        found = np.empty(self.size, np.float32)
+        nodes = (down.coefficients @ values @ across.coefficients.T).astype(np.float32)
+        spare = np.empty((self.size[0], nodes.shape[1]), np.float32)
+        expand(nodes, down.first, down.weights, across.first, across.weights, spare, found)
+        return found
 
     def at(self, other: Grid, values: Array) -> Array:
         """``values`` (ny, nx) at the centres of ``other``."""
@@ -62,10 +69,58 @@ class Grid:
         return np.asarray(values @ across.T), np.asarray(down @ values)
 
 
+class Axis(NamedTuple):
+    """From values on a line of centres to pixels: coefficients (m, n) of cubic B-splines one step apart, straight beyond
+    the ends; at pixel p those from first[p] on count with weights[:, p].
+    """
+
+    coefficients: Array
+    first: NDArray[np.int64]
+    weights: NDArray[np.float32]
+
+
 @lru_cache(maxsize=64)
-def _at_pixels(start: int, step: int, count: int, side: int) -> NDArray[np.float32]:
-    """(side, count) matrix from values on a line of centres to pixels."""
-    return spline_matrix(start + step * np.arange(count, dtype=float), np.arange(side, dtype=float)).astype(np.float32)
+def _axis(start: int, step: int, count: int, side: int) -> Axis:
+    """The axis of ``count`` centres from ``start`` on, ``step`` px apart, on ``side`` pixels."""
+    before, after = (max(2, -(-room // step) + 2) for room in (start, side - start - (count - 1) * step))
+    solve = np.eye(count)
+    if count > 2:  # natural: coefficients are straight at the ends, where they are the values
+        inner = np.diag(np.full(count, 4.0)) + np.diag(np.ones(count - 1), 1) + np.diag(np.ones(count - 1), -1)
+        inner[0], inner[-1] = 6 * np.eye(count)[0], 6 * np.eye(count)[-1]
+        solve = np.linalg.solve(inner, 6 * np.eye(count))
+    slope = (solve[1] - solve[0], solve[-1] - solve[-2]) if count > 1 else (0 * solve[0], 0 * solve[0])
+    rows = [solve[0] - k * slope[0] for k in range(before, 0, -1)]
+    rows += [*solve, *(solve[-1] + k * slope[1] for k in range(1, after + 1))]
+    at = (np.arange(side) - start) / step + before
+    cell = np.floor(at).astype(np.int64)
+    t = at - cell
+    weights = np.array([(1 - t) ** 3, 4 - 6 * t**2 + 3 * t**3, 1 + 3 * t + 3 * t**2 - 3 * t**3, t**3]) / 6
+    return Axis(np.array(rows), cell - 1, weights.astype(np.float32))
+
+
+@parallel_kernel
+def expand(nodes, first_y, weights_y, first_x, weights_x, spare, found):
+    """found[y, x] = sum_j sum_i weights_y[j, y] weights_x[i, x] nodes[first_y[y] + j, first_x[x] + i], j, i = 0 … 3.
+
+    nodes (m, n), found (rows, columns), spare (rows, n) float32; the last two are overwritten.
+    """
+    for y in prange(found.shape[0]):
+        k = first_y[y]
+        for i in range(nodes.shape[1]):
+            spare[y, i] = (
+                weights_y[0, y] * nodes[k, i]
+                + weights_y[1, y] * nodes[k + 1, i]
+                + weights_y[2, y] * nodes[k + 2, i]
+                + weights_y[3, y] * nodes[k + 3, i]
+            )
+        for x in range(found.shape[1]):
+            k = first_x[x]
+            found[y, x] = (
+                weights_x[0, x] * spare[y, k]
+                + weights_x[1, x] * spare[y, k + 1]
+                + weights_x[2, x] * spare[y, k + 2]
+                + weights_x[3, x] * spare[y, k + 3]
+            )
 
 
 def spline_matrix(nodes: Array, points: Array) -> Array:

@@ -35,7 +35,8 @@ class Settings:
     search: int = 16
     updates: int = 3
     width: float = 0.65
-    robust: float = 1.0
+    robust: float = 2.0
+    slack: float = 0.3
     curved: bool = True
     least_correlation: float = 0.3
 
@@ -139,7 +140,7 @@ def measure_ready(pairs: Sequence[tuple[Ready, Ready]], masks: Sequence[Flags | 
     start_u, start_v = u, v
     weights = bell(window, settings.width)
     for _ in range(settings.updates):
-        update = update_pass(pairs, grid, weights, settings.robust, paths(grid, u, v, curved=settings.curved))
+        update = update_pass(pairs, grid, weights, settings.robust, settings.slack, paths(grid, u, v, curved=settings.curved))
         u, v, good = _updated(u, v, fluid, start_u, start_v, update, settings)
     return _vectors(grid, u, v, good, fluid, update, ratio)
 
@@ -166,7 +167,7 @@ def _halved(one: Ready) -> Ready:
     size = columns // 2, rows // 2
     fluid = np.asarray(cv2.resize(one.fluid[cut], size, interpolation=cv2.INTER_AREA) > 0.5, np.float32)
     contrast = cv2.resize(one.contrast[cut], size, interpolation=cv2.INTER_AREA)
-    return Ready(one.coefficients, fluid, contrast * fluid)
+    return Ready(one.coefficients, fluid, contrast * fluid, one.solid)
 
 
 def _fluid(grid: Grid, masks: Sequence[Flags | None]) -> Flags:

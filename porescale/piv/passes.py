@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.piv.correlate import correlate, peaks
+from porescale.piv.correlate import Layout, correlation, peaks
 from porescale.piv.grid import Grid
 from porescale.piv.interpolate import sample
 from porescale.piv.prepare import Ready
@@ -74,23 +74,24 @@ def paths(grid: Grid, u: Array, v: Array, *, curved: bool) -> Paths:
 def correlation_pass(pairs: Iterable[tuple[Ready, Ready]], grid: Grid, search: int, along: Paths | None) -> Correlated:
     """Correlate windows of all pairs, deformed along ``along``, over ``search`` px; peaks of the sum of correlations."""
     ny, nx = grid.shape
-    size, pad = grid.window, search + 1
+    blocks = max(1, round(grid.window / grid.step))
+    size = blocks * grid.step  # the window, to a whole number of blocks
+    pad = search + size
+    layout = Layout((ny, nx), grid.step, blocks, pad + grid.start - size // 2, search)
     total = np.zeros((ny, nx, 2 * search + 1, 2 * search + 1), np.float32)
-    lanes = np.empty((ny, 4, size), np.float32)
     for first, second in pairs:
         arrays = []
         for one, way in ((first, along and along.first), (second, along and along.second)):
             grey, mask = one.contrast, one.fluid
             if way is not None:
                 at = _places(way)
-                mask = _moved(mask, at, cv2.INTER_NEAREST)
+                mask = _moved(mask, at, cv2.INTER_NEAREST) if one.solid else mask
                 grey = _moved(grey, at, cv2.INTER_CUBIC) * mask
-            grey = _padded(grey, pad)
-            energy = cv2.boxFilter(grey * grey, cv2.CV_32F, (size, size), anchor=(0, 0), normalize=False,
-                                   borderType=cv2.BORDER_CONSTANT)  # fmt: skip
-            arrays.append((grey, _padded(mask, pad), np.maximum(energy, 0)))
-        (a, ma, ea), (b, mb, eb) = arrays
-        correlate(a, b, ma, mb, ea, eb, pad, 0, grid.step, size, search, lanes, total)
+            arrays.append((_padded(grey, pad), _padded(mask, pad)))
+        (a, ma), (b, mb) = arrays
+        masks = (ma, mb) if first.solid or second.solid else None
+        energy = cv2.boxFilter(b * b, cv2.CV_32F, (size, size), anchor=(0, 0), normalize=False)
+        total += correlation(layout, a, b, masks, energy)
     found = Correlated(*(np.empty((ny, nx)) for _ in range(4)))
     peaks(total, found.u, found.v, found.value, found.ratio)
     return found
@@ -104,7 +105,7 @@ def bell(window: int, width: float) -> Single:
     return np.asarray(np.maximum(0.0, 1 - (at / reach) ** 2) ** 2, np.float32)
 
 
-def update_pass(pairs: Iterable[tuple[Ready, Ready]], grid: Grid, weights: Single, robust: float, along: Paths) -> Updated:
+def update_pass(pairs: Iterable[tuple[Ready, Ready]], grid: Grid, weights: Single, robust: float, slack: float, along: Paths) -> Updated:
     """One Gauss-Newton update of the displacement whose paths are ``along``, from all pairs together."""
     ny, nx = grid.shape
     n = len(weights)
@@ -121,7 +122,8 @@ def update_pass(pairs: Iterable[tuple[Ready, Ready]], grid: Grid, weights: Singl
         gx = cv2.sepFilter2D(mean, cv2.CV_32F, SLOPE, np.ones(1))
         gy = cv2.sepFilter2D(mean, cv2.CV_32F, np.ones(1), SLOPE)
         a, b, m, gx, gy = (_padded(it, pad) for it in (one, two, mask, gx, gy))
-        refine(a, b, m, gx, gy, weights, pad, grid.start, grid.step, robust, lanes, sums)
+        noise = robust * 1.48 * float(np.median(np.abs(one - two)[::3, ::3]))
+        refine(a, b, m, gx, gy, weights, pad, grid.start, grid.step, noise, np.float32(slack**2), lanes, sums)
         count += 1
     return _solved(sums, count)
 

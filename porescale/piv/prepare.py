@@ -19,12 +19,14 @@ RIM = 1
 
 class Ready(NamedTuple):
     """coefficients : of the spline, solids filled with the local mean;  fluid : 1 where fluid, the rim of solids left out;
-    contrast : less the local mean, 0 in solids.  All float32; (rows, columns), coefficients padded.
+    contrast : less the local mean, 0 in solids;  solid : whether there is any.  Arrays float32, (rows, columns), the
+    coefficients padded.
     """
 
     coefficients: Array
     fluid: Array
     contrast: Array
+    solid: bool
 
 
 def ready(picture: NDArray[Any], solid: Mask | None, reach: int) -> Ready:
@@ -33,7 +35,7 @@ def ready(picture: NDArray[Any], solid: Mask | None, reach: int) -> Ready:
     side = (2 * (reach // 2) + 1,) * 2
     if solid is None or not solid.any():
         fluid = np.ones(grey.shape, np.float32)
-        return Ready(coefficients(grey), fluid, grey - cv2.blur(grey, side, borderType=cv2.BORDER_REFLECT_101))
+        return Ready(coefficients(grey), fluid, grey - cv2.blur(grey, side, borderType=cv2.BORDER_REFLECT_101), False)
     grown = cv2.dilate(solid.astype(np.uint8), np.ones((2 * RIM + 1,) * 2, np.uint8))
     fluid = np.asarray(grown == 0, np.float32)
     share = cv2.blur(fluid, side, borderType=cv2.BORDER_REFLECT_101)
@@ -42,4 +44,4 @@ def ready(picture: NDArray[Any], solid: Mask | None, reach: int) -> Ready:
     whole = float((grey * fluid).sum() / max(1.0, float(fluid.sum())))
     mean[share <= 1e-3] = whole
     filled = np.where(fluid > 0, grey, mean)
-    return Ready(coefficients(filled), fluid, (grey - mean) * fluid)
+    return Ready(coefficients(filled), fluid, (grey - mean) * fluid, True)

@@ -20,12 +20,12 @@ F = np.float32
 
 
 @parallel_kernel
-def refine(a, b, mask, gx, gy, bell, pad, start, step, robust, lanes, sums):
+def refine(a, b, mask, gx, gy, bell, pad, start, step, noise, slack, lanes, sums):
     """Sums of each window for one Gauss-Newton update.
 
     a, b, gx, gy (rows + 2 pad, columns + 2 pad) float32 : deformed pictures and the gradient of their mean;  mask : 1
     where both show fluid, else 0;  bell (n,) : weights along a side, n a multiple of BLOCK;  start, step : centre of the
-    first window and from one to the next;  robust : s over the residuals' standard deviation;  lanes (ny, 8, n) : scratch;
+    first window and from one to the next;  robust : s over the residuals' standard deviation;  lanes (ny, 6, n) : scratch;
     sums (ny, nx, 9), added to: sum w gx gx, w gx gy, w gy gy, w gx r, w gy r; squares of the last two summed by blocks and
     their product; correlation times weight, weight.
     """
@@ -33,30 +33,29 @@ def refine(a, b, mask, gx, gy, bell, pad, start, step, robust, lanes, sums):
     n = bell.shape[0]
     for row in prange(ny):
         top = pad + start + row * step - n // 2
-        lane = lanes[row]
         for column in range(nx):
             left = pad + start + column * step - n // 2
-            lane[:] = F(0)
+            lanes[row] = F(0)
             for j in range(n):
                 wy = bell[j]
-                p, q, m = a[top + j], b[top + j], mask[top + j]
+                y = top + j
                 for i in range(n):
-                    w = wy * bell[i] * m[left + i]
-                    f, g = p[left + i], q[left + i]
-                    lane[0, i] += w
-                    lane[1, i] += w * f
-                    lane[2, i] += w * g
-                    lane[3, i] += w * f * f
-                    lane[4, i] += w * g * g
-                    lane[5, i] += w * f * g
+                    w = wy * bell[i] * mask[y, left + i]
+                    f, g = a[y, left + i], b[y, left + i]
+                    lanes[row, 0, i] += w
+                    lanes[row, 1, i] += w * f
+                    lanes[row, 2, i] += w * g
+                    lanes[row, 3, i] += w * f * f
+                    lanes[row, 4, i] += w * g * g
+                    lanes[row, 5, i] += w * f * g
             s0, s1, s2, s3, s4, s5 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
             for i in range(n):
-                s0 += lane[0, i]
-                s1 += lane[1, i]
-                s2 += lane[2, i]
-                s3 += lane[3, i]
-                s4 += lane[4, i]
-                s5 += lane[5, i]
+                s0 += lanes[row, 0, i]
+                s1 += lanes[row, 1, i]
+                s2 += lanes[row, 2, i]
+                s3 += lanes[row, 3, i]
+                s4 += lanes[row, 4, i]
+                s5 += lanes[row, 5, i]
             if s0 <= 0:
                 continue
             mean_a, mean_b = F(s1 / s0), F(s2 / s0)
@@ -66,30 +65,31 @@ def refine(a, b, mask, gx, gy, bell, pad, start, step, robust, lanes, sums):
             cov = s5 / s0 - s1 / s0 * (s2 / s0)
             gain = F(math.sqrt(var_a / var_b))
             match = cov / math.sqrt(var_a * var_b)
-            scale = F(1.0 / max(robust * robust * 2.0 * var_a * (1.0 - match), 1e-6 * var_a))
+            least = F(max(noise * noise, 1e-6 * var_a))
             hxx, hxy, hyy, bx, by, qxx, qxy, qyy = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
             for part in range(0, n, BLOCK):
-                lane[:] = F(0)
+                lanes[row] = F(0)
                 for j in range(part, part + BLOCK):
                     wy = bell[j]
-                    p, q, m, s, t = a[top + j], b[top + j], mask[top + j], gx[top + j], gy[top + j]
+                    y = top + j
                     for i in range(n):
-                        r = (p[left + i] - mean_a) - gain * (q[left + i] - mean_b)
-                        w = wy * bell[i] * m[left + i] / (F(1) + r * r * scale)
-                        f, g = s[left + i], t[left + i]
-                        lane[0, i] += w * f * f
-                        lane[1, i] += w * f * g
-                        lane[2, i] += w * g * g
-                        lane[3, i] += w * f * r
-                        lane[4, i] += w * g * r
+                        r = (a[y, left + i] - mean_a) - gain * (b[y, left + i] - mean_b)
+                        f, g = gx[y, left + i], gy[y, left + i]
+                        known = least + slack * (f * f + g * g)
+                        w = wy * bell[i] * mask[y, left + i] * known / (known + r * r)
+                        lanes[row, 0, i] += w * f * f
+                        lanes[row, 1, i] += w * f * g
+                        lanes[row, 2, i] += w * g * g
+                        lanes[row, 3, i] += w * f * r
+                        lanes[row, 4, i] += w * g * r
                 for k in range(0, n, BLOCK):
                     x, y = 0.0, 0.0
                     for i in range(k, k + BLOCK):
-                        hxx += lane[0, i]
-                        hxy += lane[1, i]
-                        hyy += lane[2, i]
-                        x += lane[3, i]
-                        y += lane[4, i]
+                        hxx += lanes[row, 0, i]
+                        hxy += lanes[row, 1, i]
+                        hyy += lanes[row, 2, i]
+                        x += lanes[row, 3, i]
+                        y += lanes[row, 4, i]
                     bx += x
                     by += y
                     qxx += x * x
