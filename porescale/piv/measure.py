@@ -15,6 +15,7 @@ from porescale.piv.grid import Grid
 from porescale.piv.outliers import THRESHOLD, filled, residual
 from porescale.piv.passes import Updated, bell, correlation_pass, paths, update_pass
 from porescale.piv.prepare import Ready, ready
+from porescale.piv.smooth import smoothed
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -26,18 +27,20 @@ class Settings:
 
     window : px, of the last pass, even;  overlap : of neighbouring windows, 0 to below 1;  search : px, largest
     displacement that the first pass looks for;  updates : Gauss-Newton updates after the last correlation;  width :
-    half-width of their bell, over the window;  robust : residual, over its standard deviation, from which a pixel counts
-    for less;  curved : paths bend as in a steady flow;  least_correlation : below it a vector is invalid.
+    half-width of their bell, over the window;  noise, slack : residuals from which a pixel counts for less, over the
+    pictures' noise, and in px of displacement;  curved : paths bend as in a steady flow;  smooth : vectors that share one
+    error, of ``smoothed``, 0 to leave the field as it was measured;  least_correlation : below it a vector is invalid.
     """
 
     window: int = 16
     overlap: float = 0.5
     search: int = 16
-    updates: int = 3
-    width: float = 0.65
-    robust: float = 2.0
-    slack: float = 0.3
+    updates: int = 4
+    width: float = 0.5
+    noise: float = 2.0
+    slack: float = 0.2
     curved: bool = True
+    smooth: float = 1.0
     least_correlation: float = 0.3
 
     def check(self, size: tuple[int, int]) -> None:
@@ -132,7 +135,8 @@ def measure_ready(pairs: Sequence[tuple[Ready, Ready]], masks: Sequence[Flags | 
         found = correlation_pass(pairs, grid, search=max(2, min(4, window // 4)), along=paths(grid, u, v, curved=False))
         ratio = found.ratio
         good = fluid & (found.value > 0.5 * settings.least_correlation)
-        good &= ~_outliers(u + found.u, v + found.v, found.u, found.v, good)
+        lost = _outliers(u + found.u, v + found.v, found.u, found.v, good, THRESHOLD)
+        good &= ~(lost & (ratio < CLEAR))
         u, v = filled(u + found.u, v + found.v, good)
         if last:
             break
@@ -140,8 +144,10 @@ def measure_ready(pairs: Sequence[tuple[Ready, Ready]], masks: Sequence[Flags | 
     start_u, start_v = u, v
     weights = bell(window, settings.width)
     for _ in range(settings.updates):
-        update = update_pass(pairs, grid, weights, settings.robust, settings.slack, paths(grid, u, v, curved=settings.curved))
+        update = update_pass(pairs, grid, weights, settings.noise, settings.slack, paths(grid, u, v, curved=settings.curved))
         u, v, good = _updated(u, v, fluid, start_u, start_v, update, settings)
+    if settings.smooth:
+        u, v = smoothed(u, v, settings.smooth)
     return _vectors(grid, u, v, good, fluid, update, ratio)
 
 
@@ -179,9 +185,15 @@ def _fluid(grid: Grid, masks: Sequence[Flags | None]) -> Flags:
     return found
 
 
-def _outliers(u: Array, v: Array, correction_u: Array, correction_v: Array, use: Flags) -> Flags:
+CLEAR = 1.2
+"""Ratio of the first to the second peak from which a correlation is believed before neighbours are."""
+REFINED = 2 * THRESHOLD
+"""Bound of the median test on refined vectors: where the flow bends within a grid step good ones exceed the common one."""
+
+
+def _outliers(u: Array, v: Array, correction_u: Array, correction_v: Array, use: Flags, bound: float) -> Flags:
     """Vectors that are outliers in the total and in the correction: either alone condemns good ones in strong gradients."""
-    return (residual(u, v, use) > THRESHOLD) & (residual(correction_u, correction_v, use) > THRESHOLD)
+    return (residual(u, v, use) > bound) & (residual(correction_u, correction_v, use) > bound)
 
 
 LARGEST = 1.0
@@ -196,7 +208,7 @@ def _updated(
     good = fluid & np.isfinite(length) & (np.nan_to_num(update.correlation) > settings.least_correlation)
     short = np.where(good, np.minimum(1.0, LARGEST / np.maximum(length, 1e-12)), 0.0)
     u, v = u + short * np.where(good, update.u, 0.0), v + short * np.where(good, update.v, 0.0)
-    good &= ~_outliers(u, v, u - start_u, v - start_v, good)
+    good &= ~_outliers(u, v, u - start_u, v - start_v, good, REFINED)
     u, v = filled(u, v, good)
     return u, v, good
 

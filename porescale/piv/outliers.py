@@ -62,7 +62,7 @@ def median_residual(u, v, use, least, found):
 
 
 REACH = 3
-RIDGE = 0.3
+RIDGE = 0.05
 """Weight of the wish for a flat plane, over the total weight and the square of a grid step."""
 
 

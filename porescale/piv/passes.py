@@ -28,6 +28,10 @@ SLOPE = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
 """Fourth-order central difference."""
 
 
+NORMAL = 1.4826
+"""Standard deviation over the median size of normal errors."""
+
+
 @dataclass(frozen=True)
 class Correlated:
     """What a correlation pass found on its grid, each (ny, nx): px, height of the peak, ratio to the second."""
@@ -105,7 +109,7 @@ def bell(window: int, width: float) -> Single:
     return np.asarray(np.maximum(0.0, 1 - (at / reach) ** 2) ** 2, np.float32)
 
 
-def update_pass(pairs: Iterable[tuple[Ready, Ready]], grid: Grid, weights: Single, robust: float, slack: float, along: Paths) -> Updated:
+def update_pass(pairs: Iterable[tuple[Ready, Ready]], grid: Grid, weights: Single, noise: float, slack: float, along: Paths) -> Updated:
     """One Gauss-Newton update of the displacement whose paths are ``along``, from all pairs together."""
     ny, nx = grid.shape
     n = len(weights)
@@ -122,8 +126,8 @@ def update_pass(pairs: Iterable[tuple[Ready, Ready]], grid: Grid, weights: Singl
         gx = cv2.sepFilter2D(mean, cv2.CV_32F, SLOPE, np.ones(1))
         gy = cv2.sepFilter2D(mean, cv2.CV_32F, np.ones(1), SLOPE)
         a, b, m, gx, gy = (_padded(it, pad) for it in (one, two, mask, gx, gy))
-        noise = robust * 1.48 * float(np.median(np.abs(one - two)[::3, ::3]))
-        refine(a, b, m, gx, gy, weights, pad, grid.start, grid.step, noise, np.float32(slack**2), lanes, sums)
+        bound = noise * NORMAL * float(np.median(np.abs(one - two)[::3, ::3]))
+        refine(a, b, m, gx, gy, weights, pad, grid.start, grid.step, bound, np.float32(slack**2), lanes, sums)
         count += 1
     return _solved(sums, count)
 

@@ -1,8 +1,9 @@
 """Gauss-Newton update of displacements, and their uncertainty, from pictures already deformed by the last estimate.
 
 With r = a - k b, both less their mean in the window, and g the gradient of their mean, the update solves
-(sum w g g') d = sum w g r.  w is a bell over the window times 1/(1 + r^2/s^2): pixels where the pictures show different
-tracers (lost pairs) hardly count (Cauchy weights; Black & Anandan 1996, Comput. Vis. Image Underst. 63, 75).
+(sum w g g') d = sum w g r.  w is a bell over the window times 1/(1 + r^2/(n^2 + t^2 g^2)), n the noise of the pictures, t
+a displacement taken for possible: pixels where the pictures show different tracers (lost pairs) hardly count (Cauchy
+weights; Black & Anandan 1996, Comput. Vis. Image Underst. 63, 75).
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ def refine(a, b, mask, gx, gy, bell, pad, start, step, noise, slack, lanes, sums
 
     a, b, gx, gy (rows + 2 pad, columns + 2 pad) float32 : deformed pictures and the gradient of their mean;  mask : 1
     where both show fluid, else 0;  bell (n,) : weights along a side, n a multiple of BLOCK;  start, step : centre of the
-    first window and from one to the next;  robust : s over the residuals' standard deviation;  lanes (ny, 6, n) : scratch;
+    first window and from one to the next;  noise, slack : n, t^2;  lanes (ny, 6, n) : scratch;
     sums (ny, nx, 9), added to: sum w gx gx, w gx gy, w gy gy, w gx r, w gy r; squares of the last two summed by blocks and
     their product; correlation times weight, weight.
     """
