@@ -21,8 +21,10 @@ from porescale.particles.cells import minimum_image, tilted_image
 
 Array = NDArray[np.float64]
 
-XX, XY, YX, YY, SQUARES = range(5)
-"""Columns of ``load``: sums over contacts of g_x d_x, g_x d_y, g_y d_x, g_y d_y (J/m) and of d^2 (m^2)."""
+XX, XY, YX, YY, SQUARES, TURNING_XX, TURNING_XY, TURNING_YY = range(8)
+"""Columns of ``load``: sums over contacts of g_x d_x, g_x d_y, g_y d_x, g_y d_y (J/m) and of d^2 (m^2); from there on
+what the turning of clumps adds to the sums of m c c of discs (J/m)."""
+LOAD = 8
 
 
 class Still(NamedTuple):
@@ -33,7 +35,7 @@ class Still(NamedTuple):
 
 
 class Straining(NamedTuple):
-    """A strained cell at one moment: edges m, velocity gradient 1/s;  load (5,): see ``note``."""
+    """A strained cell at one moment: edges m, velocity gradient 1/s;  load (LOAD,): see ``note``."""
 
     period_x: float
     period_y: float
@@ -95,7 +97,7 @@ def note_still(gx, gy, dx, dy, cell):
 
 @note.of(Straining)
 def note_straining(gx, gy, dx, dy, cell):
-    """Overwrites ``cell.load`` (5,)."""
+    """Overwrites ``cell.load``."""
     cell.load[XX] += gx * dx
     cell.load[XY] += gx * dy
     cell.load[YX] += gy * dx

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -74,6 +75,7 @@ class Clumps:
         self.start = np.concatenate(([0], np.cumsum([len(each) for each in listed]))).astype(np.int64)
         self.member = np.concatenate([np.zeros(0, np.int64), *listed])
         self._check(discs.count)
+        self.radius = discs.radius[self.member]
         count = len(listed)
         self.group = np.full(discs.count, -1, np.int32)
         self.group[self.member] = np.repeat(np.arange(count), np.diff(self.start))
@@ -101,6 +103,14 @@ class Clumps:
     def count(self) -> int:
         """Number of clumps."""
         return len(self.mass)
+
+    @cached_property
+    def area(self) -> Array:
+        """Area of the union of each clump's discs, (b,) m^2; of points none."""
+        parts = [slice(*self.start[c : c + 2]) for c in range(self.count)]
+        return np.array([
+            outline(self.offset[own], self.radius[own]).area if self.radius[own].any() else 0.0 for own in parts
+        ])  # fmt: skip
 
     def discs_of(self, clump: int) -> NDArray[np.int64]:
         """Numbers of the discs of ``clump``."""

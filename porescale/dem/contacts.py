@@ -8,7 +8,7 @@ list taken between two steps sums to ``discs.force`` after the second.  Nothing 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from porescale.dem.contact.law import MU
 from porescale.dem.forces import pair_forces
 from porescale.dem.rectangle import BOTTOM, LEFT, RIGHT, TOP, add_rectangle_forces, nearest_face
+from porescale.dem.rigid import arms, clumps_of
 from porescale.dem.system import Grains
 from porescale.dem.walls import HIGH, LOW, NX, PRESENT, PX, X, add_plate_forces, add_wall_forces
 
@@ -34,10 +35,11 @@ class Contacts:
 
     first (c,) disc i;  second (c,) disc j, or -1 at a surface;  surface (c,) index into ``names``, or -1 for a pair;
     point (c, 2) m, where both bodies feel the force, beside disc i (a periodic image of it may lie elsewhere);
-    normal (c, 2) unit vector from i outwards;  branch (c, 2) m, from the centre of i to that of the nearest image of
-    j, or to the point at a surface;  overlap (c,) m;  normal_force (c,) N/m, > 0 pushes apart;  tangential_force (c,)
-    N/m, that on i along t = (-n_y, n_x);  force (c, 2) N/m, of i on the other;  torque (c, 2) N m/m, on i and on j
-    (0 at a surface);  spring (c,) m, after the step's slip;  sliding (c,) bool: friction is at its limit.
+    normal (c, 2) unit vector from i outwards;  start (c, 2) m, the centroid of the body of i, its clump or itself;
+    branch (c, 2) m, from there to the centroid of the nearest image of the body of j, or to the point at a surface;
+    overlap (c,) m;  normal_force (c,) N/m, > 0 pushes apart;  tangential_force (c,) N/m, that on i along
+    t = (-n_y, n_x);  force (c, 2) N/m, of i on the other;  torque (c, 2) N m/m, on i and on j (0 at a surface);
+    spring (c,) m, after the step's slip;  sliding (c,) bool: friction is at its limit.
     """
 
     first: Index
@@ -46,6 +48,7 @@ class Contacts:
     names: tuple[str, ...]
     point: Array
     normal: Array
+    start: Array
     branch: Array
     overlap: Array
     normal_force: Array
@@ -74,6 +77,11 @@ class Contacts:
         parts = {it.name: getattr(self, it.name) for it in fields(self)}
         return Contacts(**{name: part if name == "names" else part[which] for name, part in parts.items()})
 
+    def of_bodies(self, bodies: Index) -> Contacts:
+        """The same between bodies: ``bodies`` (n,) is the number of a disc that stands for each disc's body."""
+        second = np.where(self.pairs, bodies[self.second], NOBODY)
+        return replace(self, first=bodies[self.first], second=second)
+
     def resultants(self, count: int) -> tuple[Array, Array]:
         """Contact force (count, 2) N/m and torque (count,) N m/m on each of ``count`` discs."""
         force, torque = np.zeros((count, 2)), np.zeros(count)
@@ -98,6 +106,10 @@ def contacts(grains: Grains) -> Contacts:
         for it in fields(Contacts)
         if it.name != "names"
     }
+    if clumps_of(grains) is not None:
+        arm, one, other = arms(grains), joined["first"], joined["second"]
+        joined["start"] -= arm[one]
+        joined["branch"] += arm[one] - np.where(other[:, None] == NOBODY, 0.0, arm[other])
     return Contacts(names=names, **joined)
 
 
@@ -134,7 +146,7 @@ def _pairs(grains: Grains) -> Contacts:
     normal = apart / distance[:, None]
     arm = 0.5 * (distance + (d.radius[i] ** 2 - d.radius[j] ** 2) / distance)
     return _listed(
-        i, j, np.full(count, NOBODY), d.position[i] + arm[:, None] * normal, normal, apart,
+        i, j, np.full(count, NOBODY), d.position[i] + arm[:, None] * normal, normal, d.position[i], apart,
         d.radius[i] + d.radius[j] - distance, force[1::2], torque.reshape(-1, 2), carried[:, 0],
         grains.contact.table[_material(grains, i), _material(grains, j), MU],
     )  # fmt: skip
@@ -156,8 +168,8 @@ def _surface(grains: Grains, number: int, nearest: Array, distance: Array, force
     normal = np.where(depth[:, None] > 0.0, 1.0, -1.0) * branch / np.where(depth == 0.0, 1.0, np.abs(depth))[:, None]
     count = len(i)
     return _listed(
-        i, np.full(count, NOBODY), np.full(count, number), nearest[i], normal, branch, d.radius[i] - depth,
-        -force, np.column_stack((torque, np.zeros(count))), spring, friction[_material(grains, i)],
+        i, np.full(count, NOBODY), np.full(count, number), nearest[i], normal, d.position[i], branch,
+        d.radius[i] - depth, -force, np.column_stack((torque, np.zeros(count))), spring, friction[_material(grains, i)],
     )  # fmt: skip
 
 
@@ -223,14 +235,14 @@ def _single(grains: Grains, kernel: Any, table: Array, laws: Array, spring: Arra
 
 
 def _listed(
-    first: Index, second: Index, surface: Index, point: Array, normal: Array, branch: Array, overlap: Array,
-    force: Array, torque: Array, spring: Array, friction: Array,
+    first: Index, second: Index, surface: Index, point: Array, normal: Array, start: Array, branch: Array,
+    overlap: Array, force: Array, torque: Array, spring: Array, friction: Array,
 ) -> Contacts:  # fmt: skip
     """Contacts with their forces resolved along normal and tangent."""
     pushing = np.sum(force * normal, axis=1)
     along = force[:, 0] * normal[:, 1] - force[:, 1] * normal[:, 0]  # force on i is -force; t = (-n_y, n_x)
     limit = friction * np.maximum(pushing, 0.0)
     return Contacts(
-        first, second, surface, (), point, normal, branch, overlap, pushing, along, force, torque, spring,
+        first, second, surface, (), point, normal, start, branch, overlap, pushing, along, force, torque, spring,
         (limit > 0.0) & (np.abs(along) >= AT_LIMIT * limit),
     )  # fmt: skip

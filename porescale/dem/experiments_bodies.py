@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ellipk
 
-from porescale.dem.cell import Straining
+from porescale.dem.cell import LOAD, Straining
 from porescale.dem.contact.linear import Linear
 from porescale.dem.control import Moved
 from porescale.dem.discs import make_discs
@@ -44,6 +44,33 @@ def random_cell(law: Linear, seed: int, side: int = 6, skin: float | None = None
     return Grains(make_discs(grid * apart, size, DENSITY, speed), law, box, skin=skin)
 
 
+def clumped_cell(law: Linear, seed: int, side: int = 6) -> Grains:
+    """The same, with a smaller disc bound to the rim of every third one."""
+    rng = np.random.default_rng(seed)
+    plain, few = random_cell(law, seed, side), side**2 // 3
+    angle = rng.uniform(0.0, 2.0 * math.pi, few)
+    d = plain.discs
+    at = np.concatenate(
+        (d.position, d.position[:few] + 0.65 * RADIUS * np.column_stack((np.cos(angle), np.sin(angle))))
+    )
+    size = np.concatenate((d.radius, 0.5 * d.radius[:few]))
+    speed = np.concatenate((d.velocity, d.velocity[:few]))
+    grains = Grains(make_discs(at, size, DENSITY, speed), law, plain.box)
+    grains.steering.bind([[k, side**2 + k] for k in range(few)], DENSITY)
+    return grains
+
+
+def energy_of_bodies(grains: Grains) -> float:
+    """Kinetic energy relative to a strained cell, J/m: clumps by their own motion, not by that of their members."""
+    d, clumps = grains.discs, grains.steering.clumps
+    free = clumps.group < 0
+    parts = (
+        (d.mass[free], d.velocity[free], d.inertia[free], d.spin[free]),
+        (clumps.mass, clumps.velocity, clumps.inertia, clumps.spin),
+    )
+    return 0.5 * float(sum(m @ np.sum(v**2, axis=1) + i @ w**2 for m, v, i, w in parts))
+
+
 def clumped_cloud(seed: int = 1, friction: float = 0.5) -> Grains:
     """60 discs, two in three of them bound in overlapping pairs, thrown at each other and spinning, in free space."""
     rng = np.random.default_rng(seed)
@@ -65,7 +92,7 @@ def clumped_cloud(seed: int = 1, friction: float = 0.5) -> Grains:
 def stored(grains: Grains) -> float:
     """Elastic energy of a strained cell now, J/m."""
     (width, _), (tilt, height) = grains.steering.edges()
-    now = Straining(width, height, tilt, 0.0, 0.0, 0.0, np.zeros(5))
+    now = Straining(width, height, tilt, 0.0, 0.0, 0.0, np.zeros(LOAD))
     d, pairs = grains.discs, grains.current_pairs()
     parts = elastic_pairs(d.position, d.radius, pairs.start, pairs.partner, pairs.carried, grains.contact, now)
     return float(sum(parts))

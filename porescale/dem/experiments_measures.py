@@ -66,9 +66,7 @@ def column_stress(grains: Grains, width: float) -> tuple[Array, Array]:
     """Vertical Love-Weber stress (Pa) in regions from one centre of a column to the next, and the weight above with the
     load over the width (Pa), from the bottom; (COLUMN - 1,) each."""
     y, found = grains.discs.position[:, 1], contacts(grains)
-    measured = [
-        contact_stress(Region((0.0, y[k]), (width, y[k + 1])), grains.discs, found)[1, 1] for k in range(COLUMN - 1)
-    ]
+    measured = [contact_stress(Region((0.0, y[k]), (width, y[k + 1])), found)[1, 1] for k in range(COLUMN - 1)]
     pushed = -grains.external_force[::-1, 1].cumsum()[::-1]
     return np.array(measured), pushed[1:] / width
 
@@ -92,7 +90,7 @@ def lattice_stress(grains: Grains) -> tuple[Array, float, Fabric]:
     found, region = contacts(grains), Region(grains.box.lower, grains.box.upper)
     period = grains.box.period
     return (
-        contact_stress(region, grains.discs, found, period),
+        contact_stress(region, found, period),
         coordination(found, region, grains.discs.position, period),
         fabric(found, region, period),
     )

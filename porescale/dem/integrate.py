@@ -19,7 +19,7 @@ from porescale.dem.kick import note_step, withhold
 from porescale.dem.motion import carry_bodies, govern
 from porescale.dem.rectangle import move_rectangles
 from porescale.dem.segments import add_segment_forces
-from porescale.dem.strain import at_present, move_discs, steer
+from porescale.dem.strain import at_present, move_discs, note_clumps, steer
 from porescale.dem.sweep import sweep_pairs, sweep_surfaces
 from porescale.dem.walls import move_plates
 from porescale.ground.jit import kernel
@@ -82,6 +82,7 @@ def contact_steps(
                 motion, walls, wall_force, position, velocity, spin, radius, mass, inertia, force, torque,
                 external_force, external_torque, step, dt, drag, first and step == 0, law.book,
             )  # fmt: skip
+            note_clumps(motion, velocity, mass, force, external_force, cell)
         withhold(held, withheld, velocity, spin, mass, inertia, force, torque, drag, first and step == 0, law.book, dt)
         steer(velocity, mass, step, dt, cell)
         moved = move_discs(

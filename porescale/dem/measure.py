@@ -14,6 +14,7 @@ from porescale.dem.cell import image
 from porescale.dem.contact.law import material_of, recall, stored
 from porescale.dem.discs import Discs
 from porescale.dem.rectangle import BOTTOM, LEFT, RIGHT, TOP, nearest_face
+from porescale.dem.rigid import clumps_of
 from porescale.dem.segments import survey_segments
 from porescale.dem.system import Grains
 from porescale.dem.walls import HIGH, LOW, NX, NY, PRESENT, PX, PY, X
@@ -181,9 +182,12 @@ def max_overlap(grains: Grains) -> Overlap:
 
 
 def coordination(grains: Grains) -> float:
-    """Mean number of discs that touch a disc (walls are not counted)."""
+    """Mean number of contacts of a disc or clump with others (walls are not counted)."""
     _survey(grains)
-    return float(grains.touching.mean()) if grains.discs.count else 0.0
+    bodies = grains.discs.count
+    if (clumps := clumps_of(grains)) is not None:
+        bodies += clumps.count - len(clumps.member)
+    return float(grains.touching.sum()) / bodies if bodies else 0.0
 
 
 def unbalanced(grains: Grains) -> float:

@@ -218,7 +218,7 @@ def kept(press: Press, radius: Array, pressure: float | None, folder: Path | Non
 def mean_stress(grains: Grains) -> float:
     """Mean of the principal contact stresses of the whole box, Pa."""
     region = Region(grains.box.lower, grains.box.upper)
-    return principal(contact_stress(region, grains.discs, contacts(grains), grains.box.period)).mean
+    return principal(contact_stress(region, contacts(grains), grains.box.period)).mean
 
 
 def out_of_balance(grains: Grains) -> float:

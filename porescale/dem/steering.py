@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from porescale.dem import servo as servos
 from porescale.dem import strain as cells
-from porescale.dem.cell import Still, Straining
+from porescale.dem.cell import LOAD, Still, Straining
 from porescale.dem.clumps import Body, Clumps, fastest
 from porescale.dem.contact.materials import Law
 from porescale.dem.control import KINDS, PUSH, WORK, Control, schedule_of
@@ -66,7 +66,7 @@ class Steering:
         self._rates: list[Schedule] = [0.0, 0.0, 0.0]
         self._plan = np.zeros((3, 5))
         self.cell: Array | None = None
-        self.load = np.zeros(5)
+        self.load = np.zeros(LOAD)
         self._compile()
 
     # -- clumps
@@ -249,12 +249,20 @@ class Steering:
             if rate is not None and stress is not None:
                 raise InputError(Fault(f"cell.{COMPONENTS[k]}", problem="has both a rate and a stress"))
             self._rates[k] = stress if stress is not None else rate if rate is not None else 0.0
-            self._plan[k] = stress is not None, share, limit, *grains.hardest()
+            self._plan[k] = stress is not None, share, limit, *(self._leverage() * value for value in grains.hardest())
         if self.cell is None:
             self.cell = np.zeros(cells.STATE)
             self.cell[cells.WIDTH : cells.TILT] = grains.box.period
         self._compile()
         grains.refresh(anew=True)
+
+    def _leverage(self) -> float:
+        """Square of how much further than discs that touch their bodies' centroids may be apart: a contact resists a
+        strain of the cell that much more."""
+        c = self.clumps
+        round_ones = c.radius > 0.0
+        far = np.hypot(*c.offset[round_ones].T) / c.radius[round_ones]
+        return (1.0 + float(far.max(initial=0.0))) ** 2
 
     def edges(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """Edges of the cell now, m: (width, 0) and (tilt, height)."""
@@ -269,7 +277,7 @@ class Steering:
         if self.cell is None:
             return Still(*self._grains.box.period)
         width, height, tilt, gxx, gxy, gyy = (float(value) for value in self.cell[: cells.GYY + 1])
-        return Straining(width, height, tilt, gxx, gxy, gyy, np.zeros(5))
+        return Straining(width, height, tilt, gxx, gxy, gyy, np.zeros(LOAD))
 
     def gradient(self) -> Array:
         """Velocity gradient of the cell, (2, 2) 1/s."""

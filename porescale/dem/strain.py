@@ -3,6 +3,7 @@
 With c the velocity relative to the cell's affine motion G x (cell.py),
     x' = c + G x,     m c' = F - m G c     (SLLOD: what is affine stays so, whatever G does),
 and the cell does the work  -A P : G,  P = (sum m c c - sum f d)/A  the pressure tensor, compression positive.
+Of clumps c is the velocity and d reaches from the centroid: all of a clump goes with the strain there.
 Source: Evans & Morriss, Statistical Mechanics of Nonequilibrium Liquids (1990), section 6.3.
 
 A component under stress control has the rate  g = U + share (P - P_wanted)/(dt K + 2 C),  |g| <= limit, with K = k sum
@@ -18,7 +19,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.cell import SQUARES, XX, XY, YY, Still, Straining
+from porescale.dem.cell import (
+    SQUARES,
+    TURNING_XX,
+    TURNING_XY,
+    TURNING_YY,
+    XX,
+    XY,
+    YX,
+    YY,
+    Still,
+    Straining,
+)
 from porescale.dem.kick import sweep_kick
 from porescale.dem.schedule import value_at
 from porescale.dem.servo import follow
@@ -36,8 +48,8 @@ STRESS, SHARE, LIMIT, STIFFNESS, DAMPING = range(5)
 
 
 class Deforming(NamedTuple):
-    """A strained cell over time: state (STATE,), load (5,), plan (3, 5) with the first three schedules, and clock (2,)
-    s, steps: see Motion."""
+    """A strained cell over time: state (STATE,), load (LOAD,), plan (3, 5) with the first three schedules, and clock
+    (2,) s, steps: see Motion."""
 
     state: Array
     load: Array
@@ -106,10 +118,38 @@ def steer_deforming(velocity, mass, step, dt, cell):
     s[WORK] -= 0.5 * s[WIDTH] * s[HEIGHT] * dt * (before + pxx * s[GXX] + pyy * s[GYY] + pxy * s[GXY])
 
 
+@by_law
+def note_clumps(a, velocity, mass, force, external_force, cell):
+    """What clumps, a motion.Arrays, change in the sums of a strained cell; all arrays of discs, before the kick."""
+
+
+@note_clumps.of(Still)
+def no_clumps_noted(a, velocity, mass, force, external_force, cell):
+    """Nothing."""
+
+
+@note_clumps.of(Deforming)
+def note_clumps_deforming(a, velocity, mass, force, external_force, cell):
+    """Overwrites ``cell.load``: X_j - X_i = d - o_j + o_i of centroids, so g d over contacts lacks g o over members."""
+    load = cell.load
+    for c in range(a.body_mass.shape[0]):
+        for k in range(a.start[c], a.start[c + 1]):
+            i = a.member[k]
+            gx, gy = force[i, 0] - external_force[i, 0], force[i, 1] - external_force[i, 1]
+            load[XX] += gx * a.arm[k, 0]
+            load[XY] += gx * a.arm[k, 1]
+            load[YX] += gy * a.arm[k, 0]
+            load[YY] += gy * a.arm[k, 1]
+            u, v, du, dv = velocity[i, 0], velocity[i, 1], a.body_velocity[c, 0], a.body_velocity[c, 1]
+            load[TURNING_XX] += mass[i] * (u * u - du * du)
+            load[TURNING_XY] += mass[i] * (u * v - du * dv)
+            load[TURNING_YY] += mass[i] * (v * v - dv * dv)
+
+
 @kernel
 def pressure(velocity, mass, load, area):
     """Pressure tensor (xx, xy, yy), Pa, compression positive: of contacts, see ``note``, and of motion."""
-    pxx, pxy, pyy = -load[XX], -load[XY], -load[YY]
+    pxx, pxy, pyy = -load[XX] - load[TURNING_XX], -load[XY] - load[TURNING_XY], -load[YY] - load[TURNING_YY]
     for i in range(mass.shape[0]):
         pxx += mass[i] * velocity[i, 0] * velocity[i, 0]
         pxy += mass[i] * velocity[i, 0] * velocity[i, 1]

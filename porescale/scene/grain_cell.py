@@ -9,6 +9,7 @@ import numpy as np
 import pydantic
 from numpy.typing import NDArray
 
+from porescale.dem.rigid import areas
 from porescale.dem.schedule import Schedule
 from porescale.dem.system import Grains
 from porescale.ground.check import Fault
@@ -123,7 +124,7 @@ class Strained:
             "strain yy ()": math.log(height / grains.box.period[1]), "strain xy ()": self.shear,
             "stress xx (Pa)": float(xx), "stress yy (Pa)": float(yy), "shear stress (Pa)": -float(xy),
             "cell width (m)": width, "cell height (m)": height, "cell tilt (m)": tilt,
-            "solid fraction ()": float(grains.discs.area.sum()) / (width * height),
+            "solid fraction ()": float(areas(grains).sum()) / (width * height),
         }  # fmt: skip
 
     def seen(self) -> tuple[Array, Array]:

@@ -24,6 +24,7 @@ from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress, kinetic_stress, principal
 from porescale.dem.rectangle import BOTTOM, RIGHT, TOP
 from porescale.dem.rectangle import LEFT as LEFT_FACE
+from porescale.dem.rigid import areas, as_bodies, body_of
 from porescale.dem.system import Grains
 from porescale.dem.walls import HIGH, LOW, SIDES, X
 from porescale.runs.model import Cloud, Grid, Snapshot
@@ -68,8 +69,10 @@ class GrainInstruments:
         return tables
 
     def rattling(self, found: Contacts) -> NDArray[np.bool_]:
-        """Which discs carry nothing, (n,)."""
-        return rattlers(found, self.grains.discs.count, self.least, self.held)
+        """Which discs carry nothing, (n,): all of a clump or none."""
+        number = body_of(self.grains)
+        loose: NDArray[np.bool_] = rattlers(found.of_bodies(number), len(number), self.least, self.held)[number]
+        return loose
 
     def _forces(self, found: Contacts) -> Row:
         """Force of the grains on every wall, plate and rectangle with its moment about the middle of it (a free wall:
@@ -99,8 +102,9 @@ class GrainInstruments:
         found = contacts(self.grains)
         if wanted:
             snapshot.clouds[CONTACTS] = contact_cloud(found, self.grains)
-            grains, count = snapshot.clouds["grains"], self.grains.discs.count
-            grains.data["contact_number"] = contact_numbers(found, count).astype(np.int32)
+            grains, number = snapshot.clouds["grains"], body_of(self.grains)
+            touching = contact_numbers(found.of_bodies(number), len(number))[number]
+            grains.data["contact_number"] = touching.astype(np.int32)
             grains.data["rattler"] = self.rattling(found)
         if self.scene.coarse_graining:
             snapshot.grids[FIELDS] = self._fields(found)
@@ -113,7 +117,7 @@ class GrainInstruments:
         cell = grains.cell if isinstance(grains.cell, Straining) else None
         periodic = grains.box.periodic if cell is None else (False, False)
         raster = Raster.over(grains.box.lower, grains.box.upper, asked.spacing, width, periodic)
-        fields = CoarseGrained(raster, grains.discs, found, conserve=cell is None, cell=cell)
+        fields = CoarseGrained(raster, grains.discs, found, conserve=cell is None, cell=cell, area=areas(grains))
         cells: dict[str, Array] = {}
         units: dict[str, str] = {}
         for name in asked.fields:
@@ -176,18 +180,22 @@ def region_row(grains: Grains, found: Contacts, region: Region, loose: Array, he
     """What is known of a region, by column with unit.
 
     A region stays where it is, also in a strained cell, whose images are measured wherever they reach into it.
-    Porosity and velocities weigh discs by their area and mass inside; coordination and rattlers are of discs whose
-    centre is inside, held ones left out; fabric and forces of contacts whose point is inside.
+    Porosity and velocities weigh discs by their area and mass inside, members of clumps by their share of it;
+    coordination and rattlers are of discs and clumps whose centre is inside, held ones left out; fabric and forces of
+    contacts whose point is inside.
     """
     d, period = grains.discs, grains.period
-    areas = disc_areas(region, d.position, d.radius, period)
-    pores = 1.0 - float(areas.sum()) / region.area
-    stress, kinetic = contact_stress(region, d, found, period), kinetic_stress(region, d, period)
+    bodies, number = as_bodies(grains), body_of(grains)
+    others = held | (number != np.arange(d.count))
+    share = disc_areas(region, d.position, d.radius, period) / d.area
+    pores = 1.0 - float(share @ areas(grains)) / region.area
+    stress, kinetic = contact_stress(region, found, period), kinetic_stress(region, bodies, period)
     mean, deviator, angle = principal(stress)
-    inside = region.holds(d.position, period) & ~held
+    inside = region.holds(bodies.position, period) & ~others
     here = found.chosen(region.holds(found.point, period) & loads(found))
     fabric, force = fabric_of(found, region, period), here.normal_force
-    moving = _moving(grains, region, d.mass * areas / d.area)
+    moving = _moving(grains, region, d.mass * share)
+    neighbours = coordination_of(found.of_bodies(number), region, bodies.position, period, loose, others)
     nan = float("nan")
     return {
         "porosity ()": pores,
@@ -197,7 +205,7 @@ def region_row(grains: Grains, found: Contacts, region: Region, loose: Array, he
         "mean stress (Pa)": mean, "deviator stress (Pa)": deviator, "major stress direction (rad)": angle,
         "kinetic stress xx (Pa)": float(kinetic[0, 0]), "kinetic stress yy (Pa)": float(kinetic[1, 1]),
         "kinetic stress xy (Pa)": float(kinetic[0, 1]),
-        "coordination number ()": coordination_of(found, region, d.position, period, loose, held),
+        "coordination number ()": neighbours,
         "share of rattlers ()": float(loose[inside].mean()) if inside.any() else nan,
         "contacts ()": float(fabric.contacts),
         "fabric anisotropy ()": fabric.anisotropy, "fabric direction (rad)": fabric.angle,

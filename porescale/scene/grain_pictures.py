@@ -128,13 +128,15 @@ def rose_of(snapshot: Snapshot, look: Look) -> Figure:
 
 
 def branches(grains: Cloud, contacts: Cloud) -> Array:
-    """Ends (c, 2, 2) m of the branches of contacts, beside their points: of images of discs where those are nearer."""
-    normal, branch = (np.asarray(contacts.data[name], float)[:, :2] for name in ("normal", "branch"))
+    """Ends (c, 2, 2) m of the ways between centres of discs that touch, or from one to a surface, beside their points:
+    of images of discs where those are nearer."""
+    normal = np.asarray(contacts.data["normal"], float)[:, :2]
     radius, overlap = np.asarray(grains.data["radius"], float), np.asarray(contacts.data["overlap"], float)
     first, second = contacts.data["first"], contacts.data["second"]
     mean = radius[first] - overlap * np.where(second >= 0, 0.5, 1.0)  # to the chord between discs of equal size
     start = contacts.position - mean[:, None] * normal
-    return np.stack((start, start + branch), axis=1)
+    length = radius[first] - overlap + np.where(second >= 0, radius[second], 0.0)
+    return np.stack((start, start + length[:, None] * normal), axis=1)
 
 
 def _stage(look: Look, title: str) -> tuple[Figure, Axes, float, float]:

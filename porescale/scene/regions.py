@@ -17,7 +17,7 @@ GrainField = Literal["density", "solid_fraction", "velocity", "strain_rate", "st
 class Region(Section):
     """A rectangle in which porosity, stress, fabric and motion of the grains are recorded over time: regions.csv.
 
-  XX
+    XX
     """
 
     name: str = pydantic.Field("", description="name in the columns (default: its number)")

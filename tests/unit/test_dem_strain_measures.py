@@ -55,7 +55,7 @@ def test_contacts_of_a_strained_cell_are_those_of_its_next_step(sheared):
 def test_love_weber_stress_of_a_strained_cell_is_the_stress_that_it_works_with(sheared, at):
     grains, area = sheared, sheared.period[0] * sheared.period[1]
     found = contacts(grains)
-    stress = contact_stress(whole(grains, at), grains.discs, found, grains.period)
+    stress = contact_stress(whole(grains, at), found, grains.period)
     grains.step(grains.last_dt)  # its load is that of the contacts found
     load = -grains.steering.load[:4].reshape(2, 2) / area
     # Forces err by k times eps of a metre (images of images), branches by eps of a metre over 0.02 m of each.
@@ -69,9 +69,9 @@ def test_images_without_the_tilt_or_in_the_cell_of_before_have_another_stress(sh
     grains = sheared
     found, (width, height, _) = contacts(grains), grains.period
     region = Region((0.013, 0.7 * height), (0.013 + 0.4 * width, 1.2 * height))  # over the upper side
-    right = contact_stress(region, grains.discs, found, grains.period)
+    right = contact_stress(region, found, grains.period)
     for wrong in ((width, height), grains.box.period):
-        assert np.abs(contact_stress(region, grains.discs, found, wrong) - right).max() > 0.01 * np.abs(right).max()
+        assert np.abs(contact_stress(region, found, wrong) - right).max() > 0.01 * np.abs(right).max()
 
 
 def test_parts_of_a_strained_cell_add_up_to_it(sheared):
@@ -87,8 +87,8 @@ def test_parts_of_a_strained_cell_add_up_to_it(sheared):
     assert np.sum([disc_areas(it, d.position, d.radius, period) for it in quarters], axis=0) == pytest.approx(
         d.area, rel=1e-12
     )
-    parts = np.mean([contact_stress(it, d, found, period) for it in quarters], axis=0)
-    np.testing.assert_allclose(parts, contact_stress(whole(grains, (0.0, 0.0)), d, found, period), rtol=1e-11)
+    parts = np.mean([contact_stress(it, found, period) for it in quarters], axis=0)
+    np.testing.assert_allclose(parts, contact_stress(whole(grains, (0.0, 0.0)), found, period), rtol=1e-11)
     counts = [fabric(found, it, period).contacts for it in quarters]
     assert sum(counts) == fabric(found, whole(grains, (0.0, 0.0)), period).contacts
     for at in PLACES:

@@ -195,17 +195,18 @@ class CoarseGrained:
     """Fields of discs and contacts on a raster, (rows, columns); each is computed when it is first asked for.
 
     cell : the strained one that the discs are in, whose images are then shown on a raster that is not periodic, without
-    ``conserve``: a raster need not be one period of it.
+    ``conserve``: a raster need not be one period of it;  area : (n,) m^2 that each disc stands for (default: its own).
     """
 
     def __init__(
-        self, raster: Raster, discs: Discs, contacts: Contacts, *, conserve: bool = True, cell: Straining | None = None
-    ) -> None:
+        self, raster: Raster, discs: Discs, contacts: Contacts, *, conserve: bool = True,
+        cell: Straining | None = None, area: Array | None = None,
+    ) -> None:  # fmt: skip
         assert cell is None or not (conserve or any(raster.periodic))
         self.raster, self.discs, self.contacts, self.conserve = raster, discs, contacts, conserve
         self._grid = np.array([*raster.lower, *raster.spacing])
         self._how: tuple[bool, bool, float, bool] = (*raster.periodic, raster.width, conserve)
-        self._cell = cell
+        self._cell, self._area = cell, discs.area if area is None else area
         gradient = [[cell.gxx, cell.gxy], [0.0, cell.gyy]] if cell else [[0.0, 0.0], [0.0, 0.0]]
         self._affine = np.array(gradient)
 
@@ -247,7 +248,7 @@ class CoarseGrained:
     @cached_property
     def solid_fraction(self) -> Array:
         """Area of discs over area, -."""
-        return np.asarray(self._spread(self.discs.position, self.discs.area[:, None])[..., 0])
+        return np.asarray(self._spread(self.discs.position, self._area[:, None])[..., 0])
 
     @cached_property
     def _own_velocity(self) -> Array:
@@ -294,8 +295,7 @@ class CoarseGrained:
     def contact_stress(self) -> Array:
         """(rows, columns, 2, 2) Pa, compression positive, first index that of the force."""
         c = self.contacts
-        start = self.discs.position[c.first]
-        points = start[:, None, :] + 0.5 * (1.0 + NODES[None, :, None]) * c.branch[:, None, :]
+        points = c.start[:, None, :] + 0.5 * (1.0 + NODES[None, :, None]) * c.branch[:, None, :]
         values = np.einsum("q,ca,cb->cqab", 0.5 * WEIGHTS, c.force, c.branch).reshape(-1, 4)
         return self._spread(points.reshape(-1, 2), values).reshape(*self.raster.shape[::-1], 2, 2)
 

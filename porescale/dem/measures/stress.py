@@ -2,11 +2,11 @@
 
     sigma_ab = 1/A sum_c s_c F_a l_b  (+ 1/A sum_i A_i/(pi r_i²) m_i (v - V)_a (v - V)_b),
 
-F the force of disc i on the other body, l the branch vector: from the centre of i to that of j, or to the point of
-contact at a wall; s_c the share of l that lies inside the region, so that a region that cuts contacts has the mean of
-the field that spreads each contact's stress evenly along its branch (Goldhirsch 2010, Granular Matter 12, 239, with a
-kernel of vanishing width).  The kinetic part counts each disc by the share of its area inside, against the mass mean V
-of the velocity.  Compression is positive; index a is that of the force, and div sigma_a = d sigma_ab / dx_b.
+F the force of body i on the other, l the branch vector: from the centroid of i to that of j, or to the point of contact
+at a wall, of clumps as of discs; s_c the share of l that lies inside the region, so that a region that cuts contacts
+has the mean of the field that spreads each contact's stress evenly along its branch (Goldhirsch 2010, Granular Matter
+12, 239, with a kernel of vanishing width).  The kinetic part counts each disc by the share of its area inside, against
+the mass mean V of the velocity.  Compression is positive; index a is that of the force: div sigma_a = d sigma_ab/dx_b.
 Sources: Love 1927, A Treatise on the Mathematical Theory of Elasticity, note B; Weber 1966, Bull. Liaison Ponts
 Chaussees 20.
 """
@@ -35,9 +35,9 @@ class Principal(NamedTuple):
     angle: float
 
 
-def contact_stress(region: Region, discs: Discs, contacts: Contacts, period: Period = (0.0, 0.0)) -> Array:
+def contact_stress(region: Region, contacts: Contacts, period: Period = (0.0, 0.0)) -> Array:
     """Love-Weber stress of contacts, (2, 2) Pa, without the kinetic part; periodic images of contacts count too."""
-    share = region.share_of_branch(discs.position[contacts.first], contacts.branch, period)
+    share = region.share_of_branch(contacts.start, contacts.branch, period)
     return np.asarray(np.einsum("c,ca,cb->ab", share, contacts.force, contacts.branch) / region.area)
 
 
