@@ -202,7 +202,8 @@ def bond(grains: Grains, bodies: Iterable[int | Clump] | None = None) -> int:
     rows = [np.column_stack((first, pairs.partner.astype(np.int64), np.zeros(len(first), np.int64)))]
     heavy, arrays = d.mass, None
     if grains.segments is not None:
-        arrays, heavy = grains.segments.arrays, grains.segments.arrays.heavy
+        arrays = grains.segments.now()
+        heavy = arrays.heavy
         rows += [np.pad(arrays.corner, ((0, 0), (0, 1))), np.pad(arrays.near, ((0, 0), (0, 1)), constant_values=1)]
     ends = np.concatenate(rows)
     chosen = _chosen(grains, bodies)

@@ -130,7 +130,7 @@ def elastic(grains: Grains, dt: float = 0.0) -> tuple[float, float, float]:
     ]
     for distance, memory, laws in distances(grains, position, dt):
         parts.append(elastic_surface(distance, d.radius, memory, laws, grains.contact))
-    segments = None if grains.segments is None else grains.segments.arrays
+    segments = None if grains.segments is None else grains.segments.now()
     if segments is not None:
         parts.append(survey_segments(position, d.radius, segments, grains.contact, grains.cell)[3:])
     if grains.bonds is not None:
@@ -141,13 +141,26 @@ def elastic(grains: Grains, dt: float = 0.0) -> tuple[float, float, float]:
 
 
 def kinetic(grains: Grains, book: Array) -> tuple[float, float]:
-    """Kinetic energy of the last force evaluation, J/m: (translation, rotation), without held components."""
+    """Kinetic energy of the last force evaluation, J/m: (translation, rotation), without held components.
+
+    Members of a clump translate with its centroid; what they move besides is its rotation.
+    """
     d = grains.discs
     along = d.velocity * book[:, BEFORE_X : BEFORE_X + 2]
     around = d.spin * book[:, BEFORE_SPIN]
     if len(grains.held):
         along, around = np.where(grains.held[:, :2], 0.0, along), np.where(grains.held[:, 2], 0.0, around)
-    return 0.5 * float(d.mass @ along.sum(axis=1)), 0.5 * float(d.inertia @ around)
+    moving, turning = 0.5 * float(d.mass @ along.sum(axis=1)), 0.5 * float(d.inertia @ around)
+    if grains.steered and grains.steering.clumps.count:
+        clumps = grains.steering.clumps
+        body, share = clumps.group[clumps.member], d.mass[clumps.member]
+        now, then = (
+            np.array([np.bincount(body, share * speed[clumps.member, axis], clumps.count) for axis in range(2)])
+            for speed in (d.velocity, book[:, BEFORE_X : BEFORE_X + 2])
+        )
+        rest = 0.5 * float(share @ along[clumps.member].sum(axis=1)) - 0.5 * float(np.sum(now * then / clumps.mass))
+        moving, turning = moving - rest, turning + rest
+    return moving, turning
 
 
 def open_book(grains: Grains, book: Array, dt: float) -> Array:

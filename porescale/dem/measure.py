@@ -211,7 +211,13 @@ def _survey_walls(grains: Grains) -> tuple[float, int, int, float]:
     result: tuple[float, int, int, float] = survey_walls(
         d.position, d.radius, grains.walls, grains.wall_laws, grains.wall_spring, grains.contact
     )
-    return result
+    if grains.segments is None or not len(grains.walls):
+        return result
+    # Corners may be points: what they go into a wall is held against their segments.
+    away = np.einsum("nwk,wk->wn", d.position[:, None] - grains.walls[:, PX : PY + 1], grains.walls[:, NX : NY + 1])
+    share = (d.radius - away) / np.maximum(d.radius, grains.segments.beside_corner)
+    w, i = np.unravel_index(share.argmax(), share.shape)
+    return float(share[w, i]), int(i), int(w), result[3]
 
 
 def _survey_plates(grains: Grains) -> tuple[float, int, int, float]:
@@ -227,7 +233,7 @@ def _survey_segments(grains: Grains) -> tuple[float, int, int, float, float, flo
     if grains.segments is None:
         return 0.0, -1, 0, 0.0, 0.0, 0.0
     result: tuple[float, int, int, float, float, float] = survey_segments(
-        d.position, d.radius, grains.segments.arrays, grains.contact, grains.cell
+        d.position, d.radius, grains.segments.now(), grains.contact, grains.cell
     )
     return result
 

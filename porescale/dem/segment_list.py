@@ -70,6 +70,12 @@ class SegmentList:
         self.corner_memory, self.near_memory = np.zeros((0, memory)), np.zeros((0, memory))
         self.arrays = self._pack()
 
+    def now(self) -> Segments:
+        """The segments as kernels take them, with room for the springs of the law as it is."""
+        if self.near_memory.shape[1] != memory_of(self._grains.contact):
+            self.build()
+        return self.arrays
+
     def update(self) -> None:
         """List anew if the discs' pair list has been; springs of contacts listed before are kept."""
         if self._grains.pairs.builds != self._listed:

@@ -77,6 +77,8 @@ class Steering:
         Raises InputError as Clumps does, or when a member is held.
         """
         grains = self._grains
+        if grains.segments is not None:
+            raise InputError(Fault("clump", problem="frames are bound already", repair="bind all at once, in framed"))
         clumps = Clumps(grains.discs, members, density, bodies)
         held = grains.held[clumps.member].any(axis=1) if len(grains.held) else np.zeros(0, bool)
         if held.any():
@@ -239,6 +241,8 @@ class Steering:
         grains = self._grains
         if not all(grains.box.periodic):
             raise InputError(Fault("box", grains.box.left, "a cell can only be strained when all sides are periodic"))
+        if grains.segments is not None or grains.bonds is not None:
+            raise InputError(Fault("cell", problem="with segments or bonds a cell cannot be strained"))
         if grains.book is not None:
             raise InputError(Fault("energy", True, "the energy book knows no strained cell", repair="leave one out"))
         wanted = (*pressure, shear_stress)

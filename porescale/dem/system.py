@@ -218,7 +218,9 @@ class Grains:
         self.wall_force, self.wall_moment = self.wall_load[:, :2], self.wall_load[:, 2]
 
     def set_rectangles(self, rectangles: Sequence[Rectangle]) -> None:
-        """Put these rectangles, and no others, into the box; without contacts so far."""
+        """Put these rectangles, and no others, into the box; without contacts so far.  InputError beside segments."""
+        if self.segments is not None and rectangles:
+            raise InputError(Fault("rectangles", problem="do not meet segments", repair="make them frames"))
         self._rectangle_frictions = [it.friction for it in rectangles]
         self.rectangles = np.array([it.row() for it in rectangles]).reshape(-1, 6)
         self.rectangle_laws = self._own_laws(self._rectangle_frictions)
@@ -298,7 +300,7 @@ class Grains:
                 self.held, self.withheld, left == count,
                 self._sweeps.now(pairs, surfaces, self.book is not None, strained),
                 motion, cell,
-                None if self.segments is None else self.segments.arrays,
+                None if self.segments is None else self.segments.now(),
                 None if self.bonds is None else self.bonds.now(self._time, self._steps_of_dt),
             )  # fmt: skip
             left -= done

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from porescale.dem import experiments as lab
-from porescale.dem import verify_bodies, verify_contact, verify_measures
+from porescale.dem import verify_bodies, verify_contact, verify_measures, verify_segments
 from porescale.ground.constants import GRAVITY
 from porescale.workbench.validations import Measured, Validations
 
@@ -194,3 +194,4 @@ def critical_lattice() -> Measured:
 VALIDATIONS.include(verify_measures.VALIDATIONS)
 VALIDATIONS.include(verify_contact.VALIDATIONS)
 VALIDATIONS.include(verify_bodies.VALIDATIONS)
+VALIDATIONS.include(verify_segments.VALIDATIONS)
