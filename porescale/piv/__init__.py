@@ -1,5 +1,5 @@
 """Measuring a flow from pictures of it: synthetic pictures with exact displacements, window correlation, comparison.
 
-Pixel centres lie at integers and y points down.  A displacement is X(+1/2) - X(-1/2), in pixels, of the material that is
-at the pixel halfway in time between two pictures.
+Pixel centres lie at integers and y points down.  A displacement is X(+1/2) - X(-1/2), in pixels, of the material that
+is at the pixel halfway in time between two pictures.
 """

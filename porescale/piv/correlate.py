@@ -1,8 +1,8 @@
 """Masked normalised correlation of windows of two pictures, over a search range, and its peak.
 
-R(s) = sum A(x) B(x + s) / sqrt(sum A^2 m_B(x + s)  sum B(x + s)^2 m_A): pictures less their local mean over fluid pixels
-and zero elsewhere, so that solids neither correlate nor count (Padfield 2012, IEEE Trans. Image Process. 21, 2706).
-Windows that overlap share their products: sums over blocks of one grid step are formed once and added up.
+R(s) = sum A(x) B(x + s) / sqrt(sum A^2 m_B(x + s)  sum B(x + s)^2 m_A): pictures less their local mean over fluid
+pixels and zero elsewhere, so that solids neither correlate nor count (Padfield 2012, IEEE Trans. Image Process. 21,
+2706). Windows that overlap share their products: sums over blocks of one grid step are formed once and added up.
 """
 
 from __future__ import annotations
@@ -37,10 +37,18 @@ def block_products(a, b, start, step, lane, found):
             for sx in range(width):
                 for x in range(count):
                     lane[row, x] = 0
-                for j in range(step):
-                    y = start + row * step + j
+                y, d, e = start + row * step, sy - search, start - search + sx
+                for j in range(y, y + step - 3, 4):  # four rows at once: fewer trips to the lane
                     for x in range(count):
-                        lane[row, x] += a[y, start + x] * b[y + sy - search, start - search + sx + x]
+                        lane[row, x] += (
+                            a[j, start + x] * b[j + d, e + x]
+                            + a[j + 1, start + x] * b[j + d + 1, e + x]
+                            + a[j + 2, start + x] * b[j + d + 2, e + x]
+                            + a[j + 3, start + x] * b[j + d + 3, e + x]
+                        )
+                for j in range(y + step // 4 * 4, y + step):
+                    for x in range(count):
+                        lane[row, x] += a[j, start + x] * b[j + d, e + x]
                 for k in range(across):
                     total = lane[row, k * step]
                     for x in range(k * step + 1, (k + 1) * step):
@@ -109,8 +117,8 @@ def _vertex(low, middle, high):
 def peaks(total, u, v, value, ratio):
     """Place (px, to a fraction), height of each correlation peak, and its ratio to the highest one beyond 1 px from it.
 
-    total (ny, nx, n, n) : correlations;  u, v, value, ratio (ny, nx) are overwritten.  A peak at the edge of the range is
-    kept whole.
+    total (ny, nx, n, n) : correlations;  u, v, value, ratio (ny, nx) are overwritten.  A peak at the edge of the range
+    is kept whole.
     """
     ny, nx, width, _ = total.shape
     for row in prange(ny):

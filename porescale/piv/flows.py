@@ -180,7 +180,9 @@ def past_discs(size: tuple[int, int], peak: float, discs: Discs, layer: float = 
 
 def scattered_discs(size: tuple[int, int]) -> Discs:
     """Five discs apart from one another, of a tenth to a twentieth of the picture, placed as shares of it."""
-    shares = np.array([(0.25, 0.28, 0.085), (0.68, 0.2, 0.06), (0.48, 0.55, 0.1), (0.2, 0.75, 0.05), (0.78, 0.74, 0.075)])
+    shares = np.array(
+        [(0.25, 0.28, 0.085), (0.68, 0.2, 0.06), (0.48, 0.55, 0.1), (0.2, 0.75, 0.05), (0.78, 0.74, 0.075)]
+    )
     return Discs(shares[:, 0] * size[1], shares[:, 1] * size[0], shares[:, 2] * min(size))
 
 

@@ -63,15 +63,20 @@ class Grid:
 
     def slopes(self, values: Array) -> tuple[Array, Array]:
         """Derivatives along x and y of the spline through ``values`` at the centres, per px."""
-        h = 0.25
-        across = (spline_matrix(self.x, self.x + h) - spline_matrix(self.x, self.x - h)) / (2 * h)
-        down = (spline_matrix(self.y, self.y + h) - spline_matrix(self.y, self.y - h)) / (2 * h)
-        return np.asarray(values @ across.T), np.asarray(down @ values)
+        down, across = (_slopes(self.step, n) for n in self.shape)
+        return values @ across.T, down @ values
+
+
+@lru_cache(maxsize=64)
+def _slopes(step: int, count: int) -> Array:
+    """(count, count) matrix from values on a line of centres to the slopes of their spline there."""
+    at = step * np.arange(count, dtype=float)
+    return np.asarray(make_interp_spline(at, np.eye(count), 3, bc_type="natural")(at, 1))
 
 
 class Axis(NamedTuple):
-    """From values on a line of centres to pixels: coefficients (m, n) of cubic B-splines one step apart, straight beyond
-    the ends; at pixel p those from first[p] on count with weights[:, p].
+    """From values on a line of centres to pixels: coefficients (m, n) of cubic B-splines one step apart, straight
+    beyond the ends; at pixel p those from first[p] on count with weights[:, p].
     """
 
     coefficients: Array

@@ -1,8 +1,8 @@
 """Grey values between pixels: quintic B-splines through the pixels.
 
-The interpolator sets the sub-pixel bias of a measurement, not the peak fit (Astarita & Cardone 2005, Exp. Fluids 38, 233).
-Coefficients: Unser, Aldroubi & Eden 1993, IEEE Trans. Signal Process. 41, 821, the inverse filter cut where it has fallen
-below float32.
+The interpolator sets the sub-pixel bias of a measurement, not the peak fit (Astarita & Cardone 2005, Exp. Fluids 38,
+233). Coefficients: Unser, Aldroubi & Eden 1993, IEEE Trans. Signal Process. 41, 821, the inverse filter cut where it
+has fallen below float32.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _SCALE = F(1 / 120**2)
 
 
 def _inverse(taps: int = 21) -> NDArray[np.float64]:
-    """Impulse response (2 taps - 1,) of the inverse of [1, 26, 66, 26, 1]/120: 0.43^21 is 2e-8, below float32's 6e-8."""
+    """Response (2 taps - 1,) of the inverse of [1, 26, 66, 26, 1]/120: 0.43^21 is 2e-8, below float32's 6e-8."""
     distance = np.abs(np.arange(-3 * taps, 3 * taps + 1))
     response = np.ones(1)
     for pole in POLES:
@@ -43,8 +43,7 @@ INVERSE = _inverse()
 def coefficients(picture: Array) -> Array:
     """Spline coefficients (rows + 2 PAD, columns + 2 PAD) of a picture (rows, columns), mirrored at its edges."""
     found = cv2.sepFilter2D(picture, cv2.CV_32F, INVERSE, INVERSE, borderType=cv2.BORDER_REFLECT_101)
-    padded: Array = cv2.copyMakeBorder(found, PAD, PAD, PAD, PAD, cv2.BORDER_REFLECT_101)
-    return padded
+    return np.asarray(cv2.copyMakeBorder(found, PAD, PAD, PAD, PAD, cv2.BORDER_REFLECT_101), F)
 
 
 @kernel
@@ -93,22 +92,35 @@ def sample_row(c, y, dx, dy, out):
             w1 = _26 - _50 * t + _20 * s + _20 * s * t - _20 * b + _5 * a
             w0 = (_1 - t) * (_1 - t) * (_1 - t) * (_1 - t) * (_1 - t)
             k = x + base
-            total = v0 * (w0 * r0[k] + w1 * r0[k + 1] + w2 * r0[k + 2] + w3 * r0[k + 3] + w4 * r0[k + 4] + w5 * r0[k + 5])
-            total += v1 * (w0 * r1[k] + w1 * r1[k + 1] + w2 * r1[k + 2] + w3 * r1[k + 3] + w4 * r1[k + 4] + w5 * r1[k + 5])
-            total += v2 * (w0 * r2[k] + w1 * r2[k + 1] + w2 * r2[k + 2] + w3 * r2[k + 3] + w4 * r2[k + 4] + w5 * r2[k + 5])
-            total += v3 * (w0 * r3[k] + w1 * r3[k + 1] + w2 * r3[k + 2] + w3 * r3[k + 3] + w4 * r3[k + 4] + w5 * r3[k + 5])
-            total += v4 * (w0 * r4[k] + w1 * r4[k + 1] + w2 * r4[k + 2] + w3 * r4[k + 3] + w4 * r4[k + 4] + w5 * r4[k + 5])
-            total += v5 * (w0 * r5[k] + w1 * r5[k + 1] + w2 * r5[k + 2] + w3 * r5[k + 3] + w4 * r5[k + 4] + w5 * r5[k + 5])
+            total = v0 * (
+                w0 * r0[k] + w1 * r0[k + 1] + w2 * r0[k + 2] + w3 * r0[k + 3] + w4 * r0[k + 4] + w5 * r0[k + 5]
+            )
+            total += v1 * (
+                w0 * r1[k] + w1 * r1[k + 1] + w2 * r1[k + 2] + w3 * r1[k + 3] + w4 * r1[k + 4] + w5 * r1[k + 5]
+            )
+            total += v2 * (
+                w0 * r2[k] + w1 * r2[k + 1] + w2 * r2[k + 2] + w3 * r2[k + 3] + w4 * r2[k + 4] + w5 * r2[k + 5]
+            )
+            total += v3 * (
+                w0 * r3[k] + w1 * r3[k + 1] + w2 * r3[k + 2] + w3 * r3[k + 3] + w4 * r3[k + 4] + w5 * r3[k + 5]
+            )
+            total += v4 * (
+                w0 * r4[k] + w1 * r4[k + 1] + w2 * r4[k + 2] + w3 * r4[k + 3] + w4 * r4[k + 4] + w5 * r4[k + 5]
+            )
+            total += v5 * (
+                w0 * r5[k] + w1 * r5[k + 1] + w2 * r5[k + 2] + w3 * r5[k + 3] + w4 * r5[k + 4] + w5 * r5[k + 5]
+            )
             out[x] = total * _SCALE
         start = stop
 
 
 @parallel_kernel
-def sample(c, dx, dy, out):
-    """Values of the spline with coefficients c at (x + dx, y + dy) for every pixel x, y of ``out`` (rows, columns).
+def sample(c, dx, dy, pad, out):
+    """Values of the spline with coefficients c at (x + dx, y + dy) for every pixel x, y of a picture (rows, columns).
 
-    dx, dy : float32, px, like ``out``, which is overwritten;  c : of ``coefficients`` for a picture of the same size.
-    Beyond 4 px outside the picture values mean nothing.  Not checked: that dx, dy are finite.
+    dx, dy (rows, columns) float32, px;  c : of ``coefficients`` for a picture of that size;  out (rows + 2 pad,
+    columns + 2 pad) float32 : overwritten but for the border.  Beyond 4 px outside the picture values mean nothing.
+    Not checked: that dx, dy are finite.
     """
-    for y in prange(out.shape[0]):
-        sample_row(c, y, dx[y], dy[y], out[y])
+    for y in prange(dx.shape[0]):
+        sample_row(c, y, dx[y], dy[y], out[y + pad, pad : pad + dx.shape[1]])

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import median_filter
 
 from porescale.ground.check import Fault, InputError
 from porescale.piv.grid import Grid
@@ -27,20 +27,20 @@ class Settings:
 
     window : px, of the last pass, even;  overlap : of neighbouring windows, 0 to below 1;  search : px, largest
     displacement that the first pass looks for;  updates : Gauss-Newton updates after the last correlation;  width :
-    half-width of their bell, over the window;  noise, slack : residuals from which a pixel counts for less, over the
-    pictures' noise, and in px of displacement;  curved : paths bend as in a steady flow;  smooth : vectors that share one
-    error, of ``smoothed``, 0 to leave the field as it was measured;  least_correlation : below it a vector is invalid.
+    half-width of their bell, over the window (8 px at least);  noise, slack : residuals from which a pixel counts for less, over the
+    pictures' noise, and in px of displacement;  curved : paths bend as in a steady flow;  smooth : by cross-validation
+    at the end;  least_correlation : below it, alone or in the median around, a vector is invalid.
     """
 
     window: int = 16
     overlap: float = 0.5
     search: int = 16
     updates: int = 4
-    width: float = 0.5
+    width: float = 0.35
     noise: float = 2.0
     slack: float = 0.2
     curved: bool = True
-    smooth: float = 1.0
+    smooth: bool = True
     least_correlation: float = 0.3
 
     def check(self, size: tuple[int, int]) -> None:
@@ -123,57 +123,53 @@ def refuse(first: NDArray[Any], second: NDArray[Any], masks: Sequence[Flags | No
 def measure_ready(pairs: Sequence[tuple[Ready, Ready]], masks: Sequence[Flags | None], settings: Settings) -> Vectors:
     """Displacements of prepared pairs of one steady flow.  masks : solids of both pictures, for the flag ``solid``."""
     size = (pairs[0][0].fluid.shape[0], pairs[0][0].fluid.shape[1])
-    grid, u, v, good = _coarse(pairs, size, settings)
-    ratio = np.ones(grid.shape)
+    grid, u, v = _coarse(pairs, size, settings)
     window = FIRST // 2
     while True:
-        window = max(settings.window, min(window, min(size)))
-        last = window == settings.window
-        new = Grid(size, window, settings.step if last else window // 2)
+        window = max(settings.window, min(window, min(size) // 2 * 2))
+        new = Grid(size, window, settings.step if window == settings.window else window // 2)
         u, v = grid.at(new, u), grid.at(new, v)
         grid, fluid = new, _fluid(new, masks)
-        found = correlation_pass(pairs, grid, search=max(2, min(4, window // 4)), along=paths(grid, u, v, curved=False))
-        ratio = found.ratio
+        along = paths(grid, u, v, curved=False)
+        halved = window >= COARSE
+        found = correlation_pass(pairs, grid, 2 * SEARCH if halved else SEARCH, along, halved=halved)
         good = fluid & (found.value > 0.5 * settings.least_correlation)
         lost = _outliers(u + found.u, v + found.v, found.u, found.v, good, THRESHOLD)
-        good &= ~(lost & (ratio < CLEAR))
-        u, v = filled(u + found.u, v + found.v, good)
-        if last:
+        u, v = filled(u + found.u, v + found.v, good & ~(lost & (found.ratio < CLEAR)))
+        if window == settings.window:
             break
         window //= 2
     start_u, start_v = u, v
-    weights = bell(window, settings.width)
+    reach = max(LEAST_REACH, settings.width * window)
+    weights = bell(reach)
     for _ in range(settings.updates):
-        update = update_pass(pairs, grid, weights, settings.noise, settings.slack, paths(grid, u, v, curved=settings.curved))
+        update = update_pass(
+            pairs, grid, weights, settings.noise, settings.slack, paths(grid, u, v, curved=settings.curved)
+        )
         u, v, good = _updated(u, v, fluid, start_u, start_v, update, settings)
     if settings.smooth:
-        u, v = smoothed(u, v, settings.smooth)
-    return _vectors(grid, u, v, good, fluid, update, ratio)
+        u, v = smoothed(u, v, max(1.0, reach / grid.step))
+    return _vectors(grid, u, v, good, fluid, update, found.ratio)
+
+
+LEAST_REACH = 8.0
+"""Half-width of a bell, px, at least: some ten tracers at the usual seeding."""
+SEARCH = 3
+"""Pixels, of the picture it looks at, that a pass after the first looks for beyond its prediction."""
+COARSE = 32
+"""Windows of this many px and more are correlated at half the resolution: a fraction of the work, and exact enough."""
 
 
 def _coarse(
     pairs: Sequence[tuple[Ready, Ready]], size: tuple[int, int], settings: Settings
-) -> tuple[Grid, Array, Array, Flags]:
+) -> tuple[Grid, Array, Array]:
     """The first pass, at half the resolution: whole-pixel displacements as far as ``search``."""
     window = min(max(FIRST, settings.window), min(size) // 2 * 2)
-    half = Grid((size[0] // 2, size[1] // 2), window // 2, max(1, window // 4))
-    small = [(_halved(first), _halved(second)) for first, second in pairs]
-    search = -(-settings.search // 2) + 1
-    found = correlation_pass(small, half, search, None)
+    grid = Grid(size, window, max(2, window // 4 * 2))
+    found = correlation_pass(pairs, grid, settings.search, None, halved=True)
     good = found.value > 0.5 * settings.least_correlation
     good &= residual(found.u, found.v, good, 0.5) < 2 * THRESHOLD
-    u, v = filled(2 * found.u, 2 * found.v, good)
-    return Grid(size, window, 2 * half.step), u, v, good
-
-
-def _halved(one: Ready) -> Ready:
-    """Contrast and fluid at half the resolution."""
-    rows, columns = one.fluid.shape
-    cut = slice(0, rows // 2 * 2), slice(0, columns // 2 * 2)
-    size = columns // 2, rows // 2
-    fluid = np.asarray(cv2.resize(one.fluid[cut], size, interpolation=cv2.INTER_AREA) > 0.5, np.float32)
-    contrast = cv2.resize(one.contrast[cut], size, interpolation=cv2.INTER_AREA)
-    return Ready(one.coefficients, fluid, contrast * fluid, one.solid)
+    return grid, *filled(found.u, found.v, good)
 
 
 def _fluid(grid: Grid, masks: Sequence[Flags | None]) -> Flags:
@@ -188,11 +184,15 @@ def _fluid(grid: Grid, masks: Sequence[Flags | None]) -> Flags:
 CLEAR = 1.2
 """Ratio of the first to the second peak from which a correlation is believed before neighbours are."""
 REFINED = 2 * THRESHOLD
-"""Bound of the median test on refined vectors: where the flow bends within a grid step good ones exceed the common one."""
+"""Bound of the median test on refined vectors: where the flow bends within a grid step good ones exceed the common
+one.
+"""
 
 
 def _outliers(u: Array, v: Array, correction_u: Array, correction_v: Array, use: Flags, bound: float) -> Flags:
-    """Vectors that are outliers in the total and in the correction: either alone condemns good ones in strong gradients."""
+    """Vectors that are outliers in the total and in the correction: either alone condemns good ones in strong
+    gradients.
+    """
     return (residual(u, v, use) > bound) & (residual(correction_u, correction_v, use) > bound)
 
 
@@ -205,12 +205,19 @@ def _updated(
 ) -> tuple[Array, Array, Flags]:
     """Add an update, validate, replace."""
     length = np.hypot(update.u, update.v)
-    good = fluid & np.isfinite(length) & (np.nan_to_num(update.correlation) > settings.least_correlation)
+    good = fluid & np.isfinite(length) & _alike(update.correlation, fluid, settings.least_correlation)
     short = np.where(good, np.minimum(1.0, LARGEST / np.maximum(length, 1e-12)), 0.0)
     u, v = u + short * np.where(good, update.u, 0.0), v + short * np.where(good, update.v, 0.0)
     good &= ~_outliers(u, v, u - start_u, v - start_v, good, REFINED)
     u, v = filled(u, v, good)
     return u, v, good
+
+
+def _alike(correlation: Array, fluid: Flags, least: float) -> Flags:
+    """Whether pictures are alike at each vector and around it: few pixels may match by chance, not all around too."""
+    own = np.where(fluid & np.isfinite(correlation), correlation, 0.0)
+    around = np.where(fluid, own, np.median(own[fluid]) if fluid.any() else 0.0)
+    return np.asarray((own > least) & (median_filter(around, 5, mode="nearest") > least), bool)
 
 
 def _vectors(grid: Grid, u: Array, v: Array, good: Flags, fluid: Flags, update: Updated, ratio: Array) -> Vectors:

@@ -1,4 +1,4 @@
-"""Vectors that do not fit their neighbours, and what to put in their place.  Neighbours are vectors of the fluid only."""
+"""Vectors that do not fit their neighbours, and what to put in their place.  Only vectors of the fluid count."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ def _median(values, count):
 def median_residual(u, v, use, least, found):
     """Normalised median residual of every vector (ny, nx), over its neighbours where ``use``; 0 with fewer than three.
 
-    |u - m| / (median |u_i - m| + least), m the median of the neighbours u_i, both components as one length (Westerweel &
-    Scarano 2005, Exp. Fluids 39, 1096).  ``found`` is overwritten.
+    |u - m| / (median |u_i - m| + least), m the median of the neighbours u_i, both components as one length (Westerweel
+    & Scarano 2005, Exp. Fluids 39, 1096).  ``found`` is overwritten.
     """
     ny, nx = u.shape
     list_u, list_v, spare = np.empty(25), np.empty(25), np.empty(25)

@@ -1,14 +1,14 @@
 """Passes over a pair, or over many pairs of one steady flow: coarse to fine correlation, then Gauss-Newton updates.
 
-Both pictures are deformed by half the last estimate each (symmetric window deformation; Scarano 2002, Meas. Sci. Technol.
-13, R1), so that what is left to measure is small, and interpolation errs alike in both.
+Both pictures are deformed by half the last estimate each (symmetric window deformation; Scarano 2002, Meas. Sci.
+Technol. 13, R1), so that what is left to measure is small, and interpolation errs alike in both.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import cv2
 import numpy as np
@@ -28,6 +28,8 @@ SLOPE = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
 """Fourth-order central difference."""
 
 
+LEAST_WINDOW = 16
+"""Windows, px of the picture they are cut from, are correlated no smaller: fewer tracers match by chance."""
 NORMAL = 1.4826
 """Standard deviation over the median size of normal errors."""
 
@@ -53,8 +55,7 @@ class Updated:
     correlation: Array
 
 
-@dataclass(frozen=True)
-class Paths:
+class Paths(NamedTuple):
     """Where each pixel of the pictures at mid time is in the first and in the second, less where it is: float32, px."""
 
     first: tuple[Single, Single]
@@ -75,59 +76,80 @@ def paths(grid: Grid, u: Array, v: Array, *, curved: bool) -> Paths:
     return Paths(back, forward)
 
 
-def correlation_pass(pairs: Iterable[tuple[Ready, Ready]], grid: Grid, search: int, along: Paths | None) -> Correlated:
-    """Correlate windows of all pairs, deformed along ``along``, over ``search`` px; peaks of the sum of correlations."""
+def correlation_pass(
+    pairs: Iterable[tuple[Ready, Ready]], grid: Grid, search: int, along: Paths | None, *, halved: bool
+) -> Correlated:
+    """Correlate windows of all pairs, deformed along ``along``, over ``search`` px; peaks of the sum of correlations.
+
+    halved : at half the resolution.
+    """
     ny, nx = grid.shape
-    blocks = max(1, round(grid.window / grid.step))
-    size = blocks * grid.step  # the window, to a whole number of blocks
+    part = 2 if halved else 1
+    step = max(1, grid.step // part)
+    search = -(-search // part)
+    blocks = max(1, round(max(LEAST_WINDOW, grid.window / part) / step))
+    size = blocks * step  # the window, to a whole number of blocks
     pad = search + size
-    layout = Layout((ny, nx), grid.step, blocks, pad + grid.start - size // 2, search)
+    layout = Layout((ny, nx), step, blocks, pad + grid.start // part - size // 2, search)
     total = np.zeros((ny, nx, 2 * search + 1, 2 * search + 1), np.float32)
-    for first, second in pairs:
+    for pair in pairs:
         arrays = []
-        for one, way in ((first, along and along.first), (second, along and along.second)):
-            grey, mask = one.contrast, one.fluid
-            if way is not None:
-                at = _places(way)
+        for number, one in enumerate(pair):
+            grey, mask = (one.half_contrast, one.half_fluid) if halved else (one.contrast, one.fluid)
+            if along is not None:
+                at = _places(_thinned(along[number]) if halved else along[number])
                 mask = _moved(mask, at, cv2.INTER_NEAREST) if one.solid else mask
                 grey = _moved(grey, at, cv2.INTER_CUBIC) * mask
             arrays.append((_padded(grey, pad), _padded(mask, pad)))
         (a, ma), (b, mb) = arrays
-        masks = (ma, mb) if first.solid or second.solid else None
-        energy = cv2.boxFilter(b * b, cv2.CV_32F, (size, size), anchor=(0, 0), normalize=False)
+        masks = (ma, mb) if pair[0].solid or pair[1].solid else None
+        square: Any = b * b
+        energy = np.asarray(cv2.boxFilter(square, cv2.CV_32F, (size, size), anchor=(0, 0), normalize=False), np.float32)
         total += correlation(layout, a, b, masks, energy)
     found = Correlated(*(np.empty((ny, nx)) for _ in range(4)))
     peaks(total, found.u, found.v, found.value, found.ratio)
-    return found
+    return Correlated(part * found.u, part * found.v, found.value, found.ratio)
 
 
-def bell(window: int, width: float) -> Single:
-    """Weights (n,) along a side, n a multiple of BLOCK, at -n/2 … n/2 - 1 px: (1 - (s/l)^2)^2, l = ``width`` windows."""
-    reach = max(3.0, width * window)
+def _thinned(way: tuple[Single, Single]) -> tuple[Single, Single]:
+    """Displacements for a picture of half the resolution: every second one, half as long."""
+    rows, columns = way[0].shape
+    thin = slice(0, rows // 2 * 2, 2), slice(0, columns // 2 * 2, 2)
+    return np.asarray(0.5 * way[0][thin], np.float32), np.asarray(0.5 * way[1][thin], np.float32)
+
+
+def bell(reach: float) -> Single:
+    """Weights (n,) along a side, n a multiple of BLOCK, at -n/2 … n/2 - 1 px: (1 - (s/reach)^2)^2, zero beyond."""
     half = BLOCK // 2 * -(-int(np.ceil(reach)) // (BLOCK // 2))
     at = np.arange(-half, half)
     return np.asarray(np.maximum(0.0, 1 - (at / reach) ** 2) ** 2, np.float32)
 
 
-def update_pass(pairs: Iterable[tuple[Ready, Ready]], grid: Grid, weights: Single, noise: float, slack: float, along: Paths) -> Updated:
+def update_pass(
+    pairs: Iterable[tuple[Ready, Ready]], grid: Grid, weights: Single, noise: float, slack: float, along: Paths
+) -> Updated:
     """One Gauss-Newton update of the displacement whose paths are ``along``, from all pairs together."""
     ny, nx = grid.shape
-    n = len(weights)
-    pad = n
-    sums, lanes = np.zeros((ny, nx, 9)), np.empty((ny, 6, n), np.float32)
-    one, two = np.empty(grid.size, np.float32), np.empty(grid.size, np.float32)
+    pad = len(weights)
+    wide = (grid.size[0] + 2 * pad, grid.size[1] + 2 * pad)
+    sums, lanes, known = (
+        np.zeros((ny, nx, 9)),
+        np.empty((ny, 11, wide[1]), np.float32),
+        np.empty((ny, 5, wide[1]), np.float32),
+    )
+    one, two = np.zeros(wide, np.float32), np.zeros(wide, np.float32)
     count = 0
     first_at, second_at = _places(along.first), _places(along.second)
     for first, second in pairs:
-        sample(first.coefficients, *along.first, one)
-        sample(second.coefficients, *along.second, two)
+        sample(first.coefficients, *along.first, pad, one)
+        sample(second.coefficients, *along.second, pad, two)
         mask = _moved(first.fluid, first_at, cv2.INTER_NEAREST) * _moved(second.fluid, second_at, cv2.INTER_NEAREST)
         mean = 0.5 * (one + two)
         gx = cv2.sepFilter2D(mean, cv2.CV_32F, SLOPE, np.ones(1))
         gy = cv2.sepFilter2D(mean, cv2.CV_32F, np.ones(1), SLOPE)
-        a, b, m, gx, gy = (_padded(it, pad) for it in (one, two, mask, gx, gy))
-        bound = noise * NORMAL * float(np.median(np.abs(one - two)[::3, ::3]))
-        refine(a, b, m, gx, gy, weights, pad, grid.start, grid.step, bound, np.float32(slack**2), lanes, sums)
+        bound = noise * NORMAL * float(np.median(np.abs((one - two)[pad:-pad:3, pad:-pad:3])))
+        refine(one, two, _padded(mask, pad), gx, gy, weights, pad, grid.start, grid.step, np.float32(bound),
+               np.float32(slack**2), lanes, known, sums)  # fmt: skip
         count += 1
     return _solved(sums, count)
 
@@ -157,7 +179,7 @@ def _places(way: tuple[Single, Single]) -> tuple[Single, Single]:
 def _moved(image: Single, at: tuple[Single, Single], how: int) -> Single:
     """``image`` at places, zero outside."""
     found: Any = cv2.remap(image, at[0], at[1], how, borderMode=cv2.BORDER_CONSTANT, borderValue=0)
-    return np.asarray(found)
+    return np.asarray(found, np.float32)
 
 
 def _padded(image: Single, pad: int) -> Single:

@@ -18,14 +18,16 @@ RIM = 1
 
 
 class Ready(NamedTuple):
-    """coefficients : of the spline, solids filled with the local mean;  fluid : 1 where fluid, the rim of solids left out;
-    contrast : less the local mean, 0 in solids;  solid : whether there is any.  Arrays float32, (rows, columns), the
-    coefficients padded.
+    """coefficients : of the spline, solids filled with the local mean;  fluid : 1 where fluid, the rim of solids left
+    out; contrast : less the local mean, 0 in solids;  half_* : the same at half the resolution;  solid : whether there
+    is any.  Arrays float32, (rows, columns), the coefficients padded.
     """
 
     coefficients: Array
     fluid: Array
     contrast: Array
+    half_fluid: Array
+    half_contrast: Array
     solid: bool
 
 
@@ -35,7 +37,8 @@ def ready(picture: NDArray[Any], solid: Mask | None, reach: int) -> Ready:
     side = (2 * (reach // 2) + 1,) * 2
     if solid is None or not solid.any():
         fluid = np.ones(grey.shape, np.float32)
-        return Ready(coefficients(grey), fluid, grey - cv2.blur(grey, side, borderType=cv2.BORDER_REFLECT_101), False)
+        contrast = grey - cv2.blur(grey, side, borderType=cv2.BORDER_REFLECT_101)
+        return Ready(coefficients(grey), fluid, contrast, _halved(fluid), _halved(contrast), False)
     grown = cv2.dilate(solid.astype(np.uint8), np.ones((2 * RIM + 1,) * 2, np.uint8))
     fluid = np.asarray(grown == 0, np.float32)
     share = cv2.blur(fluid, side, borderType=cv2.BORDER_REFLECT_101)
@@ -44,4 +47,14 @@ def ready(picture: NDArray[Any], solid: Mask | None, reach: int) -> Ready:
     whole = float((grey * fluid).sum() / max(1.0, float(fluid.sum())))
     mean[share <= 1e-3] = whole
     filled = np.where(fluid > 0, grey, mean)
-    return Ready(coefficients(filled), fluid, (grey - mean) * fluid, True)
+    contrast = (grey - mean) * fluid
+    half = np.asarray(_halved(fluid) > 0.5, np.float32)
+    return Ready(coefficients(filled), fluid, contrast, half, _halved(contrast) * half, True)
+
+
+def _halved(image: Array) -> Array:
+    """Means over two by two pixels; an odd last row or column is left out."""
+    rows, columns = image.shape[0] // 2, image.shape[1] // 2
+    return np.asarray(
+        cv2.resize(image[: 2 * rows, : 2 * columns], (columns, rows), interpolation=cv2.INTER_AREA), np.float32
+    )

@@ -1,10 +1,10 @@
 """Smoothing of a field no more than its own noise asks for.
 
-Penalised least squares, sum (z - y)^2 + s sum |second differences of z|^2, natural at the edges, so that planes are left
-as they are (Whittaker 1923; Eilers & Marx 2003); s by generalised cross-validation (Craven & Wahba 1979, Numer. Math. 31,
-377), as Garcia 2011 (Exp. Fluids 50, 1247) smooths displacements.  Neighbouring windows overlap, so that errors of
-neighbours are alike and plain cross-validation takes them for flow: the trace counts several times (Lukas 2006, Inverse
-Problems 22, 1883).
+Penalised least squares, sum (z - y)^2 + s sum |second differences of z|^2, natural at the edges, so that planes are
+left as they are (Whittaker 1923; Eilers & Marx 2003); s by generalised cross-validation (Craven & Wahba 1979, Numer.
+Math. 31, 377), as Garcia 2011 (Exp. Fluids 50, 1247) smooths displacements.  Where windows overlap by more than half, errors of neighbours are
+alike, and plain cross-validation takes them for flow: the trace then counts for several (Lukas 2006, Inverse Problems
+22, 1883).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def _modes(count: int) -> tuple[Array, Array]:
     return np.maximum(values, 0.0), vectors
 
 
-def smoothed(u: Array, v: Array, alike: float) -> tuple[Array, Array]:
+def smoothed(u: Array, v: Array, alike: float = 1.0) -> tuple[Array, Array]:
     """u, v (ny, nx) smoothed with one s for both.  ``alike`` : vectors that share one error, >= 1."""
     (down, rows), (across, columns) = _modes(u.shape[0]), _modes(u.shape[1])
     penalty = (np.sqrt(down)[:, None] + np.sqrt(across)) ** 2
@@ -40,9 +40,7 @@ def smoothed(u: Array, v: Array, alike: float) -> tuple[Array, Array]:
     for s in STRENGTHS:
         kept = 1 / (1 + s * penalty)
         free = 1 - alike * float(kept.mean())
-        if free <= 0:
-            continue
-        score = float((power * (1 - kept) ** 2).mean()) / free**2
+        score = float((power * (1 - kept) ** 2).mean()) / free**2 if free > 0 else np.inf
         if score < best:
             best, strength = score, s
     kept = 1 / (1 + strength * penalty)

@@ -16,8 +16,9 @@ REACH = 4.5
 def add_spots(x, y, peak, sigma, image):
     """Add to ``image`` (rows, columns) the light of Gaussian spots, the mean over each pixel.
 
-    peak (n,) grey levels: height of the Gaussian peak exp(-r^2/(2 sigma^2)) at x, y (n,) px;  sigma : px.  The mean over a
-    pixel is a product of differences of error functions (Raffel et al. 2018, Particle Image Velocimetry, section 3.2).
+    peak (n,) grey levels: height of the Gaussian peak exp(-r^2/(2 sigma^2)) at x, y (n,) px;  sigma : px.  The mean
+    over a pixel is a product of differences of error functions (Raffel et al. 2018, Particle Image Velocimetry,
+    section 3.2).
     """
     rows, columns = image.shape
     scale = 1.0 / (sigma * math.sqrt(2.0))
