@@ -105,7 +105,7 @@ def show(folder: Path) -> list[Path]:
 
 def validations() -> Validations:
     """All rows of ``verify``."""
-    from continuum_sph.scene.verify import VALIDATIONS
+    from continuum_sph.scene.validations import VALIDATIONS
 
     return VALIDATIONS
 

@@ -10,8 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.eos import tait_density
-from continuum_sph.layers import PUSH, RHO, VOLUME, VX, VY, X, Y
+from continuum_sph.layers import RHO, VOLUME, VX, VY, P, X, Y
 from continuum_sph.smoothing import kernel_value
 from porescale.ground.jit import inline, parallel_kernel, prange
 from porescale.particles.cells import minimum_image
@@ -47,27 +46,26 @@ def wall_row(
 
 @parallel_kernel
 def load_walls(
-    fluid, start, split, partner, x, v, mass, record, pressure, ghost, kind, h, gx, gy,
-    density0, stiffness, exponent, period_x, period_y,
+    fluid, start, split, partner, x, v, mass, record, pressure, ghost, kind, h, gx, gy, density0, period_x, period_y
 ):  # fmt: skip
     """Give wall particles (rows ``fluid`` on) the pressure and velocity of the fluid before them.
 
     Overwrites their rows of ``record`` (n, 8), ``pressure`` (n,) and ``ghost`` (n, 2),
     2 v_wall - mean fluid velocity: the average of fluid and ghost is then the wall's velocity at the wall.
+    Their volume stays mass/density0, the square of the spacing, as fluid that has not moved has it.
     """
     for w in prange(fluid, x.shape[0]):
         p, ux, uy = wall_row(
             w, start[w], split[w], partner, x, v, record, pressure, kind, h, gx, gy, period_x, period_y
         )  # fmt: skip
-        rho = tait_density(p, stiffness, exponent, density0)
         pressure[w] = p
         record[w, X] = x[w, 0]
         record[w, Y] = x[w, 1]
         record[w, VX] = v[w, 0]
         record[w, VY] = v[w, 1]
-        record[w, RHO] = rho
-        record[w, PUSH] = p / (rho * rho)
-        record[w, VOLUME] = mass[w] / rho
+        record[w, RHO] = density0
+        record[w, P] = p
+        record[w, VOLUME] = mass[w] / density0
         ghost[w, 0] = 2.0 * v[w, 0] - ux
         ghost[w, 1] = 2.0 * v[w, 1] - uy
 

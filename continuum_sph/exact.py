@@ -47,3 +47,14 @@ def poiseuille(y: Floats, time: float, gap: float, force: float, viscosity: floa
         k = (2 * n + 1) * np.pi / gap
         u = u - 4.0 * force / (viscosity * gap * k**3) * np.sin(k * y) * np.exp(-viscosity * k * k * time)
     return u
+
+
+def taylor_green_vortices(x: Floats) -> tuple[Floats, Floats]:
+    """Velocity (n, 2) m/s and pressure (n,) Pa at ``x`` (n, 2) m of four vortices in a box of 1 m, 1 m/s, 1 kg/m³.
+
+    Taylor & Green, Proc. R. Soc. A 158 (1937) 499: the field keeps its form and decays as exp(-8π² ν t).
+    """
+    angle = 2.0 * np.pi * x
+    v = np.column_stack((-np.cos(angle[:, 0]) * np.sin(angle[:, 1]), np.sin(angle[:, 0]) * np.cos(angle[:, 1])))
+    p = -0.25 * (np.cos(2.0 * angle[:, 0]) + np.cos(2.0 * angle[:, 1]))
+    return v, p

@@ -9,17 +9,20 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-X, Y, VX, VY, RHO, PUSH, VOLUME, STIFF = range(8)
-"""Columns of a record: m, m, m/s, m/s, kg/m³, p/ρ² (m⁵/(kg s²)), m/ρ (m²), ρ/c² (kg s²/m⁵)."""
+X, Y, VX, VY, RHO, P, VOLUME, STIFF = range(8)
+"""Columns of a record: m, m, m/s, m/s, kg/m³, Pa, m/ρ (m²), ρ/c² (kg s²/m⁵)."""
+VISCOUS, DIFFUSIVE, BY_WALLS = range(3)
+"""Columns of energy turned over: by viscosity into heat, by density diffusion into nothing, given by walls."""
 
 
 @dataclass
 class Layer:
-    """Particles of one liquid and of the walls that hold it.
+    """Particles of the fluids and of the walls that hold them.
 
     fluid : number of fluid particles, the first rows of every array;
     x (n, 2) m;  v (n, 2) m/s, of walls the wall's own;  mass (n,) kg per metre of depth;
-    density (fluid,) kg/m³;  the rest is made of these: pressure (n,) Pa and what the pass over pairs reads.
+    density (fluid,) kg/m³;  material (n,) number of the particle's fluid;  the rest is made of these: pressure (n,) Pa
+    and what the pass over pairs reads.
     """
 
     fluid: int
@@ -27,6 +30,7 @@ class Layer:
     v: Floats
     mass: Floats
     density: Floats
+    material: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
     acceleration: Floats = field(init=False)  # (fluid, 2) m/s²
     rate: Floats = field(init=False)  # (fluid,) kg/(m³ s), over the last step
     rate_before: Floats = field(init=False)  # (fluid,) over the one before
@@ -34,24 +38,38 @@ class Layer:
     pressure: Floats = field(init=False)  # (n,) Pa
     record: Floats = field(init=False)  # (n, 8) all that a pair reads of a partner, in one cache line
     smoothed: Floats = field(init=False)  # (fluid, 2) m/s, what XSPH adds to the velocity of moving
+    drift: Floats = field(init=False)  # (fluid, 2) m/s, what shifting adds
     ghost: Floats = field(init=False)  # (n, 2) m/s, velocity that makes fluid at a wall stick (rows of walls)
+    length: Floats = field(init=False)  # (n,) m, smoothing lengths, set by the flow
+    matrix: Floats = field(init=False)  # (n, 3) xx, xy, yy of the gradient correction
+    facing: Floats = field(init=False)  # (n, 4) of walls: nearest point of the surface, normal into the fluid
+    power: Floats = field(init=False)  # (fluid, 3) W/m, see VISCOUS, DIFFUSIVE, BY_WALLS
+    energy: Floats = field(init=False)  # (fluid, 3) J/m, the same summed over time
 
     def __post_init__(self) -> None:
         n = len(self.x)
         assert self.x.shape == self.v.shape == (n, 2)
         assert self.mass.shape == (n,)
         assert self.density.shape == (self.fluid,)
+        if not len(self.material):
+            self.material = np.zeros(n, np.int64)
+        assert self.material.shape == (n,)
         self.acceleration, self.smoothed = np.zeros((self.fluid, 2)), np.zeros((self.fluid, 2))
+        self.drift = np.zeros((self.fluid, 2))
         self.rate, self.rate_before = np.zeros(self.fluid), np.zeros(self.fluid)
         self.predicted, self.pressure = np.zeros(self.fluid), np.zeros(n)
         self.record, self.ghost = np.zeros((n, 8)), np.zeros((n, 2))
+        self.length, self.facing = np.zeros(n), np.zeros((n, 4))
+        self.matrix = np.tile([1.0, 0.0, 1.0], (n, 1))
+        self.power, self.energy = np.zeros((self.fluid, 3)), np.zeros((self.fluid, 3))
 
     @property
     def count(self) -> int:
         """All particles."""
         return len(self.x)
 
-    KEPT = ("x", "v", "mass", "density", "acceleration", "rate", "rate_before", "smoothed", "pressure")
+    KEPT = ("x", "v", "mass", "density", "acceleration", "rate", "rate_before", "smoothed", "drift", "pressure",
+    "length", "power", "energy")  # fmt: skip
 
     def state(self) -> dict[str, Floats]:
         """Copies of the arrays that later steps depend on."""

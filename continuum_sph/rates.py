@@ -1,20 +1,27 @@
 """The one pass over pairs: accelerations and density rates of all fluid particles.
 
-dv_i/dt = -Σ m_j (p_i/ρ_i² + p_j/ρ_j² + Π_ij) ∇_i W + laminar viscosity + g   (eqs 34, 35)
-dρ_i/dt =  Σ m_j v_ij · ∇_i W + diffusion                                        (eq. 25)
+dv_i/dt = -(1/ρ_i) Σ V_j (p_i + p_j) ∇_i W - Σ m_j Π_ij ∇_i W + laminar viscosity + g   (eqs 34, 35)
+dρ_i/dt =  ρ_i Σ V_j v_ij · ∇_i W + diffusion                                          (eq. 25)
+
+The print has p_i/ρ_i² + p_j/ρ_j² with masses; (p_i + p_j) V_j/ρ_i is the same within one fluid but for its small
+changes of density, holds between fluids of any two densities, and is what continuity with volumes does the work of:
+kinetic and compressive energy balance pair by pair.
 
 Every particle gathers from its full row of partners: each pair is computed twice, nothing is scattered, so threads
-never meet and the sums have one order.  Forces of a pair of equal masses are opposite to the last bit.
+never meet and the sums have one order.  Forces of a pair are opposite but for the rounding of the division by mass.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from continuum_sph.density import continuity, diffusion
-from continuum_sph.layers import PUSH, RHO, STIFF, VOLUME, VX, VY, X, Y
-from continuum_sph.smoothing import kernel_slope, kernel_value
-from continuum_sph.viscosity import artificial, laminar
+from continuum_sph.artificial_viscosity import artificial
+from continuum_sph.boundary_paper import image
+from continuum_sph.density import HYDROSTATIC, LINEAR, continuity, diffusion
+from continuum_sph.fluids import COHESION, SOUND, VISCOSITY
+from continuum_sph.layers import BY_WALLS, DIFFUSIVE, RHO, STIFF, VISCOUS, VOLUME, VX, VY, P, X, Y
+from continuum_sph.smoothing import kernel_value, slope_scale, slope_shape
+from continuum_sph.viscosity import between, laminar
 from porescale.ground.jit import parallel_kernel, prange
 from porescale.particles.cells import minimum_image
 
@@ -31,32 +38,51 @@ def split_rows(fluid, start, partner, split):
 
 @parallel_kernel
 def rates(
-    fluid, start, split, partner, record, ghost,
-    acceleration, rate, smoothed,
-    kind, h, gx, gy, viscosity, alpha, beta, softening, sound_speed, strength, sticky, smoothing,
+    fluid, start, split, partner, record, ghost, facing, material, length, matrix, slant, drift, mass, table,
+    acceleration, rate, smoothed, power,
+    kind, h, gx, gy, alpha, beta, softening, delta, noise, sticky, imaged, smoothing, shifted, corrected, varied,
     period_x, period_y,
 ):  # fmt: skip
-    """Overwrites ``acceleration`` (fluid, 2) m/s², ``rate`` (fluid,) kg/(m³ s), and ``smoothed`` (fluid, 2) m/s.
+    """Overwrites ``acceleration`` (fluid, 2) m/s², ``rate`` (fluid,) kg/(m³ s), ``smoothed`` (fluid, 2) m/s and
+    ``power`` (fluid, 3) W/m.
 
-    start, split, partner: full pair list, wall partners of row i from ``split[i]`` on;  record, ghost: see Layer;
-    kind, h: smoothing;  gx, gy gravity, m/s²;  viscosity μ, Pa s;  alpha, beta, softening: artificial viscosity;
-    strength 2 δ h c0 of the density diffusion, m²/s;  sticky: walls hold the fluid, else they let it slip;
-    smoothing: XSPH's ε, for Σ (m_j/ρ̄)(v_j - v_i) W (eq. 53 with the sign that smooths);  periods, m or 0.
+    start, split, partner: full pair list, wall partners of row i from ``split[i]`` on;  record, ghost, facing,
+    material, length, matrix, drift: see Layer;  slant: of `surroundings`;  mass (n,) kg/m;  table (m, 8): the fluids;
+    kind, h: smoothing;  gx, gy gravity, m/s²;  alpha, beta, softening: artificial viscosity;  delta 2 δ h of the
+    density diffusion, m, and noise, what it takes for noise;  sticky: walls hold the fluid, else they let it slip;
+    imaged: walls of the paper;  smoothing: XSPH's ε, for Σ (m_j/ρ̄)(v_j - v_i) W (eq. 53 with the sign that smooths);
+    shifted: density and velocity are those of the place that a particle's ``drift`` takes it to; corrected: gradients
+    by ``matrix``;  varied: h by ``length`` (eq. 7);  periods, m or 0.
     """
-    inverse = 1.0 / h
     wraps = period_x > 0.0 or period_y > 0.0
+    mixed = table.shape[0] > 1
     for i in prange(fluid):
         xi = record[i, X]
         yi = record[i, Y]
         vxi = record[i, VX]
         vyi = record[i, VY]
         rho = record[i, RHO]
-        own = record[i, PUSH]
+        own = record[i, P]
         stiff_i = record[i, STIFF]
         specific = 1.0 / rho
-        ax = gx
-        ay = gy
+        own_material = material[i]
+        own_viscosity = table[own_material, VISCOSITY]
+        sound = table[own_material, SOUND]
+        strength = delta * sound
+        pull = 2.0 * table[own_material, COHESION] / (mass[i] * mass[i])
+        viscosity = own_viscosity
+        hij = h
+        inverse = 1.0 / h
+        scale = slope_scale(kind, h)
+        lxx = 1.0
+        lxy = 0.0
+        lyy = 1.0
+        ax = 0.0
+        ay = 0.0
+        bx = 0.0
+        by = 0.0
         change = 0.0
+        spread = 0.0
         sx = 0.0
         sy = 0.0
         # Unsigned indices: the compiler then needs no code for negative ones.
@@ -70,25 +96,54 @@ def rates(
             vx = vxi - record[j, VX]
             vy = vyi - record[j, VY]
             distance2 = dx * dx + dy * dy
+            if varied:
+                hij = 0.5 * (length[i] + length[j])
+                inverse = 1.0 / hij
+                scale = slope_scale(kind, hij)
             q = np.sqrt(distance2) * inverse
-            slope = kernel_slope(kind, q, h)
-            approach = vx * dx + vy * dy
+            slope = scale * slope_shape(kind, q)
             rho_j = record[j, RHO]
             volume = record[j, VOLUME]
-            mass = rho_j * volume
-            change += continuity(mass, approach, slope)
-            change += diffusion(rho, rho_j, stiff_i, record[j, STIFF], gx * dx + gy * dy, volume, slope, strength)
+            same = True
+            if mixed:
+                same = material[j] == own_material
+                viscosity = between(own_viscosity, table[material[j], VISCOSITY])
+            approach = vx * dx + vy * dy
+            tx = dx
+            ty = dy
+            braking = slope
+            if corrected:
+                lxx = 0.5 * (matrix[i, 0] + matrix[j, 0])
+                lxy = 0.5 * (matrix[i, 1] + matrix[j, 1])
+                lyy = 0.5 * (matrix[i, 2] + matrix[j, 2])
+                tx = lxx * dx + lxy * dy
+                ty = lxy * dx + lyy * dy
+                braking = 0.5 * (lxx + lyy) * slope
+            change += continuity(rho, volume, vx * tx + vy * ty, slope)
+            if same:
+                expected = 0.0
+                if noise == HYDROSTATIC:
+                    expected = -0.5 * (stiff_i + record[j, STIFF]) * (gx * dx + gy * dy)
+                elif noise == LINEAR:
+                    expected = -0.5 * ((slant[i, 0] + slant[j, 0]) * dx + (slant[i, 1] + slant[j, 1]) * dy)
+                spread += diffusion(rho, rho_j, expected, volume, slope, strength)
             both = rho + rho_j
-            thrust = own + record[j, PUSH]
-            thrust += artificial(alpha, beta, sound_speed, h, softening, approach, distance2, both)
-            thrust *= mass * slope
-            brake = laminar(viscosity, volume, specific, slope)
-            ax += brake * vx - thrust * dx
-            ay += brake * vy - thrust * dy
+            partner_mass = rho_j * volume
+            thrust = (own + record[j, P]) * specific * volume
+            if same:
+                thrust -= pull * partner_mass
+            thrust *= slope
+            ax -= thrust * tx
+            ay -= thrust * ty
+            damp = artificial(alpha, beta, sound, hij, softening, approach, distance2, both) * partner_mass * slope
+            brake = laminar(viscosity, volume, specific, braking)
+            bx += brake * vx - damp * dx
+            by += brake * vy - damp * dy
             if smoothing > 0.0:
-                weight = smoothing * 2.0 * mass / both * kernel_value(kind, q, h)
+                weight = smoothing * 2.0 * partner_mass / both * kernel_value(kind, q, hij)
                 sx -= weight * vx
                 sy -= weight * vy
+        given = 0.0
         for k in range(np.uint64(split[i]), np.uint64(start[i + 1])):
             j = np.uint64(partner[k])
             dx = xi - record[j, X]
@@ -96,15 +151,45 @@ def rates(
             if wraps:
                 dx = minimum_image(dx, period_x)
                 dy = minimum_image(dy, period_y)
-            slope = kernel_slope(kind, np.sqrt(dx * dx + dy * dy) * inverse, h)
-            mass = record[j, RHO] * record[j, VOLUME]
-            change += continuity(mass, (vxi - record[j, VX]) * dx + (vyi - record[j, VY]) * dy, slope)
-            thrust = (own + record[j, PUSH]) * mass * slope
-            brake = laminar(viscosity, record[j, VOLUME], specific, slope) if sticky else 0.0
-            ax += brake * (vxi - ghost[j, 0]) - thrust * dx
-            ay += brake * (vyi - ghost[j, 1]) - thrust * dy
-        acceleration[i, 0] = ax
-        acceleration[i, 1] = ay
-        rate[i] = change
+            if varied:
+                hij = 0.5 * (length[i] + length[j])
+                inverse = 1.0 / hij
+                scale = slope_scale(kind, hij)
+            slope = scale * slope_shape(kind, np.sqrt(dx * dx + dy * dy) * inverse)
+            volume = record[j, VOLUME]
+            vx = vxi - record[j, VX]
+            vy = vyi - record[j, VY]
+            ux = vxi - ghost[j, 0]
+            uy = vyi - ghost[j, 1]
+            if imaged:
+                vx, vy = image(
+                    record[j, X] + dx, record[j, Y] + dy, vx, vy, record[j, X], record[j, Y], facing[j], sticky
+                )
+                ux = vx
+                uy = vy
+            tx = dx
+            ty = dy
+            braking = slope
+            if corrected:
+                tx = matrix[i, 0] * dx + matrix[i, 1] * dy
+                ty = matrix[i, 1] * dx + matrix[i, 2] * dy
+                braking = 0.5 * (matrix[i, 0] + matrix[i, 2]) * slope
+            swept = volume * (vx * tx + vy * ty) * slope
+            change += rho * swept
+            thrust = (own + record[j, P]) * specific * volume * slope
+            brake = laminar(own_viscosity, volume, specific, braking) if sticky else 0.0
+            ax -= thrust * tx
+            ay -= thrust * ty
+            bx += brake * ux
+            by += brake * uy
+            given += specific * (own * swept - (own + record[j, P]) * volume * slope * (vxi * tx + vyi * ty))
+        if shifted:
+            change += drift[i, 0] * slant[i, 0] + drift[i, 1] * slant[i, 1]
+        acceleration[i, 0] = ax + bx + gx
+        acceleration[i, 1] = ay + by + gy
+        rate[i] = change + spread
         smoothed[i, 0] = sx
         smoothed[i, 1] = sy
+        power[i, VISCOUS] = -mass[i] * (bx * vxi + by * vyi)
+        power[i, DIFFUSIVE] = -mass[i] * own * specific * specific * spread
+        power[i, BY_WALLS] = mass[i] * given

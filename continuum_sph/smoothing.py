@@ -34,19 +34,33 @@ def kernel_value(kind, q, h):
 
 
 @inline
+def slope_scale(kind, h):
+    """The part of `kernel_slope` that depends on h alone, 1/m⁴."""
+    if kind == CUBIC:
+        return 15.0 / (14.0 * np.pi * h * h * h * h)
+    return -8.75 / (np.pi * h * h * h * h)
+
+
+@inline
+def slope_shape(kind, q):
+    """The part of `kernel_slope` that depends on q alone."""
+    if kind == CUBIC:
+        q = max(q, 1e-9)  # centres that coincide: the limit -2 is reached to 1e-9
+        outer = max(0.0, 2.0 - q)
+        inner = max(0.0, 1.0 - q)
+        return (4.0 * inner * inner - outer * outer) / q
+    rest = max(0.0, 1.0 - 0.5 * q)
+    return rest * rest * rest
+
+
+@inline
 def kernel_slope(kind, q, h):
     """(1/r) dW/dr, 1/m⁴, at q = r/h: the gradient at i is this times (x_i - x_j).  Never positive.
 
     CUBIC: 15/(7 π h⁴) {-(2-q)²/2 + 2(1-q)²}/q, brackets 0 where negative.
     WENDLAND: -35/(4 π h⁴) (1 - q/2)³, without the division.
     """
-    if kind == CUBIC:
-        q = max(q, 1e-9)  # centres that coincide: the limit -2 is reached to 1e-9
-        outer = max(0.0, 2.0 - q)
-        inner = max(0.0, 1.0 - q)
-        return 15.0 / (14.0 * np.pi * h * h * h * h) * (4.0 * inner * inner - outer * outer) / q
-    rest = max(0.0, 1.0 - 0.5 * q)
-    return -8.75 / (np.pi * h * h * h * h) * rest * rest * rest
+    return slope_scale(kind, h) * slope_shape(kind, q)
 
 
 @dataclass(frozen=True)

@@ -19,131 +19,25 @@ sees ρ*; ρ itself is never extrapolated.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.boundary import load_walls
-from continuum_sph.eos import Tait, tait
-from continuum_sph.layers import PUSH, RHO, STIFF, VOLUME, VX, VY, Layer, X, Y
+from continuum_sph.boundary_paper import facing, show_walls, wall_rates
+from continuum_sph.correction import surroundings
+from continuum_sph.density import LINEAR
+from continuum_sph.density_filter import filtered
+from continuum_sph.fluids import table
+from continuum_sph.law import RULES, Law
+from continuum_sph.layers import Layer
+from continuum_sph.motion import kick, kick_drift, pressurise
 from continuum_sph.rates import rates, split_rows
-from continuum_sph.smoothing import Smoothing
-from porescale.ground.jit import parallel_kernel, prange
+from continuum_sph.shifting import MOST, shift
 from porescale.particles import PairList
 
 Floats = NDArray[np.float64]
-
-THINNEST = 0.8  # of ρ0: least density, far below any that water at Mach 0.1 has
-RULES = ("sound", "acceleration", "viscosity")
-
-
-@parallel_kernel
-def kick_drift(
-    x, v, acceleration, smoothed, density, rate, rate_before, predicted, half, step, ratio, lower, upper
-):  # fmt: skip
-    """First half kick, drift and prediction of density for fluid particles; overwrites x, v, predicted.
-
-    v += half a;  x += step (v + smoothed);  predicted = ρ + step {D + ratio (D - D_before)}.  half, step: s;
-    lower, upper (2,) m: surfaces of the walls.  The pressure of wall particles keeps water out of walls, but spray
-    carries none: a particle that reaches a surface is put on it and loses its speed into it.  Returns how often.
-    """
-    stopped = 0
-    for i in prange(density.shape[0]):
-        for axis in range(2):
-            v[i, axis] += half * acceleration[i, axis]
-            at = x[i, axis] + step * (v[i, axis] + smoothed[i, axis])
-            if at < lower[axis]:
-                at = lower[axis]
-                v[i, axis] = max(0.0, v[i, axis])
-                stopped += 1
-            if at > upper[axis]:
-                at = upper[axis]
-                v[i, axis] = min(0.0, v[i, axis])
-                stopped += 1
-            x[i, axis] = at
-        predicted[i] = density[i] + step * (rate[i] + ratio * (rate[i] - rate_before[i]))
-    return stopped
-
-
-@parallel_kernel
-def pressurise(x, v, mass, density, density0, sound_speed, stiffness, exponent, cut, pressure, record):
-    """Pressure (Pa) of fluid particles from ``density`` (fluid,); overwrites their ``pressure`` and ``record``.
-
-    cut: pressures below that of the air count as none (particles of a free surface do not pull).
-    """
-    for i in prange(density.shape[0]):
-        rho = density[i]
-        p, speed_ratio2 = tait(rho / density0, stiffness, exponent)
-        if cut:
-            p = max(0.0, p)
-        pressure[i] = p
-        record[i, X] = x[i, 0]
-        record[i, Y] = x[i, 1]
-        record[i, VX] = v[i, 0]
-        record[i, VY] = v[i, 1]
-        record[i, RHO] = rho
-        record[i, PUSH] = p / (rho * rho)
-        record[i, VOLUME] = mass[i] / rho
-        record[i, STIFF] = rho / (sound_speed * sound_speed * speed_ratio2)
-
-
-@parallel_kernel
-def kick(v, acceleration, density, rate, half, step, least):
-    """Second half kick and density of fluid particles; overwrites ``v``, ``density``.
-
-    Continuity follows a particle that leaves its neighbours down to the density of a cloud, below zero if they were
-    crowded: densities stop at ``least`` (kg/m³).  Returns the largest |a|² (m²/s⁴) and density (kg/m³), which limit
-    the next step; maxima are exact in any order.
-    """
-    fastest = 0.0
-    densest = 0.0
-    for i in prange(density.shape[0]):
-        ax = acceleration[i, 0]
-        ay = acceleration[i, 1]
-        v[i, 0] += half * ax
-        v[i, 1] += half * ay
-        rho = max(least, density[i] + step * rate[i])
-        density[i] = rho
-        fastest = max(fastest, ax * ax + ay * ay)
-        densest = max(densest, rho)
-    return fastest, densest
-
-
-@dataclass(frozen=True)
-class Law:
-    """What the particles obey; numbers in SI.
-
-    smoothing, tait : kernel and equation of state;  gravity : (x, y) m/s²;  viscosity : μ, Pa s;
-    alpha, beta, softening : artificial viscosity;  diffusion : δ;  xsph : ε;  sticky : no-slip walls;
-    cut : no tension;  courant : the 0.25 of eq. 49.
-    """
-
-    smoothing: Smoothing
-    tait: Tait
-    gravity: tuple[float, float]
-    viscosity: float
-    alpha: float = 0.0
-    beta: float = 0.0
-    softening: float = 0.01
-    diffusion: float = 0.1
-    xsph: float = 0.0
-    sticky: bool = False
-    cut: bool = True
-    courant: float = 0.25
-
-    def limits(self, acceleration: float, densest: float) -> tuple[float, float, float]:
-        """Steps allowed by sound, acceleration (m/s²) and viscosity, s: eq. 49 with h²/ν in the third.
-
-        0.25 h/c, 0.25 √(h/|a|), 0.125 h²/ν;  c at the ``densest`` particle (kg/m³).
-        """
-        h, ratio = self.smoothing.length, densest / self.tait.density
-        sound = self.tait.sound_speed * max(ratio, 1.0) ** (0.5 * (self.tait.exponent - 1.0))
-        infinite = float("inf")
-        return (
-            self.courant * h / sound,
-            self.courant * (h / acceleration) ** 0.5 if acceleration > 0.0 else infinite,
-            0.125 * h * h * self.tait.density / self.viscosity if self.viscosity > 0.0 else infinite,
-        )
 
 
 @dataclass
@@ -151,8 +45,9 @@ class Flow:
     """A layer, its law and its pairs, moving.
 
     step : steps done;  time, next_step : s;  last_steps : lengths (s) of the last step and the one before;
-    limited : steps that each of `RULES` limited, rule : the one that limits the next;  stopped : times a particle was
-    stopped at a wall's surface, ``lower`` and ``upper`` (2,) m, infinite unless set.
+    limited : steps that each of `law.RULES` limited, rule : the one that limits the next;  stopped : times a particle
+    was stopped at a wall's surface, ``lower`` and ``upper`` (2,) m, infinite unless set;  pace : largest c/h, 1/s;
+    swiftest : largest speed, m/s.
     """
 
     layer: Layer
@@ -165,18 +60,41 @@ class Flow:
     limited: list[int] = field(default_factory=lambda: [0, 0, 0])
     rule: int = 0
     stopped: int = 0
+    pace: float = 0.0
+    swiftest: float = 0.0
 
     def __post_init__(self) -> None:
-        self.reach = np.full(self.layer.count, self.law.smoothing.length)
-        self.split = np.zeros(self.layer.count, np.int64)
+        layer, count = self.layer, self.layer.count
+        self.table = table(self.law.fluids)
+        layer.length[:] = self.law.smoothing.length
+        self.split = np.zeros(count, np.int64)
         self.lower, self.upper = np.full(2, -np.inf), np.full(2, np.inf)
+        walls = count - layer.fluid
+        self.wall_density = np.full(walls, self.law.state.density)
+        self.wall_rate, self.wall_rate_before = np.zeros(walls), np.zeros(walls)
+        # What `correction` finds, read by others only where a choice needs it.
+        self.openness, self.crowd, self.slant = np.full(count, 2.0), np.zeros((count, 2)), np.zeros((count, 2))
+        self.normalised = np.zeros(layer.fluid)
+
+    @property
+    def surveyed(self) -> bool:
+        """Whether a choice needs the moments of neighbourhoods."""
+        law = self.law
+        return law.corrected or law.shifting > 0.0 or (law.noise == LINEAR and law.diffusion > 0.0)
 
     def start(self) -> None:
         """Rates of the initial state, from which the first step goes on."""
         layer = self.layer
+        if self.law.images:
+            walls = layer.x[layer.fluid :]
+            layer.facing[layer.fluid :] = facing(walls, tuple(self.lower), tuple(self.upper))
+            self.wet_walls()
+        speeds = np.hypot(layer.v[: layer.fluid, 0], layer.v[: layer.fluid, 1])
+        self.swiftest = float(speeds.max(initial=0.0))
         layer.predicted[:] = layer.density
-        self.evaluate()
+        self.evaluate(0.0, 0.0)
         layer.rate_before[:] = layer.rate
+        self.wall_rate_before[:] = self.wall_rate
         self.finish(0.0)
         self.last_steps = (self.next_step, self.next_step)
 
@@ -186,47 +104,138 @@ class Flow:
         # Rates belong to mid-steps: distance from the last to this one over that between the last two.
         ratio = (step + self.last_steps[0]) / (self.last_steps[0] + self.last_steps[1])
         self.stopped += kick_drift(
-            layer.x, layer.v, layer.acceleration, layer.smoothed, layer.density, layer.rate, layer.rate_before,
-            layer.predicted, 0.5 * step, step, ratio, self.lower, self.upper,
+            layer.x, layer.v, layer.acceleration, layer.smoothed, layer.drift, layer.density, layer.rate,
+            layer.rate_before, layer.predicted, 0.5 * step, step, ratio, self.lower, self.upper,
         )  # fmt: skip
         layer.rate, layer.rate_before = layer.rate_before, layer.rate
-        self.evaluate()
+        self.evaluate(step, ratio)
         self.limited[self.rule] += 1
         self.finish(step)
         self.step += 1
         self.time += step
         self.last_steps = (step, self.last_steps[0])
+        if self.law.filter_every and self.step % self.law.filter_every == 0:
+            self.filter()
 
-    def evaluate(self) -> None:
-        """Accelerations and density rates at the predicted densities."""
+    def evaluate(self, step: float, ratio: float) -> None:
+        """Accelerations and density rates at the predicted densities, a ``step`` (s) on;  ratio: as in `kick_drift`."""
         layer, law, pairs = self.layer, self.law, self.pairs
-        tait_law, h, kind = law.tait, law.smoothing.length, law.smoothing.kind
-        fluid = layer.fluid
-        if pairs.update(layer.x, self.reach):
+        h, kind, fluid = law.smoothing.length, law.smoothing.kind, layer.fluid
+        if pairs.update(layer.x, layer.length):
             split_rows(fluid, pairs.start, pairs.partner, self.split)
-        pressurise(
-            layer.x, layer.v, layer.mass, layer.predicted, tait_law.density, tait_law.sound_speed,
-            tait_law.stiffness, tait_law.exponent, law.cut, layer.pressure, layer.record,
+        self.pace = float(
+            pressurise(
+                layer.x, layer.v, layer.mass, layer.predicted, layer.material, layer.length, self.table, law.cut,
+                layer.pressure, layer.record,
+            ) ** 0.5
         )  # fmt: skip
-        load_walls(
-            fluid, pairs.start, self.split, pairs.partner, layer.x, layer.v, layer.mass, layer.record,
-            layer.pressure, layer.ghost, kind, h, *law.gravity,
-            tait_law.density, tait_law.stiffness, tait_law.exponent, *pairs.period,
-        )  # fmt: skip
+        self.show_walls(step, ratio)
+        if self.surveyed:
+            surroundings(
+                fluid, pairs.start, pairs.partner, layer.record, layer.material, layer.matrix, self.openness,
+                self.crowd, self.slant, kind, h, law.spacing, *pairs.period,
+            )  # fmt: skip
         rates(
-            fluid, pairs.start, self.split, pairs.partner, layer.record, layer.ghost,
-            layer.acceleration, layer.rate, layer.smoothed,
-            kind, h, *law.gravity, law.viscosity, law.alpha, law.beta, law.softening, tait_law.sound_speed,
-            2.0 * law.diffusion * h * tait_law.sound_speed, law.sticky, law.xsph, *pairs.period,
+            fluid, pairs.start, self.split, pairs.partner, layer.record, layer.ghost, layer.facing, layer.material,
+            layer.length, layer.matrix, self.slant, layer.drift, layer.mass, self.table,
+            layer.acceleration, layer.rate, layer.smoothed, layer.power,
+            kind, h, *law.gravity, law.alpha, law.beta, law.softening, 2.0 * law.diffusion * h, law.noise,
+            law.sticky, law.images, law.xsph, law.shifting > 0.0, law.corrected, law.varied, *pairs.period,
+        )  # fmt: skip
+        if law.images:
+            self.wall_rate, self.wall_rate_before = self.wall_rate_before, self.wall_rate
+            wall_rates(
+                fluid, pairs.start, self.split, pairs.partner, layer.record, layer.facing, law.sticky,
+                self.wall_density, self.wall_rate, step, kind, h, *pairs.period,
+            )  # fmt: skip
+        if law.shifting > 0.0:
+            shift(
+                fluid, pairs.start, self.split, pairs.partner, layer.record, self.openness, self.crowd,
+                layer.drift, kind, h, 2.0 * h * law.shifting * self.swiftest, MOST * self.swiftest, *pairs.period,
+            )  # fmt: skip
+
+    def show_walls(self, step: float, ratio: float) -> None:
+        """What fluid sees of walls, a ``step`` (s) on."""
+        layer, law = self.layer, self.law
+        if law.images:
+            show_walls(
+                layer.fluid, layer.x, layer.v, layer.mass, self.wall_density, self.wall_rate, self.wall_rate_before,
+                step, ratio, self.table[0], law.cut, layer.record, layer.pressure,
+            )  # fmt: skip
+        else:
+            self.take_pressure()
+
+    def wet_walls(self) -> None:
+        """Start boundary particles with the pressure of the fluid before them: the paper starts at ρ0 everywhere."""
+        layer, law, pairs = self.layer, self.law, self.pairs
+        pairs.update(layer.x, layer.length)
+        split_rows(layer.fluid, pairs.start, pairs.partner, self.split)
+        pressurise(
+            layer.x, layer.v, layer.mass, layer.density, layer.material, layer.length, self.table, law.cut,
+            layer.pressure, layer.record,
+        )  # fmt: skip
+        self.take_pressure()
+        self.wall_density[:] = law.state.density_at(layer.pressure[layer.fluid :])
+
+    def take_pressure(self) -> None:
+        """Pressure and velocity of the fluid before walls, as their particles have it."""
+        layer, law, pairs = self.layer, self.law, self.pairs
+        load_walls(
+            layer.fluid, pairs.start, self.split, pairs.partner, layer.x, layer.v, layer.mass, layer.record,
+            layer.pressure, layer.ghost, law.smoothing.kind, law.smoothing.length, *law.gravity,
+            law.state.density, *pairs.period,
         )  # fmt: skip
 
     def finish(self, step: float) -> None:
-        """Second half of a ``step`` (s), and length of the next from the largest |a| and density."""
+        """Second half of a ``step`` (s), and length of the next from the largest |a| and c/h."""
         layer, law = self.layer, self.law
-        least = THINNEST * law.tait.density
-        fastest, densest = kick(
-            layer.v, layer.acceleration, layer.density, layer.rate, 0.5 * step, step, least
+        hardest, swiftest = kick(
+            layer.v, layer.acceleration, layer.density, layer.rate, layer.material, layer.length, self.table,
+            layer.power, layer.energy, 0.5 * step, step, law.varied,
         )  # fmt: skip
-        limits = law.limits(float(fastest) ** 0.5, float(densest))
+        self.swiftest = float(swiftest) ** 0.5
+        limits = law.limits(float(hardest) ** 0.5, self.pace)
         self.rule = int(np.argmin(limits))
         self.next_step = limits[self.rule]
+        if not 0.0 < self.next_step < np.inf:
+            raise ValueError(f"the next step would be {self.next_step} s (limited by {RULES[self.rule]})")
+
+    def filter(self) -> None:
+        """Normalise the density within each fluid, eq. 27."""
+        layer, pairs = self.layer, self.pairs
+        filtered(
+            pairs.start, self.split, pairs.partner, layer.record, layer.material, layer.mass, layer.density,
+            self.normalised, self.law.smoothing.kind, self.law.smoothing.length, *pairs.period,
+        )  # fmt: skip
+        layer.density[:] = self.normalised
+
+    def state(self) -> dict[str, Any]:
+        """Everything that later steps depend on."""
+        return {
+            "layer": self.layer.state(),
+            "walls": {"density": self.wall_density.copy(), "rate": self.wall_rate.copy(),
+                      "rate_before": self.wall_rate_before.copy()},
+            "pairs": self.pairs.state(),
+            "step": self.step,
+            "time": self.time,
+            "next_step": self.next_step,
+            "last_steps": list(self.last_steps),
+            "limited": list(self.limited),
+            "rule": self.rule,
+            "stopped": self.stopped,
+            "swiftest": self.swiftest,
+        }  # fmt: skip
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go on bit for bit from the ``state`` of a flow of the same start."""
+        self.layer.restore(state["layer"])
+        self.pairs.restore(state["pairs"])
+        split_rows(self.layer.fluid, self.pairs.start, self.pairs.partner, self.split)
+        walls = state["walls"]
+        self.wall_density[:], self.wall_rate[:] = walls["density"], walls["rate"]
+        self.wall_rate_before[:] = walls["rate_before"]
+        self.step, self.time, self.next_step = state["step"], state["time"], state["next_step"]
+        first, second = state["last_steps"]
+        self.last_steps = (first, second)
+        self.limited, self.rule = list(state["limited"]), state["rule"]
+        self.stopped, self.swiftest = state["stopped"], state["swiftest"]

@@ -8,15 +8,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.boundary import tank_walls
+from continuum_sph.density import NAMES
 from continuum_sph.eos import Tait
 from continuum_sph.exact import released_pressure
+from continuum_sph.fluids import Fluid
+from continuum_sph.law import Law
 from continuum_sph.layers import Layer
 from continuum_sph.scene.sections import Scene
 from continuum_sph.smoothing import SUPPORT, Smoothing
-from continuum_sph.step import Flow, Law
+from continuum_sph.step import Flow
 from porescale.particles import PairList, square_lattice
 
 Floats = NDArray[np.float64]
+
+
+def water_of(scene: Scene) -> Tait:
+    """The equation of state of a scene's water."""
+    return Tait(scene.water.density, scene.sound_speed, scene.water.exponent)
 
 
 def law_of(scene: Scene) -> Law:
@@ -24,15 +32,21 @@ def law_of(scene: Scene) -> Law:
     numerics, water = scene.numerics, scene.water
     return Law(
         smoothing=Smoothing(numerics.kernel, numerics.smoothing_ratio * numerics.spacing),
-        tait=Tait(water.density, scene.sound_speed, water.exponent),
+        spacing=numerics.spacing,
+        fluids=(Fluid(water_of(scene), water.viscosity),),
         gravity=(0.0, -scene.gravity),
-        viscosity=water.viscosity,
         alpha=numerics.artificial_viscosity,
         beta=numerics.artificial_viscosity_2,
         softening=numerics.softening,
         diffusion=numerics.density_diffusion,
+        noise=NAMES.index(numerics.diffusion_of),
         xsph=numerics.xsph,
+        shifting=numerics.shifting,
+        corrected=numerics.gradient == "corrected",
+        varied=numerics.smoothing_length == "evolved",
+        filter_every=numerics.density_filter,
         sticky=scene.tank.walls == "stick",
+        images=scene.tank.wall_particles == "images",
         cut=numerics.tension == "cut",
         courant=numerics.courant,
     )
@@ -45,7 +59,7 @@ def wall_layers(law: Law, spacing: float) -> int:
 
 def fluid_of(scene: Scene, law: Law) -> tuple[Floats, Floats, Floats]:
     """Positions (n, 2) m, velocities (n, 2) m/s and densities (n,) kg/m³ of the water at the start."""
-    water, spacing, tait = scene.water, scene.numerics.spacing, law.tait
+    water, spacing, tait = scene.water, scene.numerics.spacing, water_of(scene)
     positions, velocities, densities = [], [], []
     for column in water.column:
         corner = (column.left, column.bottom)
@@ -81,7 +95,7 @@ def flow_of(scene: Scene) -> Flow:
         fluid=len(x),
         x=np.concatenate((x, walls)),
         v=np.concatenate((v, np.zeros_like(walls))),
-        mass=np.concatenate((rho * area, np.full(len(walls), law.tait.density * area))),
+        mass=np.concatenate((rho * area, np.full(len(walls), law.state.density * area))),
         density=rho,
     )
     margin = layers * spacing

@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.rates import split_rows
-from continuum_sph.scene.build import flow_of
+from continuum_sph.energy import book
+from continuum_sph.law import RULES
+from continuum_sph.scene.build import flow_of, water_of
 from continuum_sph.scene.sections import Scene
-from continuum_sph.step import RULES, Flow
+from continuum_sph.step import Flow
 from porescale.ground.check import Unstable
 from porescale.runs.model import Cloud, Snapshot
 
@@ -54,7 +55,7 @@ class Simulation:
 
     def check(self) -> None:
         """Raise Unstable when water in the tank is faster than sound or too dense to mean anything."""
-        layer, tait = self.flow.layer, self.flow.law.tait
+        layer, tait = self.flow.layer, water_of(self.scene)
         inside = np.flatnonzero(self.inside())
         speed = np.hypot(layer.v[inside, 0], layer.v[inside, 1])
         ratio = layer.density[inside] / tait.density
@@ -73,20 +74,20 @@ class Simulation:
 
     def series(self) -> dict[str, float]:
         """One row: where the water is, its energies, and how the step was chosen."""
-        layer, scene, tait = self.flow.layer, self.scene, self.flow.law.tait
-        n, half = layer.fluid, 0.5 * scene.numerics.spacing
+        layer, tait = self.flow.layer, water_of(self.scene)
+        n, half = layer.fluid, 0.5 * self.scene.numerics.spacing
         x, v, mass = layer.x[:n], layer.v[:n], layer.mass[:n]
         inside = self.inside()
         at = x[inside] if inside.any() else np.zeros((1, 2))
         speed2 = (v * v).sum(axis=1)
+        energy = book(self.flow)
         return {
             "time (s)": self.time,
             "step (s)": self.flow.next_step,
             "front (m)": float(at[:, 0].max()) + half,
             "highest water (m)": float(at[:, 1].max()) + half,
             "mean height (m)": float((mass * x[:, 1]).sum() / mass.sum()),
-            "kinetic energy (J/m)": float(0.5 * (mass * speed2).sum()),
-            "potential energy (J/m)": float(scene.gravity * (mass * x[:, 1]).sum()),
+            **{f"{name} (J/m)": value for name, value in energy.items()},
             "momentum x (kg/s)": float((mass * v[:, 0]).sum()),
             "fastest (m/s)": float(np.sqrt(speed2[inside].max())) if inside.any() else 0.0,
             "densest (kg/m3)": float(layer.density.max()) if n else tait.density,
@@ -111,28 +112,9 @@ class Simulation:
 
     def state(self) -> dict[str, Any]:
         """Everything that later steps depend on."""
-        flow = self.flow
-        return {
-            "layer": flow.layer.state(),
-            "pairs": flow.pairs.state(),
-            "step": flow.step,
-            "time": flow.time,
-            "next_step": flow.next_step,
-            "last_steps": list(flow.last_steps),
-            "limited": list(flow.limited),
-            "rule": flow.rule,
-            "stopped": flow.stopped,
-        }
+        return {"flow": self.flow.state()}
 
     def restore(self, state: dict[str, Any]) -> None:
         """Go on bit for bit from a state of a model of the same scene."""
-        flow = self.flow
-        flow.layer.restore(state["layer"])
-        flow.pairs.restore(state["pairs"])
-        split_rows(flow.layer.fluid, flow.pairs.start, flow.pairs.partner, flow.split)
-        flow.step, flow.time, flow.next_step = state["step"], state["time"], state["next_step"]
-        first, second = state["last_steps"]
-        flow.last_steps = (first, second)
-        flow.limited, flow.rule = list(state["limited"]), state["rule"]
-        flow.stopped = state["stopped"]
+        self.flow.restore(state["flow"])
         self._refresh()

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from continuum_sph.scene.build import law_of, wall_layers
+from continuum_sph.law import RULES
+from continuum_sph.scene.build import law_of, wall_layers, water_of
 from continuum_sph.scene.sections import Scene
 from continuum_sph.smoothing import SUPPORT
-from continuum_sph.step import RULES
 from porescale.ground.check import Fault, InputError
 from porescale.workbench.report import Report
 
@@ -19,7 +19,7 @@ BYTES = 600  # per particle: state, record, and about 27 partners in two lists
 def report(scene: Scene) -> Report:
     """Resolution, sound, steps and cost; warns above Mach 0.1 and refuses above 0.3 (InputError)."""
     law, spacing = law_of(scene), scene.numerics.spacing
-    tait, h = law.tait, law.smoothing.length
+    tait, h, viscosity = water_of(scene), law.smoothing.length, scene.water.viscosity
     out = Report(scene.title or "water in a tank")
     water = sum(round(c.width / spacing) * round(c.height / spacing) for c in scene.water.column)
     layers = wall_layers(law, spacing)
@@ -42,10 +42,11 @@ def report(scene: Scene) -> Report:
     out.row("Mach number", mach, "", "at most 0.1 keeps density changes below 1 %")
     deepest = float(tait.settled_density(scene.head, scene.gravity)) / tait.density - 1.0  # type: ignore[arg-type]
     out.row("compression at the floor", 100.0 * deepest, "%")
-    if law.viscosity > 0.0:
-        out.row("Reynolds number", fall * scene.head * tait.density / law.viscosity)
+    if viscosity > 0.0:
+        out.row("Reynolds number", fall * scene.head * tait.density / viscosity)
     out.heading("steps")
-    limits = law.limits(2.0 * scene.gravity, tait.density * (1.0 + deepest))
+    sound = tait.sound_speed * (1.0 + deepest) ** (0.5 * (tait.exponent - 1.0))
+    limits = law.limits(2.0 * scene.gravity, sound / h)
     for rule, limit in zip(RULES, limits, strict=True):
         out.row(f"longest step for {rule}", limit, "s")
     step = min(limits)

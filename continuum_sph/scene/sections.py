@@ -28,12 +28,14 @@ def spacings(length: float, spacing: float) -> int:
 class Tank(Section):
     """A rectangular tank, lower left inner corner at the origin.
 
-    "slip" walls carry pressure only, "stick" walls hold the water as well.
+    "slip" walls carry pressure only, "stick" walls hold the water as well.  wall_particles: "pressure" take the
+    pressure of the water before them (Adami, Hu & Adams 2012), "images" are the paper's (eqs 50, 51).
     """
 
     width: float = quantity("m", ge=SMALLEST, le=LARGEST, help="inner width of the tank")
     height: float = quantity("m", ge=SMALLEST, le=LARGEST, help="inner height of the tank")
     walls: Literal["slip", "stick"] = "slip"
+    wall_particles: Literal["pressure", "images"] = "pressure"
     lid: bool = pydantic.Field(True, description="close the tank, so that no splash is lost")
 
 
@@ -64,8 +66,11 @@ class Water(Section):
 
 
 class Numerics(Section):
-    """Particles and what corrects them.  The paper: kernel cubic, smoothing_ratio 1, no density diffusion, xsph.
+    """Particles and what corrects them.  The paper: kernel cubic, smoothing_ratio 1, smoothing_length evolved (eq. 52),
+    density_filter (eq. 27), xsph, and neither density diffusion nor shifting nor corrected gradients.
 
+    diffusion_of : what the density diffusion takes for noise, the departure from "hydrostatic" density, from a "linear"
+    field, or every difference ("plain");  density_filter : steps between filters, 0 never.
     xsph moves particles with the smoothed velocity but continuity with their own: volume is lost where they differ.
     """
 
@@ -76,6 +81,11 @@ class Numerics(Section):
     artificial_viscosity_2: float = quantity("", 0.0, ge=0, le=10, help="beta of eq. 36")
     softening: float = quantity("", 0.1, ge=1e-6, le=10, help="epsilon of eq. 36")
     density_diffusion: float = quantity("", 0.1, ge=0, le=0.2, help="delta of the density diffusion")
+    diffusion_of: Literal["hydrostatic", "linear", "plain"] = "hydrostatic"
+    density_filter: int = pydantic.Field(0, ge=0, le=1_000_000, description="steps between density filters (eq. 27)")
+    gradient: Literal["plain", "corrected"] = "plain"
+    shifting: float = quantity("", 0.0, ge=0, le=4, help="strength of particle shifting, about 1")
+    smoothing_length: Literal["fixed", "evolved"] = "fixed"
     xsph: float = quantity("", 0.0, ge=0, le=1, help="epsilon of eq. 53")
     tension: Literal["cut", "kept"] = "kept"
     courant: float = quantity("", 0.25, ge=1e-3, le=0.5, help="share of the acoustic step of eq. 49")

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from continuum_sph.artificial_viscosity import artificial
 from continuum_sph.eos import Tait, tait, tait_density
 from continuum_sph.exact import couette, poiseuille, released_pressure
 from continuum_sph.scene.verify import LATTICE
 from continuum_sph.smoothing import CUBIC, WENDLAND, Smoothing, kernel_slope, kernel_value
-from continuum_sph.viscosity import artificial, laminar
+from continuum_sph.viscosity import laminar
 
 eps = np.finfo(float).eps
 

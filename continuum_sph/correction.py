@@ -1,0 +1,92 @@
+"""What the neighbourhood of a particle lacks: moments of its kernel sums, and the gradient corrected by them.
+
+M_i = Σ V_j (x_j - x_i) ⊗ ∇_i W is the unit tensor when the sums are exact; its trace is 2 inside and about 1.3 on a
+free surface.  L_i = M_i⁻¹ makes gradients of linear fields exact: Randles & Libersky, Comput. Methods Appl. Mech.
+Eng. 139 (1996) 375; Bonet & Lok, ibid. 180 (1999) 97.  A pair uses (L_i + L_j)/2 in continuity and pressure alike,
+which keeps its forces opposite and its energies in balance.  Where neighbours lie on one side only M is nearly
+singular: L goes over to the unit tensor as the smaller eigenvalue of M falls from FULL to NONE.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from continuum_sph.layers import RHO, VOLUME, X, Y
+from continuum_sph.smoothing import kernel_slope, kernel_value
+from porescale.ground.jit import inline, parallel_kernel, prange
+from porescale.particles.cells import minimum_image
+
+NONE, FULL = 0.5, 0.8  # a level surface has 0.49 in its first row and 0.90 in its second
+CLUMP = 0.2
+"""R of the shifting sum Σ {1 + R (W/W(spacing))⁴} V ∇W: Monaghan, J. Comput. Phys. 159 (2000) 290."""
+
+
+@inline
+def inverse(xx, xy, yy):
+    """xx, xy, yy of L for a moment tensor M of such components."""
+    half = 0.5 * (xx + yy)
+    least = half - np.sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy)
+    share = min(1.0, max(0.0, (least - NONE) / (FULL - NONE)))
+    if share == 0.0:
+        return 1.0, 0.0, 1.0
+    whole = share / (xx * yy - xy * xy)
+    rest = 1.0 - share
+    return whole * yy + rest, -whole * xy, whole * xx + rest
+
+
+@parallel_kernel
+def surroundings(
+    fluid, start, partner, record, material, matrix, openness, crowd, slant, kind, h, spacing, period_x, period_y
+):  # fmt: skip
+    """Overwrites, of fluid particles, ``matrix`` (n, 3), L;  ``openness`` (n,), the trace of M;  ``crowd`` (n, 2) 1/m,
+    Σ {1 + R (W/W(spacing))⁴} V ∇W, which points away from where particles crowd;  ``slant`` (n, 2) kg/m⁴, gradient of
+    density within the material, exact for linear fields.
+
+    start, partner: full list;  record: see Layer;  kind, h: smoothing;  spacing of the particles, m;  periods, m or 0.
+    """
+    inverse_h = 1.0 / h
+    whole = 1.0 / kernel_value(kind, spacing * inverse_h, h)
+    for i in prange(fluid):
+        xx = 0.0
+        xy = 0.0
+        yy = 0.0
+        oxx = 0.0
+        oxy = 0.0
+        oyy = 0.0
+        cx = 0.0
+        cy = 0.0
+        rx = 0.0
+        ry = 0.0
+        for k in range(np.uint64(start[i]), np.uint64(start[i + 1])):
+            j = np.uint64(partner[k])
+            dx = minimum_image(record[i, X] - record[j, X], period_x)
+            dy = minimum_image(record[i, Y] - record[j, Y], period_y)
+            q = np.sqrt(dx * dx + dy * dy) * inverse_h
+            part = record[j, VOLUME] * kernel_slope(kind, q, h)
+            px = part * dx
+            py = part * dy
+            xx -= px * dx
+            xy -= px * dy
+            yy -= py * dy
+            ratio = kernel_value(kind, q, h) * whole
+            ratio *= ratio
+            weight = 1.0 + CLUMP * ratio * ratio
+            cx += weight * px
+            cy += weight * py
+            if j < fluid and material[j] == material[i]:
+                oxx -= px * dx
+                oxy -= px * dy
+                oyy -= py * dy
+                step = record[j, RHO] - record[i, RHO]
+                rx += step * px
+                ry += step * py
+        lxx, lxy, lyy = inverse(xx, xy, yy)
+        matrix[i, 0] = lxx
+        matrix[i, 1] = lxy
+        matrix[i, 2] = lyy
+        openness[i] = xx + yy
+        crowd[i, 0] = cx
+        crowd[i, 1] = cy
+        lxx, lxy, lyy = inverse(oxx, oxy, oyy)
+        slant[i, 0] = lxx * rx + lxy * ry
+        slant[i, 1] = lxy * rx + lyy * ry

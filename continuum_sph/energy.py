@@ -1,0 +1,43 @@
+"""The energies of a flow and what became of them: a book that closes.
+
+kinetic + potential + compressive + heat (viscosity) + diffused (density diffusion) - work of walls stays what it was,
+but for the steps in time, for particles stopped at a wall's surface or held at the least density, and for what moves
+particles otherwise than with their velocity (XSPH, shifting) or changes densities otherwise than by continuity
+(filter).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from continuum_sph.layers import BY_WALLS, DIFFUSIVE, VISCOUS
+from continuum_sph.step import Flow
+
+
+def book(flow: Flow) -> dict[str, float]:
+    """Energies in J per metre of depth, by name; "total energy" is what flow and water hold, "energy balance" adds what
+    was turned over."""
+    layer, law = flow.layer, flow.law
+    n = layer.fluid
+    mass, v, x = layer.mass[:n], layer.v[:n], layer.x[:n]
+    kinetic = 0.5 * float((mass * (v * v).sum(axis=1)).sum())
+    potential = -float((mass * (x @ np.array(law.gravity))).sum())
+    compressive = 0.0
+    for number, fluid in enumerate(law.fluids):
+        own = layer.material[:n] == number
+        density = layer.density[own]
+        if law.cut:
+            density = np.maximum(density, fluid.state.density)
+        compressive += float((mass[own] * fluid.state.energy(density)).sum())
+    turned = layer.energy.sum(axis=0)
+    total = kinetic + potential + compressive
+    return {
+        "kinetic energy": kinetic,
+        "potential energy": potential,
+        "compressive energy": compressive,
+        "heat of viscosity": float(turned[VISCOUS]),
+        "energy diffused": float(turned[DIFFUSIVE]),
+        "work of walls": float(turned[BY_WALLS]),
+        "total energy": total,
+        "energy balance": total + float(turned[VISCOUS] + turned[DIFFUSIVE] - turned[BY_WALLS]),
+    }

@@ -1,0 +1,66 @@
+"""What the particles of a flow obey, in numbers, and the steps that it allows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from continuum_sph.eos import Gas, Tait
+from continuum_sph.fluids import Fluid
+from continuum_sph.smoothing import Smoothing
+
+RULES = ("sound", "acceleration", "viscosity")
+
+
+@dataclass(frozen=True)
+class Law:
+    """What the particles obey; numbers in SI.
+
+    smoothing : kernel and h;  spacing : of the particles, m;  fluids : by the numbers that particles carry;
+    gravity : (x, y) m/s²;  alpha, beta, softening : artificial viscosity;  diffusion : δ, and noise, what it takes for
+    noise (`density.NAMES`);  xsph : ε;  shifting : s;  corrected : gradients of `correction`;  varied : h follows
+    density (eq. 52);  filter_every : steps between filters of density (eq. 27), 0 never;  sticky : no-slip walls;
+    images : walls of the paper (eqs 50, 51), else walls that take the pressure from the fluid;  cut : no tension;
+    courant : the 0.25 of eq. 49.
+    """
+
+    smoothing: Smoothing
+    spacing: float
+    fluids: tuple[Fluid, ...]
+    gravity: tuple[float, float]
+    alpha: float = 0.0
+    beta: float = 0.0
+    softening: float = 0.01
+    diffusion: float = 0.1
+    noise: int = 1
+    xsph: float = 0.0
+    shifting: float = 0.0
+    corrected: bool = False
+    varied: bool = False
+    filter_every: int = 0
+    sticky: bool = False
+    images: bool = False
+    cut: bool = True
+    courant: float = 0.25
+
+    @property
+    def state(self) -> Tait | Gas:
+        """State law of the first fluid."""
+        return self.fluids[0].state
+
+    @property
+    def quickest(self) -> float:
+        """Largest speed of sound of the fluids at rest, m/s."""
+        return max(fluid.state.sound_speed for fluid in self.fluids)
+
+    def limits(self, acceleration: float, pace: float) -> tuple[float, float, float]:
+        """Steps allowed by sound, acceleration (m/s²) and viscosity, s: eq. 49 with h²/ν in the third.
+
+        0.25/max(c/h), 0.25 √(h/|a|), 0.125 h²/ν;  ``pace``: the largest c/h, 1/s.
+        """
+        h, infinite = self.smoothing.length, float("inf")
+        thickest = max(fluid.viscosity / fluid.state.density for fluid in self.fluids)
+        return (
+            self.courant / pace if pace > 0.0 else infinite,
+            self.courant * (h / acceleration) ** 0.5 if acceleration > 0.0 else infinite,
+            0.125 * h * h / thickest if thickest > 0.0 else infinite,
+        )

@@ -1,0 +1,10 @@
+"""All rows of ``continuum-sph verify``."""
+
+from __future__ import annotations
+
+from continuum_sph.scene import verify, verify_flows
+from porescale.workbench.validations import Validations
+
+VALIDATIONS = Validations()
+for room in (verify, verify_flows):
+    VALIDATIONS.include(room.VALIDATIONS)

@@ -1,0 +1,64 @@
+"""Shifting: particles drift from where they crowd to where they are rare, which keeps them evenly spread.
+
+δu_i = -2 h s U Σ {1 + R (W/W(spacing))⁴} V_j ∇_i W, at most a quarter of U, the speed of the fastest particle; s is 1
+to 2.  Density changes by δu · ∇ρ, so that it stays that of the place (Sun et al., Comput. Methods Appl. Mech. Eng. 348
+(2019) 912); velocity does not, which keeps momentum.  Without shifting particles line up along streamlines and leave
+gaps, the more so with corrected gradients, which push them apart less.  Source: Lind et al., J. Comput. Phys. 231
+(2012) 1499; Sun et al., Comput. Methods Appl. Mech. Eng. 315 (2017) 25 (δ⁺-SPH).
+
+A free surface is one-sided by nature and must not be filled: its particles (trace of M below OPEN) stay, and those that
+see one move along the surface only, its normal being where the trace falls steepest.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from continuum_sph.layers import VOLUME, X, Y
+from continuum_sph.smoothing import kernel_slope
+from porescale.ground.jit import parallel_kernel, prange
+from porescale.particles.cells import minimum_image
+
+OPEN = 1.5  # trace of M: 1.95 on a lattice, 1.2 in the outermost row of a level surface, 0.9 in a corner
+MOST = 0.25  # of U
+
+
+@parallel_kernel
+def shift(
+    fluid, start, split, partner, record, openness, crowd, drift, kind, h, strength, most, period_x, period_y
+):  # fmt: skip
+    """Overwrites ``drift`` (fluid, 2) m/s, the shifting velocity.
+
+    start, split, partner: full list, walls from ``split[i]`` on;  openness, crowd: of `surroundings`;
+    strength 2 h s U, m²/s;  most: longest shifting velocity, m/s;  kind, h: smoothing;  periods, m or 0.
+    """
+    for i in prange(fluid):
+        drift[i, 0] = 0.0
+        drift[i, 1] = 0.0
+        if openness[i] < OPEN:
+            continue
+        ux = -strength * crowd[i, 0]
+        uy = -strength * crowd[i, 1]
+        near = False
+        nx = 0.0
+        ny = 0.0
+        for k in range(np.uint64(start[i]), np.uint64(split[i])):
+            j = np.uint64(partner[k])
+            dx = minimum_image(record[i, X] - record[j, X], period_x)
+            dy = minimum_image(record[i, Y] - record[j, Y], period_y)
+            q = np.sqrt(dx * dx + dy * dy) / h
+            if q >= 2.0:
+                continue
+            part = record[j, VOLUME] * kernel_slope(kind, q, h) * (openness[j] - openness[i])
+            nx += part * dx
+            ny += part * dy
+            near = near or openness[j] < OPEN
+        length = nx * nx + ny * ny
+        if near and length > 0.0:
+            along = (ux * nx + uy * ny) / length
+            ux -= along * nx
+            uy -= along * ny
+        size = np.sqrt(ux * ux + uy * uy)
+        scale = most / size if size > most else 1.0
+        drift[i, 0] = scale * ux
+        drift[i, 1] = scale * uy
