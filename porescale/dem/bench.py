@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from porescale.dem import bench_segments
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import Discs, make_discs
 from porescale.dem.settle import Pile, come_to_rest, prepare, weights_of
@@ -16,6 +17,7 @@ from porescale.ground.constants import GRAVITY
 from porescale.workbench.benchmarks import Benchmarks, Dtype, Work
 
 BENCHMARKS = Benchmarks()
+BENCHMARKS.include(bench_segments.BENCHMARKS)
 
 SIZE = 10_000  # discs
 TILE = 1000  # most discs that are settled; larger piles are rows of copies, which must settle at their ends only

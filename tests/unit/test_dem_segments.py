@@ -7,7 +7,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from porescale.dem import measure, segments
+from porescale.dem import bench_segments, measure, segments
 from porescale.dem.bonds import bond
 from porescale.dem.cell import Still
 from porescale.dem.contact.hertz import Hertz
@@ -291,3 +291,15 @@ def test_sharper_frames_need_shorter_steps():
     square, needle = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 0), (1, 0), (1, 0.1), (0, 0.1)]
     steps = [framed(None, [polygon(each, 0.01, 10.0)], LAW, BOX).stable_step() for each in (square, needle)]
     assert steps[1] < 0.5 * steps[0]
+
+
+def test_hexagons_of_the_benchmark_touch_six_neighbours_with_their_sides():
+    grains = bench_segments.hexagons(9)
+    law = bench_segments.LAW
+    pressed = bench_segments.PRESSED * (2.0 * bench_segments.RADIUS * np.sqrt(0.75) + 2.0 * bench_segments.THICKNESS)
+    loads = forces_of(grains)
+    # The one in the middle is pressed from all sides alike, by as much as makes round-off of its forces.
+    np.testing.assert_allclose(loads[4, :2], 0.0, atol=1e-9 * law.stiffness * pressed)
+    # Corners that face each other count once: two for each of 16 pairs of neighbours.
+    each = 0.5 * law.stiffness * pressed**2
+    assert measure.elastic_energy(grains) == pytest.approx(16 * 2 * each, rel=1e-9)
