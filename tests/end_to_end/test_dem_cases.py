@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import math
 import re
 import sys
 from dataclasses import replace
@@ -172,3 +173,102 @@ def test_run_out_as_in_experiments_or_in_proportion_to_height_does_not():
         "squat: run-out over a", "tall: run-out over a^0.7",
     }  # fmt: skip
     assert "tall: exponent" in made(lambda a: 2.0 * a)
+
+
+def test_a_clump_weighs_what_its_union_weighs_and_bounces_as_a_rigid_body():
+    case = script("clump")
+    numbers = {row["name"]: row["value"] for row in expected(CASES / "clump")}
+    found = case.mass_properties(case.clump()[0]) | case.impact()
+    assert missed(CASES / "clump", numbers | found) == []
+    # The twins that must fail: discs that are added up where they overlap, and a body that does not turn.
+    whole = math.pi * (case.LARGE**2 + case.SMALL**2) / case.by_strips()[0]
+    assert missed(CASES / "clump", numbers | {"mass over that of the union": whole}) == ["mass over that of the union"]
+    speed, made = math.sqrt(2.0 * case.GRAVITY * (0.05 - case.LARGE)), 0.7039
+    name = "upward speed over that of a rigid body"
+    assert missed(CASES / "clump", numbers | {name: speed / made}) == [name]
+
+
+@pytest.mark.slow
+def test_a_clump_keeps_its_energy_and_comes_to_rest_on_both_discs():
+    numbers, _ = script("clump").measure()
+    assert missed(CASES / "clump", numbers) == []
+
+
+def test_a_small_dense_specimen_opens_between_sides_that_bear_their_stress():
+    case = script("biaxial_compression")
+    rough, smooth = (case.compress("dense", 1, friction, 100, strain=0.03) for friction in (0.5, 0.0))
+    assert abs(rough.side[rough.strain > 0.005].mean() - 1.0) < 0.02  # ten contacts a side, swings of a tenth
+    assert rough.volume[-1] > 0.002
+    assert case.smooth(rough).max() > 1.5 * case.smooth(smooth).max()  # 24 and 9 degrees in large specimens
+    assert rough.inertial < 1e-3
+
+
+@pytest.mark.slow
+def test_dense_and_loose_specimens_come_to_one_critical_state_between_walls():
+    case = script("biaxial_compression")
+    numbers, _ = case.measure()
+    assert missed(CASES / "biaxial_compression", numbers) == []
+
+
+@pytest.mark.slow
+def test_specimens_without_friction_or_not_yet_critical_do_not(monkeypatch):
+    # The twins that must fail: without friction 6 degrees are left; and means that begin at the start of the test.
+    case = script("biaxial_compression")
+    smooth = case.numbers_of({state: [case.compress(state, 1, friction=0.0)] for state in case.STATES})
+    off = set(missed(CASES / "biaxial_compression", smooth))
+    assert off >= {"dense: peak friction angle", "dense: critical friction angle", "loose: critical friction angle"}
+    rough = {state: [case.compress(state, 1)] for state in case.STATES}
+    assert "critical solid fraction, dense less loose" not in missed(
+        CASES / "biaxial_compression", case.numbers_of(rough)
+    )
+    monkeypatch.setattr(case, "CRITICAL", 0.0)
+    assert "critical solid fraction, dense less loose" in missed(CASES / "biaxial_compression", case.numbers_of(rough))
+
+
+def test_a_small_dense_cell_opens_as_it_is_sheared():
+    case = script("simple_shear")
+    found = case.sheared("dense", 1, 0.5, 100, shear=0.06)
+    assert abs(found.across.mean() - 1.0) < 0.01
+    assert found.fraction[-1] < found.fraction[0] - 0.002
+    assert case.running(found, found.ratio).max() > 0.3
+    assert found.inertial < 1e-3
+
+
+@pytest.mark.slow
+def test_dense_and_loose_cells_come_to_one_critical_state_without_walls():
+    numbers, _ = script("simple_shear").measure()
+    assert missed(CASES / "simple_shear", numbers) == []
+
+
+@pytest.mark.slow
+def test_cells_without_friction_do_not_come_to_that_state():
+    # The twin that must fail: they shear at a tenth of the stress, as densely as they were packed.
+    case = script("simple_shear")
+    numbers = case.numbers_of({state: [case.sheared(state, 1, 0.0, shear=1.0)] for state in case.STATES})
+    off = set(missed(CASES / "simple_shear", numbers))
+    assert off >= {"dense: critical stress ratio", "dense: critical solid fraction", "loose: critical stress ratio"}
+
+
+def test_grains_eight_times_as_large_do_the_same_to_the_bit(monkeypatch):
+    case = script("grain_size")
+    monkeypatch.setattr(case, "SHEAR", 0.01)
+    small, large = case.element(1.0), case.element(8.0)
+    np.testing.assert_array_equal(small[1], large[1])
+    monkeypatch.setattr(case, "RATE", 4.0 * case.RATE)  # the twin that must fail: another inertial number
+    assert np.abs(case.element(8.0)[1] - large[1]).max() > 1e-3
+
+
+@pytest.mark.slow
+def test_a_shear_box_of_few_grains_is_stronger_than_one_of_many():
+    numbers, _ = script("grain_size").measure()
+    assert missed(CASES / "grain_size", numbers) == []
+
+
+def test_a_strength_that_knows_no_grain_size_does_not():
+    # The twin that must fail: the long box's strength at every size.
+    case = script("grain_size")
+    travel, none = np.linspace(0.0, 0.1, 50), np.zeros(0)
+    same = case.Shearing(travel, np.where(travel < 0.05, 0.661, 0.368), *(none,) * 4)
+    off = missed(CASES / "grain_size", case.strengths({n: [same] for n in case.ACROSS}) | {
+        "largest difference of stress ratios, grains eight times as large": 0.0})  # fmt: skip
+    assert off == ["peak, short boxes less long", "residual, short boxes less long"]
