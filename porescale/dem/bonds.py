@@ -130,6 +130,17 @@ def pressing(position, radius, ends, mass, segments, law, cell, back):
             back[k] = weight * stiffness(overlap, reduced, both, p, law)[0]
 
 
+@kernel
+def touched(position, ends, segments, cell, way, far, other):
+    """Where bonds ``ends`` (m, 3) touch: overwrites way (m, 2) m, from the first disc to the touched point, other (m,),
+    the disc there or at the first end of the segment there, and far (m, 2) m, from that disc to the point.
+    """
+    for k in range(ends.shape[0]):
+        dx, dy, a, share, b = way_between(ends, k, position, segments, cell)
+        way[k, 0], way[k, 1], other[k] = dx, dy, a
+        far[k, 0], far[k, 1] = share * (position[b, 0] - position[a, 0]), share * (position[b, 1] - position[a, 1])
+
+
 class BondList:
     """m bonds, broken ones included, in the order in which they were made.
 

@@ -41,13 +41,14 @@ MOVING = ("position", "angle", "velocity", "spin", "arm", "force", "torque", "he
 class Body:
     """Mass kg/m, centroid (m) and moment of inertia about it (kg m^2/m) given by hand.
 
-    frame : the members are the corners of a frame of segments, and may be points.
+    frame : the members are the corners of a frame of segments, and may be points;  area : m^2, None: of the union.
     """
 
     mass: float
     centroid: tuple[float, float]
     inertia: float
     frame: bool = False
+    area: float | None = None
 
 
 class Clumps:
@@ -85,6 +86,7 @@ class Clumps:
         self.offset = np.zeros((len(self.member), 2))
         self.force, self.torque = np.zeros((count, 2)), np.zeros(count)
         self.held, self.withheld = np.zeros((count, 3), np.uint8), np.zeros((count, 3))
+        self._areas = [None if body is None else body.area for body in bodies or [None] * count]
         heavy = np.broadcast_to(np.asarray(density, float), (count,))
         for c in range(count):
             self._weigh(c, discs, float(heavy[c]), bodies[c] if len(bodies) else None)
@@ -106,11 +108,12 @@ class Clumps:
 
     @cached_property
     def area(self) -> Array:
-        """Area of the union of each clump's discs, (b,) m^2; of points none."""
-        parts = [slice(*self.start[c : c + 2]) for c in range(self.count)]
-        return np.array([
-            outline(self.offset[own], self.radius[own]).area if self.radius[own].any() else 0.0 for own in parts
-        ])  # fmt: skip
+        """Area of each clump, (b,) m^2: as given, or of the union of its discs; of points none."""
+        found = np.zeros(self.count)
+        for c, given in enumerate(self._areas):
+            own = slice(*self.start[c : c + 2])
+            found[c] = given or (outline(self.offset[own], self.radius[own]).area if self.radius[own].any() else 0.0)
+        return found
 
     def discs_of(self, clump: int) -> NDArray[np.int64]:
         """Numbers of the discs of ``clump``."""

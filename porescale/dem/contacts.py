@@ -1,4 +1,4 @@
-"""Every contact of a system with its force: between discs, and of discs with walls, plates and rectangles.
+"""Every contact of a system with its force: between discs, and of discs with walls, plates, rectangles, segments.
 
 Forces are not computed by formulas of their own: each contact is handed alone to the kernel that the step uses, with
 copies of what it carries.  So the list says what the next contact step will use, to the bit, springs included; a
@@ -31,7 +31,8 @@ NOBODY = -1
 
 @dataclass(frozen=True)
 class Contacts:
-    """c contacts, pairs first in the order of the pair list, then walls, plates and rectangles; SI per metre of depth.
+    """c contacts, pairs first in the order of the pair list, then walls, plates and rectangles, then segments and bonds
+    (contacts_segments.py); SI per metre of depth.
 
     first (c,) disc i;  second (c,) disc j, or -1 at a surface;  surface (c,) index into ``names``, or -1 for a pair;
     point (c, 2) m, where both bodies feel the force, beside disc i (a periodic image of it may lie elsewhere);
@@ -101,6 +102,11 @@ def contacts(grains: Grains) -> Contacts:
         surfaces = kind(grains)
         parts += [_surface(grains, first + w, *each) for w, each in enumerate(surfaces)]
         first += len(surfaces)
+    if grains.segments is not None or grains.bonds is not None:
+        from porescale.dem.contacts_segments import bond_contacts, segment_contacts
+
+        parts += [] if grains.segments is None else segment_contacts(grains, grains.segments)
+        parts += [] if grains.bonds is None else [bond_contacts(grains, grains.bonds)]
     joined = {
         it.name: np.concatenate([getattr(part, it.name) for part in parts])
         for it in fields(Contacts)
@@ -145,7 +151,7 @@ def _pairs(grains: Grains) -> Contacts:
     distance = np.hypot(*apart.T)
     normal = apart / distance[:, None]
     arm = 0.5 * (distance + (d.radius[i] ** 2 - d.radius[j] ** 2) / distance)
-    return _listed(
+    return listed(
         i, j, np.full(count, NOBODY), d.position[i] + arm[:, None] * normal, normal, d.position[i], apart,
         d.radius[i] + d.radius[j] - distance, force[1::2], torque.reshape(-1, 2), carried[:, 0],
         grains.contact.table[_material(grains, i), _material(grains, j), MU],
@@ -167,7 +173,7 @@ def _surface(grains: Grains, number: int, nearest: Array, distance: Array, force
     # From inside of a rectangle the surface is behind the disc: the normal points away from it.
     normal = np.where(depth[:, None] > 0.0, 1.0, -1.0) * branch / np.where(depth == 0.0, 1.0, np.abs(depth))[:, None]
     count = len(i)
-    return _listed(
+    return listed(
         i, np.full(count, NOBODY), np.full(count, number), nearest[i], normal, d.position[i], branch,
         d.radius[i] - depth, -force, np.column_stack((torque, np.zeros(count))), spring, friction[_material(grains, i)],
     )  # fmt: skip
@@ -234,7 +240,7 @@ def _single(grains: Grains, kernel: Any, table: Array, laws: Array, spring: Arra
     return forces
 
 
-def _listed(
+def listed(
     first: Index, second: Index, surface: Index, point: Array, normal: Array, start: Array, branch: Array,
     overlap: Array, force: Array, torque: Array, spring: Array, friction: Array,
 ) -> Contacts:  # fmt: skip

@@ -114,7 +114,7 @@ class Frame:
             ends = np.array(self.ends)
             width = 2.0 * self.thickness if self.width is None else self.width
             area, centroid, second = rod_moments(at[ends[:, 0]], at[ends[:, 1]], width)
-        return Body(self.density * area, (float(centroid[0]), float(centroid[1])), self.density * second, True)
+        return Body(self.density * area, (float(centroid[0]), float(centroid[1])), self.density * second, True, area)
 
 
 def polygon(corners: ArrayLike, thickness: float, density: float, **more: Any) -> Frame:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.dem import bonds
+from porescale.dem import bench_segments, bonds
 from porescale.dem.bonds import bond
 from porescale.dem.contact.linear import Linear
+from porescale.dem.contacts import contacts
 from porescale.dem.control import Moved
 from porescale.dem.discs import make_discs
 from porescale.dem.energy import energy_book
@@ -166,3 +167,27 @@ def test_a_cell_with_bonds_cannot_be_strained():
 def test_frames_that_do_not_touch_are_not_bonded():
     grains = framed(None, [regular(4, (0.0, 0.0)), regular(5, (0.05, 0.0))], LAW, BOX)
     assert bond(grains, [Clump(0), Clump(1)]) == 0
+
+
+@pytest.mark.parametrize("what", ["outline", "each", "hexagons"])
+def test_the_list_of_contacts_has_segments_corners_and_bonds_and_sums_to_the_forces(what):
+    if what == "hexagons":
+        grains = bench_segments.hexagons(9)
+        grains.steering.clumps.spin[:] = np.linspace(-30.0, 30.0, 9)
+        grains.step(1e-7, count=20)
+    else:
+        grains = mixed_cloud(0.5, pace=1.0, rule=what)
+        grains.step(5e-6, count=3000)
+    bond(grains)
+    dt = grains.last_dt
+    grains.step(dt, count=20)
+    found = contacts(grains)
+    force, torque = found.resultants(grains.discs.count)
+    grains.step(dt)
+    assert len(found.first) > (60 if what == "hexagons" else 3)
+    assert (found.normal_force < 0.0).any()
+    assert (found.spring != 0.0).any()
+    # Sums of the same forces in another order.
+    scale = np.abs(grains.discs.force).max()
+    np.testing.assert_allclose(force, grains.discs.force, rtol=0, atol=1e-13 * scale)
+    np.testing.assert_allclose(torque, grains.discs.torque, rtol=0, atol=1e-13 * scale * R)
