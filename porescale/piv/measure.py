@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,9 +27,9 @@ class Settings:
 
     window : px, of the last pass, even;  overlap : of neighbouring windows, 0 to below 1;  search : px, largest
     displacement that the first pass looks for;  updates : Gauss-Newton updates after the last correlation;  width :
-    half-width of their bell, over the window (8 px at least);  noise, slack : residuals from which a pixel counts for less, over the
-    pictures' noise, and in px of displacement;  curved : paths bend as in a steady flow;  smooth : by cross-validation
-    at the end;  least_correlation : below it, alone or in the median around, a vector is invalid.
+    half-width of their bell, over the window (8 px at least);  noise, slack : residuals from which a pixel counts for
+    less, over the pictures' noise, and in px of displacement;  curved : paths bend as in a steady flow;  smooth : by
+    cross-validation at the end;  least_correlation : below it, alone or in the median around, a vector is invalid.
     """
 
     window: int = 16
@@ -100,7 +100,8 @@ def measure(
     masks = solid if isinstance(solid, tuple) else (solid, solid)
     refuse(first, second, masks, settings)
     reach = 2 * max(16, settings.window)
-    return measure_ready([(ready(first, masks[0], reach), ready(second, masks[1], reach))], masks, settings)
+    pair = ready(first, masks[0], reach), ready(second, masks[1], reach)
+    return measure_ready([pair], (first.shape[0], first.shape[1]), masks, settings)
 
 
 def refuse(first: NDArray[Any], second: NDArray[Any], masks: Sequence[Flags | None], settings: Settings) -> None:
@@ -120,9 +121,13 @@ def refuse(first: NDArray[Any], second: NDArray[Any], masks: Sequence[Flags | No
             raise InputError(Fault("pictures", None, f"no tracers: every pixel of the fluid is {seen.flat[0]}"))
 
 
-def measure_ready(pairs: Sequence[tuple[Ready, Ready]], masks: Sequence[Flags | None], settings: Settings) -> Vectors:
-    """Displacements of prepared pairs of one steady flow.  masks : solids of both pictures, for the flag ``solid``."""
-    size = (pairs[0][0].fluid.shape[0], pairs[0][0].fluid.shape[1])
+def measure_ready(
+    pairs: Iterable[tuple[Ready, Ready]], size: tuple[int, int], masks: Sequence[Flags | None], settings: Settings
+) -> Vectors:
+    """Displacements of prepared pairs of one steady flow, which are gone through once for every pass.
+
+    size : rows, columns;  masks : solids, for the flag ``solid``.
+    """
     grid, u, v = _coarse(pairs, size, settings)
     window = FIRST // 2
     while True:

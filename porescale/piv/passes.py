@@ -115,7 +115,8 @@ def _thinned(way: tuple[Single, Single]) -> tuple[Single, Single]:
     """Displacements for a picture of half the resolution: every second one, half as long."""
     rows, columns = way[0].shape
     thin = slice(0, rows // 2 * 2, 2), slice(0, columns // 2 * 2, 2)
-    return np.asarray(0.5 * way[0][thin], np.float32), np.asarray(0.5 * way[1][thin], np.float32)
+    half = np.float32(0.5)
+    return np.asarray(half * way[0][thin], np.float32), np.asarray(half * way[1][thin], np.float32)
 
 
 def bell(reach: float) -> Single:

@@ -2,9 +2,9 @@
 
 Penalised least squares, sum (z - y)^2 + s sum |second differences of z|^2, natural at the edges, so that planes are
 left as they are (Whittaker 1923; Eilers & Marx 2003); s by generalised cross-validation (Craven & Wahba 1979, Numer.
-Math. 31, 377), as Garcia 2011 (Exp. Fluids 50, 1247) smooths displacements.  Where windows overlap by more than half, errors of neighbours are
-alike, and plain cross-validation takes them for flow: the trace then counts for several (Lukas 2006, Inverse Problems
-22, 1883).
+Math. 31, 377), as Garcia 2011 (Exp. Fluids 50, 1247) smooths displacements.  Where windows overlap by more than half,
+errors of neighbours are alike, and plain cross-validation takes them for flow: the trace then counts for several
+(Lukas 2006, Inverse Problems 22, 1883).
 """
 
 from __future__ import annotations
