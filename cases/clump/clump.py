@@ -23,13 +23,17 @@ SCENE = HERE / "clump.toml"
 LARGE, SMALL, ACROSS, UP, DENSITY, GRAVITY = 0.02, 0.01, 0.02, 0.01, 2500.0, 9.8  # m, kg/m³, m/s²
 APART = math.hypot(ACROSS, UP)  # m between the centres
 STEP, LASTS = 5e-5, 1.0  # s
-RIGID, FINE = 1e4, 0.1  # times the stiffness, where a contact is to last next to nothing; times the step, there
+RIGID, FINE = 1e4, 0.25  # times the stiffness, where a contact is to last next to nothing; times the step, there
 
 
-def clump(stiffer: float = 1.0, step: float = STEP, **contact: float) -> tuple[Grains, Array]:
-    """The scene's clump with ``stiffer`` contacts, its ``step`` (s) and other keys of [contact]; its weights (n, 2)."""
+def clump(
+    stiffer: float = 1.0, step: float = STEP, *, book: bool = False, **contact: float
+) -> tuple[Grains, Array]:  # fmt: skip
+    """The scene's clump with ``stiffer`` contacts, its ``step`` (s) and other keys of [contact], and with or without
+    an energy book; its weights (n, 2)."""
     told = {"stiffness": 1e7 * stiffer, "step": step, **contact}
-    simulation = build(load(SCENE, settings=[f"contact.{key}={value!r}" for key, value in told.items()]))
+    settings = [f"contact.{key}={value!r}" for key, value in told.items()]
+    simulation = build(load(SCENE, settings=[*settings, f"output.energy={str(book).lower()}"]))
     assert simulation.grains
     assert simulation.weight is not None
     return simulation.grains, simulation.weight
@@ -135,7 +139,7 @@ def measure() -> tuple[dict[str, float], Figure]:
 def draw() -> Figure:
     """Where the clump is, and its energies over time, at the tutorial's step."""
     figure, axes = stage(3, 12.0, 3.4)
-    grains, weight = clump()
+    grains, weight = clump(book=True)
     c, d = grains.steering.clumps, grains.discs
     time, book, spins, colours = [], [], [], ("#8c1c2f", "#d9833c", "#2a6f97", "#3b352b")
     for k in range(round(LASTS / STEP) // 10):
