@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from cyclopts import App
+
 import porescale
-from porescale.app import bench, check, new, run, show, study, verify
+from porescale.app import bench, check, new, piv, run, show, study, verify
 from porescale.workbench import application
 from porescale.workbench.package import Package
 
@@ -23,6 +25,13 @@ PACKAGE = Package(
 )
 
 
+def commands() -> App:
+    """All commands: those that every package has, and `piv`."""
+    app = application.application(PACKAGE)
+    app.command(piv.command())
+    return app
+
+
 def main() -> int:
     """Run ``porescale`` with the arguments of the process; returns the exit code."""
-    return application.main(application.application(PACKAGE))
+    return application.main(commands())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -106,7 +106,11 @@ def write_csv(field: Field, path: Path) -> None:
 
 
 def write_openpiv(field: Field, path: Path) -> None:
-    """OpenPIV's text format: tab-separated x, y, u, v, flags, mask; zeros in solids (openpiv.tools.save)."""
+    """OpenPIV's text format: tab-separated x, y, u, v, flags, mask, y and v upwards; zeros in solids.
+
+    Pixels are turned as OpenPIV does (openpiv.tools.transform_coordinates): the rows' y in reverse order.
+    """
+    field = field if field.upwards else _turned(field)
     x, y = np.meshgrid(field.x, field.y)
     flags = (~field.valid & ~field.solid).astype(float)
     u, v = (np.where(field.solid, 0.0, it) for it in (field.u, field.v))
@@ -116,11 +120,16 @@ def write_openpiv(field: Field, path: Path) -> None:
     write_text(path, text.getvalue())
 
 
-def read(path: Path, *, upwards: bool | None = None) -> Field:
+def _turned(field: Field) -> Field:
+    """The same field with y counted the other way on the same grid; done twice it is as it was."""
+    return replace(field, y=field.y[::-1].copy(), v=-field.v, upwards=not field.upwards)
+
+
+def read(path: Path) -> Field:
     """A field from our CSV or OpenPIV's text, told apart by their first line.
 
-    upwards : whether y points up; None: rows whose y falls do.  InputError for files that are neither, or whose points
-    are no grid.
+    y points up where it falls from row to row.  OpenPIV's fields whose points are a unit and more apart are taken for
+    pixels, and turned.  InputError for files that are neither, or whose points are no grid.
     """
     try:
         text = Path(path).read_text(encoding="utf-8-sig")
@@ -136,16 +145,18 @@ def read(path: Path, *, upwards: bool | None = None) -> Field:
         else:
             table = np.loadtxt(io.StringIO(text), comments="#", ndmin=2)
             names = list(OPENPIV[: table.shape[1]])
-        if table.ndim != 2 or table.shape[1] != len(names) or table.shape[1] < 4 or not len(table):
+        if table.ndim != 2 or table.shape[1] != len(names) or table.shape[1] < 4 or len(table) < 2:
             raise ValueError("not a table of x, y, u, v and more")
-        return _gridded(dict(zip(names, table.T, strict=True)), upwards)
+        found = _gridded(dict(zip(names, table.T, strict=True)))
+        pixels = found.upwards and names[4:] == list(OPENPIV[4 : len(names)]) and found.x[1] - found.x[0] >= 1
+        return _turned(found) if pixels else found
     except (ValueError, KeyError) as error:
         reason = " ".join(str(error).split())[:80]
         repair = "give a file of piv measure --csv, or OpenPIV's text"
         raise InputError(Fault("field", str(path), f"is no field ({reason})", repair=repair)) from error
 
 
-def _gridded(columns: dict[str, Array], upwards: bool | None) -> Field:
+def _gridded(columns: dict[str, Array]) -> Field:
     """A field from columns; ValueError where the points are no grid."""
     across = int(np.argmax(columns["y"] != columns["y"][0])) or len(columns["y"])
     if len(columns["x"]) % across:
@@ -159,7 +170,7 @@ def _gridded(columns: dict[str, Array], upwards: bool | None) -> Field:
     valid = grid["valid"] > 0.5 if "valid" in grid else (grid.get("flags", np.zeros_like(grid["u"])) < 0.5) & ~solid
     replaced = grid["replaced"] > 0.5 if "replaced" in grid else ~valid & ~solid
     known = np.full(grid["u"].shape, np.nan)
-    up = upwards if upwards is not None else len(y) > 1 and bool(y[1] < y[0])
+    up = len(y) > 1 and bool(y[1] < y[0])
     u, v = (np.where(solid, np.nan, grid[name]) for name in ("u", "v"))
     rest = (grid.get("correlation", known), grid.get("uncertainty", known))
     return Field(x, y, u, v, valid, replaced, solid, *rest, upwards=up)

@@ -166,7 +166,7 @@ COARSE = 32
 
 
 def _coarse(
-    pairs: Sequence[tuple[Ready, Ready]], size: tuple[int, int], settings: Settings
+    pairs: Iterable[tuple[Ready, Ready]], size: tuple[int, int], settings: Settings
 ) -> tuple[Grid, Array, Array]:
     """The first pass, at half the resolution: whole-pixel displacements as far as ``search``."""
     window = min(max(FIRST, settings.window), min(size) // 2 * 2)

@@ -174,7 +174,8 @@ def _solved(sums: Array, count: int) -> Updated:
 def _places(way: tuple[Single, Single]) -> tuple[Single, Single]:
     """Where each pixel comes from, for OpenCV."""
     rows, columns = way[0].shape
-    return way[0] + np.arange(columns, dtype=np.float32), way[1] + np.arange(rows, dtype=np.float32)[:, None]
+    x, y = np.arange(columns, dtype=np.float32), np.arange(rows, dtype=np.float32)[:, None]
+    return np.asarray(way[0] + x, np.float32), np.asarray(way[1] + y, np.float32)
 
 
 def _moved(image: Single, at: tuple[Single, Single], how: int) -> Single:

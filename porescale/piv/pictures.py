@@ -26,13 +26,14 @@ REPLACED, VALID = "#d95f02", "#ffd54a"
 
 
 def quiver(
-    field: Field, path: Path, image: NDArray[Any] | None = None, extent: tuple[float, float, float, float] | None = None
+    field: Field, path: Path, image: NDArray[Any] | None = None, extent: tuple[float, ...] | None = None
 ) -> Path:
     """Arrows, replaced ones in another colour, over ``image`` (rows, columns), which spans ``extent`` (l, r, b, t)."""
     figure, axes = _axes(field)
     if image is not None:
         high = float(np.percentile(image, 99.5)) or 1.0
-        axes.imshow(image, cmap="gray", vmin=0, vmax=1.3 * high, extent=extent, aspect="equal", interpolation="nearest")
+        whole: Any = extent
+        axes.imshow(image, cmap="gray", vmin=0, vmax=1.3 * high, extent=whole, aspect="equal", interpolation="nearest")
     thin = max(1, -(-max(field.u.shape) // ARROWS))
     cut = (slice(thin // 2, None, thin),) * 2
     x, y = np.meshgrid(field.x, field.y)

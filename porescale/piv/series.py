@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -33,9 +34,14 @@ class Shots:
 
     def frames(self) -> Iterator[tuple[NDArray[Any], Mask | None]]:
         """Each frame less the background, and where it is solid."""
-        still = background(self.film, self.background)
+        still = self._still
         for frame, mask in zip(self.film, masks(self.mask, list(self.polygons), self.film), strict=False):
             yield (frame if still is None else frame.astype(np.float32) - still), mask
+
+    @cached_property
+    def _still(self) -> Single | None:
+        """The background, looked for once."""
+        return background(self.film, self.background)
 
     def pairs(self) -> Iterator[tuple[tuple[NDArray[Any], Mask | None], tuple[NDArray[Any], Mask | None]]]:
         """Each frame with the next."""

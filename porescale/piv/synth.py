@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.ground.check import Fault, InputError
+from porescale.piv.field import Field
 from porescale.piv.flows import Discs, Flow
+from porescale.piv.grid import Grid
 from porescale.piv.spots import REACH, add_spots
 
 Array = NDArray[np.float64]
@@ -75,6 +77,17 @@ def pair(flow: Flow, camera: Camera | None = None, seed: int = 0) -> Pair:
         pictures.append(expose(*at, light[which], flow.discs, camera, random))
     rows, columns = np.mgrid[: camera.size[0], : camera.size[1]].astype(float)
     return Pair(pictures[0], pictures[1], flow.discs.inside(columns, rows), flow)
+
+
+def exact(made: Pair, window: int, step: int) -> Field:
+    """The exact displacement on the grid of a measurement with windows of ``window`` px, ``step`` px apart."""
+    grid = Grid((made.first.shape[0], made.first.shape[1]), window, step)
+    x, y = np.meshgrid(grid.x, grid.y)
+    u, v = made.flow.displacement(x, y)
+    solid = made.flow.discs.inside(x, y)
+    zero, none = np.zeros(x.shape), np.zeros(x.shape, bool)
+    u, v = np.where(solid, np.nan, u), np.where(solid, np.nan, v)
+    return Field(grid.x, grid.y, u, v, ~solid, none, solid, zero + 1, zero)
 
 
 def seeded(flow: Flow, camera: Camera, random: np.random.Generator, shares: float = 1.0) -> tuple[Array, Array, Array]:

@@ -23,6 +23,10 @@ CORE = 2 / np.pi
 """|Gamma 2| from which rotation outweighs strain."""
 REACH = 3
 """Neighbours as far as this many grid steps."""
+CENTRE = 0.8
+"""|Gamma 2| that a core must reach: 1 in the middle of a vortex, 2/pi all over a layer of pure shear."""
+WEAK = 0.02
+"""Share of the strongest circulation below which a vortex is left out."""
 LEAST = 5
 """Grid points of a core, at least: fewer may be an outlier with its neighbours."""
 
@@ -88,14 +92,15 @@ def vortices(field: Field, reach: int = REACH) -> list[Vortex]:
         number, labels = cv2.connectedComponents(core.astype(np.uint8), connectivity=4)
         for label in range(1, number):
             inside = np.asarray(labels == label)
-            if inside.sum() < LEAST:
+            if inside.sum() < LEAST or (sign * two)[inside].max() < CENTRE:
                 continue
             x, y = _centre(field, np.where(inside, sign * one, 0.0))
             strength = float(turning[inside].sum()) * area
             if strength * sign > 0:
                 size = float(np.sqrt(inside.sum() * area / np.pi))
                 found.append(Vortex(x, y, strength, size, float((sign * one)[inside].max())))
-    return sorted(found, key=lambda it: -abs(it.circulation))
+    found.sort(key=lambda it: -abs(it.circulation))
+    return [it for it in found if abs(it.circulation) >= WEAK * abs(found[0].circulation)]
 
 
 def _centre(field: Field, height: Array) -> tuple[float, float]:
