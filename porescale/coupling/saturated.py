@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from porescale.coupling.coverage import CHUNKS, SCRATCH, cover
 from porescale.coupling.coverage_rows import BLOCK, lay_out, list_rows, make_patches, make_rows
 from porescale.coupling.load import add_rows, half_step_correction
+from porescale.coupling.overlap import take_off
 from porescale.coupling.rim import MARGIN, Rim
 from porescale.coupling.shapes.bodies import Bodies
 from porescale.coupling.shapes.rectangle import Rectangle
@@ -42,8 +43,8 @@ class Saturated:
     force (n, 2), torque (n,): loads of the last step on the discs, lattice units; rectangle_force (m, 2), ring_force,
     ring_torque: on the others, what the fluid inside them takes already given back.  The fluid sees a radius of
     ``covering_radius`` cells.  Rectangles and rings go as their owner says between steps; where they reach through a
-    side of the box it moves with them, and ``mass_through_sides`` tells what came in (shapes/crossing.py).  A step
-    allocates no array of the size of anything.
+    side of the box it moves with them, and ``mass_through_sides`` tells what came in (shapes/crossing.py).  pairs:
+    (p, 2) discs of one rigid body that overlap, see overlap.py.  A step allocates no array of the size of anything.
     """
 
     def __init__(
@@ -97,6 +98,7 @@ class Saturated:
             choose_weight(fitting_weight(solid_operator, weighting), fluid.relaxation_time, dtype, soft=soft_rim),
             choose_solid(solid_operator, fluid.relaxation_time, third_order, dtype, soft=soft_rim),
         )  # fmt: skip
+        self.pairs = np.zeros((0, 2), np.int64)
         self._covered: Array | None = None
         self._shape = ny, nx
         self._load, self._inside = np.zeros((count, 3)), np.zeros((count, 2))
@@ -163,6 +165,8 @@ class Saturated:
         if self.rim:
             self.rim.soften(self.covering_radius)
         cover(centre, self.covering_radius, self._patches, self._lines)
+        if len(self.pairs):
+            take_off(centre, self.covering_radius, self.pairs, self._patches)
         if self.rim:
             self.rim.filter(self._patches)
         motion = centre, velocity, spin

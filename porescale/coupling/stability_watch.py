@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.coupling.displaced import displaced
 from porescale.coupling.stability_cause import Circumstances, likely_cause
 from porescale.coupling.step import Coupled
 from porescale.coupling.weighting import fitting_weight
@@ -109,5 +110,6 @@ def _lightest(coupled: Coupled) -> tuple[float | None, float]:
         free = ~np.all(grains.held[:, :2] != 0, axis=1)
     if not free.any():
         return None, 0.0
-    ratio = discs.mass[free] / (discs.area[free] * coupled.scales.density)
+    inside = displaced(grains, discs.radius, coupled.scales.density).mass
+    ratio = discs.mass[free] / inside[free]
     return float(ratio.min()), 2 * float(coupled.hydraulic_radius[free].min()) / coupled.scales.spacing

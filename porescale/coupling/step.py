@@ -22,7 +22,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.coupling.displaced import displaced, whole
 from porescale.coupling.lubrication import CELLS, Lubrication
+from porescale.coupling.overlap import overlapping
 from porescale.coupling.saturated import Saturated
 from porescale.coupling.shapes.rectangle import Rectangle
 from porescale.dem.system import Grains
@@ -118,9 +120,11 @@ class Coupled:
             fluid, self.hydraulic_radius / scales.spacing, solid_operator=solid_operator, weighting=weighting,
             rectangles=rectangles, soft_rim=soft_rim,
         )  # fmt: skip
+        self.saturated.pairs = overlapping(grains, self.saturated.covering_radius * scales.spacing)
         self._force_everywhere = solid_operator == "exact-wall"
-        self.inner_mass = scales.density * np.pi * self.hydraulic_radius**2
-        self.inner_inertia = 0.5 * self.inner_mass * self.hydraulic_radius**2
+        inside = displaced(grains, self.hydraulic_radius, scales.density)
+        self.inner_mass, self.inner_inertia = inside.mass.copy(), inside.inertia.copy()
+        self._inside = inside
         self.weight = buoyant_weight(grains, scales.density, acceleration)
         self.inner_velocity, self.inner_spin = discs.velocity.copy(), discs.spin.copy()
         self.inner_momentum = self.inner_mass[:, None] * discs.velocity
@@ -128,8 +132,9 @@ class Coupled:
         self._spin = np.zeros(discs.count)
         self.force, self.fluid_force = np.zeros((discs.count, 2)), np.zeros((discs.count, 2))
         self.torque, self.fluid_torque = np.zeros(discs.count), np.zeros(discs.count)
-        layer = 2 * LAYER * scales.spacing / self.hydraulic_radius
-        lightness = np.column_stack((discs.mass / self.inner_mass, discs.inertia / self.inner_inertia))
+        layer = LAYER * scales.spacing * inside.thinness
+        solid, fluid_inside = whole(grains, discs.mass, discs.inertia), whole(grains, inside.mass, inside.inertia)
+        lightness = np.column_stack([one / other for one, other in zip(solid, fluid_inside, strict=True)])
         self.uptake = np.minimum(1.0, lightness / layer[:, None])
         mass_unit = scales.density * scales.spacing**2
         self._units = np.array([scales.force, scales.torque, mass_unit, mass_unit * scales.spacing**2])
@@ -146,8 +151,9 @@ class Coupled:
         self._to_lattice()
         wet.advance(self.fluid, self._centre, self._velocity, self._spin)
         if wet.rim is not None:
-            self.inner_mass[:] = self._units[2] * np.pi * wet.covering_radius**2
-            self.inner_inertia[:] = 0.5 * self._units[3] * np.pi * wet.covering_radius**4
+            square = (wet.covering_radius / wet.radius) ** 2
+            self.inner_mass[:] = self._inside.mass * square
+            self.inner_inertia[:] = self._inside.inertia * square**2
         total_load(
             wet.force, wet.torque, wet.inside, self.weight, discs.velocity, discs.spin, self.inner_velocity,
             self.inner_spin, self.inner_mass, self.inner_inertia, self.uptake, scales.step, self._units,
@@ -237,6 +243,9 @@ class Coupled:
 
 
 def buoyant_weight(grains: Grains, fluid_density: float, acceleration: tuple[float, float]) -> Array:
-    """(m - rho0 A) g of every disc with its mechanical area A, (n, 2) N/m."""
-    less = grains.discs.mass - fluid_density * grains.discs.area
+    """(m - rho0 A) g of every disc with its mechanical area A, or its share of its clump's, (n, 2) N/m."""
+    if fluid_density == 0.0:
+        less = grains.discs.mass
+    else:
+        less = grains.discs.mass - displaced(grains, grains.discs.radius, fluid_density).mass
     return np.asarray(less[:, None] * np.asarray(acceleration, float))

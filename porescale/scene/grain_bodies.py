@@ -33,7 +33,7 @@ class Clump(Section):
     """Rigid bodies of discs that may overlap, all alike: placed by hand, as many as there are points.
 
     Mass, centroid and moment of inertia are those of the union of the discs at the density of the material, or of
-    [grains]; or mass and inertia are given.  Dry scenes only.
+    [grains]; or mass and inertia are given.  In fluid they displace that union of discs of the radius that it sees.
     """
 
     discs: tuple[tuple[float, float, float], ...] = quantity(
@@ -181,6 +181,17 @@ def judge_bodies(scene: Scene, count: int, faults: list[Fault]) -> None:
             faults.append(Fault(f"control[{k}].name", it.called, "is taken", repair="give each its own"))
         seen.append(it.body)
         names.append(it.called)
+
+
+def least_density(scene: Scene) -> float:
+    """Density (kg/m^3) of the lightest grain or clump of a scene with grains, of what it displaces."""
+    assert scene.grains
+    found = [density_of(scene, it.name) for it in scene.material] or [scene.grains.density]
+    for it in scene.clump:
+        discs = np.array(it.discs)
+        area = outline(discs[:, :2], discs[:, 2]).area
+        found.append(it.mass / area if it.mass else it.density or density_of(scene, it.material))
+    return min(found)
 
 
 def lightest(scene: Scene, every: list[Law]) -> float:

@@ -10,7 +10,7 @@ from porescale.ground.check import Fault
 from porescale.lbm.collision.choose import choose
 from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
 from porescale.lbm.scales import Scales
-from porescale.scene.grain_bodies import by_hand
+from porescale.scene.grain_bodies import by_hand, least_density
 from porescale.scene.limits import (
     CELLS_THICK,
     DENSITY_REFUSE,
@@ -152,7 +152,7 @@ def judge(
     filled = packing.packing_fraction * ratio**2 if packing else 0.0
     found = [coarse(mean, *laws, scales.spacing, filled), slow(scales.relaxation_time, laws[0])]
     if scene.grains:
-        found.append(light(scene.grains.density / scales.density, smallest, *laws, scales.spacing))
+        found.append(light(least_density(scene) / scales.density, smallest, *laws, scales.spacing))
     warnings += filter(None, found)
     if scene.grains is None or packing is None:
         return 0.0

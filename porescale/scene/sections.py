@@ -226,8 +226,9 @@ class Scene(Section):
             faults += [Fault(name, None, "there are no grains", repair="add [grains] or leave it out")
                        for name, section in of_grains.items() if section]  # fmt: skip
         if self.fluid:
-            faults += [Fault(name, None, "is for dry scenes", repair="leave [fluid] or it out")
-                       for name in ("clump", "control") if of_grains[name]]  # fmt: skip
+            faults += [Fault("control", None, "is for dry scenes", repair="leave [fluid] or it out")] * bool(
+                self.control
+            )
         if self.grains and self.contact:
             faults += judge_contact(self)
         faults += [*judge_walls(self), *judge_cell(self)]

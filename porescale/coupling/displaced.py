@@ -1,0 +1,70 @@
+"""Fluid that lies within discs and clumps, as shares of the discs.
+
+Of a disc it is a disc of fluid.  Members of a clump share the mass of fluid within their union, and its moment of
+inertia, as they share those of the clump itself (dem/clumps.py): sums over members of what is done to the fluid inside
+each, m_f dU/dt of a member at its place, are then those of the rigid body, and its buoyancy acts where it must.  Cells
+that two members cover belong to both by halves (load.py), so that their loads add up.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.dem.clumps import LEAST, shares
+from porescale.dem.rigid import clumps_of
+from porescale.dem.system import Grains
+from porescale.dem.union import outline
+from porescale.ground.check import Fault, InputError
+
+Array = NDArray[np.float64]
+
+
+class Displaced(NamedTuple):
+    """mass (n,) kg/m, inertia (n,) kg m²/m;  thinness (n,) 1/m: outline over area of the disc, or of its clump."""
+
+    mass: Array
+    inertia: Array
+    thinness: Array
+
+
+def displaced(grains: Grains, radius: Array, density: float) -> Displaced:
+    """Fluid of ``density`` (kg/m³) within discs of ``radius`` (n,) m at the places of ``grains``.
+
+    Raises InputError at a clump of which no shares can be made.
+    """
+    mass = density * np.pi * radius**2
+    inertia, thinness = 0.5 * mass * radius**2, 2.0 / radius
+    clumps = clumps_of(grains)
+    for c in range(clumps.count if clumps else 0):
+        assert clumps
+        own = clumps.discs_of(c)
+        at = clumps.offset[clumps.start[c] : clumps.start[c + 1]]
+        union = outline(at, radius[own])
+        weight = radius[own] * np.maximum(union.exposed, LEAST * radius[own])
+        from_centre = at - union.centroid
+        share = shares(weight, from_centre, float(radius[own].max()))
+        rest = 0.0
+        if share is not None:
+            rest = union.second_moment - union.area * float(share @ np.sum(from_centre**2, axis=1))
+        if share is None or not rest > 0.0:
+            raise InputError(Fault(f"clump[{c}]", None, "cannot displace fluid", repair="make it of other discs"))
+        mass[own] = density * union.area * share
+        inertia[own] = density * rest * weight * radius[own] / float(weight @ radius[own])
+        thinness[own] = float(union.exposed.sum()) / union.area
+    return Displaced(mass, inertia, thinness)
+
+
+def whole(grains: Grains, mass: Array, inertia: Array) -> tuple[Array, Array]:
+    """Mass and moment of inertia about its centroid of the body of each disc, (n,), from shares of discs."""
+    clumps = clumps_of(grains)
+    if clumps is None:
+        return mass, inertia
+    numbers = np.repeat(np.arange(clumps.count), np.diff(clumps.start))
+    total = np.bincount(numbers, mass[clumps.member])
+    about = np.bincount(numbers, inertia[clumps.member] + mass[clumps.member] * np.sum(clumps.offset**2, axis=1))
+    mass, inertia = mass.copy(), inertia.copy()
+    mass[clumps.member], inertia[clumps.member] = total[numbers], about[numbers]
+    return mass, inertia
