@@ -13,10 +13,11 @@ def benchmarks() -> Benchmarks:
     from porescale.coupling.bench import BENCHMARKS as COUPLING
     from porescale.dem.bench import BENCHMARKS as DEM
     from porescale.lbm.bench import BENCHMARKS as LBM
+    from porescale.piv.bench import BENCHMARKS as PIV
     from porescale.scene.bench import BENCHMARKS as SCENE
     from porescale.workbench.benchmarks import Benchmarks
 
     rows = Benchmarks()
-    for room in (LBM, COUPLING, DEM, SCENE):
+    for room in (LBM, COUPLING, DEM, SCENE, PIV):
         rows.include(room)
     return rows

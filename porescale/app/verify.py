@@ -13,9 +13,10 @@ def validations() -> Validations:
     from porescale.coupling.verify import VALIDATIONS as COUPLING
     from porescale.dem.verify import VALIDATIONS as DEM
     from porescale.lbm.verify import VALIDATIONS as LBM
+    from porescale.piv.verify import VALIDATIONS as PIV
     from porescale.workbench.validations import Validations
 
     rows = Validations()
-    for room in (LBM, DEM, COUPLING):
+    for room in (LBM, DEM, COUPLING, PIV):
         rows.include(room)
     return rows

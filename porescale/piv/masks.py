@@ -25,8 +25,7 @@ def bitmap(image: Picture) -> Mask:
 
 
 def polygon(text: str, size: tuple[int, int]) -> Mask:
-    """True within a polygon "x,y x,y x,y …", px, of a picture of ``size`` (rows, columns).  InputError if it is none.
-    """
+    """True within a polygon "x,y x,y x,y …", px, of a picture of ``size`` (rows, columns); InputError if none."""
     try:
         corners = np.array([[float(part) for part in corner.split(",")] for corner in text.split()])
         if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3:

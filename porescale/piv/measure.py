@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
@@ -53,6 +54,8 @@ class Settings:
             faults.append(Fault("--overlap", self.overlap, "is out of range", allowed="0 to below 1"))
         if not 1 <= self.search <= 256:
             faults.append(Fault("--search", self.search, "is out of range", "px", "1 to 256"))
+        if self.updates < 1:
+            faults.append(Fault("updates", self.updates, "is out of range", allowed=">= 1"))
         if faults:
             raise InputError(faults)
 
@@ -147,10 +150,10 @@ def measure_ready(
     start_u, start_v = u, v
     reach = max(LEAST_REACH, settings.width * window)
     weights = bell(reach)
+    cut = _cut(grid, fluid, masks, round(reach))
     for _ in range(settings.updates):
-        update = update_pass(
-            pairs, grid, weights, settings.noise, settings.slack, paths(grid, u, v, curved=settings.curved)
-        )
+        along = paths(grid, u, v, curved=settings.curved)
+        update = update_pass(pairs, grid, weights, settings.noise, settings.slack, along, cut)
         u, v, good = _updated(u, v, fluid, start_u, start_v, update, settings)
     if settings.smooth:
         u, v = smoothed(u, v, max(1.0, reach / grid.step))
@@ -184,6 +187,15 @@ def _fluid(grid: Grid, masks: Sequence[Flags | None]) -> Flags:
         if mask is not None:
             found &= ~mask[np.ix_(grid.y.astype(int), grid.x.astype(int))]
     return found
+
+
+def _cut(grid: Grid, fluid: Flags, masks: Sequence[Flags | None], reach: int) -> NDArray[np.int64]:
+    """Row and column (n, 2) of the vectors of the fluid with a solid within ``reach`` px."""
+    known = [mask.astype(np.uint8) for mask in masks if mask is not None]
+    if not known:
+        return np.empty((0, 2), np.int64)
+    near = cv2.dilate(np.maximum.reduce(known), np.ones((2 * reach + 1,) * 2, np.uint8)) > 0
+    return np.argwhere(near[np.ix_(grid.y.astype(int), grid.x.astype(int))] & fluid)
 
 
 CLEAR = 1.2

@@ -19,6 +19,7 @@ from porescale.piv.grid import Grid
 from porescale.piv.interpolate import sample
 from porescale.piv.prepare import Ready
 from porescale.piv.refine import BLOCK, refine
+from porescale.piv.tilt import tilted
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
@@ -127,12 +128,23 @@ def bell(reach: float) -> Single:
 
 
 def update_pass(
-    pairs: Iterable[tuple[Ready, Ready]], grid: Grid, weights: Single, noise: float, slack: float, along: Paths
+    pairs: Iterable[tuple[Ready, Ready]],
+    grid: Grid,
+    weights: Single,
+    noise: float,
+    slack: float,
+    along: Paths,
+    cut: NDArray[np.int64],
 ) -> Updated:
-    """One Gauss-Newton update of the displacement whose paths are ``along``, from all pairs together."""
+    """One Gauss-Newton update of the displacement whose paths are ``along``, from all pairs together.
+
+    cut : row and column (n, 2) of the windows that a solid cuts; their updates are planes' values at the centres.
+    """
     ny, nx = grid.shape
     pad = len(weights)
     wide = (grid.size[0] + 2 * pad, grid.size[1] + 2 * pad)
+    plane = np.zeros((len(cut), 2))
+    own = np.empty_like(plane)
     sums, lanes, known = (
         np.zeros((ny, nx, 9)),
         np.empty((ny, 11, wide[1]), np.float32),
@@ -149,10 +161,31 @@ def update_pass(
         gx = cv2.sepFilter2D(mean, cv2.CV_32F, SLOPE, np.ones(1))
         gy = cv2.sepFilter2D(mean, cv2.CV_32F, np.ones(1), SLOPE)
         bound = noise * NORMAL * float(np.median(np.abs((one - two)[pad:-pad:3, pad:-pad:3])))
-        refine(one, two, _padded(mask, pad), gx, gy, weights, pad, grid.start, grid.step, np.float32(bound),
+        shown = _padded(mask, pad)
+        refine(one, two, shown, gx, gy, weights, pad, grid.start, grid.step, np.float32(bound),
                np.float32(slack**2), lanes, known, sums)  # fmt: skip
+        if len(cut):
+            tilted(
+                one,
+                two,
+                shown,
+                gx,
+                gy,
+                weights,
+                pad,
+                grid.start,
+                grid.step,
+                np.float32(bound),
+                np.float32(slack**2),
+                cut,
+                own,
+            )
+            plane += own
         count += 1
-    return _solved(sums, count)
+    found = _solved(sums, count)
+    if len(cut):
+        found.u[cut[:, 0], cut[:, 1]], found.v[cut[:, 0], cut[:, 1]] = (plane / count).T
+    return found
 
 
 def _solved(sums: Array, count: int) -> Updated:

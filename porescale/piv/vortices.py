@@ -50,7 +50,7 @@ class Vortex:
 
 
 def gammas(field: Field, reach: int = REACH) -> tuple[Array, Array]:
-    """Gamma 1 and Gamma 2 (ny, nx), positive against the clock, over neighbours of the fluid within ``reach`` steps."""
+    """Gamma 1 and Gamma 2 (ny, nx), positive against the clock, over neighbours within ``reach`` steps."""
     ny, nx = field.u.shape
     fluid = np.pad((~field.solid).astype(float), reach)
     u, v = (np.pad(np.where(field.solid, 0.0, it), reach) for it in (field.u, field.v))
@@ -63,6 +63,7 @@ def gammas(field: Field, reach: int = REACH) -> tuple[Array, Array]:
     def around(it: Array, j: int, i: int) -> Array:
         return it[reach + j : reach + j + ny, reach + i : reach + i + nx]
 
+    # Missing neighbours count as still: along a wall all the flow passes on one side, and nothing turns.
     count = np.maximum(sum(around(fluid, j, i) for j, i in offsets) + (~field.solid).astype(float), 1)
     mean_u, mean_v = (
         (sum(around(it, j, i) for j, i in offsets) + np.where(field.solid, 0.0, own)) / count
@@ -77,7 +78,7 @@ def gammas(field: Field, reach: int = REACH) -> tuple[Array, Array]:
             size = np.hypot(px, py) * np.hypot(du, dv)
             sine = np.where(size > 0, (px * dv - py * du) / np.where(size > 0, size, 1.0), 0.0)
             total += sine * around(fluid, j, i)
-        found.append(np.where(field.solid, 0.0, hand * total / np.maximum(count - 1, 1)))
+        found.append(np.where(field.solid, 0.0, hand * total / len(offsets)))
     return found[0], found[1]
 
 
