@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.contact.law import MU
+from porescale.dem.contact.law import MU, memory_of
 from porescale.dem.forces import pair_forces
 from porescale.dem.rectangle import BOTTOM, LEFT, RIGHT, TOP, add_rectangle_forces, nearest_face
 from porescale.dem.rigid import arms, clumps_of
@@ -39,8 +39,9 @@ class Contacts:
     normal (c, 2) unit vector from i outwards;  start (c, 2) m, the centroid of the body of i, its clump or itself;
     branch (c, 2) m, from there to the centroid of the nearest image of the body of j, or to the point at a surface;
     overlap (c,) m;  normal_force (c,) N/m, > 0 pushes apart;  tangential_force (c,) N/m, that on i along
-    t = (-n_y, n_x);  force (c, 2) N/m, of i on the other;  torque (c, 2) N m/m, on i and on j (0 at a surface);
-    spring (c,) m, after the step's slip;  sliding (c,) bool: friction is at its limit.
+    t = (-n_y, n_x);  force (c, 2) N/m, of i on the other;  torque (c, 2) N m/m, on i and on j (of a surface, about
+    the point: what resists rolling);  spring (c,) m, after the step's slip;  sliding (c,) bool: friction is at its
+    limit.
     """
 
     first: Index
@@ -172,10 +173,12 @@ def _surface(grains: Grains, number: int, nearest: Array, distance: Array, force
     depth = distance[i]
     # From inside of a rectangle the surface is behind the disc: the normal points away from it.
     normal = np.where(depth[:, None] > 0.0, 1.0, -1.0) * branch / np.where(depth == 0.0, 1.0, np.abs(depth))[:, None]
-    count = len(i)
+    count, other = len(i), np.zeros(len(i))
+    if memory_of(grains.contact) > 1:  # what is not the tangential force on its arm resists rolling
+        other = np.maximum(depth, 0.0) * (force[:, 1] * normal[:, 0] - force[:, 0] * normal[:, 1]) - torque
     return listed(
         i, np.full(count, NOBODY), np.full(count, number), nearest[i], normal, d.position[i], branch,
-        d.radius[i] - depth, -force, np.column_stack((torque, np.zeros(count))), spring, friction[_material(grains, i)],
+        d.radius[i] - depth, -force, np.column_stack((torque, other)), spring, friction[_material(grains, i)],
     )  # fmt: skip
 
 

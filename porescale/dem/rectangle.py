@@ -92,9 +92,9 @@ def add_rectangle_forces(
                     nx, ny, depth = nearest_face(x, y, left, bottom, right, top)
                     distance = -depth
                 across, up = rectangles[w, VELOCITY_X], rectangles[w, VELOCITY_Y]
-                fx, fy, moment = surface_contact(
-                    i, nx, ny, distance, radius[i], velocity[i, 0] - across, velocity[i, 1] - up, spin[i], memory, dt,
-                    own, law,
+                fx, fy, moment, _ = surface_contact(
+                    i, nx, ny, distance, radius[i], velocity[i, 0] - across, velocity[i, 1] - up, spin[i], 0.0, memory,
+                    dt, own, law,
                 )  # fmt: skip
                 force[i, 0] += fx
                 force[i, 1] += fy
@@ -106,7 +106,7 @@ def add_rectangle_forces(
                 if booked(book) and holds(memory, i, law):
                     note_leaving(
                         i, dx, dy, radius[i], velocity[i, 0] - rectangles[w, VELOCITY_X],
-                        velocity[i, 1] - rectangles[w, VELOCITY_Y], spin[i], memory, dt, own, book, law,
+                        velocity[i, 1] - rectangles[w, VELOCITY_Y], spin[i], 0.0, memory, dt, own, book, law,
                     )  # fmt: skip
                 remember(memory, i, 0.0, 0.0, law)
         rectangle_force[w, 0] = sum_x

@@ -48,6 +48,15 @@ def areas(grains: Grains) -> Array:
     return area
 
 
+def masses(grains: Grains) -> Array:
+    """Mass of each disc's body, (n,) kg/m: what a contact with it moves; the discs' own where there is no clump."""
+    mass, clumps = grains.discs.mass, clumps_of(grains)
+    if clumps is not None:
+        mass = mass.copy()
+        mass[clumps.member] = np.repeat(clumps.mass, np.diff(clumps.start))
+    return mass
+
+
 def as_bodies(grains: Grains) -> Discs:
     """The discs, members of clumps at the place and with the velocity of their body, and with their share of its mass:
     sums over them of mass and momentum are those of bodies, without what turns within."""

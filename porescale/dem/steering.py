@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 from porescale.dem import servo as servos
 from porescale.dem import strain as cells
 from porescale.dem.cell import LOAD, Still, Straining
-from porescale.dem.clumps import Body, Clumps, fastest
+from porescale.dem.clump_step import lightest
+from porescale.dem.clumps import Body, Clumps
 from porescale.dem.contact.materials import Law
 from porescale.dem.control import KINDS, PUSH, WORK, Control, schedule_of
-from porescale.dem.integrate import NEIGHBOURS, packing_factor
 from porescale.dem.motion import FIRST_CONTROL, Arrays
+from porescale.dem.rigid import masses
 from porescale.dem.schedule import Schedule, schedule_rows
 from porescale.dem.walls import TURN
 from porescale.ground.check import Fault, InputError
@@ -89,6 +90,7 @@ class Steering:
         self._controls, self._given = [self._controls[k] for k in kept], self._given[kept]
         self._watched = [body for body in self._watched if not isinstance(body, Clump)]
         self.watch(*self._watched)
+        grains.contact = grains.contact._replace(mass=masses(grains))
         grains.pairs.group = clumps.group if clumps.count else None
         grains.refresh(anew=True)
         return clumps
@@ -323,20 +325,8 @@ class Steering:
         return cells.Deforming(self.cell, self.load, self._plan, a.schedules, a.points, self._clock)
 
     def lightest(self, laws: Sequence[Law]) -> float:
-        """Mass (kg/m) of the disc whose packing limit (integrate.packing_factor) is that of the fastest clump."""
-        d, found = self._grains.discs, []
-        size = float(d.radius.min())
-        for law in laws:
-            hard = law.stiffest(float(d.mass.min()), size)
-            rolls = float(hard.rolls)
-            for normal, tangential, rolling in (
-                (hard.stiffness, hard.tangential_stiffness, hard.rolling_stiffness * rolls),
-                (hard.damping, hard.tangential_damping, hard.rolling_damping * rolls),
-            ):
-                if normal > 0.0 or tangential > 0.0:
-                    most = fastest(self.clumps, d.radius, normal, tangential, rolling, NEIGHBOURS)
-                    found.append(packing_factor(normal, tangential, rolling) / most)
-        return min(found)
+        """Mass (kg/m) of a disc that allows no longer step than the clumps, see clump_step.py."""
+        return lightest(self.clumps, self._grains.discs, laws)
 
     def start(self, seconds: float, steps: int) -> None:
         """Set the clock for a call: seconds before the step last changed, and steps since."""

@@ -20,6 +20,7 @@ from porescale.dem.health import Health
 from porescale.dem.integrate import contact_steps, stable_step
 from porescale.dem.motion import Arrays
 from porescale.dem.rectangle import Rectangle
+from porescale.dem.rigid import masses
 from porescale.dem.steering import Steering
 from porescale.dem.strain import Deforming
 from porescale.dem.sweep import Sweeps
@@ -70,6 +71,7 @@ class Grains:
         self.book = np.zeros((count, BOOK)) if energy else None
         self._sweeps = Sweeps(count)
         self.book_start: Array | None = None  # what energy.open_book says before the first step
+        self._steering: Steering | None = None
         self.material = self._numbers(law, material)
         self._memory = 0  # springs per contact, none yet
         mean_radius = float(discs.radius.mean()) if count else 1.0
@@ -95,7 +97,6 @@ class Grains:
         self.steps, self.last_dt = 0, 0.0
         self._time, self._steps_of_dt = 0.0, 0  # seconds before dt last changed, steps since
         self._health = Health(len(self.plates), count)
-        self._steering: Steering | None = None
         self.segments: SegmentList | None = None  # see frames.framed
         self.bonds: BondList | None = None  # see bonds.bond
         self._still = Still(*box.period)
@@ -122,7 +123,7 @@ class Grains:
         self.law, self.laws_at_walls, self.laws = law, at_walls, used
         self.wall_law = law if wall_law is None and not isinstance(law, Materials) else wall_law
         kind = used[0].kind(self._memory > 1 or any(each.rolls for each in used))
-        self.contact: KernelLaw = kind(table, self.material, self.discs.mass, self.book)
+        self.contact: KernelLaw = kind(table, self.material, masses(self), self.book)
         self._widen(memory_of(self.contact))
         self.wall_laws = self._own_laws(self._wall_frictions)
         self.plate_laws = self._own_laws(self.plate_frictions)
@@ -241,13 +242,8 @@ class Grains:
         mass = self.discs.mass
         if self._steering is not None and self._steering.clumps.count:
             mass = np.concatenate((mass[self._steering.clumps.group < 0], [self._steering.lightest(self.laws)]))
-        return stable_step(
-            self.laws,
-            float(mass.min()),
-            float(self.discs.radius.min()),
-            safety=safety,
-            steps_per_contact=steps_per_contact,
-        )
+        smallest = float(mass.min()), float(self.discs.radius.min())
+        return stable_step(self.laws, *smallest, safety=safety, steps_per_contact=steps_per_contact)
 
     def step(
         self,

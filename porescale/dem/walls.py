@@ -126,17 +126,19 @@ class Plate:
 
 
 @inline
-def surface_contact(i, nx, ny, distance, radius, vx, vy, spin, memory, dt, laws, law):
-    """Disc i against a surface: (force x, force y N/m, torque N m/m) on the disc.
+def surface_contact(i, nx, ny, distance, radius, vx, vy, spin, turn, memory, dt, laws, law):
+    """Disc i against a surface: (force x, force y N/m, torque N m/m) on the disc, and what resists rolling turns the
+    surface with (N m/m), about the point of contact.
 
     (nx, ny) unit vector from the disc to the surface;  distance centre to surface (m) < radius, the lever arm;
-    (vx, vy) velocity relative to the surface (m/s);  spin (rad/s);  dt (s);  laws (m, COLUMNS) of the surface with each
-    material;  law see contact/law.py.  Overwrites row i of memory (n, 1 or 2), springs in m.
+    (vx, vy) velocity relative to the surface (m/s);  spin and that of the surface, turn (rad/s);  dt (s);  laws (m,
+    COLUMNS) of the surface with each material;  law see contact/law.py.  Overwrites row i of memory (n, 1 or 2),
+    springs in m.
     """
     overlap, arm = radius - distance, max(distance, 0.0)
     closing = vx * nx + vy * ny
     slip = vy * nx - vx * ny + spin * arm
-    turning = spin * radius
+    turning = (spin - turn) * radius
     p, mass = laws[material_of(law.material, i)], law.mass[i]
     before, roll_before = recall(memory, i, law)
     normal, tangential, resisting, spring, roll = contact(
@@ -147,12 +149,12 @@ def surface_contact(i, nx, ny, distance, radius, vx, vy, spin, memory, dt, laws,
         i, overlap, closing, slip, turning, before, roll_before, normal, tangential, resisting, spring, roll,
         radius, mass, dt, p, law.book, law,
     )  # fmt: skip
-    moment, _ = moments(tangential, resisting, arm, 0.0, radius, law)
-    return -normal * nx - tangential * ny, -normal * ny + tangential * nx, moment
+    moment, other = moments(tangential, resisting, arm, 0.0, radius, law)
+    return -normal * nx - tangential * ny, -normal * ny + tangential * nx, moment, other
 
 
 @kernel
-def note_leaving(i, dx, dy, radius, vx, vy, spin, memory, dt, laws, book, law):
+def note_leaving(i, dx, dy, radius, vx, vy, spin, turn, memory, dt, laws, book, law):
     """Enter into ``book``, if any, what the springs of disc i still held when it left a surface.
 
     (dx, dy) m from its centre to the nearest point of the surface; the rest as in surface_contact.  A function of its
@@ -162,7 +164,7 @@ def note_leaving(i, dx, dy, radius, vx, vy, spin, memory, dt, laws, book, law):
     distance = np.sqrt(dx * dx + dy * dy)
     nx, ny = dx / distance, dy / distance
     note_parting(
-        i, radius - distance, vx * nx + vy * ny, vy * nx - vx * ny + spin * distance, spin * radius,
+        i, radius - distance, vx * nx + vy * ny, vy * nx - vx * ny + spin * distance, (spin - turn) * radius,
         before, roll_before, radius, dt, laws[material_of(law.material, i)], book, law,
     )  # fmt: skip
 
@@ -188,22 +190,23 @@ def add_wall_forces(
             if radius[i] - distance > 0.0:
                 along = (position[i, 1] - py) * nx - (position[i, 0] - px) * ny
                 at_x, at_y = wall_x - turn * along * nx, wall_y - turn * along * ny
-                fx, fy, moment = surface_contact(
-                    i, -nx, -ny, distance, radius[i], velocity[i, 0] - at_x, velocity[i, 1] - at_y, spin[i], memory,
-                    dt, own, law,
+                fx, fy, moment, other = surface_contact(
+                    i, -nx, -ny, distance, radius[i], velocity[i, 0] - at_x, velocity[i, 1] - at_y, spin[i], turn,
+                    memory, dt, own, law,
                 )  # fmt: skip
                 force[i, 0] += fx
                 force[i, 1] += fy
                 torque[i] += moment
                 sum_x -= fx
                 sum_y -= fy
-                moments_sum += along * (ny * fy + nx * fx)
-                note_work(book, i, SURFACES, fx * at_x + fy * at_y, dt)
+                moments_sum += along * (ny * fy + nx * fx) + other
+                note_work(book, i, SURFACES, fx * at_x + fy * at_y - other * turn, dt)
             else:
                 if booked(book) and holds(memory, i, law):
+                    along = (position[i, 1] - py) * nx - (position[i, 0] - px) * ny
                     note_leaving(
-                        i, -distance * nx, -distance * ny, radius[i], velocity[i, 0] - wall_x, velocity[i, 1] - wall_y,
-                        spin[i], memory, dt, own, book, law,
+                        i, -distance * nx, -distance * ny, radius[i], velocity[i, 0] - wall_x + turn * along * nx,
+                        velocity[i, 1] - wall_y + turn * along * ny, spin[i], turn, memory, dt, own, book, law,
                     )  # fmt: skip
                 remember(memory, i, 0.0, 0.0, law)
         wall_force[w, 0] = sum_x
@@ -233,9 +236,9 @@ def add_plate_forces(
                 square = dx * dx + dy * dy
                 if square < radius[i] * radius[i]:
                     distance = np.sqrt(square)
-                    fx, fy, moment = surface_contact(
+                    fx, fy, moment, _ = surface_contact(
                         i, dx / distance, dy / distance, distance, radius[i],
-                        velocity[i, 0], velocity[i, 1] - rise, spin[i], memory, dt, own, law,
+                        velocity[i, 0], velocity[i, 1] - rise, spin[i], 0.0, memory, dt, own, law,
                     )  # fmt: skip
                     force[i, 0] += fx
                     force[i, 1] += fy
@@ -246,7 +249,7 @@ def add_plate_forces(
                 else:
                     if booked(book) and holds(memory, i, law):
                         note_leaving(
-                            i, dx, dy, radius[i], velocity[i, 0], velocity[i, 1] - rise, spin[i], memory, dt, own,
+                            i, dx, dy, radius[i], velocity[i, 0], velocity[i, 1] - rise, spin[i], 0.0, memory, dt, own,
                             book, law,
                         )  # fmt: skip
                     remember(memory, i, 0.0, 0.0, law)

@@ -17,7 +17,7 @@ def on_surface(contacts: Contacts, name: str, about: tuple[float, float] = (0.0,
     """Force (x, y) N/m of all discs on a surface and its moment N m/m about a point (m), counter-clockwise."""
     found = contacts.of(name)
     arm = found.point - np.asarray(about)
-    moment = float(np.sum(arm[:, 0] * found.force[:, 1] - arm[:, 1] * found.force[:, 0]))
+    moment = float(np.sum(arm[:, 0] * found.force[:, 1] - arm[:, 1] * found.force[:, 0] + found.torque[:, 1]))
     x, y = found.force.sum(axis=0)
     return float(x), float(y), moment
 
