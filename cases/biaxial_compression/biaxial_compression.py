@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -31,6 +32,7 @@ STRAIN, CRITICAL = 0.24, 0.16  # of the test, and from where on states are avera
 RAMP = 0.02  # s in which the top comes to its speed: some times what a wave takes through the specimen
 ROWS, LOOKS = 480, 5  # rows of a record, and looks at the walls that are averaged in each
 WINDOW = 0.01  # of strain, over which peak and dilatancy are taken
+SOLID = 0.83  # fraction by which a number of discs is turned into a size of the box
 SHOWN = (0.02, 0.06)  # strains between which the shear of the picture is taken
 
 
@@ -57,17 +59,21 @@ def compress(state: str, seed: int = 1, friction: float = 0.5, discs: int = 0, *
     """One test of the scene with ``friction`` of its discs; about ``discs`` of them, 0: as many as the scene has."""
     settings = [f"grains.packing.settling_friction={STATES[state]}", f"grains.packing.seed={seed}",
                 f"contact.friction={friction}"]  # fmt: skip
+    plain = load(SCENE, settings=settings)
+    assert plain.grains
+    assert plain.grains.packing
+    assert plain.domain.top.velocity
+    diameter, rate = plain.grains.packing.diameter, -plain.domain.top.velocity[1] / plain.domain.height
     if discs:
-        wide = 0.01 * math.sqrt(0.5 * discs * math.pi / 4.0 / 0.83)
+        wide = diameter * math.sqrt(0.5 * discs * math.pi / 4.0 / SOLID)
         settings += [f"domain.width={wide}", f"domain.height={2.0 * wide}", f"grains.packing.width={wide}",
                      f"grains.packing.height={2.0 * wide}"]  # fmt: skip
     simulation = build(load(SCENE, settings=settings))
     scene, grains, dt = simulation.scene, simulation.grains, simulation.step_seconds
     assert grains
-    assert scene.domain.top.velocity
     assert scene.domain.left.stress
     high, pressure = scene.domain.height, scene.domain.left.stress.mean
-    speed = -scene.domain.top.velocity[1] * high / 0.4
+    speed = rate * high
     grains.steering.move_wall("top", y=Table([0.0, RAMP], [0.0, -speed]))
     area = float(grains.discs.area.sum())
     start = area / (high * scene.domain.width)
@@ -90,11 +96,11 @@ def compress(state: str, seed: int = 1, friction: float = 0.5, discs: int = 0, *
             if rows[-1][0] >= at and name not in record:
                 record[name] = grains.discs.position.copy()
     fastest = speed / float(np.exp(-rows[-1][0]) * high)
-    table = np.array(rows).T
+    strains, volume, sine, sides = np.array(rows).T
     end = grains.discs.position  # of a test that is shorter than what is shown: nothing to show
     shear, extent = sheared(grains, record.get("from", end), record.get("to", end))
-    mass = 2500.0 * math.pi / 4.0 * 0.01**2
-    return Record(*table, start, fastest * math.sqrt(mass / pressure), chains, force,
+    mass = plain.grains.density * math.pi / 4.0 * diameter**2
+    return Record(strains, volume, sine, sides, start, fastest * math.sqrt(mass / pressure), chains, force,
                 shear, extent)  # fmt: skip
 
 
@@ -119,8 +125,9 @@ def branches(grains: Grains) -> tuple[Array, Array]:
 def sheared(grains: Grains, start: Array, end: Array) -> tuple[Array, tuple[float, float, float, float]]:
     """Largest shear strain (rows, columns) between two places of the discs, coarse-grained, and the extent, m."""
     low, high = start.min(axis=0), start.max(axis=0)
-    d = make_discs(0.5 * (start + end), grains.discs.radius, 2500.0, end - start)
-    raster = Raster.over((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), 0.01, 0.02)
+    size = 2.0 * float(grains.discs.radius.mean())
+    d = make_discs(0.5 * (start + end), grains.discs.radius, 1.0, end - start)
+    raster = Raster.over((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), size, 2.0 * size)
     e = CoarseGrained(raster, d, contacts(grains)).strain_rate
     shear = np.hypot(e[..., 0, 0] - e[..., 1, 1], 2.0 * e[..., 0, 1])
     return np.asarray(shear), (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
@@ -190,7 +197,7 @@ def draw(tests: dict[str, list[Record]], friction: float) -> Figure:
     colours = {"dense": "#8c1c2f", "loose": "#2a6f97"}
     for state, found in tests.items():
         for k, test in enumerate(found):
-            how = {"color": colours[state], "lw": 0.8, "label": state if k == 0 else None}
+            how: dict[str, Any] = {"color": colours[state], "lw": 0.8, "label": state if k == 0 else None}
             axes[0].plot(test.strain, np.degrees(np.arcsin(smooth(test))), **how)
             axes[1].plot(test.strain, 100.0 * test.volume, **how)
             opening = dilatancy(test)[test.strain > WINDOW]

@@ -27,7 +27,7 @@ SHEAR, CRITICAL = 1.5, 0.75  # of the test, and from where on states are average
 ROWS, LOOKS = 750, 10  # rows of a record, and looks at the cell that are averaged in each
 WINDOW = 0.02  # of shear, over which peak and dilatancy are taken
 SHOWN = (0.1, 0.12)  # shears between which the picture shows displacements; contacts at the second
-DIAMETER, DENSITY = 0.01, 2500.0
+SOLID = 0.81  # fraction by which a number of discs is turned into a size of the cell
 
 
 @dataclass
@@ -54,8 +54,12 @@ def sheared(state: str, seed: int = 1, friction: float = 0.5, discs: int = 0, *,
     """One test of the scene with ``friction`` of its discs; about ``discs`` of them, 0: as many as the scene has."""
     settings = [f"grains.packing.settling_friction={STATES[state]}", f"grains.packing.seed={seed}",
                 f"contact.friction={friction}"]  # fmt: skip
+    plain = load(SCENE, settings=settings)
+    assert plain.grains
+    assert plain.grains.packing
+    diameter = plain.grains.packing.diameter
     if discs:
-        side = DIAMETER * math.sqrt(discs * math.pi / 4.0 / 0.81)
+        side = diameter * math.sqrt(discs * math.pi / 4.0 / SOLID)
         settings += [f"{key}={side}" for key in ("domain.width", "domain.height", "grains.packing.width",
                                                  "grains.packing.height")]  # fmt: skip
     simulation = build(load(SCENE, settings=settings))
@@ -85,8 +89,9 @@ def sheared(state: str, seed: int = 1, friction: float = 0.5, discs: int = 0, *,
         elif before is not None and not len(at) and rows[-1][0] >= SHOWN[1]:
             chains, force, at = branches(grains)
             went = grains.discs.position - before[0] @ (frame(grains) @ np.linalg.inv(before[1])).T
-    inertial = rate * math.sqrt(DENSITY * math.pi / 4.0 * DIAMETER**2 / pressure)
-    return Record(*np.array(rows).T, inertial, chains, force, at, went)
+    inertial = rate * math.sqrt(plain.grains.density * math.pi / 4.0 * diameter**2 / pressure)
+    gone, ratio, solid, normal, beside, angle = np.array(rows).T
+    return Record(gone, ratio, solid, normal, beside, angle, inertial, chains, force, at, went)
 
 
 def frame(grains: Grains) -> Array:
