@@ -95,12 +95,17 @@ def show(folder: Path) -> list[Path]:
     look = Look(
         title=scene["title"] or run.card.get("name", ""),
         cloud="particles",
-        colour="velocity",
+        colour="fluid" if scene["inclusion"] else "velocity",
+        kinds=TWO if scene["inclusion"] else {},
         lines=list(pairwise(corners)),
         dot=0.5 * scene["numerics"]["spacing"],
         view=(-margin, width + margin, -margin, height + margin),
     )
     return [*pictures(folder, look), film(folder, look)]
+
+
+TWO = {0: ("water", "#5b8fd0"), 1: ("second fluid", "#e8a33d")}
+"""Names and colours of two fluids."""
 
 
 def validations() -> Validations:

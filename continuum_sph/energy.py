@@ -1,16 +1,16 @@
 """The energies of a flow and what became of them: a book that closes.
 
-kinetic + potential + compressive + heat (viscosity) + diffused (density diffusion) - work of walls stays what it was,
-but for the steps in time, for particles stopped at a wall's surface or held at the least density, and for what moves
-particles otherwise than with their velocity (XSPH, shifting) or changes densities otherwise than by continuity
-(filter).
+kinetic + potential + compressive + heat (viscosity) + diffused (density diffusion) - work of walls - work of surface
+tension stays what it was, but for the steps in time, for particles stopped at a wall's surface or held at the least
+density, and for what moves particles otherwise than with their velocity (XSPH, shifting) or changes densities otherwise
+than by continuity (filter).
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from continuum_sph.layers import BY_WALLS, DIFFUSIVE, VISCOUS
+from continuum_sph.layers import BY_TENSION, BY_WALLS, DIFFUSIVE, VISCOUS
 from continuum_sph.step import Flow
 
 
@@ -38,6 +38,7 @@ def book(flow: Flow) -> dict[str, float]:
         "heat of viscosity": float(turned[VISCOUS]),
         "energy diffused": float(turned[DIFFUSIVE]),
         "work of walls": float(turned[BY_WALLS]),
+        "work of surface tension": float(turned[BY_TENSION]),
         "total energy": total,
-        "energy balance": total + float(turned[VISCOUS] + turned[DIFFUSIVE] - turned[BY_WALLS]),
+        "energy balance": total + float(turned[VISCOUS] + turned[DIFFUSIVE] - turned[BY_WALLS] - turned[BY_TENSION]),
     }

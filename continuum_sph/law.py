@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from continuum_sph.eos import Gas, Tait
 from continuum_sph.fluids import Fluid
 from continuum_sph.smoothing import Smoothing
 
-RULES = ("sound", "acceleration", "viscosity")
+RULES = ("sound", "acceleration", "viscosity", "capillarity")
 
 
 @dataclass(frozen=True)
@@ -19,8 +20,8 @@ class Law:
     gravity : (x, y) m/s²;  alpha, beta, softening : artificial viscosity;  diffusion : δ, and noise, what it takes for
     noise (`density.NAMES`);  xsph : ε;  shifting : s;  corrected : gradients of `correction`;  varied : h follows
     density (eq. 52);  filter_every : steps between filters of density (eq. 27), 0 never;  sticky : no-slip walls;
-    images : walls of the paper (eqs 50, 51), else walls that take the pressure from the fluid;  cut : no tension;
-    courant : the 0.25 of eq. 49.
+    images : walls of the paper (eqs 50, 51), else walls that take the pressure from the fluid;  tension : σ between two
+    fluids, N/m;  cut : no negative pressure;  courant : the 0.25 of eq. 49.
     """
 
     smoothing: Smoothing
@@ -39,6 +40,7 @@ class Law:
     filter_every: int = 0
     sticky: bool = False
     images: bool = False
+    tension: float = 0.0
     cut: bool = True
     courant: float = 0.25
 
@@ -52,15 +54,18 @@ class Law:
         """Largest speed of sound of the fluids at rest, m/s."""
         return max(fluid.state.sound_speed for fluid in self.fluids)
 
-    def limits(self, acceleration: float, pace: float) -> tuple[float, float, float]:
-        """Steps allowed by sound, acceleration (m/s²) and viscosity, s: eq. 49 with h²/ν in the third.
+    def limits(self, acceleration: float, pace: float) -> tuple[float, float, float, float]:
+        """Steps allowed by sound, acceleration (m/s²), viscosity and capillary waves, s: eq. 49, h²/ν in the third.
 
-        0.25/max(c/h), 0.25 √(h/|a|), 0.125 h²/ν;  ``pace``: the largest c/h, 1/s.
+        0.25/max(c/h), 0.25 √(h/|a|), 0.125 h²/ν, 0.25 √(ρ h³/2πσ) (Brackbill, Kothe & Zemach 1992);  ``pace``: the
+        largest c/h, 1/s.
         """
         h, infinite = self.smoothing.length, float("inf")
         thickest = max(fluid.viscosity / fluid.state.density for fluid in self.fluids)
+        lightest = min(fluid.state.density for fluid in self.fluids)
         return (
             self.courant / pace if pace > 0.0 else infinite,
             self.courant * (h / acceleration) ** 0.5 if acceleration > 0.0 else infinite,
             0.125 * h * h / thickest if thickest > 0.0 else infinite,
+            0.25 * (lightest * h**3 / (2.0 * math.pi * self.tension)) ** 0.5 if self.tension > 0.0 else infinite,
         )

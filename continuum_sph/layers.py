@@ -11,8 +11,9 @@ Floats = NDArray[np.float64]
 
 X, Y, VX, VY, RHO, P, VOLUME, STIFF = range(8)
 """Columns of a record: m, m, m/s, m/s, kg/m³, Pa, m/ρ (m²), ρ/c² (kg s²/m⁵)."""
-VISCOUS, DIFFUSIVE, BY_WALLS = range(3)
-"""Columns of energy turned over: by viscosity into heat, by density diffusion into nothing, given by walls."""
+VISCOUS, DIFFUSIVE, BY_WALLS, BY_TENSION = range(4)
+"""Columns of energy turned over: by viscosity into heat, by density diffusion into nothing, given by walls, by
+surface tension."""
 
 
 @dataclass
@@ -21,8 +22,8 @@ class Layer:
 
     fluid : number of fluid particles, the first rows of every array;
     x (n, 2) m;  v (n, 2) m/s, of walls the wall's own;  mass (n,) kg per metre of depth;
-    density (fluid,) kg/m³;  material (n,) number of the particle's fluid;  the rest is made of these: pressure (n,) Pa
-    and what the pass over pairs reads.
+    density (fluid,) kg/m³;  material (n,) number of the particle's fluid, of a wall particle 1 where fluid slips past
+    walls that else hold it;  the rest is made of these: pressure (n,) Pa and what the pass over pairs reads.
     """
 
     fluid: int
@@ -43,8 +44,8 @@ class Layer:
     length: Floats = field(init=False)  # (n,) m, smoothing lengths, set by the flow
     matrix: Floats = field(init=False)  # (n, 3) xx, xy, yy of the gradient correction
     facing: Floats = field(init=False)  # (n, 4) of walls: nearest point of the surface, normal into the fluid
-    power: Floats = field(init=False)  # (fluid, 3) W/m, see VISCOUS, DIFFUSIVE, BY_WALLS
-    energy: Floats = field(init=False)  # (fluid, 3) J/m, the same summed over time
+    power: Floats = field(init=False)  # (fluid, 4) W/m, see VISCOUS, …, BY_TENSION
+    energy: Floats = field(init=False)  # (fluid, 4) J/m, the same summed over time
 
     def __post_init__(self) -> None:
         n = len(self.x)
@@ -61,7 +62,7 @@ class Layer:
         self.record, self.ghost = np.zeros((n, 8)), np.zeros((n, 2))
         self.length, self.facing = np.zeros(n), np.zeros((n, 4))
         self.matrix = np.tile([1.0, 0.0, 1.0], (n, 1))
-        self.power, self.energy = np.zeros((self.fluid, 3)), np.zeros((self.fluid, 3))
+        self.power, self.energy = np.zeros((self.fluid, 4)), np.zeros((self.fluid, 4))
 
     @property
     def count(self) -> int:

@@ -75,7 +75,7 @@ def kick(v, acceleration, density, rate, material, length, table, power, energy,
 
     Continuity follows a particle that leaves its neighbours down to the density of a cloud, below zero if they were
     crowded: densities stop at the fluid's least.  varied: h -= step h/(2ρ) dρ/dt, eq. 52 in two dimensions.
-    energy (fluid, 3) J/m grows by step times ``power``.  Returns the largest |a|² (m²/s⁴) and |v|² (m²/s²), which limit
+    energy (fluid, 4) J/m grows by step times ``power``.  Returns the largest |a|² (m²/s⁴) and |v|² (m²/s²), which limit
     the next step and its shifting.
     """
     hardest = 0.0
@@ -88,7 +88,7 @@ def kick(v, acceleration, density, rate, material, length, table, power, energy,
         if varied:
             length[i] -= step * length[i] / (2.0 * density[i]) * rate[i]
         density[i] = max(table[material[i], THINNEST], density[i] + step * rate[i])
-        for k in range(3):
+        for k in range(4):
             energy[i, k] += step * power[i, k]
         hardest = max(hardest, ax * ax + ay * ay)
         swiftest = max(swiftest, v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1])

@@ -44,7 +44,7 @@ def rates(
     period_x, period_y,
 ):  # fmt: skip
     """Overwrites ``acceleration`` (fluid, 2) m/s², ``rate`` (fluid,) kg/(m³ s), ``smoothed`` (fluid, 2) m/s and
-    ``power`` (fluid, 3) W/m.
+    the first three columns of ``power`` (fluid, 4) W/m.
 
     start, split, partner: full pair list, wall partners of row i from ``split[i]`` on;  record, ghost, facing,
     material, length, matrix, drift: see Layer;  slant: of `surroundings`;  mass (n,) kg/m;  table (m, 8): the fluids;
@@ -177,7 +177,7 @@ def rates(
             swept = volume * (vx * tx + vy * ty) * slope
             change += rho * swept
             thrust = (own + record[j, P]) * specific * volume * slope
-            brake = laminar(own_viscosity, volume, specific, braking) if sticky else 0.0
+            brake = laminar(own_viscosity, volume, specific, braking) if sticky and material[j] == 0 else 0.0
             ax -= thrust * tx
             ay -= thrust * ty
             bx += brake * ux

@@ -35,6 +35,7 @@ from continuum_sph.layers import Layer
 from continuum_sph.motion import kick, kick_drift, pressurise
 from continuum_sph.rates import rates, split_rows
 from continuum_sph.shifting import MOST, shift
+from continuum_sph.surface_tension import colours, normals, pull_interface
 from porescale.particles import PairList
 
 Floats = NDArray[np.float64]
@@ -57,7 +58,7 @@ class Flow:
     time: float = 0.0
     next_step: float = 0.0
     last_steps: tuple[float, float] = (0.0, 0.0)
-    limited: list[int] = field(default_factory=lambda: [0, 0, 0])
+    limited: list[int] = field(default_factory=lambda: [0, 0, 0, 0])
     rule: int = 0
     stopped: int = 0
     pace: float = 0.0
@@ -75,6 +76,7 @@ class Flow:
         # What `correction` finds, read by others only where a choice needs it.
         self.openness, self.crowd, self.slant = np.full(count, 2.0), np.zeros((count, 2)), np.zeros((count, 2))
         self.normalised = np.zeros(layer.fluid)
+        self.colour, self.normal = np.zeros(layer.fluid), np.zeros((layer.fluid, 3))
 
     @property
     def surveyed(self) -> bool:
@@ -142,6 +144,8 @@ class Flow:
             kind, h, *law.gravity, law.alpha, law.beta, law.softening, 2.0 * law.diffusion * h, law.noise,
             law.sticky, law.images, law.xsph, law.shifting > 0.0, law.corrected, law.varied, *pairs.period,
         )  # fmt: skip
+        if law.tension > 0.0:
+            self.pull()
         if law.images:
             self.wall_rate, self.wall_rate_before = self.wall_rate_before, self.wall_rate
             wall_rates(
@@ -153,6 +157,17 @@ class Flow:
                 fluid, pairs.start, self.split, pairs.partner, layer.record, self.openness, self.crowd,
                 layer.drift, kind, h, 2.0 * h * law.shifting * self.swiftest, MOST * self.swiftest, *pairs.period,
             )  # fmt: skip
+
+    def pull(self) -> None:
+        """Surface tension between two fluids."""
+        layer, law, pairs = self.layer, self.law, self.pairs
+        where = (layer.fluid, pairs.start, self.split, pairs.partner, layer.record)
+        how = (law.smoothing.kind, law.smoothing.length, *pairs.period)
+        colours(*where, layer.material, self.colour, *how)
+        normals(*where, self.colour, self.normal, *how)
+        pull_interface(
+            *where, self.normal, law.tension, layer.acceleration, layer.mass, layer.v, layer.power, *how
+        )  # fmt: skip
 
     def show_walls(self, step: float, ratio: float) -> None:
         """What fluid sees of walls, a ``step`` (s) on."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from continuum_sph.boundary import tank_walls
 from continuum_sph.density import NAMES
-from continuum_sph.eos import Tait
+from continuum_sph.eos import Gas, Tait
 from continuum_sph.exact import released_pressure
 from continuum_sph.fluids import Fluid
 from continuum_sph.law import Law
@@ -27,13 +27,26 @@ def water_of(scene: Scene) -> Tait:
     return Tait(scene.water.density, scene.sound_speed, scene.water.exponent)
 
 
+def inclusion_of(scene: Scene) -> Fluid | None:
+    """The second fluid of a scene."""
+    given = scene.inclusion
+    if given is None:
+        return None
+    if given.law == "liquid":
+        water, exponent = water_of(scene), given.exponent or 7.0
+        stiff = (water.stiffness * exponent / given.density) ** 0.5
+        return Fluid(Tait(given.density, given.sound_speed or stiff, exponent), given.viscosity, given.cohesion)
+    gas = Gas(given.density, given.pressure, given.exponent or 1.403, printed=given.law == "printed")
+    return Fluid(gas, given.viscosity, given.cohesion)
+
+
 def law_of(scene: Scene) -> Law:
     """What the particles of a scene obey."""
-    numerics, water = scene.numerics, scene.water
+    numerics, water, second = scene.numerics, scene.water, inclusion_of(scene)
     return Law(
         smoothing=Smoothing(numerics.kernel, numerics.smoothing_ratio * numerics.spacing),
         spacing=numerics.spacing,
-        fluids=(Fluid(water_of(scene), water.viscosity),),
+        fluids=(Fluid(water_of(scene), water.viscosity), *([second] if second else [])),
         gravity=(0.0, -scene.gravity),
         alpha=numerics.artificial_viscosity,
         beta=numerics.artificial_viscosity_2,
@@ -45,8 +58,9 @@ def law_of(scene: Scene) -> Law:
         corrected=numerics.gradient == "corrected",
         varied=numerics.smoothing_length == "evolved",
         filter_every=numerics.density_filter,
-        sticky=scene.tank.walls == "stick",
+        sticky=scene.tank.walls != "slip",
         images=scene.tank.wall_particles == "images",
+        tension=scene.inclusion.surface_tension if scene.inclusion else 0.0,
         cut=numerics.tension == "cut",
         courant=numerics.courant,
     )
@@ -83,6 +97,20 @@ def fluid_of(scene: Scene, law: Law) -> tuple[Floats, Floats, Floats]:
     return np.concatenate(positions), np.concatenate(velocities), np.concatenate(densities)
 
 
+def fill(scene: Scene, law: Law, x: Floats, rho: Floats, material: NDArray[np.int64]) -> None:
+    """Turn water at ``x`` (n, 2) m in the discs of the second fluid into it; overwrites there ``rho`` and ``material``.
+
+    Its pressure is that of the water in its place, and of surface tension σ/R more.
+    """
+    assert scene.inclusion is not None
+    first, second = law.fluids[0].state, law.fluids[1].state
+    for disc in scene.inclusion.disc:
+        inside = np.flatnonzero(np.hypot(x[:, 0] - disc.x, x[:, 1] - disc.y) < disc.radius)
+        pressure = first.pressure(rho[inside]) + scene.inclusion.surface_tension / disc.radius
+        rho[inside] = second.density_at(pressure)
+        material[inside] = 1
+
+
 def flow_of(scene: Scene) -> Flow:
     """The particles of a scene, ready for their first step."""
     law, spacing, tank = law_of(scene), scene.numerics.spacing, scene.tank
@@ -91,12 +119,18 @@ def flow_of(scene: Scene) -> Flow:
     width, height = scene.inner
     walls = tank_walls(width, height, spacing, layers, lid=tank.lid)
     area = spacing * spacing
+    material = np.zeros(len(x) + len(walls), np.int64)
+    if tank.walls == "floor and lid stick":
+        material[len(x) :] = (walls[:, 1] > 0.0) & (walls[:, 1] < height)
+    if scene.inclusion is not None:
+        fill(scene, law, x, rho, material)
     layer = Layer(
         fluid=len(x),
         x=np.concatenate((x, walls)),
         v=np.concatenate((v, np.zeros_like(walls))),
         mass=np.concatenate((rho * area, np.full(len(walls), law.state.density * area))),
         density=rho,
+        material=material,
     )
     margin = layers * spacing
     pairs = PairList(

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from continuum_sph.energy import book
 from continuum_sph.law import RULES
+from continuum_sph.scene.bubble import bubble
 from continuum_sph.scene.build import flow_of, water_of
 from continuum_sph.scene.sections import Scene
 from continuum_sph.step import Flow
@@ -56,7 +57,7 @@ class Simulation:
     def check(self) -> None:
         """Raise Unstable when water in the tank is faster than sound or too dense to mean anything."""
         layer, tait = self.flow.layer, water_of(self.scene)
-        inside = np.flatnonzero(self.inside())
+        inside = np.flatnonzero(self.inside() & (layer.material[: layer.fluid] == 0))
         speed = np.hypot(layer.v[inside, 0], layer.v[inside, 1])
         ratio = layer.density[inside] / tait.density
         for values, limit, name, unit, scale in (
@@ -94,6 +95,7 @@ class Simulation:
             "mass (kg/m)": float(mass.sum()),
             "particles outside ()": float(n - int(inside.sum())),
             "stops at walls ()": float(self.flow.stopped),
+            **(bubble(self.flow) if self.scene.inclusion else {}),
             **{f"steps limited by {rule} ()": float(k) for rule, k in zip(RULES, self.flow.limited, strict=True)},
         }
 
@@ -103,11 +105,15 @@ class Simulation:
         n = layer.fluid
         velocity = np.zeros((n, 3))
         velocity[:, :2] = layer.v[:n]
-        cloud = Cloud(
-            layer.x[:n].copy(),
-            {"velocity": velocity, "pressure": layer.pressure[:n].copy(), "density": layer.density.copy()},
-            {"velocity": "m/s", "pressure": "Pa", "density": "kg/m3"},
-        )
+        data: dict[str, NDArray[Any]] = {
+            "velocity": velocity,
+            "pressure": layer.pressure[:n].copy(),
+            "density": layer.density.copy(),
+        }
+        if self.scene.inclusion:
+            data["fluid"] = layer.material[:n].copy()
+        units = {"velocity": "m/s", "pressure": "Pa", "density": "kg/m3"}
+        cloud = Cloud(layer.x[:n].copy(), data, units)
         return Snapshot(self.time, self.step, clouds={"particles": cloud})
 
     def state(self) -> dict[str, Any]:

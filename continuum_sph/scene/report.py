@@ -44,9 +44,15 @@ def report(scene: Scene) -> Report:
     out.row("compression at the floor", 100.0 * deepest, "%")
     if viscosity > 0.0:
         out.row("Reynolds number", fall * scene.head * tait.density / viscosity)
+    if scene.inclusion is not None:
+        second = law.fluids[1].state
+        out.heading("second fluid")
+        out.row("sound speed", second.sound_speed, "m/s")
+        out.row("density over the water's", second.density / tait.density)
+        out.row("particles across the smallest disc", 2.0 * min(d.radius for d in scene.inclusion.disc) / spacing)
     out.heading("steps")
     sound = tait.sound_speed * (1.0 + deepest) ** (0.5 * (tait.exponent - 1.0))
-    limits = law.limits(2.0 * scene.gravity, sound / h)
+    limits = law.limits(2.0 * scene.gravity, max(sound, law.quickest) / h)
     for rule, limit in zip(RULES, limits, strict=True):
         out.row(f"longest step for {rule}", limit, "s")
     step = min(limits)

@@ -28,13 +28,14 @@ def spacings(length: float, spacing: float) -> int:
 class Tank(Section):
     """A rectangular tank, lower left inner corner at the origin.
 
-    "slip" walls carry pressure only, "stick" walls hold the water as well.  wall_particles: "pressure" take the
-    pressure of the water before them (Adami, Hu & Adams 2012), "images" are the paper's (eqs 50, 51).
+    "slip" walls carry pressure only, "stick" walls hold the water as well, or floor and lid alone do.  wall_particles:
+    "pressure" take the pressure of the water before them (Adami, Hu & Adams 2012), "images" are those of the paper
+    (eqs 50, 51).
     """
 
     width: float = quantity("m", ge=SMALLEST, le=LARGEST, help="inner width of the tank")
     height: float = quantity("m", ge=SMALLEST, le=LARGEST, help="inner height of the tank")
-    walls: Literal["slip", "stick"] = "slip"
+    walls: Literal["slip", "stick", "floor and lid stick"] = "slip"
     wall_particles: Literal["pressure", "images"] = "pressure"
     lid: bool = pydantic.Field(True, description="close the tank, so that no splash is lost")
 
@@ -63,6 +64,32 @@ class Water(Section):
     pressure: Literal["hydrostatic", "released", "none"] = "hydrostatic"
     push: Literal["none", "face"] = "none"
     column: tuple[Column, ...] = pydantic.Field(min_length=1, description="rectangles of water")
+
+
+class Disc(Section):
+    """A disc."""
+
+    x: float = quantity("m", ge=0, le=LARGEST, help="centre")
+    y: float = quantity("m", ge=0, le=LARGEST, help="centre, above the floor")
+    radius: float = quantity("m", ge=SMALLEST, le=LARGEST, help="radius")
+
+
+class Inclusion(Section):
+    """A second fluid, in discs within the water: bubbles or drops.
+
+    law : "liquid" (eq. 41), as stiff as the water unless sound_speed says otherwise; gas under the pressure of the air,
+    "adiabatic", or "printed" (eqs 39, 40);  surface_tension : σ against the water;  cohesion : a of eq. 54 within it.
+    """
+
+    density: float = quantity("kg/m^3", 1.207, ge=1e-2, le=1e5, help="density under the pressure of the air")
+    viscosity: float = quantity("Pa s", 1.810e-5, ge=0, le=1e9, help="viscosity")
+    law: Literal["liquid", "adiabatic", "printed"] = "adiabatic"
+    sound_speed: float | None = quantity("m/s", None, ge=1e-3, le=1e6, help="speed of sound of a liquid")
+    pressure: float = quantity("Pa", 1e5, ge=1e-3, le=1e9, help="pressure of the air, of a gas")
+    exponent: float | None = quantity("", None, ge=1.01, le=20, help="exponent: 7 of a liquid, 1.403 of a gas")
+    surface_tension: float = quantity("N/m", 0.0, ge=0, le=1e6, help="surface tension against the water")
+    cohesion: float = quantity("Pa m^4", 0.0, ge=0, le=1e6, help="a of eq. 54")
+    disc: tuple[Disc, ...] = pydantic.Field(min_length=1, description="discs of the second fluid")
 
 
 class Numerics(Section):
@@ -113,6 +140,7 @@ class Scene(Section):
     gravity: float = quantity("m/s^2", GRAVITY, ge=0, le=1e6, help="acceleration of free fall, downwards")
     tank: Tank
     water: Water
+    inclusion: Inclusion | None = None
     numerics: Numerics
     time: Time
     output: Output
@@ -168,6 +196,7 @@ class Scene(Section):
                 Fault("water.pressure", "released", "is known for one column in the left corner only",
                       repair='use "hydrostatic", or one column with left = bottom = 0')
             )  # fmt: skip
+        faults += self._misplaced()
         if 0.0 < self.gravity < WEAKEST:
             faults.append(Fault("gravity", self.gravity, "is too weak to move water", "m/s^2", f"0 or >= {WEAKEST:g}"))
         if self.gravity == 0.0 and self.water.sound_speed is None:
@@ -175,6 +204,30 @@ class Scene(Section):
         if faults:
             raise Refused(*faults)
         return self
+
+    def _misplaced(self) -> list[Fault]:
+        """Discs of the second fluid not within water or not resolved, and choices that have no room for one."""
+        if self.inclusion is None:
+            return []
+        faults = []
+        for index, disc in enumerate(self.inclusion.disc):
+            key, r = f"inclusion.disc[{index}]", disc.radius
+            held = any(
+                c.left <= disc.x - r and disc.x + r <= c.left + c.width
+                and c.bottom <= disc.y - r and disc.y + r <= c.bottom + c.height
+                for c in self.water.column
+            )  # fmt: skip
+            if not held:
+                faults.append(Fault(key, (disc.x, disc.y), "does not lie within a column of water", "m"))
+            if r < 3.0 * self.numerics.spacing:
+                faults.append(
+                    Fault("numerics.spacing", self.numerics.spacing, f"leaves {key} fewer than 6 particles across", "m",
+                          f"<= {r / 3.0:g}")
+                )  # fmt: skip
+        if self.tank.wall_particles == "images":
+            faults.append(Fault("tank.wall_particles", "images", "have the pressure of one fluid only",
+                                repair='use "pressure" with an inclusion'))  # fmt: skip
+        return faults
 
     def _unresolved(self) -> list[Fault]:
         """Lengths of tank and water that are not whole spacings, and a spacing that makes too many particles."""

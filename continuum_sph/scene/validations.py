@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from continuum_sph.scene import verify, verify_flows
+from continuum_sph.scene import verify, verify_flows, verify_fluids
 from porescale.workbench.validations import Validations
 
 VALIDATIONS = Validations()
-for room in (verify, verify_flows):
+for room in (verify, verify_flows, verify_fluids):
     VALIDATIONS.include(room.VALIDATIONS)

@@ -113,10 +113,10 @@ def test_water_faster_than_sound_is_unstable_and_named():
 def test_the_limiting_rule_is_recorded():
     model = Simulation(scene())
     model.advance(10)
-    assert model.flow.limited == [10, 0, 0]
+    assert model.flow.limited == [10, 0, 0, 0]
     thick = Simulation(trials.column_scene(0.1, tank=(1, 1), column=(0.5, 0.5), viscosity=3e5))
     thick.advance(2)
-    assert thick.flow.limited == [0, 0, 2]
+    assert thick.flow.limited == [0, 0, 2, 0]
     h, law = thick.flow.law.smoothing.length, thick.flow.law
     assert thick.step_seconds == pytest.approx(0.125 * h * h * 1000.0 / 3e5)
     assert law.limits(1e9, 1.0)[1] == pytest.approx(0.25 * (h / 1e9) ** 0.5)

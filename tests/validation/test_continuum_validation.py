@@ -7,7 +7,7 @@ import pytest
 
 from continuum_sph import step
 from continuum_sph.layers import VISCOUS, P
-from continuum_sph.scene import verify, verify_flows
+from continuum_sph.scene import verify, verify_flows, verify_fluids
 from continuum_sph.scene.validations import VALIDATIONS
 from continuum_sph.smoothing import WENDLAND, kernel_slope, kernel_value
 
@@ -101,6 +101,17 @@ def test_a_book_without_its_heat_does_not_close(monkeypatch):
 def _kick_without_heat(v, acceleration, density, rate, material, length, table, power, *rest, kick=step.kick):
     power[:, VISCOUS] = 0.0
     return kick(v, acceleration, density, rate, material, length, table, power, *rest)
+
+
+def test_a_tenth_more_tension_is_told_apart():
+    jump = verify_fluids.jump(20, seconds=0.3, tension=1.1 * verify_fluids.TENSION)
+    assert abs(jump - 1.0) > 2.0 * tolerance("continuum.young_laplace")
+
+
+@pytest.mark.slow
+def test_a_drop_of_less_tension_swings_slower():
+    found, exact = verify_fluids.period(50, tension=0.9 * verify_fluids.TENSION)
+    assert abs(found / exact - 1.0) > tolerance("continuum.drop_period")
 
 
 def test_coarse_waves_are_slower_than_the_tolerance():

@@ -1,0 +1,61 @@
+"""What there is to say of the second fluid in a tank: where it is, how it rises, how round, in how many pieces."""
+
+from __future__ import annotations
+
+import numpy as np
+from contourpy import contour_generator
+from numpy.typing import NDArray
+from scipy.interpolate import LinearNDInterpolator
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from continuum_sph.step import Flow
+
+Floats = NDArray[np.float64]
+
+TOUCH = 1.6  # spacings: particles nearer belong together; neighbours across a diagonal are at 1.41
+
+
+def bubble(flow: Flow) -> dict[str, float]:
+    """Columns of the series: centre and mean velocity by volume, circularity, pieces of four particles and more."""
+    layer, n = flow.layer, flow.layer.fluid
+    own = layer.material[:n] == 1
+    x, volume = layer.x[:n][own], layer.mass[:n][own] / layer.density[own]
+    share = volume / volume.sum()
+    return {
+        "bubble centre x (m)": float(share @ x[:, 0]),
+        "bubble centre (m)": float(share @ x[:, 1]),
+        "bubble rise (m/s)": float(share @ layer.v[:n, 1][own]),
+        "bubble area (m2)": float(volume.sum()),
+        "bubble circularity ()": circularity(flow, float(volume.sum())),
+        "bubble pieces ()": float(pieces(x, flow.law.spacing)),
+    }
+
+
+def circularity(flow: Flow, area: float) -> float:
+    """Girth of the circle of equal ``area`` (m²) over that of the second fluid: 1 when it is one round piece.
+
+    Its outline is where the colour, averaged over the kernel where there is surface tension, is one half.
+    """
+    layer, n, spacing = flow.layer, flow.layer.fluid, flow.law.spacing
+    colour = flow.colour if flow.law.tension > 0.0 else layer.material[:n].astype(np.float64)
+    own = layer.x[:n][layer.material[:n] == 1]
+    reach = 4.0 * spacing
+    low, high = own.min(axis=0) - reach, own.max(axis=0) + reach
+    near = ((layer.x[:n] > low) & (layer.x[:n] < high)).all(axis=1)
+    xs, ys = (np.arange(low[axis], high[axis], 0.5 * spacing) for axis in (0, 1))
+    field = LinearNDInterpolator(layer.x[:n][near], colour[near], fill_value=0.0)(*np.meshgrid(xs, ys))
+    girth = 0.0
+    for line in contour_generator(xs, ys, field).lines(0.5):
+        steps = np.diff(np.asarray(line), axis=0)
+        girth += float(np.hypot(steps[:, 0], steps[:, 1]).sum())
+    return float(2.0 * np.sqrt(np.pi * area) / girth) if girth > 0.0 else 0.0
+
+
+def pieces(x: Floats, spacing: float) -> int:
+    """Number of groups of four and more of the points ``x`` (n, 2) m that hang together within `TOUCH` spacings."""
+    pairs = cKDTree(x).query_pairs(TOUCH * spacing, output_type="ndarray")
+    links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(x), len(x)))
+    _, label = connected_components(links, directed=False)
+    return int((np.bincount(label) >= 4).sum())

@@ -1,0 +1,66 @@
+"""Drops of one fluid in another that validations set up and watch.  SI."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from continuum_sph.eos import Tait
+from continuum_sph.fluids import Fluid
+from continuum_sph.law import Law
+from continuum_sph.layers import Layer
+from continuum_sph.smoothing import Smoothing
+from continuum_sph.step import Flow
+from porescale.particles import PairList, square_lattice
+
+Floats = NDArray[np.float64]
+
+TENSION = 1.0  # N/m
+OUTER = 0.1  # kg/m³; the drop has 1
+
+
+def drop(
+    across: int,
+    radius: float,
+    *,
+    stretch: float = 1.0,
+    viscosity: float = 0.05,
+    outer_viscosity: float = 0.05,
+    tension: float = TENSION,
+) -> Flow:
+    """A drop (fluid 1) in the middle of a periodic box of 1 m, ``across`` particles wide, at rest.
+
+    radius : m;  stretch : its width over 2 radius, its height over as much less;  viscosities : μ, Pa s;
+    tension : σ, N/m.
+    """
+    spacing = 1.0 / across
+    x = square_lattice((0.0, 0.0), (1.0, 1.0), spacing)
+    place = (x - 0.5) * [1.0 / stretch, stretch]
+    inside = np.hypot(place[:, 0], place[:, 1]) < radius
+    light, heavy = Tait(OUTER, 10.0 * OUTER**-0.5), Tait(1.0, 10.0)  # equally stiff
+    rho = np.where(inside, heavy.density_at(np.array(tension / radius)), OUTER)
+    smoothing = Smoothing("wendland", 1.3 * spacing)
+    law = Law(
+        smoothing, spacing, (Fluid(light, outer_viscosity), Fluid(heavy, viscosity)), (0.0, 0.0),
+        shifting=2.0, corrected=True, tension=tension, cut=False,
+    )  # fmt: skip
+    layer = Layer(len(x), x, np.zeros_like(x), rho * spacing**2, rho, inside.astype(np.int64))
+    pairs = PairList(len(x), 0.25 * smoothing.length, (0.0, 0.0), (1.0, 1.0), (True, True), full=True)
+    flow = Flow(layer, law, pairs)
+    flow.start()
+    return flow
+
+
+def pressure_jump(flow: Flow, radius: float) -> float:
+    """Mean pressure (Pa) within 0.6 ``radius`` (m) of the drop's centre less that beyond 1.5 of it."""
+    layer = flow.layer
+    centre = layer.x[layer.material == 1].mean(axis=0)
+    r = np.hypot(layer.x[:, 0] - centre[0], layer.x[:, 1] - centre[1])
+    return float(layer.pressure[r < 0.6 * radius].mean() - layer.pressure[r > 1.5 * radius].mean())
+
+
+def stretched(flow: Flow) -> float:
+    """Second moment of the drop along x less that along y, over their sum."""
+    x = flow.layer.x[flow.layer.material == 1]
+    moments = x.var(axis=0)
+    return float((moments[0] - moments[1]) / moments.sum())

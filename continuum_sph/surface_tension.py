@@ -1,0 +1,120 @@
+"""Surface tension between two fluids as a force on a smoothed interface, -σ κ ∇c: it meets Young's and Laplace's σ/R.
+
+The colour c, 0 and 1, is averaged over the kernel, so that normals ∇c/|∇c| are smooth; curvature is their divergence,
+corrected (Bonet & Lok 1999) for the partners that have no normal: the interface is a strip, and plain sums take its
+missing sides for curvature.  Both sides bear the same force: weighted by density, as is often done, it would draw the
+heavy side's outermost row away from the interface.  Source: Brackbill, Kothe & Zemach, J. Comput. Phys. 100 (1992) 335;
+as particles Morris, Int. J. Numer. Methods Fluids 33 (2000) 333.  The paper's own form, a pull within one material
+(eq. 54), is `Fluid.cohesion`: it has the range of the pressure, so it changes the equation of state and has no tension
+that could be set.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from continuum_sph.layers import BY_TENSION, RHO, VOLUME, X, Y
+from continuum_sph.smoothing import kernel_slope, kernel_value
+from porescale.ground.jit import parallel_kernel, prange
+from porescale.particles.cells import minimum_image
+
+SINGULAR = 0.02  # of the square of its trace: a determinant below is that of partners on one line; 0.25 is isotropic
+FAINT = 0.02  # of 1/h: gradients below have no direction to rely on; those of an interface reach 0.35
+
+
+@parallel_kernel
+def colours(fluid, start, split, partner, record, material, colour, kind, h, period_x, period_y):
+    """Overwrites ``colour`` (fluid,), the kernel average of the number of the fluid, 0 or 1.
+
+    start, split, partner: full list, walls from ``split[i]`` on;  record, material: see Layer;  kind, h: smoothing;
+    periods, m or 0.
+    """
+    for i in prange(fluid):
+        weight = record[i, VOLUME] * kernel_value(kind, 0.0, h)
+        below = weight
+        above = weight * material[i]
+        for k in range(np.uint64(start[i]), np.uint64(split[i])):
+            j = np.uint64(partner[k])
+            dx = minimum_image(record[i, X] - record[j, X], period_x)
+            dy = minimum_image(record[i, Y] - record[j, Y], period_y)
+            weight = record[j, VOLUME] * kernel_value(kind, np.sqrt(dx * dx + dy * dy) / h, h)
+            below += weight
+            above += weight * material[j]
+        colour[i] = above / below
+
+
+@parallel_kernel
+def normals(fluid, start, split, partner, record, colour, normal, kind, h, period_x, period_y):
+    """Overwrites ``normal`` (fluid, 3): unit normal of the interface and |∇c|, 1/m; zeros away from it.
+
+    ∇c_i = 2 Σ V_j (c_j - c_i) ∇_i W/Σ V_j r |dW/dr|, into fluid 1.  The rest: as `colours`.
+    """
+    for i in prange(fluid):
+        cx = 0.0
+        cy = 0.0
+        below = 0.0
+        for k in range(np.uint64(start[i]), np.uint64(split[i])):
+            j = np.uint64(partner[k])
+            dx = minimum_image(record[i, X] - record[j, X], period_x)
+            dy = minimum_image(record[i, Y] - record[j, Y], period_y)
+            distance2 = dx * dx + dy * dy
+            part = record[j, VOLUME] * kernel_slope(kind, np.sqrt(distance2) / h, h)
+            below -= part * distance2
+            part *= colour[j] - colour[i]
+            cx += part * dx
+            cy += part * dy
+        size = np.sqrt(cx * cx + cy * cy)
+        if below > 0.0 and 2.0 * size * h > FAINT * below:
+            normal[i, 0] = cx / size
+            normal[i, 1] = cy / size
+            normal[i, 2] = 2.0 * size / below
+        else:
+            normal[i, 0] = 0.0
+            normal[i, 1] = 0.0
+            normal[i, 2] = 0.0
+
+
+@parallel_kernel
+def pull_interface(
+    fluid, start, split, partner, record, normal, tension, acceleration, mass, v, power, kind, h,
+    period_x, period_y,
+):  # fmt: skip
+    """Adds -(σ/ρ) κ ∇c to ``acceleration`` (fluid, 2) m/s² and its power to ``power`` (fluid, 4) W/m.
+
+    κ = Σ V_j (n_j - n_i) · L_i ∇_i W, L_i⁻¹ = Σ V_j (x_j - x_i) ⊗ ∇_i W, over partners with a normal;  tension σ, N/m;
+    mass (n,) kg/m;  v (n, 2) m/s;  the rest: as `colours`.
+    """
+    for i in prange(fluid):
+        power[i, BY_TENSION] = 0.0
+        if normal[i, 2] == 0.0:
+            continue
+        xx = 0.0
+        xy = 0.0
+        yy = 0.0
+        gxx = 0.0
+        gxy = 0.0
+        gyy = 0.0
+        for k in range(np.uint64(start[i]), np.uint64(split[i])):
+            j = np.uint64(partner[k])
+            if normal[j, 2] == 0.0:
+                continue
+            dx = minimum_image(record[i, X] - record[j, X], period_x)
+            dy = minimum_image(record[i, Y] - record[j, Y], period_y)
+            part = record[j, VOLUME] * kernel_slope(kind, np.sqrt(dx * dx + dy * dy) / h, h)
+            px = part * dx
+            py = part * dy
+            xx -= px * dx
+            xy -= px * dy
+            yy -= py * dy
+            nx = normal[j, 0] - normal[i, 0]
+            ny = normal[j, 1] - normal[i, 1]
+            gxx += nx * px
+            gxy += nx * py + ny * px
+            gyy += ny * py
+        whole = xx * yy - xy * xy
+        if whole > SINGULAR * (xx + yy) * (xx + yy):
+            curvature = (yy * gxx - xy * gxy + xx * gyy) / whole
+            pull = -tension * curvature * normal[i, 2] / record[i, RHO]
+            acceleration[i, 0] += pull * normal[i, 0]
+            acceleration[i, 1] += pull * normal[i, 1]
+            power[i, BY_TENSION] = mass[i] * pull * (normal[i, 0] * v[i, 0] + normal[i, 1] * v[i, 1])
