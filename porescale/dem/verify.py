@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from porescale.dem import experiments as lab
-from porescale.dem import verify_bodies, verify_contact, verify_measures, verify_segments
+from porescale.dem import verify_bodies, verify_contact, verify_measures, verify_rock, verify_segments
 from porescale.ground.constants import GRAVITY
 from porescale.workbench.validations import Measured, Validations
 
@@ -195,3 +195,4 @@ VALIDATIONS.include(verify_measures.VALIDATIONS)
 VALIDATIONS.include(verify_contact.VALIDATIONS)
 VALIDATIONS.include(verify_bodies.VALIDATIONS)
 VALIDATIONS.include(verify_segments.VALIDATIONS)
+VALIDATIONS.include(verify_rock.VALIDATIONS)
