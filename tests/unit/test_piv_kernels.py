@@ -1,0 +1,190 @@
+"""Kernels of displacement measurement against slow twins, compiled and as plain Python."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.interpolate import make_interp_spline
+from scipy.ndimage import map_coordinates, spline_filter
+
+from porescale.piv import interpolate, outliers, refine, spots, tilt
+from porescale.piv.correlate import Layout, block_products, correlation, peaks
+from porescale.piv.grid import Grid, spline_matrix
+from porescale.piv.smooth import smoothed
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+RNG = np.random.default_rng(6)
+EPS32 = float(np.finfo(np.float32).eps)
+
+
+@pytest.mark.parametrize("kernel", [spots.add_spots, spots.add_spots.py_func])
+def test_a_spot_is_the_mean_of_its_gaussian_over_each_pixel(kernel):
+    image = np.zeros((9, 11))
+    kernel(np.array([4.3]), np.array([4.8]), np.array([100.0]), 0.7, image)
+    fine = (np.arange(-50, 50) + 0.5) / 100
+    y, x = np.meshgrid(4 + fine, 5 + fine, indexing="ij")
+    twin = 100 * np.exp(-((x - 4.3) ** 2 + (y - 4.8) ** 2) / (2 * 0.7**2)).mean()
+    # Midpoints: h²/24 times the second derivative, at most 100/0.49, along each axis.
+    assert image[4, 5] == pytest.approx(twin, abs=2 * 1e-4 / 24 * 100 / 0.49)
+    assert image[0, 0] == 0
+
+
+def test_the_interpolator_is_the_quintic_spline_of_scipy():
+    picture = RNG.uniform(0, 200, (40, 44)).astype(np.float32)
+    shift = RNG.uniform(-2.5, 2.5, (2, 40, 44)).astype(np.float32)
+    found = np.empty((40, 44), np.float32)
+    interpolate.sample(interpolate.coefficients(picture), shift[0], shift[1], 0, found)
+    y, x = np.mgrid[:40, :44]
+    filtered = spline_filter(picture.astype(float), 5, mode="mirror")
+    twin = map_coordinates(filtered, [y + shift[1], x + shift[0]], order=5, prefilter=False, mode="mirror")
+    # Coefficients reach 2.3^2 times the values of white noise; 36 + 82 products, half a unit of round-off each.
+    assert np.abs(found - twin).max() < 5.3 * 200 * (36 + 82) * EPS32 / 2
+    plain = np.empty_like(found[:2])
+    for row in range(2):
+        interpolate.sample_row.py_func(interpolate.coefficients(picture), row, shift[0, row], shift[1, row], plain[row])
+    np.testing.assert_allclose(plain, found[:2], rtol=0, atol=5.3 * 200 * 36 * EPS32)
+
+
+def test_a_cubic_spline_is_another_one():
+    picture = RNG.uniform(0, 200, (40, 44))
+    y, x = np.mgrid[10:30, 10:30] + 0.5
+    cubic, quintic = (map_coordinates(picture, [y, x], order=k, mode="mirror") for k in (3, 5))
+    assert np.abs(cubic - quintic).max() > 5.3 * 200 * (36 + 82) * EPS32 / 2
+
+
+def slow_correlation(a, b, ma, mb, top, left, size, sy, sx):
+    """R of one window and shift, from its definition."""
+    one = (slice(top, top + size), slice(left, left + size))
+    two = (slice(top + sy, top + sy + size), slice(left + sx, left + sx + size))
+    below = math.sqrt((a[one] ** 2 * mb[two]).sum() * (b[two] ** 2 * ma[one]).sum())
+    return (a[one] * b[two]).sum() / below
+
+
+@pytest.mark.parametrize("masked", [False, True])
+def test_correlation_is_that_of_its_definition(masked):
+    a, b = RNG.normal(size=(2, 40, 40)).astype(np.float32)
+    ma, mb = np.ones_like(a), np.ones_like(b)
+    if masked:
+        ma[8:15, 10:20] = mb[9:16, 11:19] = 0
+    a, b = a * ma, b * mb
+    layout = Layout((3, 2), 6, 2, 5, 3)
+    energy = np.array([[(b[j : j + 12, i : i + 12] ** 2).sum() for i in range(40)] for j in range(40)], np.float32)
+    found = correlation(layout, a, b, (ma, mb) if masked else None, energy)
+    for row, column, sy, sx in [(0, 0, 0, 0), (1, 1, 3, 3), (2, 0, 6, 1), (0, 1, 2, 6)]:
+        twin = slow_correlation(a, b, ma, mb, 5 + 6 * row, 5 + 6 * column, 12, sy - 3, sx - 3)
+        assert found[row, column, sy, sx] == pytest.approx(twin, abs=144 * EPS32)
+
+
+def test_products_as_plain_python_are_those_compiled():
+    a, b = RNG.normal(size=(2, 12, 12)).astype(np.float32)
+    found, plain = np.empty((2, 2, 3, 3), np.float32), np.empty((2, 2, 3, 3), np.float32)
+    lane = np.empty((2, 10), np.float32)
+    block_products(a, b, 1, 5, lane, found)
+    block_products.py_func(a, b, 1, 5, lane, plain)
+    np.testing.assert_allclose(found, plain, rtol=0, atol=25 * 10 * EPS32)
+
+
+def test_a_gaussian_peak_is_found_where_it_is():
+    j, i = np.mgrid[-3:4, -3:4]
+    total = 0.8 * np.exp(-((i - 0.3) ** 2 + (j + 0.4) ** 2) / 2.0)[None, None].astype(np.float32)
+    u, v, value, ratio = (np.empty((1, 1)) for _ in range(4))
+    peaks(total, u, v, value, ratio)
+    assert u[0, 0] == pytest.approx(0.3, abs=1e-5)  # logarithms of float32 peaks: a few round-offs over the bend, 1
+    assert v[0, 0] == pytest.approx(-0.4, abs=1e-5)
+    assert ratio[0, 0] > 1
+
+
+def test_grids_lie_on_whole_pixels_and_cover_the_picture():
+    grid = Grid((512, 300), 16, 8)
+    assert grid.shape == (63, 36)
+    assert (grid.x[0], grid.x[-1], grid.y[-1]) == (8, 288, 504)
+
+
+def test_values_between_vectors_are_natural_splines_straight_beyond():
+    grid = Grid((64, 80), 16, 8)
+    values = RNG.normal(size=grid.shape)
+    dense = grid.at_pixels(values)
+    spline = make_interp_spline(grid.x, values[3], 3, bc_type="natural")
+    np.testing.assert_allclose(dense[32, 8:73], spline(np.arange(8, 73)), atol=30 * EPS32)
+    np.testing.assert_allclose(np.diff(dense[32, :9], 2), 0, atol=30 * EPS32)
+    np.testing.assert_allclose(spline_matrix(grid.x, grid.x), np.eye(grid.shape[1]), atol=1e-12)
+
+
+def test_one_vector_is_the_same_everywhere():
+    np.testing.assert_allclose(Grid((20, 20), 16, 8).at_pixels(np.array([[3.5]])), 3.5, rtol=10 * EPS32)
+
+
+@pytest.mark.parametrize("kernel", [outliers.median_residual, outliers.median_residual.py_func])
+def test_the_median_residual_is_that_of_its_definition(kernel):
+    u, v = RNG.normal(size=(2, 5, 6))
+    use = np.ones((5, 6), bool)
+    found = np.empty((5, 6))
+    kernel(u, v, use, 0.1, found)
+    around = [(j, i) for j in (1, 2, 3) for i in (2, 3, 4) if (j, i) != (2, 3)]
+    parts = []
+    for it in (u, v):
+        near = np.array([it[k] for k in around])
+        middle = np.median(near)
+        parts.append((it[2, 3] - middle) / (np.median(np.abs(near - middle)) + 0.1))
+    assert found[2, 3] == pytest.approx(math.hypot(*parts), rel=1e-12)
+
+
+def test_gaps_are_filled_by_the_plane_around_them():
+    y, x = np.mgrid[:9, :9].astype(float)
+    u, v = 0.1 * x, 0.2 * y - 1
+    good = np.ones((9, 9), bool)
+    good[3:6, 4:6] = False
+    found = outliers.filled(np.where(good, u, 99.0), v, good)
+    # Symmetric gaps: the wish for flatness takes RIDGE over RIDGE + 2.25 of slope, times an offset below a step.
+    assert np.abs(found[0] - u).max() < 0.1 * outliers.RIDGE / (outliers.RIDGE + 2) * 4
+    assert np.isfinite(found).all()
+    nothing = outliers.filled(u, v, np.zeros((9, 9), bool))
+    assert not np.any(nothing)
+
+
+def test_planes_survive_smoothing_and_noise_does_not():
+    y, x = np.mgrid[:30, :40].astype(float)
+    plane = 0.1 * x - 0.2 * y + 3
+    u, _ = smoothed(plane + RNG.normal(0, 0.05, plane.shape), plane)
+    assert np.abs(smoothed(plane, plane)[0] - plane).max() < 1e-9
+    # Little but the four modes of a plane is kept: 0.05 sqrt(4/1200) = 0.003, a fifth of the noise allowed for all.
+    assert np.sqrt(np.mean((u - plane) ** 2)) < 0.01
+    wave = np.sin(2 * np.pi * x / 8)
+    assert np.abs(smoothed(wave, wave)[0] - wave).max() < 0.05
+
+
+def deformed(shift: float, size: int = 48) -> tuple[np.ndarray, ...]:
+    """Two pictures, ``shift`` px apart, the gradient of their mean, a mask, all float32."""
+    y, x = np.mgrid[:size, :size].astype(float)
+    phases = RNG.uniform(0, 2 * np.pi, 12)
+    waves = [(0.9 * math.cos(p), 0.9 * math.sin(p), q) for p, q in zip(phases, phases[::-1], strict=True)]
+
+    def value(x, wave=np.sin, factor=lambda a, b: 1.0):
+        return sum(factor(a, b) * wave(a * x + b * y + q) for a, b, q in waves)
+
+    a, b = value(x + shift / 2), value(x - shift / 2)
+    gx, gy = value(x, np.cos, lambda a, b: a), value(x, np.cos, lambda a, b: b)
+    return tuple(it.astype(np.float32) for it in (a, b, np.ones_like(a), gx, gy))
+
+
+def test_an_update_finds_a_small_shift_and_plain_python_the_same():
+    a, b, mask, gx, gy = deformed(0.1)
+    bell = (1 - (np.arange(-8, 8) / 8.0) ** 2).astype(np.float32) ** 2
+    sums, plain = np.zeros((2, 2, 9)), np.zeros((2, 2, 9))
+    rest = (0, 16, 8, np.float32(0.01), np.float32(0.04))
+    for kernel, found in ((refine.refine, sums), (refine.refine.py_func, plain)):
+        lanes, known = np.empty((2, 11, 48), np.float32), np.empty((2, 5, 48), np.float32)
+        kernel(a, b, mask, gx, gy, bell, *rest, lanes, known, found)
+    np.testing.assert_allclose(sums, plain, rtol=1e-3, atol=1e-3 * np.abs(sums).max())
+    det = sums[..., 0] * sums[..., 2] - sums[..., 1] ** 2
+    shift = (sums[..., 2] * sums[..., 3] - sums[..., 1] * sums[..., 4]) / det
+    # Means taken off both pictures take (mean g)²/mean g² off the update: windows hold 1.5 to 2 waves, whose mean is
+    # below 1/(2 pi 1.5) of their size: 1 to 2 %, and the next update takes the same part of what is left.
+    np.testing.assert_allclose(shift, 0.1, rtol=0.025)
+    which = np.array([[0, 0], [1, 1]])
+    for kernel in (tilt.tilted, tilt.tilted.py_func):
+        found = np.empty((2, 2))
+        kernel(a, b, mask, gx, gy, bell, *rest, which, found)
+        np.testing.assert_allclose(found[:, 0], 0.1, rtol=0.025)

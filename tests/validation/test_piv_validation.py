@@ -1,0 +1,131 @@
+"""The validations of displacement measurement hold, and what each rests on is what makes it hold."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import pytest
+from scipy.ndimage import map_coordinates
+
+from porescale.piv import experiments as lab
+from porescale.piv import flows, passes, spots
+from porescale.piv.measure import Settings, measure
+from porescale.piv.synth import pair
+from porescale.piv.verify import VALIDATIONS
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+
+
+@pytest.fixture
+def one_thread():
+    from porescale.ground.jit import set_threads, threads
+
+    before = threads()
+    set_threads(1)
+    yield
+    set_threads(before)
+
+
+def rows():
+    for row in VALIDATIONS:
+        yield pytest.param(row, id=row.name, marks=[pytest.mark.slow] if row.slow else [])
+
+
+@pytest.mark.parametrize("validation", list(rows()))
+def test_the_validation_holds(validation):
+    row = validation.run()
+    assert row.passed, row
+
+
+def tolerance(name: str) -> float:
+    return VALIDATIONS[f"piv.{name}"].tolerance
+
+
+def test_a_few_steps_cut_the_corner(monkeypatch):
+    monkeypatch.setattr(flows, "STEPS", 4)
+    found, exact = lab.turned(1.0, 100.0)
+    assert abs(found / exact - 1) > tolerance("paths_of_a_solid_rotation")
+
+
+def test_spots_that_are_sampled_have_other_light():
+    y, x = np.mgrid[:65, :65]
+    total = np.exp(-((x - 32.0) ** 2 + (y - 32.0) ** 2) / (2 * 0.5**2)).sum() / (2 * np.pi * 0.5**2)
+    assert abs(total - 1) > 100 * tolerance("light_of_a_spot")
+    assert spots.REACH == 4.5  # what the tolerance was derived for
+
+
+def test_a_cubic_spline_does_not_pass_for_a_quintic_one():
+    y, x = np.mgrid[:48, :48] / 48.0
+    picture = (x - 0.3) ** 5 - 2 * x * x * y**3 + y**5 - x * y + 0.5
+    at = (24.5, 23.5)
+    exact = (at[0] / 48 - 0.3) ** 5 - 2 * (at[0] / 48) ** 2 * (at[1] / 48) ** 3
+    exact += (at[1] / 48) ** 5 - at[0] * at[1] / 48**2 + 0.5
+    cubic, quintic = (
+        abs(map_coordinates(picture, [[at[1]], [at[0]]], order=k, mode="mirror")[0] - exact) for k in (3, 5)
+    )
+    assert cubic > 100 * quintic
+
+
+def test_a_pair_a_hundredth_of_a_pixel_apart_is_not_still():
+    made = pair(flows.uniform(0.01, 0.0), lab.Camera((256, 256), noise=0.0, lost=0.0), 1)
+    assert np.abs(measure(made.first, made.second).u).max() > tolerance("still_pair")
+
+
+def linear(coefficients, dx, dy, pad, out):
+    """Stands for the sampler: straight between pixels, as if the coefficients were grey values."""
+    y, x = np.mgrid[: dx.shape[0], : dx.shape[1]].astype(np.float32)
+    inner = out[pad : pad + dx.shape[0], pad : pad + dx.shape[1]]
+    inner[:] = cv2.remap(coefficients[8:-8, 8:-8], x + dx, y + dy, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REFLECT_101)
+
+
+def test_straight_lines_between_pixels_are_biased(monkeypatch):
+    monkeypatch.setattr(passes, "sample", linear)
+    assert np.abs(lab.bias(2.8, [0.3, 0.7])).max() > tolerance("sub_pixel_bias")
+    assert np.abs(lab.bias(2.0, [0.3, 0.7])).max() > tolerance("sub_pixel_bias_of_small_tracers")
+
+
+def test_a_field_that_is_not_smoothed_misses_the_row_of_the_uniform_flow():
+    assert lab.row("uniform", range(1), Settings(smooth=False)).rms > tolerance("uniform")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["shear", "stagnation", "lamb_oseen"])
+def test_nor_does_it_hold_the_other_rows_of_smooth_flows(name):
+    assert lab.row(name, range(1), Settings(smooth=False)).rms > tolerance(name)
+
+
+def test_one_update_does_not_resolve_vortices():
+    assert lab.row("taylor_green_128", range(1), Settings(updates=1)).rms > tolerance("taylor_green_128")
+
+
+@pytest.mark.slow
+def test_wide_bells_do_not_resolve_small_vortices():
+    assert lab.row("taylor_green_64", range(1), Settings(width=1.5)).rms > tolerance("taylor_green_64")
+
+
+@pytest.mark.slow
+def test_lost_pairs_are_what_the_row_without_them_is_about():
+    flow, _ = lab.TABLE["clean"]
+    assert lab.trial(flow, lab.Camera(lab.SIZE, lost=0.1), range(1), Settings(smooth=False)).rms > tolerance("clean")
+
+
+@pytest.mark.slow
+def test_a_mask_in_the_wrong_place_puts_vectors_into_solids():
+    flow, camera = lab.TABLE["discs"]
+    made = pair(flow, camera, 0)
+    found = measure(made.first, made.second, np.roll(made.solid, 60, 1))
+    _, distance = lab.errors(made, found)
+    assert (~found.solid & (distance < 0)).any()
+
+
+@pytest.mark.slow
+def test_unvalidated_vectors_of_lost_pairs_are_far_off(monkeypatch):
+    flow, _ = lab.TABLE["uniform"]
+    monkeypatch.setattr("porescale.piv.measure._outliers", lambda *those: np.zeros(those[0].shape, bool))
+    loose = Settings(smooth=False, least_correlation=-2.0)
+    assert lab.trial(flow, lab.Camera(lab.SIZE, lost=0.4), range(1), loose).largest > tolerance("ten_per_cent_lost")
+
+
+def test_another_vortex_has_another_circulation():
+    found, exact = lab.vortex()
+    assert abs(found[2] / (0.9 * exact[2]) - 1) > tolerance("vortex_in_a_measured_field")
