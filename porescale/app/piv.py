@@ -143,7 +143,7 @@ def measure(
     def span(shape: tuple[int, ...]) -> tuple[float, ...]:
         return _span(shape, corner(film), rows, pixel)
 
-    said = _written(_progress(fields, total), shots, folder, csv, openpiv, (seconds or 1.0) * step, span)
+    said = _written(_progress(fields, total), shots, folder, csv, openpiv, (seconds or 1.0) * step, span, total == 1)
     _say(said, json)
     return 0
 
@@ -160,8 +160,7 @@ def compare(
     within: Annotated[float | None, Parameter(help="largest distance of vortices that match, px or m")] = None,
     json: Json = False,
 ) -> int:
-    """Compare two fields: differences over the reference's rms speed, directions, vortices matched by place and sign.
-    """
+    """Compare two fields: differences over the reference's rms speed, directions, vortices by place and sign."""
     from porescale.piv import compare as comparing
     from porescale.piv.pictures import comparison
     from porescale.runs.atomic import write_text
@@ -270,8 +269,9 @@ def _written(
     openpiv: Path | None,
     interval: float,
     span: Callable[[tuple[int, ...]], tuple[float, ...]],
+    alone: bool,
 ) -> dict[str, Any]:
-    """Write each field as it comes; gives what was measured and written."""
+    """Write each field as it comes; gives what was measured and written.  InputError for one field without a vector."""
     from porescale.piv.field import write_csv, write_openpiv
     from porescale.piv.pictures import quiver, vorticity
     from porescale.piv.series import as_grid
@@ -284,6 +284,8 @@ def _written(
     if folder is not None:
         snapshots.clear(folder)
     for field, number in fields:
+        if alone and not field.valid.any():
+            raise InputError(Fault("pictures", None, "do not show the same tracers: no vector passes validation"))
         last = field
         counts["pairs"] += 1
         counts["vectors"] += field.u.size

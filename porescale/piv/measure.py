@@ -36,7 +36,7 @@ class Settings:
     window: int = 16
     overlap: float = 0.5
     search: int = 16
-    updates: int = 4
+    updates: int = 3
     width: float = 0.35
     noise: float = 2.0
     slack: float = 0.2
@@ -210,7 +210,8 @@ def _outliers(u: Array, v: Array, correction_u: Array, correction_v: Array, use:
     """Vectors that are outliers in the total and in the correction: either alone condemns good ones in strong
     gradients.
     """
-    return (residual(u, v, use) > bound) & (residual(correction_u, correction_v, use) > bound)
+    total = residual(u, v, use) > bound
+    return total & (residual(correction_u, correction_v, use) > bound) if total.any() else total
 
 
 LARGEST = 1.0
@@ -247,7 +248,7 @@ def _vectors(grid: Grid, u: Array, v: Array, good: Flags, fluid: Flags, update: 
         np.where(fluid, u, 0.0),
         np.where(fluid, v, 0.0),
         known,
-        fluid & ~known,
+        fluid & ~known & known.any(),
         ~fluid,
         np.where(fluid, np.nan_to_num(update.correlation), 0.0),
         np.where(fluid, ratio, 0.0),

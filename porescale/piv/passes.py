@@ -156,11 +156,11 @@ def update_pass(
     for first, second in pairs:
         sample(first.coefficients, *along.first, pad, one)
         sample(second.coefficients, *along.second, pad, two)
-        mask = _moved(first.fluid, first_at, cv2.INTER_NEAREST) * _moved(second.fluid, second_at, cv2.INTER_NEAREST)
+        mask = _seen(first, along.first, first_at) * _seen(second, along.second, second_at)
         mean = 0.5 * (one + two)
         gx = cv2.sepFilter2D(mean, cv2.CV_32F, SLOPE, np.ones(1))
         gy = cv2.sepFilter2D(mean, cv2.CV_32F, np.ones(1), SLOPE)
-        bound = noise * NORMAL * float(np.median(np.abs((one - two)[pad:-pad:3, pad:-pad:3])))
+        bound = noise * NORMAL * float(np.median(np.abs(one[pad:-pad:3, pad:-pad:3] - two[pad:-pad:3, pad:-pad:3])))
         shown = _padded(mask, pad)
         refine(one, two, shown, gx, gy, weights, pad, grid.start, grid.step, np.float32(bound),
                np.float32(slack**2), lanes, known, sums)  # fmt: skip
@@ -209,6 +209,19 @@ def _places(way: tuple[Single, Single]) -> tuple[Single, Single]:
     rows, columns = way[0].shape
     x, y = np.arange(columns, dtype=np.float32), np.arange(rows, dtype=np.float32)[:, None]
     return np.asarray(way[0] + x, np.float32), np.asarray(way[1] + y, np.float32)
+
+
+def _seen(one: Ready, way: tuple[Single, Single], at: tuple[Single, Single]) -> Single:
+    """1 where the picture shows fluid at places, else 0."""
+    if one.solid:
+        return _moved(one.fluid, at, cv2.INTER_NEAREST)
+    rows, columns = way[0].shape
+    rim = 1 + int(np.ceil(max(float(np.abs(it).max()) for it in way)))  # only from here a path leaves the picture
+    found = np.ones((rows, columns), np.float32)
+    for part in (np.s_[:rim], np.s_[max(0, rows - rim) :], np.s_[:, :rim], np.s_[:, max(0, columns - rim) :]):
+        x, y = at[0][part], at[1][part]
+        found[part] = (x >= -0.5) & (x <= columns - 0.5) & (y >= -0.5) & (y <= rows - 0.5)
+    return found
 
 
 def _moved(image: Single, at: tuple[Single, Single], how: int) -> Single:

@@ -98,8 +98,8 @@ def small_bias() -> Measured:
     "piv.vortex_in_a_measured_field",
     source="Lamb 1932, art. 334a; Gamma 1 and 2 of Graftieaux, Michard & Grosjean 2001",
     because="circulation: vorticity by differences over 16 px errs by (8/64)^2/6 of its bending, 0.3 %, and points"
-    " count as in or out along a rim of some 50 of them, 4 px of 64 each, at random: 0.9 %; centre: a quarter of a step, 2 px"
-    " of 64, 3 %, the largest of the three",
+    " count as in or out along a rim of some 50 of them, 4 px of 64 each, at random: 0.9 %; centre: a quarter of a"
+    " step, 2 px of 64, 3 %, the largest of the three",
     tolerance=0.03,
 )
 def vortex() -> Measured:
