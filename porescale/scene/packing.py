@@ -28,14 +28,19 @@ Array = NDArray[np.float64]
 PLACE: Any = {"ge": -1e3, "le": 1e3}
 PRESSED = 0.02
 """Overlap over diameter with which circles of a file may start: what presses a packing together, or measures it."""
+STILLS = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm", ".webp")
+"""Endings of files that are pictures."""
+LEAST_PIXELS = 8
+"""Across the smallest disc that is looked for in a picture."""
 SAME = 1e-9
 """Relative difference within which two keys that say the same agree."""
 
 
 class Circles(Section):
-    """Grains at places read from a file: a packing kept by an earlier run, or circles found in a laboratory's picture.
+    """Grains at places read from a file: a packing kept by an earlier run, a list of circles, a laboratory's picture.
 
-    .csv with a header and columns x, y and diameter (or radius), or .h5 with datasets x, y, radius in m.
+    .csv with a header and columns x, y and diameter (or radius), .h5 with datasets x, y, radius in m, or a picture of
+    discs (.png, .tif, .jpg …), which are found in it to a fraction of a pixel.
     """
 
     file: str = pydantic.Field(description="file, beside the scene")
@@ -46,13 +51,22 @@ class Circles(Section):
     )
     left: float = quantity("m", 0.0, **PLACE, help="where x = 0 of the file comes to lie")
     bottom: float = quantity("m", 0.0, **PLACE, help="where y = 0 of the file, turned upwards, comes to lie")
+    pixel: float | None = quantity("m", None, ge=1e-9, le=1, help="size of a pixel, of a picture")
+    smallest: float | None = quantity("m", None, ge=1e-9, le=1e3, help="smallest diameter looked for in a picture")
+    largest: float | None = quantity("m", None, ge=1e-9, le=1e3, help="largest diameter looked for in a picture")
+    shade: Literal["light", "dark"] = pydantic.Field(
+        "light", description="discs of a picture, against what is between them"
+    )
+    material: str = pydantic.Field("", description="name of their material (default: the first)")
     part: bool = pydantic.Field(False, description="slide circles apart that overlap, as measured ones do")
 
-    def grains(self, folder: Path | None) -> list[dict[str, float]]:
+    def grains(self, folder: Path | None) -> list[dict[str, float | str]]:
         """Entries of [[grains.grain]] that say the same; raises InputError with keys of this section."""
         path = (folder or Path()) / self.file
         try:
-            if path.suffix == ".h5":
+            if path.suffix.lower() in STILLS:
+                position, radius = self._pictured(path)
+            elif path.suffix == ".h5":
                 position, radius = read_packing(path)
                 position = position + np.array([self.left, self.bottom])
             else:
@@ -63,8 +77,48 @@ class Circles(Section):
         except InputError as error:
             raise InputError([replace(fault, key=f"circles.{fault.key}") for fault in error.faults]) from None
         return [
-            {"x": x, "y": y, "diameter": 2.0 * r} for (x, y), r in zip(position.tolist(), radius.tolist(), strict=True)
+            {"x": x, "y": y, "diameter": 2.0 * r, "material": self.material}
+            for (x, y), r in zip(position.tolist(), radius.tolist(), strict=True)
         ]
+
+    @pydantic.model_validator(mode="after")
+    def _of_a_picture(self) -> Circles:
+        pictured, faults = Path(self.file).suffix.lower() in STILLS, []
+        for key in ("pixel", "smallest", "largest"):
+            value = getattr(self, key)
+            if (value is None) == pictured:
+                problem, repair = (
+                    ("is needed for a picture", "add it") if pictured else ("is for pictures", "leave it out")
+                )
+                faults.append(Fault(key, value, problem, "m", "> 0", repair))
+        if pictured:
+            plain = {"unit": "m", "y": "up", "image_height": None}
+            faults += [Fault(key, getattr(self, key), "follows from the picture", repair="leave it out")
+                       for key, value in plain.items() if getattr(self, key) != value]  # fmt: skip
+        if not faults and pictured and not (self.smallest or 0.0) < (self.largest or 0.0):
+            allowed = f"< {self.largest:g}"
+            faults.append(Fault("smallest", self.smallest, "must be below the largest", "m", allowed))
+        if not faults and pictured and (self.smallest or 0.0) < LEAST_PIXELS * (self.pixel or 0.0):
+            problem, repair = "is too few pixels to tell a disc from noise", "take a picture with more of them"
+            faults.append(Fault("smallest", self.smallest, problem, "m", f">= {LEAST_PIXELS * (self.pixel or 0.0):g}",
+                                repair))  # fmt: skip
+        if faults:
+            raise Refused(*faults)
+        return self
+
+    def _pictured(self, path: Path) -> tuple[Array, Array]:
+        """Places (n, 2) m and radii (n,) m of the discs of a picture."""
+        assert self.pixel
+        assert self.smallest
+        assert self.largest
+        from porescale.piv.film import picture  # readers of pictures and films take a while to load
+        from porescale.scene.pictured import circles_in
+
+        seen = picture(path)
+        sizes = self.smallest / self.pixel, self.largest / self.pixel
+        at, radius = circles_in(seen.astype(np.float32), *sizes, light=self.shade == "light")
+        up = np.column_stack((at[:, 0], seen.shape[0] - at[:, 1]))
+        return up * self.pixel + np.array([self.left, self.bottom]), radius * self.pixel
 
 
 def with_circles(table: Any, folder: Path | None) -> Any:

@@ -64,7 +64,8 @@ class Packing(Section):
     """Grains placed at random without overlap, then settled dry under gravity until they fill a rectangle.
 
     Their number is packing_fraction * width * height over the mean grain area; how high they stand in the end, friction
-    and seed decide.  With settle = false they stay where they were placed (packing_fraction at most 0.8).
+    and seed decide.  With settle = false they stay where they were placed (packing_fraction at most 0.8); with compress
+    = true they are grown and pressed together in the whole box until it has that fraction, or void ratio, to round-off.
     """
 
     left: float = quantity("m", ge=0, le=PLACE, help="left edge of the rectangle")

@@ -6,7 +6,9 @@ import re
 import subprocess
 import sys
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -17,7 +19,7 @@ from porescale.app.main import PACKAGE
 from porescale.ground.check import InputError
 from porescale.runs.model import Model, Snapshot
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import LEVELS, load, scene_as_dict
+from porescale.workbench.sections import LEVELS, Section, load, scene_as_dict
 from tests.reference.scenes import column, dry, table, write
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -75,6 +77,32 @@ def test_the_template_states_every_section_and_is_a_scene(tmp_path):
         in_comments = set(re.findall(r"^# (\w+) =", text, re.MULTILINE))
         missing = set(scene_as_dict(column())[section]) - shown - in_comments - {"relaxation_time"}
         assert not missing, f"{section}: {missing}"
+
+
+def keys_of(section: Any, path: str, seen: set[Any]) -> Iterator[str]:
+    """Keys of a section and of those within it, with their path, each section once."""
+    for name, field in section.model_fields.items():
+        yield f"{path}{name}"
+        for inner in _sections_in(field.annotation):
+            if inner not in seen:
+                seen.add(inner)
+                yield from keys_of(inner, f"{path}{name}.", seen)
+
+
+def _sections_in(annotation: Any) -> Iterator[Any]:
+    if isinstance(annotation, type) and issubclass(annotation, Section):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _sections_in(part)
+
+
+def test_the_template_names_every_key_of_every_section():
+    text = new.template()
+    keys = list(keys_of(Scene, "", set()))
+    missing = [key for key in keys if not re.search(rf"(?<!\w){key.rpartition('.')[2]}(?!\w)", text)]
+    assert not missing
+    assert len(keys) > 150
+    assert not re.search(r"(?<!\w)diametre(?!\w)", text)  # the twin: a key that is none is not found
 
 
 def test_every_validation_and_benchmark_has_a_name_of_its_own():

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from porescale.dem.measures.porosity import porosity, void_ratio
+from porescale.dem.measures.region import Region
 from porescale.dem.packing import mean_stress, write_packing
 from porescale.ground.check import InputError
 from porescale.particles.grading import percent_finer
@@ -116,3 +118,55 @@ def test_a_file_that_is_not_there_is_named(tmp_path):
     given = table(fluid=None, gate=None, grains={"density": 2500, "circles": {"file": "none.csv"}})
     with pytest.raises(InputError, match=r"grains.circles.file.*none.csv.*cannot be read"):
         validate(Scene, given, folder=tmp_path)
+
+
+def test_a_void_ratio_that_is_asked_for_is_there():
+    wanted = 0.25
+    scene = pressed(pressure=None, packing_fraction=None, void_ratio=wanted, settling_friction=0.0)
+    grains = grains_of(scene)
+    solid = float(grains.discs.area.sum()) / (0.012 * 0.008)
+    # Sizes are drawn to whole grains: half of one of 122 more or less, 0.4 % of the area; in the box they are as drawn.
+    assert (1.0 - solid) / solid == pytest.approx(wanted, abs=0.5 / 122 * (1.0 + wanted) ** 2)
+    region = Region((0.0, 0.0), (0.012, 0.008))
+    pores = porosity(region, grains.discs.position, grains.discs.radius, grains.period)
+    assert void_ratio(pores) == pytest.approx((1.0 - solid) / solid, rel=1e-11)
+
+
+def test_friction_while_preparing_packs_loosely():
+    dense, loose = (
+        float(grains_of(pressed(settling_friction=friction)).discs.area.sum()) / (0.012 * 0.008)
+        for friction in (0.0, 0.8)
+    )
+    # Random close packing of discs is at 0.84, what friction holds from 0.77 on; 120 discs scatter by 0.01.
+    assert 0.82 < dense < 0.86
+    assert 0.75 < loose < dense - 0.02
+
+
+def test_a_packing_of_a_material_is_kept_and_found_again(monkeypatch):
+    sand = {"name": "sand", "density": 2000, "friction": 0.3}
+    steel = {"name": "steel", "density": 7800, "stiffness": 1e6}
+    keys = {"material": [steel, sand], "gate": {"x": 0.008, "opens_at": 1.0}, "grains__packing__settle": True,
+            "grains__packing__material": "sand", "contact__wall_material": "steel",
+            "grains__grain": [{"x": 0.002, "y": 0.002, "diameter": 0.001}]}  # fmt: skip
+    made = grains_of(dry(**keys))
+    monkeypatch.setattr("porescale.dem.settle.settle", None)  # it must not be settled again
+    found = grains_of(dry(**keys))
+    assert found.material.tolist() == [1] * (found.discs.count - 1) + [0]
+    np.testing.assert_allclose(found.discs.mass[:-1], 2000 * found.discs.area[:-1], rtol=1e-12)
+    assert found.discs.mass[-1] == pytest.approx(7800 * found.discs.area[-1])
+    for grains in (made, found):
+        grains.step(1e-6, count=20)
+    np.testing.assert_array_equal(found.discs.position, made.discs.position)
+    keys["material"] = [steel, {**sand, "friction": 0.4}]
+    with pytest.raises(TypeError):
+        grains_of(dry(**keys))  # the twin: another friction is another packing
+
+
+def test_circles_of_a_file_may_be_of_a_material(tmp_path):
+    write_packing(tmp_path / "bed.csv", np.array([(0.002, 0.0005), (0.004, 0.0005)]), np.array([0.0005, 0.0004]))
+    materials = [{"name": "sand"}, {"name": "steel", "density": 7800}]
+    given = table(fluid=None, gate=None, material=materials,
+                  grains={"density": 2500, "circles": {"file": "bed.csv", "material": "steel"}})  # fmt: skip
+    grains = grains_of(validate(Scene, given, folder=tmp_path))
+    assert grains.material.tolist() == [1, 1]
+    np.testing.assert_allclose(grains.discs.mass, 7800 * grains.discs.area)
