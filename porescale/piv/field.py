@@ -139,6 +139,8 @@ def read(path: Path) -> Field:
     lines = text.splitlines()
     first = lines[0].strip() if lines else ""
     try:
+        if all(line.startswith("#") or not line.strip() for line in lines):
+            raise ValueError("empty")
         if first.startswith("x,"):
             names = first.split(",")
             table = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:] if line.strip()])
