@@ -132,16 +132,18 @@ def slide_to_roll(friction: float, speed: float = 1.0, gravity: float = GRAVITY)
     return slipping, float(discs.velocity[0, 0])
 
 
-def incline(slope: float, friction: float, gravity: float = GRAVITY) -> tuple[float, float]:
-    """A disc released on an incline of ``slope`` (rad): (acceleration, m/s^2; angular acceleration,
-    rad/s^2).
+def incline(
+    slope: float, friction: float, gravity: float = GRAVITY, wait: float = 0.02
+) -> tuple[float, float]:  # fmt: skip
+    """A disc released on an incline of ``slope`` (rad): (acceleration, m/s^2; angular acceleration, rad/s^2), from
+    ``wait`` (s) on.
     """
     law = law_at(0.2, tangential_stiffness=0.25 * STIFFNESS, friction=friction)
     law = Linear(**{**vars(law), "tangential_damping": 0.25 * law.damping})
     weight = MASS * gravity * np.array([[math.sin(slope), -math.cos(slope)]])
     grains = row_on_floor(1, weight[0, 1] / STIFFNESS, law)
     dt = grains.stable_step(steps_per_contact=20.0)
-    steps = int(0.02 / dt)
+    steps = int(wait / dt)
     grains.step(dt, weight, count=steps)
     first = float(grains.discs.velocity[0, 0]), float(grains.discs.spin[0])
     grains.step(dt, weight, count=4 * steps)
@@ -150,6 +152,17 @@ def incline(slope: float, friction: float, gravity: float = GRAVITY) -> tuple[fl
         (float(grains.discs.velocity[0, 0]) - first[0]) / span,
         -(float(grains.discs.spin[0]) - first[1]) / span,
     )
+
+
+def incline_exact(slope: float, friction: float, gravity: float = GRAVITY) -> tuple[float, float]:
+    """The same for the lever arm b = r - m g cos/k: rolling  m a = m g sin - f,  I w' = f b,  a = b w', or f = mu N."""
+    arm = RADIUS - MASS * gravity * math.cos(slope) / STIFFNESS
+    along = gravity * math.sin(slope) / (1.0 + 0.5 * (RADIUS / arm) ** 2)
+    rub = gravity * math.sin(slope) - along  # friction over mass that rolling takes
+    if rub <= friction * gravity * math.cos(slope):
+        return along, along / arm
+    rub = friction * gravity * math.cos(slope)
+    return gravity * math.sin(slope) - rub, 2.0 * rub * arm / RADIUS**2
 
 
 def stack(count: int, gravity: float = GRAVITY, decays: float = 40.0) -> Array:

@@ -11,6 +11,7 @@ from porescale.dem import experiments as lab
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contacts import contacts
 from porescale.dem.discs import make_discs
+from porescale.dem.experiments_bodies import clumped_cell, random_cell
 from porescale.dem.measures.coarse_graining import CoarseGrained, Raster
 from porescale.dem.measures.fabric import Fabric, coordination, fabric
 from porescale.dem.measures.porosity import porosity
@@ -94,6 +95,21 @@ def lattice_stress(grains: Grains) -> tuple[Array, float, Fabric]:
         coordination(found, region, grains.discs.position, period),
         fabric(found, region, period),
     )
+
+
+def strained_stress(clumps: bool, seed: int = 3) -> tuple[Array, Array]:
+    """Love-Weber stress (Pa) of a rectangle as large as a dense cell strained in all ways, somewhere across its sides,
+    and the stress of contacts that the cell works with in its next step, (2, 2) each."""
+    law = Linear(lab.STIFFNESS, 20.0, 0.5 * lab.STIFFNESS, 10.0, 0.5)
+    grains = (clumped_cell if clumps else random_cell)(law, seed)
+    dt = grains.stable_step()
+    grains.steering.strain_cell(xx=-0.18 / (900 * dt), yy=-0.14 / (900 * dt), xy=0.35 / (900 * dt))
+    grains.step(dt, count=900)
+    width, height, _ = grains.period
+    region = Region((0.013, -0.031), (0.013 + width, height - 0.031))
+    found = contact_stress(region, contacts(grains), grains.period)
+    grains.step(dt)
+    return found, -grains.steering.load[:4].reshape(2, 2) / (width * height)
 
 
 def pressed_lattice_stress(strain: float = 1e-3) -> float:

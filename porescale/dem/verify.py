@@ -94,6 +94,20 @@ def incline() -> Measured:
 
 
 @VALIDATIONS.row(
+    "dem.rolling_with_its_own_lever_arm",
+    source="m a = m g sin - f, I alpha = f b, a = b alpha with b = r - m g cos/k; f = mu N beyond the limit",
+    because="the specification: 1e-10; springs have come to rest to exp(-h w0 t) = exp(-43) = 2e-19 after 0.06 s, and"
+    " 3e4 steps round the speed, all one way: 3e4 eps = 7e-12",
+    tolerance=1e-10,
+)
+def incline_arm() -> Measured:
+    """Acceleration and angular acceleration on the same inclines."""
+    exact = (*lab.incline_exact(0.3, 0.5), *lab.incline_exact(0.8, 0.1))
+    found = (*lab.incline(0.3, 0.5, wait=0.06), *lab.incline(0.8, 0.1, wait=0.06))
+    return Measured(exact, found, lab.relative(found, exact))
+
+
+@VALIDATIONS.row(
     "dem.oblique_impact_in_gross_sliding",
     source=CHUNG + "; v_t' = v_t - mu(1+e)v_n, w' = 2mu(1+e)v_n/r; spinning: v_t' = mu(1+e)v_n",
     because="restitution within 1e-3/(1+e), lever arm short by up to v_n/(w0 r) = 2.8e-4: 1e-3 of the impulse",

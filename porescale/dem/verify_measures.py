@@ -67,6 +67,21 @@ def hexagonal() -> Measured:
 
 
 @VALIDATIONS.row(
+    "dem.stress_of_a_strained_cell",
+    source="Love 1927, Weber 1966 with images of the sheared cell; virial of Evans & Morriss 1990, section 6.3",
+    because="overlaps of some 1e-4 m are read off places of 0.1 m, images of images, known to 1e-16 m: 1e-12, and"
+    " members of clumps share forces as large",
+    tolerance=1e-11,
+)
+def strained() -> Measured:
+    """Stress of a rectangle across the sides of a cell, over its largest part, of discs and of clumps (xx, xy, yx,
+    yy)."""
+    pairs = [measured.strained_stress(clumps) for clumps in (False, True)]
+    found, exact = (np.array([pair[k] / np.abs(pair[1]).max() for pair in pairs]).ravel() for k in (0, 1))
+    return Measured(exact.tolist(), found.tolist(), float(np.abs(found - exact).max()))
+
+
+@VALIDATIONS.row(
     "dem.coarse_grained_mass",
     source=GOLDHIRSCH + "; weights scaled to one on the grid",
     because="round-off of sums over 60 discs and some thousand cells, growing like its root",

@@ -7,7 +7,11 @@ import pytest
 
 from porescale.dem import experiments_bodies as lab
 from porescale.dem import experiments_energy as boxed
+from porescale.dem.control import Moved
+from porescale.dem.experiments import momentum_drift
+from porescale.dem.steering import Clump
 from porescale.dem.verify_bodies import VALIDATIONS
+from porescale.ground.constants import GRAVITY
 
 ROWS = {row.name: row for row in VALIDATIONS}
 
@@ -43,3 +47,16 @@ def test_the_book_of_a_servo_without_its_work_does_not_close():  # the twin that
     book = boxed.book_of(("servo",), 200.0, 0)
     without = abs(book["residual (J/m)"] + book["work of moving surfaces (J/m)"]) / book["turned over (J/m)"]
     assert without > 10 * ROWS["dem.energy_book_of_driven_bodies"].tolerance
+
+
+def test_a_servo_that_does_not_know_its_load_is_noticed():  # the twins that must fail
+    floor, lid = lab.column_under_servo(50.0, gravity=0.0)
+    exact = 50.0 + 10 * lab.MASS * GRAVITY
+    assert abs(floor / exact - 1.0) > 100 * ROWS["dem.servo_wall"].tolerance
+    assert abs(lid / 49.9 - 1.0) > 100 * ROWS["dem.servo_wall"].tolerance
+
+
+def test_a_clump_that_is_held_takes_angular_momentum():  # the twin that must fail
+    grains = lab.clumped_cloud()
+    grains.steering.control(Clump(0), rotation=Moved(0.0))
+    assert max(momentum_drift(grains, 5000)) > 1e6 * ROWS["dem.momentum_of_clumps"].tolerance

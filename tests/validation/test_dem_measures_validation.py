@@ -10,6 +10,7 @@ import pytest
 from porescale.dem import experiments as lab
 from porescale.dem import experiments_measures as measured
 from porescale.dem.contacts import contacts
+from porescale.dem.experiments_bodies import random_cell
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress
 from porescale.dem.verify_measures import VALIDATIONS
@@ -79,3 +80,15 @@ def test_a_gradient_of_the_mean_velocity_strains_where_none_is(heap):
     up = (velocity[2:, 1:-1, 0] - velocity[:-2, 1:-1, 0]) / (2.0 * dy)
     shear = np.nanmax(np.abs(0.5 * (along + up)))
     assert shear > 1e6 * tolerance("dem.rigid_rotation_has_no_strain_rate")
+
+
+def test_a_rectangle_as_large_as_the_cell_was_has_another_stress():
+    grains = random_cell(measured.Linear(lab.STIFFNESS), 3)
+    dt = grains.stable_step()
+    grains.steering.strain_cell(xx=-0.18 / (900 * dt), yy=-0.14 / (900 * dt), xy=0.35 / (900 * dt))
+    grains.step(dt, count=900)
+    box, found = grains.box.upper, contacts(grains)
+    stress = contact_stress(Region((0.0, 0.0), box), found, grains.period)
+    grains.step(dt)
+    exact = -grains.steering.load[:4].reshape(2, 2) / (grains.period[0] * grains.period[1])
+    assert np.abs(stress - exact).max() > 1e6 * tolerance("dem.stress_of_a_strained_cell") * np.abs(exact).max()

@@ -115,3 +115,14 @@ def test_the_packing_limit_is_safe_in_a_lattice_and_the_pair_limit_is_not(shear)
     assert bound <= exact * (1 + 1e-12)  # rounding of an eigenvalue: the bound is reached at shear 0.8
     assert bound > 0.92 * exact  # sqrt(6.5/7.5) = 0.931 at shear 0.25
     assert math.sqrt(2.0) > 1.5 * exact  # two discs alone: 2 sqrt((m/2)/k)
+
+
+def test_the_radius_as_a_lever_arm_is_off_by_the_overlap():
+    found, rolls = lab.incline(0.3, 0.5, wait=0.06), 2.0 / 3.0 * GRAVITY * math.sin(0.3)
+    assert abs(found[0] / rolls - 1.0) > 1e4 * tolerance("dem.rolling_with_its_own_lever_arm")
+    assert lab.incline_exact(0.8, 0.5)[0] < GRAVITY * (math.sin(0.8) - 0.1 * math.cos(0.8))  # it does not slip there
+
+
+def test_springs_that_still_swing_are_noticed():
+    found = lab.incline(0.3, 0.5, wait=0.005)
+    assert lab.relative(found, lab.incline_exact(0.3, 0.5)) > 10 * tolerance("dem.rolling_with_its_own_lever_arm")
