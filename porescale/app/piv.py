@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from porescale.piv.measure import Vectors
     from porescale.piv.series import Shots
 
-CHANCE = 0.03
+CHANCE = 0.05
 """Share of vectors of the fluid that passes validation by chance where two pictures have nothing in common (measured:
-up to 0.02)."""
+up to 0.04 of small ones)."""
 PATIENCE = 10.0
 """Seconds between lines of progress."""
 

@@ -106,8 +106,8 @@ def test_what_cannot_be_measured_is_said_in_a_line(piv):
 
 
 def test_pictures_of_other_tracers_give_no_field(piv, tmp_path):
-    piv("synth", "uniform", "--size", "128", "--out", "a")
-    piv("synth", "uniform", "--size", "128", "--out", "b", "--seed", "1")
+    piv("synth", "uniform", "--size", "256", "--out", "a")
+    piv("synth", "uniform", "--size", "256", "--out", "b", "--seed", "1")
     code, _, said = piv("measure", "a/a.png", "b/b.png", "--csv", "m.csv")
     assert code == 2
     assert "same tracers" in said[0]
