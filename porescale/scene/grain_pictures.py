@@ -21,6 +21,7 @@ from porescale.runs.look import Look, length_unit, time_text
 from porescale.runs.model import Cloud, Snapshot
 from porescale.runs.picture import paint_last
 from porescale.scene.grain_fields import CONTACTS, FIELDS
+from porescale.scene.grain_lines import write_lines
 
 if TYPE_CHECKING:
     from porescale.runs.open_run import Run
@@ -40,7 +41,8 @@ BINS = 36
 
 def write_grain_pictures(run: Run, folder: Path, look: Look) -> list[Path]:
     """Pictures of the last snapshot: grains_<field>.png of coarse-grained fields, chains.png, coordination.png and
-    rose.png where contacts were recorded; and packing.csv, the grains as they lie, to start another run from."""
+    rose.png where contacts were recorded, with chains.vtp, their lines for ParaView; and packing.csv, the grains as
+    they lie, to start another run from."""
     last = run.snapshot(-1)
     if "grains" not in last.clouds:
         return []
@@ -53,12 +55,24 @@ def write_grain_pictures(run: Run, folder: Path, look: Look) -> list[Path]:
             changed = replace(look, grid=FIELDS, field=name, label=label, cloud="", streamlines=False, walls="")
             made.append(paint_last(folder, f"grains_{name}", changed))
     if CONTACTS in last.clouds:
+        made.append(folder / "chains.vtp")
+        write_chains(made[-1], last)
         for name, figure in (
             ("chains", chains(last, look)), ("coordination", numbers(last, look)), ("rose", rose_of(last, look)),
         ):  # fmt: skip
             made.append(folder / f"{name}.png")
             save(made[-1], lambda path, drawn=figure: FigureCanvasAgg(drawn).print_png(str(path)))  # type: ignore[misc]
     return made
+
+
+def write_chains(path: Path, snapshot: Snapshot) -> None:
+    """Contacts that carry as lines between centres, with their forces (N/m) and whether they slide."""
+    contacts = snapshot.clouds[CONTACTS]
+    loaded = np.asarray(contacts.data["normal_force"], float) > 0.0
+    names = "normal_force", "tangential_force", "sliding"
+    data = {name: np.asarray(contacts.data[name])[loaded] for name in names}
+    data["sliding"] = data["sliding"].astype(bool)
+    write_lines(path, branches(snapshot.clouds["grains"], contacts)[loaded], data)
 
 
 def chains(snapshot: Snapshot, look: Look) -> Figure:

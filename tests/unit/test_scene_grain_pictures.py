@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 from porescale.runs.look import Look
 from porescale.runs.model import Cloud, Snapshot
 from porescale.scene.build import build
-from porescale.scene.grain_pictures import branches, chains, numbers, rose_of, write_grain_pictures
+from porescale.scene.grain_pictures import branches, chains, numbers, rose_of, write_chains, write_grain_pictures
 from tests.reference.scenes import dry, grain
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -42,6 +43,27 @@ def test_branches_cross_a_periodic_side_beside_their_point():
     assert abs(ends[1, 0] - ends[0, 0]) == pytest.approx(0.0009995, rel=1e-9)  # not the width of the box
 
 
+def test_chains_open_in_vtk_as_lines_with_their_forces(tmp_path):
+    shown = snapshot()
+    for path, seen in ((tmp_path / "chains.vtp", shown), (tmp_path / "none.vtp", Snapshot(0.0, 0))):
+        if seen is not shown:
+            contacts = shown.clouds["contacts"]
+            none = Cloud(contacts.position[:0], {key: values[:0] for key, values in contacts.data.items()})
+            seen.clouds.update(grains=shown.clouds["grains"], contacts=none)
+        write_chains(path, seen)
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(path))
+        reader.Update()
+        lines = reader.GetOutput()
+        assert lines.GetNumberOfLines() == (2 if seen is shown else 0)
+        if seen is shown:
+            force = lines.GetCellData().GetArray("normal_force")
+            assert force.GetValue(1) == pytest.approx(2.0 * force.GetValue(0), rel=1e-9)
+            assert lines.GetPoint(0)[:2] == pytest.approx((0.001, 0.004), abs=1e-9)
+            assert lines.GetPoint(3)[:2] == pytest.approx((0.0029988, 0.004), abs=1e-9)
+            assert lines.GetCellData().GetArray("sliding").GetValue(0) == 0
+
+
 def test_colours_say_how_many_contacts():
     figure: Any = numbers(snapshot(), LOOK)
     (discs,) = figure.axes[0].collections
@@ -71,7 +93,7 @@ def test_files_of_what_was_asked_for(tmp_path, monkeypatch):
 
     asked: Any = Seen(snapshot())
     names = {path.name for path in write_grain_pictures(asked, tmp_path, LOOK)}
-    assert names == {"packing.csv", "chains.png", "coordination.png", "rose.png"}
+    assert names == {"packing.csv", "chains.png", "chains.vtp", "coordination.png", "rose.png"}
     assert all((tmp_path / name).stat().st_size > 100 for name in names)
     plain: Any = Seen(build(dry(grains={"density": 2500, "grain": ROW})).snapshot())
     assert [path.name for path in write_grain_pictures(plain, tmp_path, LOOK)] == ["packing.csv"]
