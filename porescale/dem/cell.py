@@ -51,6 +51,19 @@ def period_of(cell: Still | Straining) -> tuple[float, float, float]:
     return cell.period_x, cell.period_y, cell.tilt if isinstance(cell, Straining) else 0.0
 
 
+def before(position: Array, velocity: Array, cell: Still | Straining, dt: float) -> tuple[Array, Still | Straining]:
+    """Where discs (n, 2) m with ``velocity`` relative to the cell were ``dt`` (s) ago, and the cell then: the step of
+    strain.py backwards."""
+    if not isinstance(cell, Straining):
+        return position - dt * velocity, cell
+    along, up = 1.0 + dt * cell.gxx, 1.0 + dt * cell.gyy
+    y = (position[:, 1] - dt * velocity[:, 1]) / up
+    x = (position[:, 0] - dt * (velocity[:, 0] + cell.gxy * y)) / along
+    height = cell.period_y / up
+    tilt = (cell.tilt - dt * cell.gxy * height) / along
+    return np.column_stack((x, y)), cell._replace(period_x=cell.period_x / along, period_y=height, tilt=tilt)
+
+
 @by_law
 def image(dx, dy, cell):
     """Components (m) of the way between nearest images in ``cell``."""

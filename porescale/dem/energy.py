@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.dem.bonds import stored_in_bonds
-from porescale.dem.cell import Still, image
+from porescale.dem.cell import before, image
 from porescale.dem.contact.law import (
     BEFORE_SPIN,
     BEFORE_X,
@@ -40,6 +40,7 @@ from porescale.dem.contact.law import (
 )
 from porescale.dem.rectangle import BOTTOM, LEFT, RIGHT, TOP, VELOCITY_X
 from porescale.dem.segments import survey_segments
+from porescale.dem.strain import WORK
 from porescale.dem.walls import HIGH, LOW, NX, NY, PRESENT, PX, TURN, VELOCITY, VX, X
 from porescale.ground.check import Fault, InputError
 from porescale.ground.jit import kernel
@@ -122,12 +123,8 @@ def elastic(grains: Grains, dt: float = 0.0) -> tuple[float, float, float]:
     That of back tension (bonds.py), below zero, belongs to the normal part.
     """
     d, pairs = grains.discs, grains.pairs
-    position = d.position - dt * d.velocity
-    parts = [
-        elastic_pairs(
-            position, d.radius, pairs.start, pairs.partner, pairs.carried, grains.contact, Still(*grains.box.period)
-        )
-    ]
+    position, cell = before(d.position, d.velocity, grains.cell, dt)
+    parts = [elastic_pairs(position, d.radius, pairs.start, pairs.partner, pairs.carried, grains.contact, cell)]
     for distance, memory, laws in distances(grains, position, dt):
         parts.append(elastic_surface(distance, d.radius, memory, laws, grains.contact))
     segments = None if grains.segments is None else grains.segments.now()
@@ -143,7 +140,8 @@ def elastic(grains: Grains, dt: float = 0.0) -> tuple[float, float, float]:
 def kinetic(grains: Grains, book: Array) -> tuple[float, float]:
     """Kinetic energy of the last force evaluation, J/m: (translation, rotation), without held components.
 
-    Members of a clump translate with its centroid; what they move besides is its rotation.
+    Members of a clump translate with its centroid; what they move besides is its rotation.  In a strained cell
+    velocities are those relative to it, and members move besides as the cell does at their places, which is no energy.
     """
     d = grains.discs
     along = d.velocity * book[:, BEFORE_X : BEFORE_X + 2]
@@ -160,6 +158,10 @@ def kinetic(grains: Grains, book: Array) -> tuple[float, float]:
         )
         rest = 0.5 * float(share @ along[clumps.member].sum(axis=1)) - 0.5 * float(np.sum(now * then / clumps.mass))
         moving, turning = moving - rest, turning + rest
+        if grains.steering.cell is not None:
+            own, first = clumps.inertia.copy(), clumps.member[clumps.start[:-1]]
+            own -= np.bincount(body, d.inertia[clumps.member], clumps.count)
+            turning += 0.5 * float(own @ (d.spin[first] * book[first, BEFORE_SPIN])) - rest
     return moving, turning
 
 
@@ -185,7 +187,8 @@ def energy_book(grains: Grains, acceleration: tuple[float, float] = (0.0, 0.0)) 
 
     acceleration : of free fall, m/s^2; its work is the potential energy, and what the external forces did besides is
     their work.  "turned over" is half the sum of all changes: every joule leaves one entry and enters another.
-    Raises InputError where no book is kept, or the cell is strained.
+    A strained cell does work, and all is said relative to it: there must be no ``acceleration`` then.  Raises
+    InputError where no book is kept.
     """
     book, start, dt = grains.book, grains.book_start, grains.last_dt
     if book is None:
@@ -202,6 +205,8 @@ def energy_book(grains: Grains, acceleration: tuple[float, float] = (0.0, 0.0)) 
         "work of external forces (J/m)": float(total[EXTERNAL]) + height - height_before,
         **{name: float(total[column]) for name, column in WORKS.items()},
     }
+    if grains.steered and grains.steering.cell is not None:
+        works["work of the cell (J/m)"] = float(grains.steering.cell[WORK])
     kept = moving + turning + normal + tangential + rolling
     residual = kept + height - float(start[0]) - height_before + sum(losses.values()) - sum(works.values())
     changes = [kept - float(start[0]), height - height_before, *losses.values(), *works.values()]

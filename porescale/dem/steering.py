@@ -245,8 +245,6 @@ class Steering:
             raise InputError(Fault("box", grains.box.left, "a cell can only be strained when all sides are periodic"))
         if grains.segments is not None or grains.bonds is not None:
             raise InputError(Fault("cell", problem="with segments or bonds a cell cannot be strained"))
-        if grains.book is not None:
-            raise InputError(Fault("energy", True, "the energy book knows no strained cell", repair="leave one out"))
         wanted = (*pressure, shear_stress)
         if any(each is not None for each in wanted) and not (limit > 0.0 and 0.0 < share < 2.0):
             bad, what, allowed = (share, "share", "> 0, < 2") if limit > 0.0 else (limit, "limit", "> 0")

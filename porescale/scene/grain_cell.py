@@ -81,8 +81,16 @@ def judge_cell(scene: Scene) -> list[Fault]:
         faults.append(Fault("cell", None, problem, repair='make all sides of [domain] "periodic"'))
     beside = {
         "disc": scene.disc, "rectangle": scene.rectangle, "wall": scene.wall, "gate": scene.gate,
-        "output.forces": scene.output.forces, "output.energy": scene.output.energy,
+        "output.forces": scene.output.forces,
     }  # fmt: skip
+    if scene.output.energy and any(scene.gravity):
+        problem, repair = (
+            "in a strained cell energy has no potential of weight",
+            "set it to [0, 0], or leave energy out",
+        )
+        faults.append(
+            Fault("gravity", f"[{scene.gravity[0]:g}, {scene.gravity[1]:g}]", problem, "m/s^2", repair=repair)
+        )
     faults += [Fault(name, None, "does not go with a strained cell", repair="leave it or [cell] out")
                for name, given in beside.items() if given]  # fmt: skip
     return faults

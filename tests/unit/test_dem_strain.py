@@ -277,10 +277,3 @@ def test_overlaps_across_a_sheared_boundary_are_what_they_are():
     ]
     nearest = min(float(d[d > 1e-9].min()) for d in apart)
     assert found == pytest.approx((0.02 - nearest) / 0.01, rel=1e-9)
-
-
-def test_the_energy_book_refuses_a_strain():
-    d = make_discs([[0.05, 0.05]], 0.01, 2500.0)
-    grains = Grains(d, LAW, Box((0.0, 0.0), (0.2, 0.2), *("periodic",) * 4), energy=True)
-    with pytest.raises(InputError, match="energy book"):
-        grains.steering.strain_cell(xy=1.0)

@@ -38,7 +38,7 @@ def test_a_scene_with_all_that_moves_keeps_an_energy_book_that_closes():
     # The bound of the specification, 1e-3 of what is turned over, with some 40 steps in a contact (5e-6 s).
     fine, coarse = book(5e-6), book(2e-5)
     for work in ("work of holders", "work of external forces", "work of moving surfaces"):
-        assert abs(fine[f"{work} (J/m)"]) > 0.01 * fine["turned over (J/m)"]
+        assert abs(fine[f"{work} (J/m)"]) > 2e-3 * fine["turned over (J/m)"]  # none is lost in the bound
     share = abs(fine["residual (J/m)"]) / fine["turned over (J/m)"]
     assert share < 1e-3
     # First order: a quarter of it, or 1/2 where the touch phases of some twenty collisions are all one way.
