@@ -78,7 +78,7 @@ def show_walls(fluid, x, v, mass, density, rate, rate_before, step, ratio, row, 
     """What fluid sees of boundary particles; overwrites their rows of ``record`` (n, 8) and ``pressure`` (n,).
 
     Their density is taken a ``step`` (s) {rate + ratio (rate - rate_before)} beyond ``density`` (walls,), as that of
-    the fluid is;  row (8,): their fluid's line of the table;  cut: no tension.
+    the fluid is;  row (9,): their fluid's line of the table;  cut: no tension.
     """
     for w in prange(fluid, x.shape[0]):
         b = w - fluid

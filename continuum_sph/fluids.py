@@ -14,8 +14,9 @@ from continuum_sph.eos import Gas, Tait
 
 Floats = NDArray[np.float64]
 
-DENSITY, SOUND, STIFFNESS, EXPONENT, PRINTED, THINNEST, VISCOSITY, COHESION = range(8)
-"""Columns of the table: ρ0 kg/m³, c0 m/s, B Pa, γ, 1 for eq. 39 and 0 for powers, least density kg/m³, μ Pa s, a."""
+DENSITY, SOUND, STIFFNESS, EXPONENT, PRINTED, THINNEST, VISCOSITY, COHESION, LIQUID = range(9)
+"""Columns of the table: ρ0 kg/m³, c0 m/s, B Pa, γ, 1 for eq. 39 and 0 for powers, least density kg/m³, μ Pa s, a,
+1 for a liquid and 0 for a gas."""
 
 LIQUID_FLOOR = 0.8  # of ρ0: least density, far below any that water at Mach 0.1 has
 GAS_FLOOR = 0.01  # of ρ0: a bubble that has left the water keeps spreading; pressures stay numbers
@@ -31,17 +32,27 @@ class Fluid:
     cohesion: float = 0.0
 
     def row(self) -> Floats:
-        """Its line of the table, (8,)."""
+        """Its line of the table, (9,)."""
         state = self.state
         gas = isinstance(state, Gas)
         floor = (GAS_FLOOR if gas else LIQUID_FLOOR) * state.density
         printed = float(isinstance(state, Gas) and state.printed)
         stiffness, exponent = state.stiffness, state.exponent
         return np.array(
-            [state.density, state.sound_speed, stiffness, exponent, printed, floor, self.viscosity, self.cohesion]
+            [
+                state.density,
+                state.sound_speed,
+                stiffness,
+                exponent,
+                printed,
+                floor,
+                self.viscosity,
+                self.cohesion,
+                float(not gas),
+            ]
         )
 
 
 def table(fluids: tuple[Fluid, ...]) -> Floats:
-    """The table of all fluids, (m, 8)."""
+    """The table of all fluids, (m, 9)."""
     return np.array([fluid.row() for fluid in fluids])

@@ -40,7 +40,7 @@ def kick_drift(
 def pressurise(x, v, mass, density, material, length, table, cut, pressure, record):
     """Pressure (Pa) of fluid particles from ``density`` (fluid,); overwrites their ``pressure`` and ``record``.
 
-    material (n,), table (m, 8): the particles' fluids;  length (n,): h, m;  cut: pressures below that of the air count
+    material (n,), table (m, 9): the particles' fluids;  length (n,): h, m;  cut: pressures below that of the air count
     as none (particles of a free surface do not pull).  Returns the largest (c/h)², 1/s²; a maximum is exact in any
     order.
     """

@@ -25,6 +25,9 @@ from continuum_sph.viscosity import between, laminar
 from porescale.ground.jit import parallel_kernel, prange
 from porescale.particles.cells import minimum_image
 
+NOISE, IMAGED, SHIFTED, CORRECTED, VARIED = range(5)
+"""Entries of choices, see `rates`."""
+
 
 @parallel_kernel
 def split_rows(fluid, start, partner, split):
@@ -38,24 +41,38 @@ def split_rows(fluid, start, partner, split):
 
 @parallel_kernel
 def rates(
-    fluid, start, split, partner, record, ghost, facing, material, length, matrix, slant, drift, mass, table,
+    fluid, start, split, partner, record, ghost, facing, material, length, matrix, slant, drift, mass, table, choices,
     acceleration, rate, smoothed, power,
-    kind, h, gx, gy, alpha, beta, softening, delta, noise, sticky, imaged, smoothing, shifted, corrected, varied,
-    period_x, period_y,
+    kind, h, gx, gy, alpha, beta, softening, delta, sticky, smoothing, period_x, period_y,
 ):  # fmt: skip
-    """Overwrites ``acceleration`` (fluid, 2) m/s², ``rate`` (fluid,) kg/(m³ s), ``smoothed`` (fluid, 2) m/s and
-    the first three columns of ``power`` (fluid, 4) W/m.
+    """Overwrites ``acceleration`` (fluid, 2) m/s², ``rate`` (fluid,) kg/(m³ s), ``smoothed`` (fluid, 2) m/s and the
+    first three columns of ``power`` (fluid, 4) W/m.
 
     start, split, partner: full pair list, wall partners of row i from ``split[i]`` on;  record, ghost, facing,
-    material, length, matrix, drift: see Layer;  slant: of `surroundings`;  mass (n,) kg/m;  table (m, 8): the fluids;
-    kind, h: smoothing;  gx, gy gravity, m/s²;  alpha, beta, softening: artificial viscosity;  delta 2 δ h of the
-    density diffusion, m, and noise, what it takes for noise;  sticky: walls hold the fluid, else they let it slip;
-    imaged: walls of the paper;  smoothing: XSPH's ε, for Σ (m_j/ρ̄)(v_j - v_i) W (eq. 53 with the sign that smooths);
-    shifted: density and velocity are those of the place that a particle's ``drift`` takes it to; corrected: gradients
-    by ``matrix``;  varied: h by ``length`` (eq. 7);  periods, m or 0.
+    material, length, matrix, drift: see Layer;  slant: of `surroundings`;  mass (n,) kg/m;  table (m, 9): the fluids;
+    choices: None for one fluid, plain gradients and walls that take pressures, which is compiled by itself and
+    fastest, or an array of what is NOISE, IMAGED, SHIFTED, CORRECTED, VARIED;  kind, h: smoothing;  gx, gy gravity,
+    m/s²;  alpha, beta, softening: artificial viscosity;  delta 2 δ h of the density diffusion, m;  sticky: walls hold
+    the fluid, else they let it slip;  smoothing: XSPH's ε, for Σ (m_j/ρ̄)(v_j - v_i) W (eq. 53 with the sign that
+    smooths);  periods, m or 0.
+
+    NOISE: what density diffusion takes for noise;  IMAGED: walls of the paper;  SHIFTED: density is that of the place
+    that a particle's ``drift`` takes it to;  CORRECTED: gradients by ``matrix``;  VARIED: h by ``length`` (eq. 7).
     """
     wraps = period_x > 0.0 or period_y > 0.0
-    mixed = table.shape[0] > 1
+    mixed = False
+    noise = HYDROSTATIC
+    imaged = False
+    shifted = False
+    corrected = False
+    varied = False
+    if choices is not None:
+        mixed = table.shape[0] > 1
+        noise = choices[NOISE]
+        imaged = choices[IMAGED] > 0
+        shifted = choices[SHIFTED] > 0
+        corrected = choices[CORRECTED] > 0
+        varied = choices[VARIED] > 0
     for i in prange(fluid):
         xi = record[i, X]
         yi = record[i, Y]
@@ -65,11 +82,15 @@ def rates(
         own = record[i, P]
         stiff_i = record[i, STIFF]
         specific = 1.0 / rho
-        own_material = material[i]
+        own_material = 0
+        if choices is not None:
+            own_material = material[i]
         own_viscosity = table[own_material, VISCOSITY]
         sound = table[own_material, SOUND]
         strength = delta * sound
-        pull = 2.0 * table[own_material, COHESION] / (mass[i] * mass[i])
+        pull = 0.0
+        if choices is not None:
+            pull = 2.0 * table[own_material, COHESION] / (mass[i] * mass[i])
         viscosity = own_viscosity
         hij = h
         inverse = 1.0 / h
@@ -130,7 +151,7 @@ def rates(
             both = rho + rho_j
             partner_mass = rho_j * volume
             thrust = (own + record[j, P]) * specific * volume
-            if same:
+            if choices is not None and same:
                 thrust -= pull * partner_mass
             thrust *= slope
             ax -= thrust * tx

@@ -6,6 +6,8 @@ to 2.  Density changes by δu · ∇ρ, so that it stays that of the place (Sun 
 gaps, the more so with corrected gradients, which push them apart less.  Source: Lind et al., J. Comput. Phys. 231
 (2012) 1499; Sun et al., Comput. Methods Appl. Mech. Eng. 315 (2017) 25 (δ⁺-SPH).
 
+Gas is not shifted: its densities do not follow the drift, so a bubble would grow at the pressure it has.
+
 A free surface is one-sided by nature and must not be filled: its particles (trace of M below OPEN) stay, and those that
 see one move along the surface only, its normal being where the trace falls steepest.
 """
@@ -14,6 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from continuum_sph.fluids import LIQUID
 from continuum_sph.layers import VOLUME, X, Y
 from continuum_sph.smoothing import kernel_slope
 from porescale.ground.jit import parallel_kernel, prange
@@ -25,17 +28,19 @@ MOST = 0.25  # of U
 
 @parallel_kernel
 def shift(
-    fluid, start, split, partner, record, openness, crowd, drift, kind, h, strength, most, period_x, period_y
+    fluid, start, split, partner, record, material, table, openness, crowd, drift, kind, h, strength, most,
+    period_x, period_y,
 ):  # fmt: skip
     """Overwrites ``drift`` (fluid, 2) m/s, the shifting velocity.
 
-    start, split, partner: full list, walls from ``split[i]`` on;  openness, crowd: of `surroundings`;
-    strength 2 h s U, m²/s;  most: longest shifting velocity, m/s;  kind, h: smoothing;  periods, m or 0.
+    start, split, partner: full list, walls from ``split[i]`` on;  material, table: the particles' fluids;  openness,
+    crowd: of `surroundings`;  strength 2 h s U, m²/s;  most: longest shifting velocity, m/s;  kind, h: smoothing;
+    periods, m or 0.
     """
     for i in prange(fluid):
         drift[i, 0] = 0.0
         drift[i, 1] = 0.0
-        if openness[i] < OPEN:
+        if openness[i] < OPEN or table[material[i], LIQUID] == 0.0:
             continue
         ux = -strength * crowd[i, 0]
         uy = -strength * crowd[i, 1]

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from continuum_sph.boundary import load_walls
 from continuum_sph.boundary_paper import facing, show_walls, wall_rates
 from continuum_sph.correction import surroundings
-from continuum_sph.density import LINEAR
+from continuum_sph.density import HYDROSTATIC, LINEAR
 from continuum_sph.density_filter import filtered
 from continuum_sph.fluids import table
 from continuum_sph.law import RULES, Law
@@ -66,7 +66,6 @@ class Flow:
 
     def __post_init__(self) -> None:
         layer, count = self.layer, self.layer.count
-        self.table = table(self.law.fluids)
         layer.length[:] = self.law.smoothing.length
         self.split = np.zeros(count, np.int64)
         self.lower, self.upper = np.full(2, -np.inf), np.full(2, np.inf)
@@ -78,6 +77,15 @@ class Flow:
         self.normalised = np.zeros(layer.fluid)
         self.colour, self.normal = np.zeros(layer.fluid), np.zeros((layer.fluid, 3))
 
+    def choose(self) -> NDArray[np.int64] | None:
+        """What of `rates` goes beyond one fluid, plain gradients and walls that take pressures; None for nothing."""
+        law = self.law
+        chosen = (law.images, law.shifting > 0.0, law.corrected, law.varied)
+        plain = len(law.fluids) == 1 and law.fluids[0].cohesion == 0.0 and law.noise == HYDROSTATIC
+        if plain and not any(chosen) and not self.layer.material.any():
+            return None
+        return np.array([law.noise, *chosen], np.int64)
+
     @property
     def surveyed(self) -> bool:
         """Whether a choice needs the moments of neighbourhoods."""
@@ -87,6 +95,7 @@ class Flow:
     def start(self) -> None:
         """Rates of the initial state, from which the first step goes on."""
         layer = self.layer
+        self.table, self.choices = table(self.law.fluids), self.choose()
         if self.law.images:
             walls = layer.x[layer.fluid :]
             layer.facing[layer.fluid :] = facing(walls, tuple(self.lower), tuple(self.upper))
@@ -139,10 +148,10 @@ class Flow:
             )  # fmt: skip
         rates(
             fluid, pairs.start, self.split, pairs.partner, layer.record, layer.ghost, layer.facing, layer.material,
-            layer.length, layer.matrix, self.slant, layer.drift, layer.mass, self.table,
+            layer.length, layer.matrix, self.slant, layer.drift, layer.mass, self.table, self.choices,
             layer.acceleration, layer.rate, layer.smoothed, layer.power,
-            kind, h, *law.gravity, law.alpha, law.beta, law.softening, 2.0 * law.diffusion * h, law.noise,
-            law.sticky, law.images, law.xsph, law.shifting > 0.0, law.corrected, law.varied, *pairs.period,
+            kind, h, *law.gravity, law.alpha, law.beta, law.softening, 2.0 * law.diffusion * h,
+            law.sticky, law.xsph, *pairs.period,
         )  # fmt: skip
         if law.tension > 0.0:
             self.pull()
@@ -154,8 +163,9 @@ class Flow:
             )  # fmt: skip
         if law.shifting > 0.0:
             shift(
-                fluid, pairs.start, self.split, pairs.partner, layer.record, self.openness, self.crowd,
-                layer.drift, kind, h, 2.0 * h * law.shifting * self.swiftest, MOST * self.swiftest, *pairs.period,
+                fluid, pairs.start, self.split, pairs.partner, layer.record, layer.material, self.table, self.openness,
+                self.crowd, layer.drift, kind, h, 2.0 * h * law.shifting * self.swiftest, MOST * self.swiftest,
+                *pairs.period,
             )  # fmt: skip
 
     def pull(self) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from contourpy import contour_generator
 from numpy.typing import NDArray
-from scipy.interpolate import LinearNDInterpolator
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
@@ -36,18 +35,23 @@ def bubble(flow: Flow) -> dict[str, float]:
 def circularity(flow: Flow, area: float) -> float:
     """Girth of the circle of equal ``area`` (m²) over that of the second fluid: 1 when it is one round piece.
 
-    Its outline is where the colour, averaged over the kernel where there is surface tension, is one half.
+    Its outline is where the fluid's number, averaged over a kernel of h = 1.3 spacings, is one half.
     """
     layer, n, spacing = flow.layer, flow.layer.fluid, flow.law.spacing
-    colour = flow.colour if flow.law.tension > 0.0 else layer.material[:n].astype(np.float64)
-    own = layer.x[:n][layer.material[:n] == 1]
-    reach = 4.0 * spacing
-    low, high = own.min(axis=0) - reach, own.max(axis=0) + reach
-    near = ((layer.x[:n] > low) & (layer.x[:n] < high)).all(axis=1)
+    fluid, h = layer.material[:n], 1.3 * spacing
+    own = layer.x[:n][fluid == 1]
+    low, high = own.min(axis=0) - 4.0 * spacing, own.max(axis=0) + 4.0 * spacing
+    near = ((layer.x[:n] > low - 2.0 * h) & (layer.x[:n] < high + 2.0 * h)).all(axis=1)
     xs, ys = (np.arange(low[axis], high[axis], 0.5 * spacing) for axis in (0, 1))
-    field = LinearNDInterpolator(layer.x[:n][near], colour[near], fill_value=0.0)(*np.meshgrid(xs, ys))
+    places = np.column_stack([axis.ravel() for axis in np.meshgrid(xs, ys)])
+    pairs = cKDTree(places).sparse_distance_matrix(cKDTree(layer.x[:n][near]), 2.0 * h, output_type="ndarray")
+    rest = 1.0 - 0.5 * pairs["v"] / h
+    weight = rest**4 * (5.0 - 4.0 * rest)  # Wendland C2
+    below = np.bincount(pairs["i"], weight, len(places))
+    above = np.bincount(pairs["i"], weight * fluid[near][pairs["j"]], len(places))
+    share = np.divide(above, below, out=np.zeros(len(places)), where=below > 0.0)
     girth = 0.0
-    for line in contour_generator(xs, ys, field).lines(0.5):
+    for line in contour_generator(xs, ys, share.reshape(len(ys), len(xs))).lines(0.5):
         steps = np.diff(np.asarray(line), axis=0)
         girth += float(np.hypot(steps[:, 0], steps[:, 1]).sum())
     return float(2.0 * np.sqrt(np.pi * area) / girth) if girth > 0.0 else 0.0

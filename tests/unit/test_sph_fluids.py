@@ -94,13 +94,22 @@ def test_a_light_bubble_rises_and_a_heavy_drop_sinks():
 
 @pytest.mark.parametrize("law", ["adiabatic", "printed"])
 def test_a_thousandfold_lighter_gas_stays_a_bubble_for_a_while(law):
-    model = Simulation(scene(law=law, density=1.0, pressure=2e4, numerics={"artificial_viscosity": 0.1}))
-    model.advance(300)
+    model = Simulation(scene(law=law, density=1.0, pressure=1e5, numerics={"artificial_viscosity": 0.1}))
+    start = model.series()
+    model.advance(1500)
     model.check()
     row = model.series()
-    assert np.isfinite(row["kinetic energy (J/m)"])
     assert row["bubble pieces ()"] == 1.0
-    assert row["bubble rise (m/s)"] > 0.0
+    assert row["bubble centre (m)"] > start["bubble centre (m)"]
+    # Nothing is made of nothing: steps miss (Δt c/h)²/2 = 3 % of what is turned over, here of a hundredth of all
+    assert abs(row["energy balance (J/m)"] / start["energy balance (J/m)"] - 1.0) < 0.01
+
+
+def test_the_step_knows_of_gas_that_moves_against_the_stiffness_of_water():
+    model = Simulation(scene(law="adiabatic", density=1.0, pressure=1e5, numerics={"artificial_viscosity": 0.1}))
+    law = model.flow.law
+    assert law.interface_speed > 1.3 * law.quickest
+    assert law.interface_speed == pytest.approx(((1.403e5 + 1000.0 * 400.0) / 2.0) ** 0.5)
 
 
 def test_what_is_said_of_a_bubble_is_true_of_a_disc_and_of_two():
