@@ -34,6 +34,7 @@ def command() -> App:
         name="piv", help="Measure a flow from pictures of it; the same way for a laboratory film and a simulation."
     )
     app.command(synth)
+    app.command(render)
     app.command(measure)
     app.command(compare)
     return app
@@ -59,7 +60,7 @@ def synth(
     window: Annotated[int, Parameter(help="of the grid that exact.csv is given on, px")] = 16,
     overlap: Annotated[float, Parameter(help="of its windows")] = 0.5,
 ) -> int:
-    """Write a pair of pictures whose displacement is known exactly: a.png, b.png, mask.png, exact.csv, card.json."""
+    """Write a pair of pictures whose displacement is known exactly: a.png, b.png, mask.png, exact.csv, pair.json."""
     import cv2
     import numpy as np
 
@@ -85,9 +86,57 @@ def synth(
         "flow": flow, "size": size, "peak": peak, "length": length, "density": density, "diameter": diameter,
         "noise": noise, "lost": lost, "disc": disc, "seed": seed,
     }  # fmt: skip
-    write_text(folder / "card.json", json_text.dumps(card, indent=1) + "\n")
-    for name in ("a.png", "b.png", "mask.png", "exact.csv", "card.json"):
+    write_text(folder / "pair.json", json_text.dumps(card, indent=1) + "\n")
+    for name in ("a.png", "b.png", "mask.png", "exact.csv", "pair.json"):
         print(folder / name)
+    return 0
+
+
+def render(
+    run: Annotated[Path, Parameter(help="run folder, of a run with fluid")],
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(help="folder; RUN/piv if not given")] = None,
+    scale: Annotated[
+        str | None, Parameter(help='length of a pixel, "0.1 mm"; 1024 px the longer side if not given')
+    ] = None,
+    interval: Annotated[
+        str | None, Parameter(help='between frames, "5 ms"; 4 px of the fastest flow if not given')
+    ] = None,
+    start: Annotated[str | None, Parameter(help='time of the run, "0.1 s"')] = None,
+    end: Annotated[str | None, Parameter(help="time of the run")] = None,
+    exposure: Annotated[float, Parameter(help="share of the interval that the shutter is open")] = 0.0,
+    density: Annotated[float, Parameter(help="tracers a pixel")] = 0.05,
+    diameter: Annotated[float, Parameter(help="of a tracer, px")] = 2.8,
+    noise: Annotated[float, Parameter(help="grey levels")] = 3.0,
+    grains: Annotated[Literal["bright", "dark"], Parameter(help="how solids look")] = "bright",
+    seed: int = 0,
+) -> int:
+    """Film a run with a virtual camera: tracers carried by its flow, as pictures, masks and a film."""
+    from porescale.piv.camera import GREYS, Shooting, fastest, shooting
+    from porescale.piv.filmed import write_frames
+    from porescale.piv.synth import Camera
+    from porescale.runs.open_run import open_run
+
+    folder = out or run / "piv"
+    opened = open_run(run)
+    refuse_unwritable(folder, "--out")
+    first, last = (float(it) for it in opened.times[[0, -1]]) if len(opened) else (0.0, 0.0)
+    begin = first if start is None else _quantity("--start", start, "s")
+    stop = last if end is None else _quantity("--end", end, "s")
+    if not first <= begin < stop <= last:
+        text = f"{begin:g} to {stop:g}"
+        raise InputError(Fault("--start, --end", text, "is no part of the run", "s", f"{first:g} to {last:g}"))
+    pixel, speed = fastest(opened, begin, stop)
+    pixel = pixel if scale is None else _quantity("--scale", scale, "m")
+    pause = 4 * pixel / speed if interval is None else _quantity("--interval", interval, "s")
+    camera = Camera(density=density, diameter=diameter, noise=noise, disc=GREYS[grains])
+    shot = shooting(opened, Shooting(camera, pixel, pause, begin, stop, exposure, seed))
+    count = write_frames(opened, shot, folder)
+    rows, columns = shot.camera.size
+    print(f"{count} frames of {columns} x {rows} px, {pixel:.4g} m a pixel, {pause:.4g} s apart")
+    options = f"--mask {folder}/masks --scale {pixel:.6g} --interval {pause:.6g} --time {begin:g}"
+    print(f"measure with: porescale piv measure {folder}/frames {options}")
     return 0
 
 
@@ -112,6 +161,7 @@ def measure(
     region: Annotated[str | None, Parameter(help="left,top,right,bottom, px")] = None,
     scale: Annotated[str | None, Parameter(help='length of a pixel: "0.1 mm"; the field is in m and m/s then')] = None,
     interval: Annotated[str | None, Parameter(help='time between two frames: "5 ms"; a film may say it itself')] = None,
+    time_: Annotated[str | None, Parameter(name="--time", help="of frame 0, as the fields' times count from")] = None,
     threads: Threads = None,
     json: Json = False,
 ) -> int:
@@ -146,7 +196,9 @@ def measure(
     def span(shape: tuple[int, ...]) -> tuple[float, ...]:
         return _span(shape, corner(film), rows, pixel)
 
-    said = _written(_progress(fields, total), shots, folder, csv, openpiv, (seconds or 1.0) * step, span, total == 1)
+    zero = 0.0 if time_ is None else _quantity("--time", time_, "s")
+    times = (zero + (seconds or 1.0) * (start + 0.5 * step), (seconds or 1.0) * step)
+    said = _written(_progress(fields, total), shots, folder, csv, openpiv, times, span, total == 1)
     _say(said, json)
     return 0
 
@@ -234,7 +286,7 @@ def _quantity(key: str, text: str, unit: str) -> float:
             value = to_si(text, unit)
         except ValueError as error:
             raise InputError(Fault(key, text, str(error), unit)) from error
-    if value < 0 or (value == 0 and key != "--time"):
+    if value < 0 or (value == 0 and key not in ("--time", "--start", "--end")):
         raise InputError(Fault(key, text, "is out of range", unit, "> 0"))
     return value
 
@@ -270,11 +322,14 @@ def _written(
     folder: Path | None,
     csv: Path | None,
     openpiv: Path | None,
-    interval: float,
+    times: tuple[float, float],
     span: Callable[[tuple[int, ...]], tuple[float, ...]],
     alone: bool,
 ) -> dict[str, Any]:
-    """Write each field as it comes; gives what was measured and written.  InputError for one field without vectors."""
+    """Write each field as it comes; gives what was measured and written.  InputError for one field without vectors.
+
+    times : of the first field, and from one to the next, s.
+    """
     from porescale.piv.field import write_csv, write_openpiv
     from porescale.piv.pictures import quiver, vorticity
     from porescale.piv.series import as_grid
@@ -303,8 +358,8 @@ def _written(
             table = folder / f"vectors_{number - 1:04d}.csv"
             write_csv(field, table)
             files += [table] if number == 1 else []
-            time_of = (number - 0.5) * interval
-            snapshots.write_part(folder, Snapshot(time_of, number - 1, grids={"piv": as_grid(field)}))
+            moment = times[0] + (number - 1) * times[1]
+            snapshots.write_part(folder, Snapshot(moment, number - 1, grids={"piv": as_grid(field)}))
     if folder is not None and last is not None:
         snapshots.assemble(folder)
         image = next(iter(shots.film))

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from porescale.ground.jit import kernel
+from porescale.piv.flows import Discs
 
 REACH = 4.5
 """Standard deviations at which a spot ends: beyond lies 7e-6 of its light."""
@@ -35,3 +37,15 @@ def add_spots(x, y, peak, sigma, image):
             light = factor * peak[k] * down
             for i in range(left, right + 1):
                 image[j, i] += light * across[i - left]
+
+
+def coverage(discs: Discs, share: NDArray[np.float64]) -> None:
+    """Raise ``share`` (rows, columns), of each pixel, to what discs in px cover of it: exact to the rim's bending."""
+    rows, columns = share.shape
+    for x, y, r in zip(discs.x.tolist(), discs.y.tolist(), discs.radius.tolist(), strict=True):
+        left, right = max(0, math.floor(x - r - 1)), min(columns, math.ceil(x + r + 2))
+        top, bottom = max(0, math.floor(y - r - 1)), min(rows, math.ceil(y + r + 2))
+        if left < right and top < bottom:
+            part = share[top:bottom, left:right]
+            far = np.hypot(np.arange(left, right) - x, np.arange(top, bottom)[:, None] - y)
+            np.maximum(part, np.clip(0.5 + r - far, 0.0, 1.0), out=part)

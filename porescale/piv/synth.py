@@ -11,7 +11,7 @@ from porescale.ground.check import Fault, InputError
 from porescale.piv.field import Field
 from porescale.piv.flows import Discs, Flow
 from porescale.piv.grid import Grid
-from porescale.piv.spots import REACH, add_spots
+from porescale.piv.spots import REACH, add_spots, coverage
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -110,8 +110,8 @@ def expose(x: Array, y: Array, light: Array, discs: Discs, camera: Camera, rando
     """One picture: spots, discs in front of them, noise, grey levels 0 to 255."""
     image = np.full(camera.size, camera.background)
     add_spots(x, y, light, camera.diameter / 4, image)
-    rows, columns = np.mgrid[: camera.size[0], : camera.size[1]].astype(float)
-    share = np.clip(0.5 - discs.distance(columns, rows), 0.0, 1.0)  # of a pixel that a rim crosses
+    share = np.zeros(camera.size)
+    coverage(discs, share)
     image = image * (1 - share) + camera.disc * share
     image += random.normal(0.0, camera.noise, camera.size)
     return np.clip(np.rint(image), 0, 255).astype(np.uint8)
