@@ -108,10 +108,10 @@ def stored_in_bonds(position, radius, segments, bonds, cell):
 
 
 @kernel
-def pressing(position, radius, ends, mass, segments, law, cell, back):
+def pressing(position, radius, ends, segments, law, cell, back):
     """Overwrite back (m,) N/m with the elastic normal force at each of ``ends`` (m, 3), see Bonds, 0 where apart.
 
-    mass (n,) kg/m of the body of each disc;  segments: Segments or None;  law see contact/law.py.  Corners by weight.
+    segments: Segments or None;  law see contact/law.py.  Corners by weight.
     """
     for k in range(ends.shape[0]):
         i, j = ends[k, 0], ends[k, 1]
@@ -126,7 +126,7 @@ def pressing(position, radius, ends, mass, segments, law, cell, back):
         if overlap > 0.0:
             p = law.table[material_of(law.material, i), material_of(law.material, a)]
             reduced = radius[i] * radius[a] / (radius[i] + radius[a])
-            both = mass[i] * mass[a] / (mass[i] + mass[a])
+            both = law.mass[i] * law.mass[a] / (law.mass[i] + law.mass[a])
             back[k] = weight * stiffness(overlap, reduced, both, p, law)[0]
 
 
@@ -211,10 +211,9 @@ def bond(grains: Grains, bodies: Iterable[int | Clump] | None = None) -> int:
     d, pairs = grains.discs, grains.current_pairs()
     first = np.repeat(np.arange(d.count), np.diff(pairs.start))
     rows = [np.column_stack((first, pairs.partner.astype(np.int64), np.zeros(len(first), np.int64)))]
-    heavy, arrays = d.mass, None
+    arrays = None
     if grains.segments is not None:
         arrays = grains.segments.now()
-        heavy = arrays.heavy
         rows += [np.pad(arrays.corner, ((0, 0), (0, 1))), np.pad(arrays.near, ((0, 0), (0, 1)), constant_values=1)]
     ends = np.concatenate(rows)
     chosen = _chosen(grains, bodies)
@@ -227,7 +226,7 @@ def bond(grains: Grains, bodies: Iterable[int | Clump] | None = None) -> int:
         known = {tuple(row) for row in grains.bonds.ends[grains.bonds.whole != 0].tolist()}
         ends = ends[[tuple(row) not in known for row in ends.tolist()]] if len(ends) else ends
     back = np.zeros(len(ends))
-    pressing(d.position, d.radius, ends, heavy, arrays, grains.contact, grains.cell, back)
+    pressing(d.position, d.radius, ends, arrays, grains.contact, grains.cell, back)
     made = BondList(np.ascontiguousarray(ends[back != 0.0]), back[back != 0.0])
     grains.bonds = made if grains.bonds is None else grains.bonds.joined(made)
     return made.count

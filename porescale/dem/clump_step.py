@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from porescale.dem.clumps import Clumps, fastest
@@ -26,7 +27,7 @@ def dampings(hard: Linear) -> tuple[float, float, float]:
 
 def lightest(clumps: Clumps, discs: Discs, laws: Sequence[Law]) -> float:
     """Mass (kg/m) that the smallest disc would have if its packing limit (integrate.packing_limit) were that of the
-    fastest clump under all of ``laws``.
+    fastest clump under all of ``laws``; infinite where all clumps are moved as told.
 
     Contacts of clumps count as stiff as those of the largest member, and as damped as those of the heaviest clump.
     """
@@ -36,7 +37,9 @@ def lightest(clumps: Clumps, discs: Discs, laws: Sequence[Law]) -> float:
             own = parts(law.stiffest(float(clumps.mass.max()), largest))
             if max(own) > 0.0:
                 most, mass = fastest(clumps, discs.radius, *own, NEIGHBOURS), float(discs.mass.min())
+                if most == 0.0:  # all are moved as told
+                    continue
                 for _ in range(HALVINGS):  # dashpots of Hertz go with the root of the mass that is looked for
                     mass = packing_factor(*parts(law.stiffest(mass, size))) / most
                 found.append(mass)
-    return min(found)
+    return min(found, default=math.inf)

@@ -74,7 +74,7 @@ def _alone(
         near, corner_memory, near_memory = np.column_stack((3 * np.arange(count), np.arange(count))), memory[:0], memory
     alone = Segments(
         known.rule, np.ascontiguousarray(ends), np.zeros(len(rows) + 1, np.int64), np.zeros(0, np.int64),
-        known.heavy[rows], np.ascontiguousarray(pair), corner_memory, np.zeros((len(pair), 0), np.int64),
+        np.ascontiguousarray(pair), corner_memory, np.zeros((len(pair), 0), np.int64),
         np.ascontiguousarray(near), near_memory,
     )  # fmt: skip
     force, torque = np.zeros((len(rows), 2)), np.zeros(len(rows))
@@ -108,8 +108,7 @@ def _taken_off(grains: Grains, known: Segments | None, ends: Index, back: Array 
     d, count = grains.discs, len(ends)
     if back is None:
         back = np.zeros(count)
-        heavy = d.mass if known is None else known.heavy
-        pressing(d.position, d.radius, ends, heavy, known, grains.contact, grains.cell, back)
+        pressing(d.position, d.radius, ends, known, grains.contact, grains.cell, back)
         back = -back
     way, far, other = np.zeros((count, 2)), np.zeros((count, 2)), np.zeros(count, np.int64)
     touched(d.position, ends, known, grains.cell, way, far, other)

@@ -162,7 +162,7 @@ def centre_of_mass(discs: Discs) -> Array:
 
 def max_overlap(grains: Grains) -> Overlap:
     """The deepest overlap of all pairs, walls, plates, rectangles and segments, as a share of the (smaller) radius; at
-    segments and corners of the larger of radius and thickness.
+    segments and corners of the sum of radius and thickness, where a disc would go through.
     """
     share, i, j, _ = _survey(grains)
     deepest = Overlap(float(share), int(i), f"grain {j}")

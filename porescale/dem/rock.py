@@ -22,6 +22,7 @@ from porescale.dem.contact.linear import Linear
 from porescale.dem.control import Moved
 from porescale.dem.discs import Discs, make_discs
 from porescale.dem.frames import Frame, chain, framed, polygon
+from porescale.dem.measure import max_overlap
 from porescale.dem.steering import Clump
 from porescale.dem.system import Grains
 from porescale.dem.tessellate import Corner, delaunay, shrunk, voronoi
@@ -65,12 +66,14 @@ class Rock:
 
 class Curve(NamedTuple):
     """A test, moment by moment: time s, strain (> 0 pulled), stress Pa (> 0 tension; mean of both plates, of the time
-    since the last moment), and bonds broken so far, each (m,)."""
+    since the last moment), bonds broken so far, and the deepest overlap (measure.max_overlap: polygons go through each
+    other at 1), each (m,)."""
 
     time: Array
     strain: Array
     stress: Array
     broken: NDArray[np.int64]
+    deepest: Array
 
     def strength(self) -> float:
         """Largest stress in the direction of the test, Pa."""
@@ -116,7 +119,7 @@ def rock(
         thickness = 0.5 * (gap + pressed)
         parts = (voronoi if kind == "cells" else delaunay)(packing.position, lower, upper)
         # A side shorter than the gap would be hidden behind the thickness of its neighbours.
-        left = [shrunk(part, 0.5 * gap, shortest=2.0 * gap) for part in parts]
+        left = [shrunk(part, 0.5 * gap, shortest=gap) for part in parts]
         frames = [polygon(part, thickness, density) for part in left if part is not None]
         plates = _plates(lower, upper, thickness, 0.5 * gap, density)
         grains = framed(None, [*frames, *plates], law, _open(lower, upper))
@@ -145,9 +148,10 @@ def load(rock: Rock, strain: float, seconds: float, moments: int = 200, step: fl
         one, other = grains.steering.record()
         assert grains.bonds is not None
         pulled = 0.5 * (one.contact[0] - other.contact[0]) / rock.height
-        rows.append((grains.time, other.displacement[0] / rock.length, pulled, rock.bonds - grains.bonds.count))
-    time, strains, stress, broken = np.array(rows).T
-    return Curve(time, strains, stress, broken.astype(np.int64))
+        gone, deepest = rock.bonds - grains.bonds.count, max_overlap(grains).share
+        rows.append((grains.time, other.displacement[0] / rock.length, pulled, gone, deepest))
+    time, strains, stress, broken, deep = np.array(rows).T
+    return Curve(time, strains, stress, broken.astype(np.int64), deep)
 
 
 def _plates(lower: Corner, upper: Corner, thickness: float, off: float, density: float) -> list[Frame]:

@@ -56,9 +56,6 @@ class SegmentList:
         shortest = np.full(count, np.inf)
         np.minimum.at(shortest, self.ends.ravel(), np.repeat(length, 2))
         self.beside_corner = np.where(self.is_corner, shortest, 0.0)
-        self._heavy = grains.discs.mass.copy()
-        bound = self.group >= 0
-        self._heavy[bound] = clumps.mass[self.group[bound]]
         self._short = np.flatnonzero(~self.long)
         box = grains.box
         self._search = PairList(count + len(self._short), grains.pairs.skin, box.lower, box.upper, box.periodic)
@@ -149,7 +146,7 @@ class SegmentList:
 
     def _pack(self) -> Segments:
         return Segments(
-            RULES.index(self.rule), self.ends, self._start, self._other, self._heavy, self.corner, self.corner_memory,
+            RULES.index(self.rule), self.ends, self._start, self._other, self.corner, self.corner_memory,
             self._beside(), self.near, self.near_memory,
         )  # fmt: skip
 

@@ -48,17 +48,15 @@ class Segments(NamedTuple):
     """What kernels know of segments.
 
     rule : index into RULES;  ends (s, 2): discs at the ends;  start (n + 1,), other (2 s,): discs at the other ends of
-    the segments that end at disc i, ``other[start[i]:start[i + 1]]``;  heavy (n,) kg/m: mass of the body that a disc
-    belongs to;  corner (m, 2), lower first: pairs of discs of which at least one is a corner, with corner_memory (m, k)
-    m, their springs;  near (l, 2): disc and segment, with near_memory (l, k) m;  beside (m, w): rows of ``near`` that
-    share the points of a corner pair, -1 for none.
+    the segments that end at disc i, ``other[start[i]:start[i + 1]]``;  corner (m, 2), lower first: pairs of discs of
+    which at least one is a corner, with corner_memory (m, k) m, their springs;  near (l, 2): disc and segment, with
+    near_memory (l, k) m;  beside (m, w): rows of ``near`` that share the points of a corner pair, -1 for none.
     """
 
     rule: int
     ends: Index
     start: Index
     other: Index
-    heavy: Array
     corner: Index
     corner_memory: Array
     beside: Index
@@ -182,7 +180,7 @@ def add_corner_forces(position, velocity, spin, radius, force, torque, segments,
         weight = weight_of(i, j, dx, dy, position, segments)
         if overlap > 0.0 and weight != 0:
             hand_over(k, weight, segments, position, law, cell)
-            mass = segments.heavy[i] * segments.heavy[j] / (segments.heavy[i] + segments.heavy[j])
+            mass = law.mass[i] * law.mass[j] / (law.mass[i] + law.mass[j])
             p = law.table[material_of(law.material, i), material_of(law.material, j)]
             if weight > 0:
                 du, dv = passing(i, j, dx, dy, velocity, cell)
@@ -235,7 +233,7 @@ def add_segment_forces(position, velocity, spin, radius, force, torque, segments
             let_go(i, k, overlap, dx, dy, du, dv, spin[i], spin[a], radius[i], radius[a], p, memory, law, dt)
             remember(memory, k, 0.0, 0.0, law)
             continue
-        mass = segments.heavy[i] * segments.heavy[a] / (segments.heavy[i] + segments.heavy[a])
+        mass = law.mass[i] * law.mass[a] / (law.mass[i] + law.mass[a])
         gx, gy, moment_i, moment_a = touch(
             i, k, overlap, dx, dy, du, dv, spin[i], spin[a], radius[i], radius[a], mass, p, memory, law, dt
         )
@@ -250,9 +248,9 @@ def add_segment_forces(position, velocity, spin, radius, force, torque, segments
 
 @kernel
 def survey_segments(position, radius, segments, law, cell):
-    """(largest overlap over the larger radius, its disc, what it is pressed against: segment, or disc - n; elastic
-    energy J/m, normal, tangential, rolling) of all contacts with segments and corners.  Arguments as in
-    add_segment_forces.
+    """(largest overlap over the reach, the sum of both radii; its disc; what it is pressed against: segment, or
+    disc - n; elastic energy J/m, normal, tangential, rolling) of all contacts with segments and corners.  Arguments as
+    in add_segment_forces.
     """
     worst, worst_i, worst_e, normal, tangential, rolling = 0.0, -1, 0, 0.0, 0.0, 0.0
     corners = segments.corner.shape[0] if segments.rule == OUTLINE else 0
@@ -271,7 +269,7 @@ def survey_segments(position, radius, segments, law, cell):
             normal, tangential, rolling = normal + parts[0], tangential + parts[1], rolling + parts[2]
         else:
             normal += weight * stored_normal(overlap, reduced, p, law)
-        share = overlap / max(radius[i], radius[j])
+        share = overlap / (radius[i] + radius[j])
         if weight > 0 and share > worst:
             worst, worst_i, worst_e = share, i, j - radius.shape[0]
     for k in range(segments.near.shape[0]):
@@ -283,7 +281,7 @@ def survey_segments(position, radius, segments, law, cell):
             spring, roll = recall(segments.near_memory, k, law)
             parts = stored(overlap, spring, roll, radius[i] * radius[a] / (radius[i] + radius[a]), p, law)
             normal, tangential, rolling = normal + parts[0], tangential + parts[1], rolling + parts[2]
-            share = overlap / max(radius[i], radius[a])
+            share = overlap / (radius[i] + radius[a])
             if share > worst:
                 worst, worst_i, worst_e = share, i, e
     return worst, worst_i, worst_e, normal, tangential, rolling

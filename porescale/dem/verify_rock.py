@@ -14,8 +14,8 @@ VALIDATIONS = Validations()
 
 TUTORIAL = "Matsushima, DEMseg tutorial II-4"
 PACKINGS = 4
-SEEDS = 100
-FAST = 0.05  # 1/s: of polygons; twice and half of it change their strengths by 1 %
+SEEDS = 150  # half of the tutorial's, a fifth of the time
+FAST = 0.05  # 1/s: of polygons; strengths are 1 % from those at 0.02
 
 
 @VALIDATIONS.row(
@@ -70,7 +70,7 @@ def ratio_of_discs() -> Measured:
     slow=True,
 )
 def ratio_of_polygons() -> Measured:
-    """Compressive over tensile strength of triangles and of cells of one packing of 100 seeds."""
+    """What triangles and cells of a packing bear up to 3.5 % of compression over their tensile strength."""
     found = []
     for kind in ("triangles", "cells"):
         tensile, compressive, _ = lab.strengths(kind, 0, SEEDS, FAST)

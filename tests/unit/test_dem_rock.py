@@ -49,7 +49,7 @@ def test_a_sample_that_is_pulled_bears_tension_and_breaks():
 def test_a_curve_is_read_up_to_its_peak_either_way():
     strain = np.linspace(0.0, -1.0, 101)[1:]
     stress = np.where(strain > -0.5, 3.0 * strain, -0.2)
-    curve = Curve(strain, strain, stress, np.zeros(100, np.int64))
+    curve = Curve(strain, strain, stress, np.zeros(100, np.int64), np.zeros(100))
     assert curve.strength() == pytest.approx(3.0 * 0.49)
     assert curve.stiffness() == pytest.approx(3.0)
 
