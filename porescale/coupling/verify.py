@@ -4,7 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from porescale.coupling import exact, verify_arrays, verify_fast, verify_moving, verify_rings, verify_towed
+from porescale.coupling import (
+    exact,
+    verify_arrays,
+    verify_clumps,
+    verify_fast,
+    verify_moving,
+    verify_rings,
+    verify_towed,
+)
 from porescale.coupling import experiments as lab
 from porescale.workbench.validations import Measured, Validations
 
@@ -114,5 +122,6 @@ for _more in (
     verify_moving.VALIDATIONS,
     verify_fast.VALIDATIONS,
     verify_rings.VALIDATIONS,
+    verify_clumps.VALIDATIONS,
 ):
     VALIDATIONS.include(_more)

@@ -2,54 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 
+from porescale.coupling import experiments_clumps as lab
+from porescale.coupling import verify_clumps
 from porescale.coupling.displaced import displaced, whole
-from porescale.coupling.experiments import LAW
+from porescale.coupling.experiments_clumps import R, sunk
+from porescale.coupling.experiments_clumps import immersed_clumps as immersed
 from porescale.coupling.overlap import overlapping, take_off
-from porescale.coupling.step import Coupled, buoyant_weight
-from porescale.dem.discs import make_discs
-from porescale.dem.system import Grains
+from porescale.coupling.step import buoyant_weight
+from porescale.coupling.verify_clumps import VALIDATIONS
 from porescale.dem.union import outline
-from porescale.dem.walls import Box
-from porescale.lbm.fluid import Fluid
-from porescale.lbm.scales import Scales
-from porescale.lbm.sides import Sides
 
 pytestmark = pytest.mark.usefixtures("one_thread")
-TAU, WIDE, HIGH, R = 0.8, 48, 64, 6.0
-Member = tuple[float, float, float]
-
-
-def immersed(
-    bodies: list[list[Member]], ratio: float = 2.0, g: float = 1e-5, side: Any = "wall", bound: bool = True,
-    velocity: Any = 0.0,
-) -> Coupled:  # fmt: skip
-    """Clumps of discs (x, y, radius) in fluid, lattice units."""
-    discs = [disc for body in bodies for disc in body]
-    radius = np.array([disc[2] for disc in discs])
-    kind = "periodic" if side == "periodic" else "solid"
-    made = make_discs([disc[:2] for disc in discs], radius, ratio, velocity)
-    grains = Grains(made, LAW, Box((0.0, 0.0), (float(WIDE), float(HIGH)), *[kind] * 4))
-    if bound:
-        ends = np.cumsum([0, *map(len, bodies)])
-        grains.steering.bind([np.arange(*ends[k : k + 2]) for k in range(len(bodies))], ratio)
-    fluid = Fluid(WIDE, HIGH, TAU, sides=Sides(*[side] * 4))
-    scales = Scales(1.0, 1.0, TAU, 1.0)
-    return Coupled(fluid, grains, scales, hydraulic_ratio=np.ones(len(radius)), contact_steps=4,
-                   acceleration=(0.0, -g))  # fmt: skip
-
-
-def sunk(coupled: Coupled, steps: int) -> Coupled:
-    """The same after some steps."""
-    for _ in range(steps):
-        coupled.advance()
-    return coupled
-
-
+TWO = [[(12.0, 20.0, 5.0), (16.0, 23.0, 4.0)], [(30.0, 24.0, 5.0), (34.0, 22.0, 5.0)]]
 TRIPLE = [(20.3, 30.1, 6.0), (26.2, 33.4, 4.5), (22.0, 37.7, 5.0)]
 
 
@@ -119,43 +86,23 @@ def test_a_clump_of_one_disc_sinks_as_the_disc():
     np.testing.assert_allclose(one.grains.discs.velocity, other.grains.discs.velocity, rtol=1e-11, atol=1e-17)
 
 
-def test_a_pair_side_by_side_sinks_straight_and_an_uneven_one_turns():
-    level = sunk(immersed([[(20.0, 40.0, R), (28.0, 40.0, R)]]), 200).grains.steering.clumps
-    speed = -float(level.velocity[0, 1])
-    # A mirror of itself: only round-off of sums over 1e3 cells, of populations of order 1, turns it or drives it aside.
-    assert abs(level.velocity[0, 0]) < 1e-13
-    assert abs(level.spin[0]) * R < 1e-13
-    assert speed > 1e-4
-    uneven = sunk(immersed([[(20.0, 40.0, R), (28.0, 40.0, 4.0)]]), 200).grains.steering.clumps
-    assert abs(uneven.spin[0]) * R > 1e-3 * speed  # the twin that must fail
+def test_a_clump_of_unlike_discs_turns_as_it_sinks():  # the twin that must fail, of coupling.level_pair_sinks_straight
+    _, turning = lab.level_pair(smaller=4.0)
+    assert abs(turning) > 1e-3
 
 
-def test_two_discs_almost_in_one_place_sink_as_one():
-    apart = 0.02 * R
-    single = sunk(immersed([[(24.3, 44.0, R)]], bound=False), 300).grains.discs.velocity[0, 1]
-    pair = immersed([[(24.3, 44.0, R), (24.3, 44.0 + apart, R)]])
-    # Larger by 2 apart/(pi R) of its area, 1.3 %: weight, and what drag has of it, both below 1 in that.
-    more = 2.0 * apart / (np.pi * R)
-    assert sunk(pair, 300).grains.steering.clumps.velocity[0, 1] == pytest.approx(single, rel=more)
-    # The twin that must fail: rims counted twice make it a quarter of a cell larger all around.
-    twice = immersed([[(24.3, 44.0, R), (24.3, 44.0 + apart, R)]])
-    twice.saturated.pairs = np.zeros((0, 2), np.int64)
-    assert abs(sunk(twice, 300).grains.steering.clumps.velocity[0, 1] / single - 1.0) > 2 * more
+def test_rims_counted_twice_slow_a_clump_down():  # the twin that must fail, of coupling.two_discs_in_one_place
+    # A quarter of a cell more all around.
+    found = lab.pair_beside_disc(verify_clumps.APART, shared=False)
+    assert abs(found - 1.0) > 2 * VALIDATIONS["coupling.two_discs_in_one_place"].tolerance
 
 
-def test_momentum_of_clumps_and_fluid_is_kept():
-    pairs = [[(12.0, 20.0, 5.0), (16.0, 23.0, 4.0)], [(30.0, 24.0, 5.0), (34.0, 22.0, 5.0)]]
-    velocity = np.array([[0.02, 0.01]] * 2 + [[-0.03, 0.0]] * 2)
-    coupled = immersed(pairs, g=0.0, side="periodic", velocity=velocity)
-    first = coupled.momentum()
-    size = float(np.sum(coupled.grains.discs.mass[:, None] * np.abs(coupled.grains.discs.velocity)))
-    worst = 0.0
-    for _ in range(200):
-        coupled.advance()
-        worst = max(worst, float(np.abs(coupled.momentum() - first).max()))
-    assert np.hypot(*(coupled.grains.steering.clumps.velocity[0] - [0.02, 0.01])) > 2e-3  # they have met or been slowed
-    # Round-off of sums over 3e3 cells of density 1, 200 steps: 1e-16 3e3 200^(1/2) over a size of 6.
-    assert worst < 1e-11 * size
+def test_members_with_other_shares_than_the_bodys_break_the_momentum_book():  # the twin of coupling.momentum_of_clumps
+    coupled = immersed(TWO, g=0.0, side="periodic", velocity=[[0.02, 0.01]] * 2 + [[-0.03, 0.0]] * 2)
+    first, discs = coupled.momentum(), coupled.grains.discs
+    discs.mass[:2] = discs.mass[1::-1]
+    size = float(np.sum(discs.mass[:, None] * np.abs(discs.velocity)))
+    assert np.abs(sunk(coupled, 200).momentum() - first).max() > 1e-5 * size
 
 
 def test_a_restart_with_clumps_equals_the_uninterrupted_run():
