@@ -19,6 +19,7 @@ FLOORS = {
     "continuum_sph": 2,
     "porescale.coupling": 3,
     "porescale.scene": 4,
+    "porescale.decks": 4,
     "continuum_sph.scene": 4,
     "porescale.app": 5,
     "continuum_sph.app": 5,

@@ -1,0 +1,157 @@
+"""``porescale demseg``: a deck of DEMseg as it is, or as a scene."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from cyclopts import App, Parameter
+
+from porescale.ground.check import Fault, InputError
+from porescale.workbench.commands.options import Threads, use_threads
+from porescale.workbench.commands.run import refuse_folder, summary
+
+if TYPE_CHECKING:
+    from porescale.decks.run import DeckRun
+    from porescale.runs.drive import Outcome
+
+PACKAGE = "porescale demseg"
+Folder = Annotated[Path, Parameter(help="folder with in_gm.dat and in_bc.dat")]
+Seed = Annotated[int, Parameter(help="of the random discs of mode 0")]
+
+
+def command() -> App:
+    """The `demseg` command with its own commands."""
+    app = App(name="demseg", help="Run a deck of DEMseg, Matsushima's program, in its own units, or make it a scene.")
+    app.command(run)
+    app.command(convert)
+    return app
+
+
+def run(
+    folder: Folder,
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(help="run folder; runs/ and the name of the deck's if not given")] = None,
+    seed: Seed = 0,
+    release: Annotated[
+        Literal["overlap", "force"], Parameter(help="contacts end without overlap, or without force")
+    ] = "overlap",
+    rule: Annotated[Literal["outline", "each", "printed"], Parameter(help="of contacts with segments")] = "outline",
+    rod: Annotated[float | None, Parameter(help="width of segments that weigh; 2 thick, or 0.1, if not given")] = None,
+    threads: Threads = None,
+    resume: Annotated[bool, Parameter(help="go on with the run in the run folder")] = False,
+    overwrite: Annotated[bool, Parameter(help="replace the run in the run folder")] = False,
+    quiet: Annotated[bool, Parameter(help="no progress, no summary")] = False,
+) -> int:
+    """Run a deck: run folder, energy.dat, f-d_curve.dat and new_in_*.dat for the run that goes on from its end."""
+    from porescale.decks.build import Options
+    from porescale.decks.deck import read_deck
+    from porescale.decks.run import DeckRun, card_of
+
+    if rod is not None and not rod > 0.0:
+        raise InputError(Fault("--rod", rod, "is out of range", allowed="> 0"))
+    if seed < 0:
+        raise InputError(Fault("--seed", seed, "is out of range", allowed=">= 0"))
+    options = Options(seed, release, rule, rod)
+    deck = read_deck(folder)
+    name = folder.resolve().name
+    where = out or Path("runs") / name
+    refuse_folder(where, PACKAGE, resume=resume, overwrite=overwrite)
+    use_threads(threads)
+    model, scene = DeckRun(deck, options, folder), card_of(deck, options)
+    outcome = drive_deck(model, where, name, scene, resume=resume, overwrite=overwrite, quiet=quiet)
+    if not quiet:
+        print(summary("porescale", name, where, outcome).rsplit("\n", 1)[0])
+    return 0
+
+
+def drive_deck(
+    model: DeckRun,
+    folder: Path,
+    name: str,
+    scene: dict[str, object],
+    *,
+    resume: bool = False,
+    overwrite: bool = False,
+    quiet: bool = True,
+) -> Outcome:
+    """Drive a deck to its last step and write the run folder, pictures, film and the deck's own files."""
+    from porescale.runs.drive import drive
+    from porescale.runs.film import film
+    from porescale.runs.look import Look
+    from porescale.runs.picture import pictures
+
+    deck = model.deck
+    look = Look(title=name, cloud="grains" if any(b.discs for b in deck.bodies) else "ends",
+                colour="speed", lines=model.lines, view=deck.domain)  # fmt: skip
+
+    def after(finished: Path) -> None:
+        pictures(finished, look)
+        film(finished, look)
+        model.write(finished)
+
+    return drive(
+        model,
+        folder,
+        deck.nstep * deck.dt,
+        snapshot_interval=deck.nprn1 * deck.dt,
+        series_interval=deck.nprn2 * deck.dt,
+        card={"package": PACKAGE, "name": name, "scene": scene},
+        checkpoint_seconds=30.0,
+        resume=resume,
+        overwrite=overwrite,
+        quiet=quiet,
+        after=after,
+    )
+
+
+def convert(
+    folder: Folder,
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(help="scene file; NAME.toml here if not given")] = None,
+    units: Annotated[
+        Literal["plain", "cgs", "mm-g"],
+        Parameter(help="of the deck; plain: its numbers are taken as SI. Densities of mm-g are g/mm^3"),
+    ] = "plain",
+    seed: Seed = 0,
+    release: Annotated[
+        Literal["overlap", "force"], Parameter(help="contacts end without overlap, or without force")
+    ] = "overlap",
+    overwrite: Annotated[bool, Parameter(help="replace the file")] = False,
+) -> int:
+    """Make a scene of a deck of discs and clumps."""
+    from porescale.decks.build import with_bodies
+    from porescale.decks.convert import UNITS, scene_of, toml
+    from porescale.decks.deck import read_deck
+    from porescale.runs.atomic import write_text
+    from porescale.workbench.folders import refuse_unwritable
+
+    name = folder.resolve().name
+    file = out or Path(f"{name}.toml")
+    refuse_unwritable(file.parent, "--out")
+    if file.exists() and not overwrite:
+        raise InputError(Fault("--out", str(file), "is there already", repair="name another, or --overwrite it"))
+    text = toml(scene_of(with_bodies(read_deck(folder), seed), name, release, UNITS[units]))
+    _refuse_what_scenes_refuse(text)
+    write_text(file, text)
+    print(f"{file}: check it with porescale check {file}")
+    return 0
+
+
+def _refuse_what_scenes_refuse(text: str) -> None:
+    """InputError where the scene of a deck is beyond what scenes allow."""
+    from tempfile import TemporaryDirectory
+
+    from porescale.scene.sections import Scene
+    from porescale.workbench.sections import load
+
+    with TemporaryDirectory() as place:
+        file = Path(place) / "scene.toml"
+        file.write_text(text, encoding="utf-8")
+        try:
+            load(file, Scene)
+        except InputError as error:
+            raise InputError([replace(fault, file="the deck as a scene") for fault in error.faults]) from None

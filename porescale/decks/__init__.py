@@ -1,0 +1,4 @@
+"""Decks of DEMseg, Matsushima's program of discrete elements in two dimensions: read, run unit-free, written back.
+
+Source: Matsushima, DEMseg tutorial (the layouts of in_gm.dat, in_bc.dat and in_cf0.dat in I-2, I-3, I-7 and II-3).
+"""

@@ -1,0 +1,126 @@
+"""Decks of DEMseg are read as Fortran reads them; what is wrong in one is said by file, line, field and expectation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from porescale.decks.deck import boundary_text, grains_text, read_deck
+from porescale.decks.numbers import Reader, real
+from porescale.decks.state import read_state, state_text
+from porescale.ground.check import InputError
+from tests.reference import decks
+
+
+def test_numbers_are_those_of_fortran(tmp_path):
+    file = tmp_path / "a.dat"
+    file.write_text("! a comment\n\n 5.0d-5, .5E+00 -1.D3 2*7   and words\n# more\n1\n2 3\n", encoding="utf-8")
+    reader = Reader(file)
+    assert reader.record(*((name, float) for name in "abc"), ("d", int), ("e", int)) == [5e-5, 0.5, -1000.0, 7, 7]
+    assert reader.record(*((name, int) for name in "abc")) == [1, 2, 3]  # a record runs over lines
+    reader.done()
+
+
+@pytest.mark.parametrize("value", [0.1, -5e-5, 1e300, 5e-324, -0.0, 123456789.123456789])
+def test_a_number_reads_back_to_the_same_bits(tmp_path, value):
+    file = tmp_path / "a.dat"
+    file.write_text(real(value), encoding="utf-8")
+    assert np.array(Reader(file).record(("a", float))).tobytes() == np.array([value]).tobytes()
+
+
+@pytest.mark.parametrize("gm", [decks.DISC, decks.CLUMP, decks.SEGMENT, decks.TRIANGLE, decks.PUSHED])
+def test_a_deck_written_is_the_deck_read(tmp_path, gm):
+    bc = decks.boundary("0 3 400 100 10", *decks.PUSH) if gm is decks.PUSHED else ""
+    deck = read_deck(decks.write(tmp_path / "a", gm, bc))
+    again = read_deck(decks.write(tmp_path / "b", grains_text(deck), boundary_text(deck)))
+    assert again == deck
+
+
+def test_comments_and_blank_lines_are_passed_over(tmp_path):
+    plain = read_deck(decks.write(tmp_path / "a"))
+    lines = decks.DISC.splitlines()
+    noted = "! a disc\n\n" + "\n\n".join(f"{line}   ! {k} 1 2" for k, line in enumerate(lines)) + "\n# end\n"
+    words = decks.boundary().replace("400 100 10", "400 100 10   jclid, iloop, nstep")
+    assert read_deck(decks.write(tmp_path / "b", noted, words)) == plain
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("5.0d-5", "5.0x-5", "in_gm.dat: line 2, dt = '5.0x-5': is no number, expected a number such as 5.0d-5"),
+        ("5.0d-5", "-5.0d-5", "line 2, dt = -5e-05: makes no sense, expected > 0"),
+        ("1 0 0\n5", "2 0 0\n5", "line 1, mode = 2: makes no sense, expected 0 (random discs) or 1 (bodies)"),
+        ("1 0 0\n5", "1 0 0 7\n5", "line 1, after mode3 = '7': one value too many"),
+        ("2.5d0 1.0d8", "2.5d0 0", "line 4, kn = 0: makes no sense, expected > 0"),
+        ("1 1 1", "1 2 1", "line 7, imat = 2: makes no sense, expected 1 to 1"),
+        ("1 1 1", "1.5 1 1", "line 7, ic = '1.5': is no whole number"),
+        ("1 2.0d0", "1 -2.0d0", "rad = -2: makes no sense, expected > 0"),
+        ("0.0d0 5.0d0 0.0d0\n", "0.0d0", "line 10, yc: the file ends here, expected a number"),
+        ("5.0d0 0.0d0\n", "5.0d0 0.0d0\n3 4\n", "line 11, after the last record = '3': one value too many"),
+        ("1.0d8", "1.0d999", "line 4, kn = '1.0d999': is too large"),
+        ("-10.0d0 10.0d0", "10.0d0 -10.0d0", "line 5, x2 = -10: makes no sense, expected > x1 = 10"),
+    ],
+)
+def test_a_malformed_in_gm_is_named_by_line_and_field(tmp_path, old, new, said):
+    assert old in decks.DISC
+    with pytest.raises(InputError) as caught:
+        read_deck(decks.write(tmp_path, decks.DISC.replace(old, new, 1)))
+    assert said in str(caught.value)
+    assert len(caught.value.faults) == 1
+
+
+@pytest.mark.parametrize(
+    ("bc", "said"),
+    [
+        ("2 0 400 100 10\n0\n0", "line 1, jclid = 2: makes no sense, expected 0 (new), 1 (goes on), 3 (bonds)"),
+        ("0 0 400 0 10\n0\n0", "line 1, nprn1 = 0: makes no sense, expected 1 or more"),
+        ("0 0 400 100 10\n1\n5\n0", "line 3, recorded body 1 = 5: makes no sense, expected 1 to 1"),
+        ("0 0 400 100 10\n0\n1\n1 2 0 1 0 1 0", "line 4, kind of x = 2: makes no sense, expected 1 (moved) or"),
+        ("0 0 400 100 10\n0\n1\n1 1 0 1 0 1", "value of rotation: the file ends here, expected a number"),
+        ("0 0 400 100 10\n0", "line 2, npbd: the file ends here"),
+    ],
+)
+def test_a_malformed_in_bc_is_named_by_line_and_field(tmp_path, bc, said):
+    with pytest.raises(InputError) as caught:
+        read_deck(decks.write(tmp_path, bc=bc))
+    assert said in str(caught.value)
+    assert "in_bc.dat: " in str(caught.value)
+
+
+def test_all_faults_of_meaning_are_said_at_once(tmp_path):
+    bad = decks.DISC.replace("5.0d-5", "0").replace("2.5d0", "-1").replace("1 2.0d0", "1 0")
+    with pytest.raises(InputError) as caught:
+        read_deck(decks.write(tmp_path, bad))
+    assert [fault.key for fault in caught.value.faults] == ["line 2, dt", "line 4, rho", "line 9, rad"]
+
+
+def test_a_missing_file_is_named(tmp_path):
+    with pytest.raises(InputError, match=r"in_gm\.dat: cannot be read"):
+        read_deck(tmp_path)
+
+
+def test_a_state_is_read_back_bit_for_bit(tmp_path):
+    state = {
+        "a": {"b": np.array([[0.1, np.nan], [-0.0, 1e-320]]), "c": np.array([1, 0], np.uint8)},
+        "n": 3,
+        "x": 0.3,
+        "none": np.zeros((0, 3)),
+        "big": np.arange(20, dtype=np.int32),
+    }
+    file = tmp_path / "in_cf.dat"
+    file.write_text(state_text(state), encoding="utf-8")
+    again = read_state(file)
+    assert again["a"]["b"].tobytes() == state["a"]["b"].tobytes()
+    for name in ("none", "big"):
+        assert again[name].dtype == state[name].dtype
+        assert again[name].shape == state[name].shape
+        assert (again[name] == state[name]).all()
+    assert (again["n"], again["x"], again["a"]["c"].tolist()) == (3, 0.3, [1, 0])
+
+
+@pytest.mark.parametrize("text", ["x float32 1\n1\n", "x float64 2\n1\n", "x int64\nhalf\n", "\x00\x01\n"])
+def test_a_damaged_state_is_named_by_line(tmp_path, text):
+    file = tmp_path / "in_cf.dat"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=r"in_cf\.dat: line 1"):
+        read_state(file)

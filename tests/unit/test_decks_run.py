@@ -1,0 +1,160 @@
+"""Decks of DEMseg run as they are: printed numbers come out, continuations are exact, tensions are those printed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from porescale.decks.build import Options, random_discs
+from porescale.decks.deck import read_deck
+from porescale.decks.run import DeckRun, card_of, read
+from porescale.decks.tension import read_tensions, tension_text
+from porescale.ground.check import InputError
+from porescale.runs.drive import drive
+from tests.reference import decks
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+OPTIONS = Options()
+
+
+def run(folder, out):
+    """Drive the deck in ``folder`` into ``out`` without pictures; the model at its end."""
+    model = read(folder, OPTIONS)
+    deck = model.deck
+    drive(
+        model, out, deck.nstep * deck.dt, snapshot_interval=float("inf"), series_interval=deck.nprn2 * deck.dt,
+        card={"scene": card_of(deck, OPTIONS)}, quiet=True, after=model.write,
+    )  # fmt: skip
+    return model
+
+
+def go_on(out, folder, head):
+    """A deck made of the files that a run left, with another head line of in_bc.dat."""
+    folder.mkdir()
+    for name in ("gm", "bc", "cf", "cf0"):
+        (folder / f"in_{name}.dat").write_bytes((out / f"new_in_{name}.dat").read_bytes())
+    lines = (folder / "in_bc.dat").read_text().splitlines()
+    (folder / "in_bc.dat").write_text("\n".join([head, *lines[1:]]) + "\n")
+    return folder
+
+
+@pytest.mark.slow
+def test_the_record_printed_in_the_tutorial_comes_out(tmp_path):
+    # Section I-3 prints step, body, force x, place x, … to six digits: 10 2 0 -2.99982 0 3.5 0 and 20 2 0 -2.99933.
+    folder = decks.write(tmp_path / "deck", decks.PUSHED, decks.boundary("0 0 20 10 10", *decks.PUSH))
+    run(folder, tmp_path / "out")
+    rows = np.loadtxt(tmp_path / "out" / "f-d_curve.dat")
+    printed = [[f"{number:.6g}" for number in row[:7]] for row in rows]
+    assert printed[1] == ["10", "2", "0", "-2.99982", "0", "3.5", "0"]
+    assert printed[2] == ["20", "2", "0", "-2.99933", "0", "3.5", "0"]
+    assert f"{rows[0, 7]:.5g}" == "1.5708"
+
+
+def test_a_segment_as_wide_as_its_thickness_would_not_give_that_record(tmp_path):  # the twin that must fail
+    deck = read_deck(decks.write(tmp_path, decks.PUSHED, decks.boundary("0 0 20 10 10", *decks.PUSH)))
+    heavier = DeckRun(deck, Options(rod=0.2), tmp_path)
+    assert heavier.grains.steering.clumps.mass[0] == pytest.approx(2.5, rel=1e-12)  # 1.25 is what the record means
+
+
+KINDS = {"disc": decks.DISC, "clump": decks.CLUMP, "triangle": decks.TRIANGLE}
+
+
+@pytest.mark.parametrize("kind", ["disc", pytest.param("clump", marks=pytest.mark.slow),
+                                  pytest.param("triangle", marks=pytest.mark.slow)])  # fmt: skip
+def test_a_run_in_two_parts_is_the_run_in_one_bit_for_bit(tmp_path, kind):
+    steps = (1650, 1600) if kind == "disc" else (1300, 2000)  # the first ends within a contact with the floor, or after
+    whole = run(decks.write(tmp_path / "a", KINDS[kind], decks.boundary(f"0 0 {sum(steps)} 5000 10")), tmp_path / "b")
+    first = run(decks.write(tmp_path / "c", KINDS[kind], decks.boundary(f"0 0 {steps[0]} 5000 10")), tmp_path / "d")
+    assert first.step == steps[0]
+    second = run(go_on(tmp_path / "d", tmp_path / "e", f"1 {steps[0]} {steps[1]} 5000 10"), tmp_path / "f")
+    assert second.deck.iloop == steps[0]
+    for name in ("new_in_gm.dat", "new_in_cf.dat", "new_in_cf0.dat"):
+        assert (tmp_path / "f" / name).read_bytes() == (tmp_path / "b" / name).read_bytes(), name
+    last = [(tmp_path / out / "energy.dat").read_text().splitlines()[-1] for out in ("b", "f")]
+    assert last[0] == last[1]
+    assert whole.grains.time == second.grains.time
+
+
+def test_a_run_resumed_from_its_checkpoint_ends_as_the_uninterrupted_one(tmp_path):
+    folder = decks.write(tmp_path / "deck", bc=decks.boundary("0 0 3250 500 10"))
+    run(folder, tmp_path / "whole")
+    for steps, resume in ((1650, False), (3250, True)):  # stopped within a contact with the floor
+        model = read(folder, OPTIONS)
+        drive(
+            model, tmp_path / "parts", steps * 5e-5, snapshot_interval=float("inf"), series_interval=10 * 5e-5,
+            card={"scene": card_of(model.deck, OPTIONS)}, quiet=True, resume=resume, after=model.write,
+        )  # fmt: skip
+    for name in ("energy.dat", "new_in_gm.dat", "new_in_cf.dat"):
+        assert (tmp_path / "parts" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes(), name
+
+
+def test_another_place_than_the_continuation_has_is_refused(tmp_path):
+    run(decks.write(tmp_path / "a", bc=decks.boundary("0 0 20 20 10")), tmp_path / "b")
+    folder = go_on(tmp_path / "b", tmp_path / "c", "1 20 20 20 10")
+    text = (folder / "in_gm.dat").read_text()
+    (folder / "in_gm.dat").write_text(text.replace("2.0\n0.0 ", "2.0\n0.5 "))
+    with pytest.raises(InputError, match=r"in_gm\.dat: body 1: is not as in_cf\.dat has it"):
+        read(folder, OPTIONS)
+    (folder / "in_cf.dat").unlink()
+    with pytest.raises(InputError, match=r"in_cf\.dat: cannot be read .*jclid 1 needs it"):
+        read(folder, OPTIONS)
+
+
+def test_the_chain_is_bonded_by_what_the_tutorial_prints(tmp_path):
+    # Section II-3: discs 2 apart of radius 1.1, k 1e8: -20000000 with each neighbour.  Coordinates up to 50 round the
+    # overlap 0.2 by 50 eps, so the force by 1e8 50 eps < 2e-6.
+    model = read(decks.write(tmp_path, decks.chain()), OPTIONS)
+    text = tension_text(model.built)
+    rows = [[float(word.replace("d", "e")) for word in line.split()] for line in text.splitlines()]
+    assert rows[:2] == [[1, 1], [2, pytest.approx(-2e7, abs=2e-6)]]
+    assert [row[0] for row in rows[2:8]] == [2, 1, 3, 3, 2, 4]
+    assert rows[2][1] == rows[5][1] == 2
+    assert model.grains.bonds is None  # told of, not made
+
+
+@pytest.mark.slow
+def test_a_bonded_chain_stays_and_an_unbonded_one_flies_apart(tmp_path):
+    printed = decks.boundary("3 1 100 100 10")
+    plain = read(decks.write(tmp_path / "a", decks.chain()), OPTIONS)
+    kept = {"in_cf0": tension_text(plain.built)}
+    bonded = read(decks.write(tmp_path / "b", decks.chain(), printed, **kept), OPTIONS)
+    assert bonded.grains.bonds is not None
+    assert bonded.grains.bonds.count == 19
+    start = bonded.grains.discs.position.copy()
+    for model in (plain, bonded):
+        model.advance(100)
+    # Forces cancel to round-off, 2e7 eps = 4e-9 on a mass of 9.5: in 1e-3 s that moves them by 2e-16 at most.
+    assert np.abs(bonded.grains.discs.position - start).max() < 1e-12
+    assert np.abs(plain.grains.discs.position - start).max() > 0.1  # the twin: without bonds they part
+    assert tension_text(bonded.built) == kept["in_cf0"]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("1 1\n30 -2d7\n", "line 2, other = 30: makes no sense, expected 1 to 20, not 1 itself"),
+        ("1 1\n2 -2d7\n2 1\n1 -3d7\n", "line 4, tension = -30000000: makes no sense, expected -2e+07, as before"),
+        ("1 2\n2 -2d7\n", "line 2, other: the file ends here"),
+    ],
+)
+def test_malformed_tensions_are_named_by_line(tmp_path, text, said):
+    model = read(decks.write(tmp_path, decks.chain(), in_cf0=text), OPTIONS)
+    with pytest.raises(InputError) as caught:
+        read_tensions(tmp_path / "in_cf0.dat", model.built)
+    assert said in str(caught.value)
+
+
+def test_random_discs_are_as_many_as_the_tutorial_has(tmp_path):
+    # I-7: box 80 by 80, radii 1 to 2, void ratio 0.5: 6400/1.5/(7 pi/3) = 582.05.
+    gm = "0 0 0\n5.0d-5 0.0 -980.0d0\n1\n2.5d0 1.0d8 0.25d8 1.0d2 0.5d2 27.0d0\n0 80 0 80 0\n1.0 2.0\n1\n0.5\n"
+    deck = read_deck(decks.write(tmp_path, gm))
+    assert deck.random is not None
+    bodies = random_discs(deck, deck.random, 0)
+    assert len(bodies) == 582
+    assert bodies == random_discs(deck, deck.random, 0)
+    assert bodies != random_discs(deck, deck.random, 1)
+    radius = np.array([body.discs[0][0] for body in bodies])
+    assert radius.min() > 1.0
+    assert radius.max() < 2.0
+    # Midpoints of 582 shares of the range integrate r^2 to (1/582)^2/12, and 582 is rounded: half a disc of 582.
+    assert 6400.0 / (np.pi * radius @ radius) - 1.0 == pytest.approx(0.5, abs=1.5 * 0.5 / 582 + 1e-6)
