@@ -14,7 +14,7 @@ from scipy.ndimage import median_filter
 from porescale.ground.check import Fault, InputError
 from porescale.piv.grid import Grid
 from porescale.piv.outliers import THRESHOLD, filled, residual
-from porescale.piv.passes import Updated, bell, correlation_pass, paths, update_pass
+from porescale.piv.passes import LEAST_WINDOW, Updated, bell, correlation_pass, paths, update_pass
 from porescale.piv.prepare import Ready, ready
 from porescale.piv.smooth import smoothed
 
@@ -28,7 +28,7 @@ class Settings:
 
     window : px, of the last pass, even;  overlap : of neighbouring windows, 0 to below 1;  search : px, largest
     displacement that the first pass looks for;  updates : Gauss-Newton updates after the last correlation;  width :
-    half-width of their bell, over the window (8 px at least);  noise, slack : residuals from which a pixel counts for
+    half-width of their bell, over the window (10 px at least);  noise, slack : residuals from which a pixel counts for
     less, over the pictures' noise, and in px of displacement;  curved : paths bend as in a steady flow;  smooth : by
     cross-validation at the end;  least_correlation : below it, alone or in the median around, a vector is invalid.
     """
@@ -156,12 +156,12 @@ def measure_ready(
         update = update_pass(pairs, grid, weights, settings.noise, settings.slack, along, cut)
         u, v, good = _updated(u, v, fluid, start_u, start_v, update, settings)
     if settings.smooth:
-        u, v = smoothed(u, v, max(1.0, reach / grid.step))
+        u, v = smoothed(u, v, max(1.0, max(window, LEAST_WINDOW) / (2 * grid.step)))
     return _vectors(grid, u, v, good, fluid, update, found.ratio)
 
 
-LEAST_REACH = 8.0
-"""Half-width of a bell, px, at least: some ten tracers at the usual seeding."""
+LEAST_REACH = 10.0
+"""Half-width of a bell, px, at least: twenty tracers under it at the usual seeding."""
 SEARCH = 3
 """Pixels, of the picture it looks at, that a pass after the first looks for beyond its prediction."""
 COARSE = 32
