@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 
 from porescale.dem.cell import image
 from porescale.dem.contact.law import material_of, stiffness
-from porescale.dem.segments import OUTLINE, foot, meeting, weight_of
+from porescale.dem.segment_list import no_segments
+from porescale.dem.segments import OUTLINE, Segments, foot, meeting, weight_of
 from porescale.ground.check import Fault, InputError
 from porescale.ground.jit import inline, kernel
 
@@ -60,7 +61,7 @@ def way_between(ends, k, position, segments, cell):
     there; share of the way along that segment; its other end).
     """
     i, j = ends[k, 0], ends[k, 1]
-    if segments is not None and ends[k, 2] == 1:
+    if ends[k, 2] == 1:
         a, b = segments.ends[j, 0], segments.ends[j, 1]
         _, share, dx, dy = foot(i, a, b, position, cell)
         return dx, dy, a, share, b
@@ -72,7 +73,7 @@ def way_between(ends, k, position, segments, cell):
 def pull_bonds(position, radius, force, torque, segments, bonds, step, dt, cell):
     """Add the back tension of all bonds that hold; those whose overlap is gone break.
 
-    Arrays as in segments.add_segment_forces;  segments: Segments or None;  step: number within the call;  dt s.  Adds
+    Arrays as in segments.add_segment_forces;  step: number within the call;  dt s.  Adds
     to force (n, 2) N/m and torque (n,) N m/m; overwrites ``whole`` and ``broken``.
     """
     for k in range(bonds.back.shape[0]):
@@ -111,17 +112,16 @@ def stored_in_bonds(position, radius, segments, bonds, cell):
 def pressing(position, radius, ends, segments, law, cell, back):
     """Overwrite back (m,) N/m with the elastic normal force at each of ``ends`` (m, 3), see Bonds, 0 where apart.
 
-    segments: Segments or None;  law see contact/law.py.  Corners by weight.
+    Arrays as in pull_bonds;  law see contact/law.py.  Corners by weight.
     """
     for k in range(ends.shape[0]):
         i, j = ends[k, 0], ends[k, 1]
         dx, dy, a, _, b = way_between(ends, k, position, segments, cell)
         overlap, weight = radius[i] + radius[a] - np.sqrt(dx * dx + dy * dy), 1
-        if segments is not None:
-            if ends[k, 2] == 1:
-                overlap = meeting(segments.rule, i, a, b, radius, position, cell)[0]
-            elif segments.start[i] < segments.start[i + 1] or segments.start[j] < segments.start[j + 1]:
-                weight = weight_of(i, j, dx, dy, position, segments) if segments.rule == OUTLINE else 0
+        if ends[k, 2] == 1:
+            overlap = meeting(segments.rule, i, a, b, radius, position, cell)[0]
+        elif segments.start[i] < segments.start[i + 1] or segments.start[j] < segments.start[j + 1]:
+            weight = weight_of(i, j, dx, dy, position, segments) if segments.rule == OUTLINE else 0
         back[k] = 0.0
         if overlap > 0.0:
             p = law.table[material_of(law.material, i), material_of(law.material, a)]
@@ -139,6 +139,15 @@ def touched(position, ends, segments, cell, way, far, other):
         dx, dy, a, share, b = way_between(ends, k, position, segments, cell)
         way[k, 0], way[k, 1], other[k] = dx, dy, a
         far[k, 0], far[k, 1] = share * (position[b, 0] - position[a, 0]), share * (position[b, 1] - position[a, 1])
+
+
+def beside(grains: Grains, seconds: float = 0.0, steps: int = 0) -> tuple[Segments, Bonds] | tuple[None, None]:
+    """Segments and bonds as kernels take them at a time, both or none, so that the loop has no kinds with but one."""
+    if grains.segments is None and grains.bonds is None:
+        return None, None
+    bonds = NO_BONDS if grains.bonds is None else grains.bonds
+    known = no_segments(grains) if grains.segments is None else grains.segments.now()
+    return known, bonds.now(seconds, steps)
 
 
 class BondList:
@@ -200,20 +209,22 @@ class BondList:
         return made
 
 
+NO_BONDS = BondList(np.zeros((0, 3), np.int64), np.zeros(0))
+
+
 def bond(grains: Grains, bodies: Iterable[int | Clump] | None = None) -> int:
     """Bond all contacts there are now between these bodies (discs and clumps; None: all); returns how many.
 
     Contacts that are bonded already stay as they are.  Raises InputError for a body that is not there, and in a cell
     that is strained.
     """
-    if grains.steered and grains.steering.cell is not None:
+    if grains.steering.cell is not None:
         raise InputError(Fault("bonds", problem="are not made in a strained cell"))
     d, pairs = grains.discs, grains.current_pairs()
     first = np.repeat(np.arange(d.count), np.diff(pairs.start))
     rows = [np.column_stack((first, pairs.partner.astype(np.int64), np.zeros(len(first), np.int64)))]
-    arrays = None
+    arrays = no_segments(grains) if grains.segments is None else grains.segments.now()
     if grains.segments is not None:
-        arrays = grains.segments.now()
         rows += [np.pad(arrays.corner, ((0, 0), (0, 1))), np.pad(arrays.near, ((0, 0), (0, 1)), constant_values=1)]
     ends = np.concatenate(rows)
     chosen = _chosen(grains, bodies)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.bonds import BondList, pressing, touched
+from porescale.dem.bonds import BondList, beside, pressing, touched
 from porescale.dem.contact.law import MU
 from porescale.dem.contacts import NOBODY, Contacts, listed, nearest_image
 from porescale.dem.segment_list import SegmentList
@@ -98,12 +98,13 @@ def _alone(
 
 def bond_contacts(grains: Grains, own: BondList) -> Contacts:
     """Bonds that hold, each with its back tension as a normal force below zero."""
-    known = None if grains.segments is None else grains.segments.now()
+    known = beside(grains)[0]
+    assert known is not None
     whole = own.whole != 0
     return _taken_off(grains, known, own.ends[whole], own.back[whole])
 
 
-def _taken_off(grains: Grains, known: Segments | None, ends: Index, back: Array | None) -> Contacts:
+def _taken_off(grains: Grains, known: Segments, ends: Index, back: Array | None) -> Contacts:
     """Rows of ``ends`` (c, 3), see Bonds, that press with -back (c,) N/m; None: with the elastic force by weight."""
     d, count = grains.discs, len(ends)
     if back is None:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.bonds import stored_in_bonds
+from porescale.dem.bonds import beside, stored_in_bonds
 from porescale.dem.cell import before, image
 from porescale.dem.contact.law import (
     BEFORE_SPIN,
@@ -127,11 +127,9 @@ def elastic(grains: Grains, dt: float = 0.0) -> tuple[float, float, float]:
     parts = [elastic_pairs(position, d.radius, pairs.start, pairs.partner, pairs.carried, grains.contact, cell)]
     for distance, memory, laws in distances(grains, position, dt):
         parts.append(elastic_surface(distance, d.radius, memory, laws, grains.contact))
-    segments = None if grains.segments is None else grains.segments.now()
+    segments, bonds = beside(grains)
     if segments is not None:
         parts.append(survey_segments(position, d.radius, segments, grains.contact, grains.cell)[3:])
-    if grains.bonds is not None:
-        bonds = grains.bonds.now(0.0, 0)
         parts.append((stored_in_bonds(position, d.radius, segments, bonds, grains.cell), 0.0, 0.0))
     normal, tangential, rolling = (float(part) for part in np.sum(parts, axis=0))
     return normal, tangential, rolling

@@ -65,8 +65,8 @@ def restore(grains: Grains, state: dict[str, Any]) -> None:
         start = np.array(state["book_start"])
         grains.book_start = start if len(start) else None
     grains.held, grains.withheld = np.array(state["held"], np.uint8), np.array(state["withheld"])
-    if grains._steering is not None:
-        grains._steering.restore(state["steering"])
+    if grains.steered or "steering" in state:
+        grains.steering.restore(state["steering"])
     grains.pairs.restore(state["pairs"])
     if grains.segments is not None:
         grains.segments.restore(state["segments"])

@@ -162,6 +162,13 @@ class SegmentList:
         self.arrays = self._pack()
 
 
+def no_segments(grains: Grains) -> Segments:
+    """Segments as kernels take them, where there are none."""
+    none, memory = np.zeros((0, 2), np.int64), np.zeros((0, memory_of(grains.contact)))
+    start = np.zeros(grains.discs.count + 1, np.int64)
+    return Segments(0, none, start, np.zeros(0, np.int64), none, memory, none, none, memory)
+
+
 def _keys(rows: Index) -> Index:
     """One number for each row of two, rising with them."""
     return (rows[:, 0] << 32) + rows[:, 1]

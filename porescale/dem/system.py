@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from porescale.dem import resume
+from porescale.dem.bonds import BondList, beside
 from porescale.dem.cell import Still, Straining, period_of
 from porescale.dem.contact.law import BOOK, COLUMNS, KernelLaw, memory_of
 from porescale.dem.contact.materials import Law, Materials
@@ -29,7 +30,6 @@ from porescale.ground.check import Fault, InputError
 from porescale.particles.pairs import PairList
 
 if TYPE_CHECKING:
-    from porescale.dem.bonds import BondList
     from porescale.dem.segment_list import SegmentList
 
 Array = NDArray[np.float64]
@@ -296,8 +296,7 @@ class Grains:
                 self.held, self.withheld, left == count,
                 self._sweeps.now(pairs, surfaces, self.book is not None, strained),
                 motion, cell,
-                None if self.segments is None else self.segments.now(),
-                None if self.bonds is None else self.bonds.now(self._time, self._steps_of_dt),
+                *beside(self, self._time, self._steps_of_dt),
             )  # fmt: skip
             left -= done
             self.steps += done
