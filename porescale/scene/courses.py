@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
@@ -54,6 +56,13 @@ class Course(Section):
     def largest(self) -> float:
         """The largest magnitude that it reaches."""
         return max([abs(value) for value in self.values] or [abs(self.mean) + abs(self.amplitude)])
+
+    @property
+    def steepest(self) -> float:
+        """The largest magnitude of its rate of change, 1/s of its unit."""
+        pairs = list(zip(self.times, self.values, strict=True))
+        slopes = [abs((b - a) / (later - time)) for (time, a), (later, b) in itertools.pairwise(pairs)]
+        return max([*slopes, 2.0 * math.pi * self.frequency * abs(self.amplitude)])
 
 
 def course(value: Any, unit: str, help: str) -> Any:
@@ -130,6 +139,13 @@ class Component(Section):
         if len(given) > 1:
             raise Refused(Fault(given[1], None, f"and {given[0]} cannot both be told", repair="give one of them"))
         return self
+
+    @property
+    def fastest(self) -> float:
+        """The largest speed that it tells, m/s (or rad/s)."""
+        if self.velocity:
+            return self.velocity.largest
+        return self.displacement.steepest if self.displacement else 0.0
 
     @property
     def control(self) -> Control | None:

@@ -94,7 +94,7 @@ class Clump(Section):
 class Controlled(Section):
     """Control of a grain or a clump: each of x, y, rotation "free", or told a velocity, a displacement or a force.
 
-    record = true: force and displacement in control.csv.  Dry scenes only.
+    record = true: force and displacement in control.csv; what a control gives is what contacts, weight and fluid take.
     """
 
     grain: int | None = pydantic.Field(None, ge=0, description="number of the grain: packing first, then by hand")

@@ -67,9 +67,11 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None) -> 
 
 
 def given_speed(scene: Scene) -> float:
-    """The largest speed that the scene itself states, m/s: of sides, of the fluid at the start, of what is towed."""
+    """The largest speed that the scene itself states, m/s: of sides, of the fluid at the start, of what is towed or
+    controlled."""
     speeds = [side.peak for side in scene.domain.sides.values()]
     speeds += [disc.fastest for disc in scene.disc] + [it.fastest for it in scene.rectangle]
+    speeds += [math.hypot(it.x.fastest, it.y.fastest) for it in scene.control]
     if scene.fluid:
         speeds.append(math.hypot(*scene.fluid.velocity))
     if scene.gate and scene.gate.lift_speed:

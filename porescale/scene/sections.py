@@ -226,10 +226,6 @@ class Scene(Section):
         if self.grains is None:
             faults += [Fault(name, None, "there are no grains", repair="add [grains] or leave it out")
                        for name, section in of_grains.items() if section]  # fmt: skip
-        if self.fluid:
-            faults += [Fault("control", None, "is for dry scenes", repair="leave [fluid] or it out")] * bool(
-                self.control
-            )
         if self.grains and self.contact:
             faults += judge_contact(self)
         faults += [*judge_walls(self), *judge_cell(self)]

@@ -332,11 +332,6 @@ def test_bodies_that_make_no_sense_are_refused(changes, line):
     assert lines(**changes)[0].startswith(line)
 
 
-def test_controls_are_not_for_wet_scenes():
-    said = lines(fluid=WATER, clump=[PAIR], control=[{"grain": 0}], grains__hydraulic_radius_ratio=1.0)
-    assert [line.partition(";")[0] for line in said] == ["control: is for dry scenes"]
-
-
 WATER = {"viscosity": 2e-5, "spacing": 0.0002, "step": 4e-5}
 LEVEL = {**PAIR, "at": [[0.006, 0.005]], "velocity": [0.0, 0.0], "spin": 0.0, "angle": [0.0]}
 
@@ -372,3 +367,31 @@ def test_a_wet_clump_is_taken_up_again_to_the_bit(operator):
 def test_a_clump_lighter_than_lasts_is_warned_of():
     assert not any("density ratio" in line for line in derive(wet()).warnings)
     assert any("density ratio 0.05" in line for line in derive(wet(clump=[{**LEVEL, "density": 50}])).warnings)
+
+
+def test_a_controlled_grain_in_water_is_a_towed_disc():
+    told = {"x": {"velocity": 0.02}, "y": {"velocity": 0.0}, "rotation": {"velocity": 5.0}, "record": True}
+    here, other = grain(0.004, 0.004, velocity=[0.02, 0.0], spin=5.0), grain(0.010, 0.002)
+    grains = {"density": 2500, "hydraulic_radius_ratio": 1.0, "grain": [here, other]}
+    moved = build(wet(clump=None, grains=grains, control=[{"grain": 0, **told}]))
+    towed = build(wet(clump=None, grains={**grains, "grain": [other]}, disc=[here]))
+    free = build(wet(clump=None, grains=grains))
+    for simulation in (moved, towed, free):
+        simulation.advance(40)
+    assert moved.grains.discs.position[0].tolist() == pytest.approx(towed.grains.discs.position[1].tolist(), rel=1e-13)
+    moving, tow, fall = (np.stack(simulation.fields()[1:3]) for simulation in (moved, towed, free))
+    # Bodies in another order: round-off of 40 steps of speeds of 0.02 m/s, in units of a lattice of 5 m/s.
+    assert np.abs(moving - tow).max() < 40 * 2.3e-16 * 5
+    assert np.abs(fall - tow).max() > 1e-4  # the twin that must fail: a grain that nobody tows
+    assert moved.coupled.fluid_force[0].tolist() == pytest.approx(towed.coupled.fluid_force[1].tolist(), rel=1e-9)
+    # Nothing else touches it: what the control gives is what the fluid and its weight take.
+    assert moved.coupled.fluid_force[0, 0] < 0.0
+    given = moved.tables()["control"]["grain 0 control force x (N/m)"]
+    assert given == pytest.approx(-moved.coupled.force[0, 0], rel=1e-6)
+
+
+def test_controls_in_water_count_for_the_mach_number_and_are_taken_up_again_to_the_bit():
+    swing = {"x": {"displacement": {"amplitude": "1 mm", "frequency": 50}}, "y": {"force": 0.01}, "record": True}
+    scene = wet(control=[{"clump": 0, **swing}])
+    assert derive(scene).speed >= 2 * math.pi * 50 * 1e-3
+    assert_same_bits(*resumed(scene, 15, 15))
