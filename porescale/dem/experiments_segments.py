@@ -128,25 +128,27 @@ def mixed_cloud(friction: float = 0.5, rule: str = "outline", seed: int = 3, pac
 
 
 def bond_strength(what: str, pressed: float = 1e-3, steps: int = 20_000) -> float:
-    """Largest tension (N/m) of two bonded bodies pulled apart slowly, over k d0.
+    """Largest tension (N/m) of bonded bodies pulled apart slowly, over k d0.
 
-    "discs": two of RADIUS;  "squares": two with faces, which are bonded at two corners;  overlapping by ``pressed``
-    radii when they are bonded.
+    "discs": two of RADIUS;  "chain": 20 of them, with dashpots that end waves;  "squares": two with faces, which are
+    bonded at two corners;  overlapping by ``pressed`` radii when they are bonded.
     """
-    law, far = Linear(STIFFNESS), 2.0 * RADIUS
+    law, far = law_at(0.5) if what == "chain" else Linear(STIFFNESS), (2.0 - pressed) * RADIUS
     box = Box((-1.0, -1.0), (1.0, 1.0), **OPEN)
-    if what == "discs":
-        grains = Grains(make_discs([(0.0, 0.0), (far - pressed * RADIUS, 0.0)], RADIUS, DENSITY), law, box)
-        bodies: list[int | Clump] = [0, 1]
+    links = 19 if what == "chain" else 1
+    if what in ("discs", "chain"):
+        at = np.column_stack((far * np.arange(links + 1), np.zeros(links + 1)))
+        grains = Grains(make_discs(at, RADIUS, DENSITY), law, box)
+        bodies: list[int | Clump] = [0, links]
     else:
         edge = np.array([(0.0, 0.0), (RADIUS, 0.0), (RADIUS, RADIUS), (0.0, RADIUS)])
         beside = np.add(edge, (RADIUS + 2.0 * THICKNESS - pressed * RADIUS, 0.0))
         grains = framed(None, [polygon(each, THICKNESS, DENSITY) for each in (edge, beside)], law, box)
         bodies = [Clump(0), Clump(1)]
-    bond(grains, bodies)
+    bond(grains)
     dt = grains.stable_step()
     grains.steering.control(bodies[0], REST, REST, REST)
-    grains.steering.control(bodies[1], Moved(1.1 * pressed * RADIUS / (steps * dt)), REST, REST)
+    grains.steering.control(bodies[1], Moved(1.1 * links * pressed * RADIUS / (steps * dt)), REST, REST)
     grains.steering.watch(bodies[1])
     most = 0.0
     for _ in range(steps):

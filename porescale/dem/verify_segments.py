@@ -61,6 +61,7 @@ def bouncing() -> Measured:
     source="leap-frog is of second order, of first where contacts begin and end",
     because="first order, 0.2 below it for the phases at which some ten contacts begin",
     tolerance=0.2,
+    slow=True,
 )
 def bouncing_order() -> Measured:
     """Order at which that falls from 50 to 400 steps in a contact."""
@@ -102,8 +103,10 @@ def momenta() -> Measured:
     tolerance=6e-5,
 )
 def strength() -> Measured:
-    """Largest tension of two bonded discs, and of two squares bonded along a side at its two corners, over k d0."""
-    exact, found = (1.0, 2.0), (lab.bond_strength("discs"), lab.bond_strength("squares"))
+    """Largest tension of two bonded discs, of two squares bonded along a side at its two corners, and of a chain of 20
+    discs, over k d0.
+    """
+    exact, found = (1.0, 2.0, 1.0), [lab.bond_strength(what) for what in ("discs", "squares", "chain")]
     return Measured(exact, found, max(abs(a / b - 1.0) for a, b in zip(found, exact, strict=True)))
 
 

@@ -14,9 +14,7 @@ from porescale.dem.verify_segments import VALIDATIONS
 ROWS = {row.name: row for row in VALIDATIONS}
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.slow if "closes" in name else ()) for name in ROWS]
-)
+@pytest.mark.parametrize("name", [pytest.param(row.name, marks=[pytest.mark.slow] * row.slow) for row in VALIDATIONS])
 def test_row_holds(name):
     row = ROWS[name]
     assert row.measure().error <= row.tolerance
