@@ -57,7 +57,7 @@ class Grid:
         return found
 
     def at(self, other: Grid, values: Array) -> Array:
-        """``values`` (ny, nx) at the centres of ``other``."""
+        """``values`` (ny, nx) at the centres of ``other``; those of the rim beyond it, where no window has been."""
         down, across = spline_matrix(self.y, other.y), spline_matrix(self.x, other.x)
         return np.asarray(down @ values @ across.T)
 
@@ -129,14 +129,9 @@ def expand(nodes, first_y, weights_y, first_x, weights_x, spare, found):
 
 
 def spline_matrix(nodes: Array, points: Array) -> Array:
-    """(points, nodes) matrix of interpolation: natural cubic spline, straight outside; lower order for few nodes."""
+    """(points, nodes) matrix of interpolation: natural cubic spline, constant outside; lower order for few nodes."""
     if len(nodes) == 1:
         return np.ones((len(points), 1))
     order = 3 if len(nodes) > 3 else 1
     spline = make_interp_spline(nodes, np.eye(len(nodes)), order, bc_type="natural" if order == 3 else None)
-    inside = np.clip(points, nodes[0], nodes[-1])
-    found = spline(inside)
-    beyond = points != inside
-    if beyond.any():
-        found[beyond] += (points - inside)[beyond, None] * spline(inside[beyond], 1)
-    return np.asarray(found)
+    return np.asarray(spline(np.clip(points, nodes[0], nodes[-1])))

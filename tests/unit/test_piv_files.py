@@ -222,3 +222,39 @@ def test_a_synthetic_pair_is_the_same_for_the_same_seed_and_loses_what_it_says()
     assert np.corrcoef(lost.first[:, :-1].ravel(), lost.second[:, 1:].ravel())[0, 1] < 0.1
     with pytest.raises(InputError, match="density"):
         pair(flow, replace(camera, density=2.0))
+
+
+def test_any_number_of_threads_gives_the_same_bits():
+    from porescale.ground.jit import most_threads, set_threads
+    from porescale.piv.measure import measure
+
+    made = pair(
+        flows.past_discs(SIZE, 1.0, flows.Discs(np.array([60.0]), np.array([48.0]), np.array([14.0]))), Camera(SIZE)
+    )
+    found = []
+    for count in (1, most_threads()):
+        set_threads(count)
+        found.append(measure(made.first, made.second, made.solid))
+    for name in ("u", "v", "valid", "correlation", "uncertainty"):
+        assert np.array_equal(*(getattr(it, name) for it in found))
+
+
+def test_small_and_odd_pictures_are_measured_too():
+    from porescale.piv.measure import measure
+
+    for size in ((17, 40), (33, 65), (101, 67)):
+        made = pair(flows.uniform(1.5, -0.5), Camera(size, noise=0.0, lost=0.0), 2)
+        found = measure(made.first, made.second)
+        assert np.isfinite(found.u).all()
+        # A few windows, each with a dozen tracers, some of which leave: a tenth of a pixel.
+        assert found.valid.any()
+        assert abs(np.median(found.u[found.valid]) - 1.5) < 0.1
+
+
+def test_brightness_and_contrast_may_change_between_pictures():
+    from porescale.piv.measure import measure
+
+    made = pair(flows.uniform(1.5, -0.5), Camera((128, 128), lost=0.0), 2)
+    plain = measure(made.first, made.second)
+    dimmer = measure(made.first, made.second * 0.4 + 30)
+    assert np.abs(plain.u - dimmer.u).max() < 0.05
