@@ -117,8 +117,8 @@ def _vertex(low, middle, high):
 def peaks(total, u, v, value, ratio):
     """Place (px, to a fraction), height of each correlation peak, and its ratio to the highest one beyond 1 px from it.
 
-    total (ny, nx, n, n) : correlations;  u, v, value, ratio (ny, nx) are overwritten.  A peak at the edge of the range is
-    kept whole, and its ratio is 1: the true one may lie beyond.
+    total (ny, nx, n, n) : correlations;  u, v, value, ratio (ny, nx) are overwritten.  A peak at the edge of the range
+    is kept whole, and its ratio is 1: the true one may lie beyond.
     """
     ny, nx, width, _ = total.shape
     for row in prange(ny):
