@@ -81,11 +81,18 @@ class DeckRun:
             self.time = self.step * self.step_seconds
 
     def check(self) -> None:
-        """Raise Unstable, naming grain, quantity and step, when the state is beyond sense."""
-        try:
-            self.grains.check()
-        except Unstable as e:
-            raise Unstable(e.where, e.quantity, e.value, "", self.step, self.time, e.cause) from None
+        """Raise Unstable when a point is nowhere, or outside of the domain by more than the domain is long.
+
+        Nothing else stops a deck: what steps that are too long do to its energies, ``err`` says.
+        """
+        x1, x2, y1, y2 = self.deck.domain
+        at = self.grains.discs.position
+        out = np.maximum(np.array([x1, y1]) - at, at - np.array([x2, y2])).max(axis=1)
+        lost = np.flatnonzero(~(out <= max(x2 - x1, y2 - y1)))
+        if len(lost):
+            worst, name = int(lost[0]), "distance from the domain"
+            cause = "a contact step too long, or a wall that was passed"
+            raise Unstable(f"point {worst + 1}", name, float(out[worst]), "", self.step, self.time, cause)
 
     def series(self) -> dict[str, float]:
         """Time, step and the columns of energy.dat."""
@@ -160,6 +167,10 @@ class DeckRun:
             )
             names = "force_x place_x force_y place_y moment angle"
             write_text(folder / "f-d_curve.dat", f"# step body {names}\n" + plain(lines))
+        self.write_next(folder)
+
+    def write_next(self, folder: Path) -> None:
+        """Write the files of the next run, new_in_*.dat, into ``folder``."""
         after = replace(
             self.deck, bodies=bodies_now(self.deck, self.built), jclid=GO_ON, iloop=self.deck.iloop + self.step
         )  # fmt: skip

@@ -1,0 +1,85 @@
+"""Decks of the DEMseg tutorial as cases: each measures what its expected.toml says, and would say so if it did not."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from porescale.decks.build import Options
+from porescale.decks.deck import GM, NEW, read_deck
+from porescale.decks.trace import finer, first_touch, trace, unbalanced
+from porescale.scene.case import expected, missed
+
+CASES = Path(__file__).resolve().parents[2] / "cases"
+DECKS = sorted(path.parent for path in CASES.glob(f"demseg_*/**/{GM}"))
+FAST = ("disc", "clump", "segment", "triangle", "control", "chain")
+
+
+def measured(case):
+    """What the script of a case measures."""
+    spec = importlib.util.spec_from_file_location(f"case_{case}", CASES / case / f"{case}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module.measure()[0]
+
+
+@pytest.mark.parametrize("folder", DECKS, ids=lambda folder: str(folder.relative_to(CASES)))
+def test_the_decks_are_well_formed(folder):
+    deck = read_deck(folder)
+    assert (len(deck.bodies) > 0) != (deck.random is not None)
+    assert deck.nstep >= 2000
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [*FAST, "repose"])
+def test_a_deck_of_the_tutorial_gives_what_its_case_expects(name):
+    case = f"demseg_{name}"
+    assert missed(CASES / case, measured(case)) == []
+
+
+def test_at_half_the_critical_step_energy_runs_away():
+    # The twin that must fail, and the tutorial's remark in I-6: one cannot bounce at half of dt_cr = 2 sqrt(m/k).
+    folder = CASES / "demseg_disc"
+    deck = read_deck(folder)
+    coarse = math.sqrt(math.pi * 4.0 * 2.5 / 1e8)
+    long = replace(deck, dt=coarse, nstep=round(1.0 / coarse), nprn1=1000, nprn2=1)
+    row = next(row for row in expected(folder) if row["name"] == "err over the fall")
+    assert unbalanced(trace(folder, long)) > row["tolerance"]
+
+
+def test_a_floor_deeper_down_is_met_later():
+    folder = CASES / "demseg_disc"
+    deck = replace(finer(read_deck(folder), 1), nstep=2200, nprn1=2200)
+    deep = replace(deck, domain=(-10.0, 10.0, -1.0, 10.0))
+    row = next(row for row in expected(folder) if row["name"] == "first touch")
+    assert abs(first_touch(trace(folder, deck)) - row["value"]) <= row["tolerance"]
+    assert abs(first_touch(trace(folder, deep)) - row["value"]) > row["tolerance"]
+
+
+@pytest.mark.slow
+def test_a_chain_that_is_not_bonded_does_not_stay():
+    folder = CASES / "demseg_chain"
+    deck = replace(read_deck(folder), nstep=100, nprn1=100)
+    row = next(row for row in expected(folder) if row["name"] == "bonded: way of the furthest disc")
+    ways = [
+        float(abs(made.places[-1] - made.places[0]).max())
+        for made in (trace(folder, deck), trace(folder, replace(deck, jclid=NEW)))
+    ]
+    assert ways[0] <= row["tolerance"] < ways[1]
+
+
+@pytest.mark.slow
+def test_a_segment_of_another_width_does_not_give_the_printed_record():
+    folder = CASES / "demseg_control" / "pushed"
+    deck = replace(read_deck(folder), nstep=20, nprn1=20)
+    record = trace(folder, deck, Options(rod=0.11)).record["body 2: place x"]
+    row = next(row for row in expected(folder.parent) if row["name"] == "pushed: place x at step 20")
+    assert abs(record[2] - row["value"]) > row["tolerance"]
