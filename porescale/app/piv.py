@@ -162,6 +162,7 @@ def measure(
     scale: Annotated[str | None, Parameter(help='length of a pixel: "0.1 mm"; the field is in m and m/s then')] = None,
     interval: Annotated[str | None, Parameter(help='time between two frames: "5 ms"; a film may say it itself')] = None,
     time_: Annotated[str | None, Parameter(name="--time", help="of frame 0, as the fields' times count from")] = None,
+    overlay: Annotated[bool, Parameter(help="a film of the pictures with arrows on them, too")] = False,
     threads: Threads = None,
     json: Json = False,
 ) -> int:
@@ -176,7 +177,7 @@ def measure(
     for path, key in ((csv, "--csv"), (openpiv, "--openpiv")):
         if path is not None:
             refuse_unwritable(path.parent, key)
-    folder = out if out or csv or openpiv else Path("runs") / f"piv_{_stem(films[0])}"
+    folder = out if out or ((csv or openpiv) and not overlay) else Path("runs") / f"piv_{_stem(films[0])}"
     if folder is not None:
         refuse_unwritable(folder, "--out")
     use_threads(threads)
@@ -199,6 +200,11 @@ def measure(
     zero = 0.0 if time_ is None else _quantity("--time", time_, "s")
     times = (zero + (seconds or 1.0) * (start + 0.5 * step), (seconds or 1.0) * step)
     said = _written(_progress(fields, total), shots, folder, csv, openpiv, times, span, total == 1)
+    if overlay and folder is not None and not average:
+        from porescale.piv.overlay import overlay_film
+
+        shape = next(iter(film)).shape
+        said["files"].append(str(overlay_film(folder, film, span(shape))))
     _say(said, json)
     return 0
 

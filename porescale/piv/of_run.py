@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +39,12 @@ def field_of_run(folder: Path, time: float | None = None) -> Field:
             raise InputError(Fault("run folder", str(folder), "holds no snapshot yet"))
         snapshot = run.snapshot(-1) if time is None else run.nearest(time)
     return _field(_grid(snapshot, folder))
+
+
+def fields_of_film(folder: Path) -> Iterator[Field]:
+    """The fields of a measured film, in time, one in memory at a time."""
+    for step, frames in snapshots.catalogue(folder).items():
+        yield _field(_grid(snapshots.load(frames, step), folder))
 
 
 def _grid(snapshot: Snapshot, folder: Path) -> Grid:

@@ -112,3 +112,27 @@ def test_pictures_of_other_tracers_give_no_field(piv, tmp_path):
     assert code == 2
     assert "same tracers" in said[0]
     assert not (tmp_path / "m.csv").exists()
+
+
+def test_a_film_is_measured_frame_by_frame(piv, tmp_path):
+    from porescale.piv import flows
+    from porescale.piv.synth import Camera, expose, seeded
+
+    flow, camera, random = flows.uniform(1.5, 0.0), Camera((96, 128)), np.random.default_rng(0)
+    x, y, light = seeded(flow, camera, random)
+    for k in range(4):
+        image = expose(*flow.carried(x, y, float(k)), light, flow.discs, camera, random)
+        cv2.imwrite(f"img_{k}.png", image)
+    tokens = ("--out", "m", "--scale", "1 mm", "--interval", "0.1 s", "--time", "2 s", "--overlay", "--json")
+    code, said, _ = piv("measure", "img_*.png", *tokens)
+    assert code == 0
+    found = json.loads(said)
+    assert found["pairs"] == 3
+    assert any(name.split(".")[0].endswith("overlay") for name in found["files"])
+    for k in range(3):
+        # A tenth of a pixel of 1.5: 15 mm/s; pictures of 96 px hold 150 vectors, each of a score of tracers.
+        np.testing.assert_allclose(np.median(columns(tmp_path / "m" / f"vectors_{k:04d}.csv")["u"]), 0.015, rtol=0.07)
+    from porescale.runs import snapshots
+
+    times = [next(iter(entry.values())).time for entry in snapshots.catalogue(tmp_path / "m").values()]
+    assert times == pytest.approx([2.05, 2.15, 2.25])
