@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from porescale.runs.drive import Outcome
 
 PACKAGE = "porescale demseg"
+CHECKPOINT_SECONDS = 30.0
+"""Wall-clock time between checkpoints."""
 Folder = Annotated[Path, Parameter(help="folder with in_gm.dat and in_bc.dat")]
 Seed = Annotated[int, Parameter(help="of the random discs of mode 0")]
 
@@ -99,7 +101,7 @@ def drive_deck(
         snapshot_interval=deck.nprn1 * deck.dt,
         series_interval=deck.nprn2 * deck.dt,
         card={"package": PACKAGE, "name": name, "scene": scene},
-        checkpoint_seconds=30.0,
+        checkpoint_seconds=CHECKPOINT_SECONDS,
         resume=resume,
         overwrite=overwrite,
         quiet=quiet,

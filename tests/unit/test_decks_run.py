@@ -75,6 +75,24 @@ def test_a_run_in_two_parts_is_the_run_in_one_bit_for_bit(tmp_path, kind):
     assert whole.grains.time == second.grains.time
 
 
+@pytest.mark.slow
+def test_a_pulled_chain_goes_on_with_its_bonds_and_breaks(tmp_path):
+    # Halves of the way in halves of the steps: the same velocity to the bit.  At 1250 the end breaks off on the way.
+    def told(head, way):
+        return decks.boundary(head, "1", "20", "2", "1 1 0 1 0 1 0", f"20 1 {way} 1 0 1 0")
+
+    bonds = {"in_cf0": tension_text(read(decks.write(tmp_path / "p", decks.chain()), OPTIONS).built)}
+    folder = decks.write(tmp_path / "a", decks.chain(), told("3 0 400 400 10", "5.0"), **bonds)
+    whole = run(folder, tmp_path / "b")
+    run(decks.write(tmp_path / "c", decks.chain(), told("3 0 200 400 10", "2.5"), **bonds), tmp_path / "d")
+    second = run(go_on(tmp_path / "d", tmp_path / "e", "1 200 200 400 10"), tmp_path / "f")
+    for name in ("new_in_gm.dat", "new_in_cf.dat", "new_in_cf0.dat"):
+        assert (tmp_path / "f" / name).read_bytes() == (tmp_path / "b" / name).read_bytes(), name
+    assert whole.grains.bonds is not None
+    assert second.grains.bonds is not None
+    assert whole.grains.bonds.count == second.grains.bonds.count < 19
+
+
 def test_a_run_resumed_from_its_checkpoint_ends_as_the_uninterrupted_one(tmp_path):
     folder = decks.write(tmp_path / "deck", bc=decks.boundary("0 0 3250 500 10"))
     run(folder, tmp_path / "whole")
@@ -127,6 +145,32 @@ def test_a_bonded_chain_stays_and_an_unbonded_one_flies_apart(tmp_path):
     assert np.abs(bonded.grains.discs.position - start).max() < 1e-12
     assert np.abs(plain.grains.discs.position - start).max() > 0.1  # the twin: without bonds they part
     assert tension_text(bonded.built) == kept["in_cf0"]
+
+
+SQUARES = decks.grains(
+    "0 2 0", "1 1 4", "0 0 0", "1 0 4", "2 4", "2 2 4", "2 6", "3 2 6", "0 6", "4 0 6", "0 4",
+    "2 1 4", "0 0 0", "1 2.19 4", "4.19 4", "2 4.19 4", "4.19 6", "3 4.19 6", "2.19 6", "4 2.19 6", "2.19 4",
+    dt="1d-5", domain="-10 10 0 10 0.1",
+).replace("-980.0d0", "0.0d0")  # fmt: skip
+
+
+@pytest.mark.slow
+def test_squares_are_bonded_side_to_side_and_stay(tmp_path):
+    plain = read(decks.write(tmp_path / "a", SQUARES), OPTIONS)
+    kept = {"in_cf0": tension_text(plain.built)}
+    bonded = read(decks.write(tmp_path / "b", SQUARES, decks.boundary("3 1 100 100 10"), **kept), OPTIONS)
+    assert tension_text(bonded.built) == kept["in_cf0"]
+    # Sides 0.19 apart of thickness 0.1 overlap by 0.01: contacts pull with k 0.01 each, of whatever sign they count.
+    forces = [abs(float(line.split()[1].replace("d", "e"))) for line in kept["in_cf0"].splitlines() if "d" in line
+              or "." in line]  # fmt: skip
+    assert len(forces) >= 4
+    assert max(forces) == pytest.approx(1e6, rel=1e-9)
+    start = bonded.grains.discs.position.copy()
+    for model in (plain, bonded):
+        model.advance(200)
+    # Round-off of forces of 1e6 on masses of 10 over 2e-3.
+    assert np.abs(bonded.grains.discs.position - start).max() < 1e-12
+    assert np.abs(plain.grains.discs.position - start).max() > 1e-3
 
 
 @pytest.mark.parametrize(
