@@ -151,8 +151,8 @@ for row, bound, others in (
     "piv.past_discs",
     source=ROWS + "; no-slip flow past five discs, invalid vectors count 1 px",
     because="in shares of what OpenPIV 0.26.1 reaches on such pairs, 0.053 px beyond 16 px from a solid and 0.24 px"
-    " nearer; a tenth less is asked for, and no vector in a solid",
-    tolerance=0.9,
+    " nearer; a fifth less is asked for, and no vector in a solid",
+    tolerance=0.8,
     slow=True,
 )
 def discs() -> Measured:
