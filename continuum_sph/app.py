@@ -124,7 +124,7 @@ def benchmarks() -> Benchmarks:
 
 PACKAGE = Package(
     name="continuum-sph",
-    summary="Soil, water and air as layers of smoothed particles (so far: water in a tank).",
+    summary="Soil, water and air as layers of smoothed particles (so far: water in a tank, bubbles and drops in it).",
     version=porescale.__version__,
     scene=scene_type,
     template=template,

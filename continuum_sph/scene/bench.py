@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from continuum_sph.scene.build import flow_of
 from continuum_sph.scene.trials import column_scene
 from porescale.ground.check import Fault, InputError
@@ -14,14 +16,13 @@ STEPS = 50
 FALLEN = 200  # steps before timing: water in motion, list rebuilt at its usual rate
 
 
-@BENCHMARKS.row("water")
-def bench_water(size: int | None, threads: int, dtype: Dtype) -> Work:
-    """Particle-steps of collapsing water, wall particles computed but not counted; InputError for float32."""
+def collapsing(size: int | None, dtype: Dtype, **numerics: Any) -> Work:
+    """Steps of a column of ``size`` particles on its way down, with choices of [numerics]; InputError for float32."""
     if dtype != "float64":
         raise InputError(Fault("--dtype", dtype, "smoothed particles have", allowed="float64"))
     count = size or SIZE
     across = max(8, round((count / 2) ** 0.5))
-    flow = flow_of(column_scene(1.0 / across, tank=(4.0, 3.0), column=(1.0, 2.0), pressure="released"))
+    flow = flow_of(column_scene(1.0 / across, tank=(4.0, 3.0), column=(1.0, 2.0), pressure="released", **numerics))
 
     def steps() -> None:
         for _ in range(STEPS):
@@ -31,3 +32,15 @@ def bench_water(size: int | None, threads: int, dtype: Dtype) -> Work:
         steps()
     fluid = flow.layer.fluid
     return Work(steps, float(fluid * STEPS), "particles/s", fluid)
+
+
+@BENCHMARKS.row("water")
+def bench_water(size: int | None, threads: int, dtype: Dtype) -> Work:
+    """Particle-steps of collapsing water, wall particles computed but not counted; InputError for float32."""
+    return collapsing(size, dtype)
+
+
+@BENCHMARKS.row("corrected")
+def bench_corrected(size: int | None, threads: int, dtype: Dtype) -> Work:
+    """The same with corrected gradients and shifting."""
+    return collapsing(size, dtype, gradient="corrected", shifting=2.0)
