@@ -103,8 +103,8 @@ def correlation_pass(
                 grey = _moved(grey, at, cv2.INTER_CUBIC) * mask
             arrays.append((_padded(grey, pad), _padded(mask, pad)))
         (a, ma), (b, mb) = arrays
-        # Once pictures are deformed well, shifts are small and solids cut the same off both windows, where both are zero:
-        # their own energies are those of the fluid that both show, to a rim of a pixel or two.
+        # Once pictures are deformed well, shifts are small and solids cut the same off both windows, where both are
+        # zero: their own energies are those of the fluid that both show, to a rim of a pixel or two.
         masks = (ma, mb) if halved and (pair[0].solid or pair[1].solid) else None
         square: Any = b * b
         energy = np.asarray(cv2.boxFilter(square, cv2.CV_32F, (size, size), anchor=(0, 0), normalize=False), np.float32)

@@ -258,3 +258,14 @@ def test_brightness_and_contrast_may_change_between_pictures():
     plain = measure(made.first, made.second)
     dimmer = measure(made.first, made.second * 0.4 + 30)
     assert np.abs(plain.u - dimmer.u).max() < 0.05
+
+
+def test_the_bench_measures_pairs_of_its_sizes():
+    from porescale.piv.bench import LARGEST, SMALLEST, bench_piv
+
+    (work,) = bench_piv(SMALLEST, 1, "float32")
+    work.call()
+    assert (work.updates, work.unit, work.size) == (1.0, "pairs/s", SMALLEST)
+    for size in (SMALLEST - 1, LARGEST + 1):
+        with pytest.raises(InputError, match="--size"):
+            bench_piv(size, 1, "float64")
