@@ -37,7 +37,8 @@ class Look:
     walls : cell array holding a solid fraction, painted grey;  lines : segments ((x, y), (x, y)) m, or a
     function of the snapshot;  arrows : velocity arrows across the picture, 0 none;  streamlines : an extra
     still with them; dot : radius of a dot, m (None: about half the particles' spacing);  view : (left, right,
-    bottom, top), m; size : long side, pixels;  title, label (of the field), colour_map, cloud_map.
+    bottom, top), m; size : long side, pixels;  plain : places and times are numbers without units;
+    title, label (of the field), colour_map, cloud_map.
     """
 
     grid: str = "fields"
@@ -55,6 +56,7 @@ class Look:
     view: View | None = None
     size: int = 1000
     title: str = ""
+    plain: bool = False
     label: str = ""
     colour_map: str = ""
     cloud_map: str = ""
@@ -155,19 +157,21 @@ def rgb(colour: str) -> tuple[int, int, int]:
     return red, green, blue
 
 
-def length_unit(view: View) -> tuple[float, str]:
-    """Factor and unit for the axes."""
+def length_unit(view: View, plain: bool = False) -> tuple[float, str]:
+    """Factor and unit for the axes; plain: none."""
+    if plain:
+        return 1.0, ""
     longest = max(view[1] - view[0], view[3] - view[2])
     if longest < 0.02:
         return 1e3, "mm"
     return (1e2, "cm") if longest < 5 else (1.0, "m")
 
 
-def time_text(time: float, longest: float) -> str:
-    """A time label with as many digits all through a film that lasts ``longest`` seconds."""
-    factor, unit = (1e3, "ms") if 0 < longest < 0.1 else (1.0, "s")
+def time_text(time: float, longest: float, plain: bool = False) -> str:
+    """A time label with as many digits all through a film that lasts ``longest`` seconds; plain: without unit."""
+    factor, unit = (1.0, "") if plain else (1e3, "ms") if 0 < longest < 0.1 else (1.0, "s")
     digits = max(0, 2 - math.floor(math.log10(longest * factor))) if longest > 0 else 2
-    return f"t = {time * factor:.{digits}f} {unit}"
+    return f"t = {time * factor:.{digits}f} {unit}".rstrip()
 
 
 @dataclass

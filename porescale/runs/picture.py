@@ -66,7 +66,7 @@ class Painter:
         inside = image[self.y : self.y + self.height, self.x : self.x + self.width]
         inside[:] = self.canvas.draw(snapshot, over_field)
         self._frame(image)
-        label = _text(time_text(snapshot.time, self.survey.longest), 11 * self.unit)
+        label = _text(time_text(snapshot.time, self.survey.longest, self.survey.look.plain), 11 * self.unit)
         tall, wide = label.shape[:2]
         bottom, right = self.y - round(3 * self.unit), max(self.x + self.width, wide)
         image[bottom - tall : bottom, right - wide : right] = label
@@ -180,7 +180,7 @@ def montage(painter: Painter, shown: Sequence[Snapshot]) -> Array:
     )
     figure = Figure((full[0] / DPI, full[1] / DPI), dpi=DPI)
     canvas = Canvas(found, FINER * width, FINER * height)
-    factor, _ = length_unit(found.view)
+    factor, _ = length_unit(found.view, found.look.plain)
     extent = _scaled(found.view, factor)
     for k, snapshot in enumerate(shown):
         row, column = divmod(k, columns)
@@ -189,7 +189,7 @@ def montage(painter: Painter, shown: Sequence[Snapshot]) -> Array:
         axes = _place(figure, full, x, y, width, height)
         axes.imshow(inside, extent=extent, aspect="auto", interpolation="nearest")
         _dress(axes, found, 9.5, x_label=k + columns >= len(shown), y_label=column == 0)
-        axes.set_title(time_text(snapshot.time, found.longest), loc="right", fontsize=9.5, pad=4)
+        axes.set_title(time_text(snapshot.time, found.longest, found.look.plain), loc="right", fontsize=9.5, pad=4)
     figure.text(left / full[0], 1 - 14 / full[1], found.look.title, fontsize=12, va="top", ha="left")
     at, tall = left + columns * (width + gap_x) + 2, rows * height + (rows - 1) * gap_y
     for scale in painter.scales:
@@ -214,7 +214,7 @@ def _place(figure: Figure, full: tuple[int, int], x: float, y: float, width: flo
 
 def _dress(axes: Axes, found: Survey, font: float, *, x_label: bool = True, y_label: bool = True) -> None:
     """Limits and labels of the axes."""
-    factor, unit = length_unit(found.view)
+    factor, unit = length_unit(found.view, found.look.plain)
     left, right, bottom, top = _scaled(found.view, factor)
     axes.set(xlim=(left, right), ylim=(bottom, top))
     axes.tick_params(labelsize=font, direction="out", labelbottom=x_label, labelleft=y_label)
@@ -222,9 +222,9 @@ def _dress(axes: Axes, found: Survey, font: float, *, x_label: bool = True, y_la
     axes.locator_params(axis="x", nbins=_ticks(inside.width, 90), min_n_ticks=2)
     axes.locator_params(axis="y", nbins=_ticks(inside.height, 60), min_n_ticks=2)
     if x_label:
-        axes.set_xlabel(f"x ({unit})", fontsize=font)
+        axes.set_xlabel(f"x ({unit})" if unit else "x", fontsize=font)
     if y_label:
-        axes.set_ylabel(f"y ({unit})", fontsize=font)
+        axes.set_ylabel(f"y ({unit})" if unit else "y", fontsize=font)
 
 
 def _bar(figure: Figure, scale: Scale, where: tuple[tuple[int, int], float, float, float, float], font: float) -> None:

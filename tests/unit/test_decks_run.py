@@ -9,7 +9,7 @@ from porescale.decks.build import Options, random_discs
 from porescale.decks.deck import read_deck
 from porescale.decks.run import DeckRun, card_of, read
 from porescale.decks.tension import read_tensions, tension_text
-from porescale.ground.check import InputError
+from porescale.ground.check import InputError, Unstable
 from porescale.runs.drive import drive
 from tests.reference import decks
 
@@ -145,6 +145,14 @@ def test_a_bonded_chain_stays_and_an_unbonded_one_flies_apart(tmp_path):
     assert np.abs(bonded.grains.discs.position - start).max() < 1e-12
     assert np.abs(plain.grains.discs.position - start).max() > 0.1  # the twin: without bonds they part
     assert tension_text(bonded.built) == kept["in_cf0"]
+
+
+def test_a_disc_without_a_floor_is_lost_and_named(tmp_path):
+    model = read(decks.write(tmp_path), OPTIONS)
+    model.check()
+    model.grains.discs.position[0, 1] = -20.001  # more than the domain is long below it
+    with pytest.raises(Unstable, match=r"distance from the domain = 20 .*at point 1"):
+        model.check()
 
 
 SQUARES = decks.grains(

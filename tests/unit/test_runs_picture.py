@@ -155,6 +155,8 @@ def test_axes_and_times_have_handy_units():
     assert [time_text(t, 0.05) for t in (0, 0.05)] == ["t = 0.0 ms", "t = 50.0 ms"]
     assert time_text(0.25, 2.0) == "t = 0.25 s"
     assert time_text(0.0, 0.0) == "t = 0.00 s"
+    assert length_unit((0, 0.01, 0, 0.01), plain=True) == (1.0, "")
+    assert time_text(0.05, 0.05, plain=True) == "t = 0.0500"
 
 
 def a_run(folder, frames=12):
