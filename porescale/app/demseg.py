@@ -87,7 +87,7 @@ def drive_deck(
 
     deck = model.deck
     look = Look(title=name, cloud="grains" if any(b.discs for b in deck.bodies) else "ends",
-                colour="speed", lines=model.lines, view=deck.domain, plain=True)  # fmt: skip
+                colour="velocity", lines=model.lines, view=deck.domain, plain=True)  # fmt: skip
 
     def after(finished: Path) -> None:
         pictures(finished, look)

@@ -54,6 +54,29 @@ def test_cgs_becomes_si(tmp_path):
     assert control.y.force.mean == pytest.approx(10.0)  # 1e4 dyn/cm
 
 
+MIXED = decks.grains("2 0 0", "1 1 1", "0 0 0", "1 1.0d0", "-5 5 0", "2 2 2", "1 0 2", "1 1.0d0", "5 5 0", "2 0.5d0",
+                     "6 5 0").replace("\n1\n", "\n2\n5.0 2.0d8 0.5d8 1 1 20\n", 1)  # fmt: skip
+
+
+def test_materials_stay_with_their_bodies(tmp_path):
+    deck, scene = converted(tmp_path, MIXED)
+    for model in (deck, scene):
+        table = model.grains.contact.table
+        # Springs in series, 2 k1 k2/(k1 + k2), and the smaller friction: the second material has none.
+        assert table[:, :, 0].tolist() == [[2e8, pytest.approx(4e8 / 3, rel=1e-15)], [table[1, 0, 0], 1e8]]
+        assert table[0, 1, 4] == 0.0 < table[0, 0, 4]
+        assert model.grains.material.tolist() == [0, 1, 1]
+        assert model.grains.discs.mass[0] == pytest.approx(5.0 * np.pi, rel=1e-15)
+    assert scene.grains.steering.clumps.mass == pytest.approx(deck.grains.steering.clumps.mass, rel=1e-13)
+
+
+def test_random_discs_become_a_scene(tmp_path):
+    gm = "0 0 0\n5d-5 0 -980\n1\n2.5 1d8 .25d8 1d2 .5d2 27\n0 30 0 30 0\n1 2\n1\n0.5\n"
+    deck, scene = converted(tmp_path, gm)
+    assert scene.grains.discs.count == deck.grains.discs.count == 82
+    assert (scene.grains.discs.position == deck.grains.discs.position).all()  # text keeps the bits
+
+
 def test_segments_and_continuations_are_refused_by_name(tmp_path):
     folder = decks.write(tmp_path / "deck", decks.PUSHED, decks.boundary("1 0 20 10 10", *decks.PUSH))
     with pytest.raises(InputError) as caught:
