@@ -134,7 +134,7 @@ def _progress(fields: Iterable[Field], total: int) -> Iterator[tuple[Field, int]
     for number, field in enumerate(fields, 1):
         yield field, number
         now = time.perf_counter()
-        if now - last > PATIENCE:
+        if now - last > PATIENCE and number < total:
             left = (now - start) / number * (total - number)
             print(f"{number} of {total} pairs, about {left:.0f} s left", file=sys.stderr, flush=True)
             last = now
