@@ -37,7 +37,7 @@ def test_finer_levels_have_finer_spacing_and_the_same_physics(case):
 
 
 def test_the_default_quality_of_the_column_is_draft():
-    # The issue: about 5 cells per diameter by default, 15 at standard (the consistent reading, 1200 squared).
+    # About 5 cells per diameter by default, 15 at standard (the consistent reading, 1200 squared).
     default, draft = load_scene(CASES / "column_collapse"), load_scene(CASES / "column_collapse", quality="draft")
     assert default == draft
     assert derive(default).cells == (400, 400)

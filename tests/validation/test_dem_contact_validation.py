@@ -14,7 +14,7 @@ from porescale.dem.contact import hertz
 from porescale.dem.contact.hertz import Hertz
 from porescale.dem.discs import FIELDS
 from porescale.dem.energy import energy_book
-from porescale.dem.experiments import MASS, RADIUS, STIFFNESS, law_at
+from porescale.dem.experiments import MASS, RADIUS, STIFFNESS, cloud, law_at, momentum_drift
 from porescale.dem.verify_contact import TANGENTIAL, VALIDATIONS
 from porescale.ground.constants import GRAVITY
 
@@ -72,6 +72,13 @@ def test_without_resistance_a_disc_rolls_off():
     assert lab.resisted_incline(0.09, 0.0) / GRAVITY > 100 * tolerance("dem.rolling_resistance_on_an_incline")
     wrong = 2.0 / 3.0 * GRAVITY * (math.sin(0.3) - 0.1 * math.cos(0.3))  # lever arm r: short by the static overlap
     assert abs(lab.resisted_incline(0.3, 0.1) - wrong) / GRAVITY > 1e-6
+
+
+def test_a_spin_that_is_held_takes_the_torque_of_rolling():
+    grains = cloud()
+    grains.set_law(replace(lab.HERTZ, damping_ratio=0.1, friction=0.0, rolling_friction=0.2, deepest=0.1))
+    grains.hold(0, x=False, y=False)
+    assert max(momentum_drift(grains, 5000)) > 1e6 * tolerance("dem.angular_momentum_with_rolling_resistance")
 
 
 def test_a_continuum_has_no_dispersion_and_other_waves():
