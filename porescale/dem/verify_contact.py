@@ -138,7 +138,7 @@ def rolling_momenta() -> Measured:
 @VALIDATIONS.row(
     "dem.dispersion_of_a_chain",
     source="w = 2 sqrt(k/m) sin(q a/2), Brillouin, Wave Propagation in Periodic Structures; tutorial I-4",
-    because="leap-frog raises a frequency by (w dt)^2/24 = 7e-5 at w dt = 0.04; half as much again for the reading of it",
+    because="leap-frog raises a frequency by (w dt)^2/24 = 7e-5 at w dt = 0.04; half as much again to read it",
     tolerance=1e-4,
 )
 def dispersion() -> Measured:
