@@ -6,27 +6,17 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from porescale.decks.deck import read_deck
-from porescale.decks.trace import draw_energies, draw_shapes, finer, first_touch, trace, unbalanced
+from porescale.decks.trace import draw_fall, fallen
 from porescale.scene.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 
 
-def measure(factor: int = 10) -> tuple[dict[str, float], Figure]:
-    """Mass, first touch, and what the energy book lacks, at the deck's step and at a ``factor`` of it."""
-    made, fine = trace(HERE), trace(HERE, finer(read_deck(HERE), factor))
-    numbers = {"mass": float(made.model.grains.discs.mass[0])}
-    numbers |= {
-        "first touch": first_touch(made),
-        "err over the fall": unbalanced(made),
-        "the same at a tenth of the step": unbalanced(fine),
-    }
+def measure() -> tuple[dict[str, float], Figure]:
+    """Mass, first touch, and what the energy book lacks, at the deck's step and at a tenth of it."""
+    made, numbers = fallen(HERE)
     figure, axes = stage(2, 9.0, 3.2)
-    for k, which in enumerate((0, 10, 16, 24)):
-        draw_shapes(axes[0], made, which, f"C{k}")
-    axes[0].set(xlabel="x", ylabel="y", title="at 0, 0.05, 0.08 and 0.12")
-    draw_energies(axes[1], made)
+    draw_fall(axes[0], axes[1], made, (0, 10, 16, 24))
     return numbers, figure
 
 

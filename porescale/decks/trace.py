@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -67,6 +68,34 @@ def first_touch(made: Trace) -> float:
     """Time of the first row with a contact; infinite if there is none."""
     touching = np.flatnonzero(made.energy["enka"] > 0.0)
     return float(made.energy["time"][touching[0]]) if len(touching) else math.inf
+
+
+def fallen(folder: Path, factor: int = 10) -> tuple[Trace, dict[str, float]]:
+    """The deck in ``folder`` of something that falls and bounces, and what is measured of it: mass, inertia where it
+    is a rigid body, first touch, and what the energy book lacks, at the deck's step and at a ``factor``-th of it."""
+    made, fine = trace(folder), trace(folder, finer(read_deck(folder), factor))
+    grains = made.model.grains
+    if grains.steering is None or not len(grains.steering.clumps.mass):
+        numbers = {"mass": float(grains.discs.mass[0])}
+    else:
+        bodies = grains.steering.clumps
+        numbers = {"mass": float(bodies.mass[0]), "inertia": float(bodies.inertia[0])}
+    numbers |= {
+        "first touch": first_touch(made),
+        "err over the fall": unbalanced(made),
+        "the same at a tenth of the step": unbalanced(fine),
+    }
+    return made, numbers
+
+
+def draw_fall(shapes: Axes, energies: Axes, made: Trace, rows: Sequence[int]) -> None:
+    """The bodies at four or so ``rows`` of the places, and the energies."""
+    deck = made.model.deck
+    for k, which in enumerate(rows):
+        draw_shapes(shapes, made, which, f"C{k}")
+    times = [f"{which * deck.nprn1 * deck.dt:.3g}" for which in rows]
+    shapes.set(xlabel="x", ylabel="y", title=f"at {', '.join(times[:-1])} and {times[-1]}")
+    draw_energies(energies, made)
 
 
 def draw_shapes(axes: Axes, made: Trace, which: int, colour: str = "#8c1c2f", view: tuple[float, ...] = ()) -> None:
