@@ -111,7 +111,13 @@ class Flow:
 
     def advance(self) -> None:
         """One step."""
-        layer, step = self.layer, self.next_step
+        step = self.next_step
+        self.evaluate(step, self.begin(step))
+        self.end(step)
+
+    def begin(self, step: float) -> float:
+        """First half kick and drift of a ``step`` (s); returns the ratio of `kick_drift` for `evaluate`."""
+        layer = self.layer
         # Rates belong to mid-steps: distance from the last to this one over that between the last two.
         ratio = (step + self.last_steps[0]) / (self.last_steps[0] + self.last_steps[1])
         self.stopped += kick_drift(
@@ -119,7 +125,10 @@ class Flow:
             layer.rate_before, layer.predicted, 0.5 * step, step, ratio, self.lower, self.upper,
         )  # fmt: skip
         layer.rate, layer.rate_before = layer.rate_before, layer.rate
-        self.evaluate(step, ratio)
+        return ratio
+
+    def end(self, step: float) -> None:
+        """Second half kick of a ``step`` (s), and what is counted."""
         self.limited[self.rule] += 1
         self.finish(step)
         self.step += 1
