@@ -1,0 +1,162 @@
+"""One step of a soil: kick, drift, strain, push, kick; and how long it may be.
+
+    v½ = v + Δt/2 a,   x' = x + Δt v½,   σ' = σ(x', v½),   a' = a(x', σ', v½),   v' = v½ + Δt/2 a'
+
+Eq. 48 of Maeda & Sakai 2004 has this order but for the rate of the step before, which no Δt makes stable for sound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from continuum_sph.rates import split_rows
+from continuum_sph.soil.divergence import accelerate
+from continuum_sph.soil.gradient import velocity_gradients
+from continuum_sph.soil.law import RULES, SoilLaw
+from continuum_sph.soil.material import table
+from continuum_sph.soil.motion import kick, kick_drift
+from continuum_sph.soil.state import VOLUME, Soil
+from continuum_sph.soil.stress import deform
+from continuum_sph.soil.walls import place_walls, show_walls
+from porescale.particles import PairList
+
+
+@dataclass
+class SoilFlow:
+    """A soil, its law and its pairs (a full list), moving.
+
+    step : steps done;  time, next_step : s;  limited : steps that each of `law.RULES` limited, rule : the one that
+    limits the next;  limit : longest step that other layers allow, s;  stopped : times a particle was stopped at
+    ``lower`` or ``upper`` (2,) m, infinite unless set;  pace : largest c/h, 1/s;  swiftest : largest speed, m/s;
+    before_force : called before accelerations, to overwrite ``soil.force``.
+    """
+
+    soil: Soil
+    law: SoilLaw
+    pairs: PairList
+    before_force: Callable[[SoilFlow], None] | None = None
+    step: int = 0
+    time: float = 0.0
+    next_step: float = 0.0
+    limit: float = float("inf")
+    limited: list[int] = field(default_factory=lambda: [0, 0, 0])
+    rule: int = 0
+    stopped: int = 0
+    pace: float = 0.0
+    swiftest: float = 0.0
+
+    def __post_init__(self) -> None:
+        soil = self.soil
+        soil.length[:] = self.law.smoothing.length
+        self.table = table(self.law.materials)
+        self.split = np.zeros(soil.count, np.int64)
+        self.lower, self.upper = np.full(2, -np.inf), np.full(2, np.inf)
+        # Walls do not meet each other.
+        self.pairs.group = np.where(np.arange(soil.count) < soil.soil, -1, 0).astype(np.int32)
+
+    def start(self) -> None:
+        """Accelerations of the initial state, from which the first step goes on."""
+        soil = self.soil
+        soil.record[: soil.soil, VOLUME] = soil.mass[: soil.soil] / soil.density
+        self.begin(0.0)
+        self.strain(0.0)
+        self.push()
+        self.end(0.0)
+
+    def advance(self, step: float | None = None) -> None:
+        """One step, of ``step`` (s) at most ``next_step`` if given."""
+        step = self.next_step if step is None else step
+        self.begin(step)
+        self.strain(step)
+        self.push()
+        self.limited[self.rule] += 1
+        self.end(step)
+        self.step += 1
+        self.time += step
+
+    def begin(self, step: float) -> None:
+        """First half kick and drift of a ``step`` (s)."""
+        soil = self.soil
+        self.stopped += kick_drift(
+            soil.x, soil.v, soil.mass, soil.acceleration, soil.drift, soil.record, 0.5 * step, step,
+            self.lower, self.upper,
+        )  # fmt: skip
+        place_walls(soil.soil, soil.x, soil.v, soil.mass, self.table, soil.facing, soil.record, step)
+        if self.pairs.update(soil.x, soil.length):
+            split_rows(soil.soil, self.pairs.start, self.pairs.partner, self.split)
+
+    def strain(self, step: float) -> None:
+        """Velocity gradients at the new positions, and densities and stresses a ``step`` (s) on."""
+        soil, law, pairs = self.soil, self.law, self.pairs
+        self.show_walls()
+        velocity_gradients(
+            soil.soil, pairs.start, self.split, pairs.partner, soil.record, soil.facing, soil.matrix, law.corrected,
+            law.smoothing.kind, law.smoothing.length, *pairs.period,
+        )  # fmt: skip
+        quickest = deform(
+            soil.density, soil.mass, soil.stress, soil.material, self.table, soil.matrix, soil.opening, soil.plastic,
+            soil.record, step, -1.0 if law.printed_spin else 1.0,
+        )  # fmt: skip
+        self.pace = float(quickest) ** 0.5 / law.smoothing.length
+
+    def push(self) -> None:
+        """Accelerations."""
+        soil, law, pairs = self.soil, self.law, self.pairs
+        if self.before_force is not None:
+            self.before_force(self)
+        self.show_walls()
+        accelerate(
+            soil.soil, pairs.start, self.split, pairs.partner, soil.record, soil.facing, soil.force, soil.acceleration,
+            law.smoothing.kind, law.smoothing.length, *law.gravity, law.damping, law.printed_damping, *pairs.period,
+        )  # fmt: skip
+
+    def end(self, step: float) -> None:
+        """Second half kick of a ``step`` (s), and length of the next from the largest |a| and c/h."""
+        soil = self.soil
+        hardest, swiftest = kick(soil.v, soil.acceleration, 0.5 * step)
+        self.swiftest = float(swiftest) ** 0.5
+        limits = self.law.limits(float(hardest) ** 0.5, self.pace, self.limit)
+        self.rule = int(np.argmin(limits))
+        self.next_step = limits[self.rule]
+        if not 0.0 < self.next_step < np.inf:
+            raise ValueError(f"the next step would be {self.next_step} s (limited by {RULES[self.rule]})")
+
+    def show_walls(self) -> None:
+        """What soil sees of walls: stress and velocity of the soil before them."""
+        soil, law, pairs = self.soil, self.law, self.pairs
+        show_walls(
+            soil.soil, pairs.start, self.split, pairs.partner, soil.v, soil.mass, soil.stress, soil.force,
+            soil.material, self.table, soil.facing, soil.record, law.smoothing.kind, law.smoothing.length,
+            *law.gravity, *pairs.period,
+        )  # fmt: skip
+
+    def state(self) -> dict[str, Any]:
+        """Everything that later steps depend on."""
+        return {
+            "soil": self.soil.state(),
+            "facing": self.soil.facing.copy(),
+            "pairs": self.pairs.state(),
+            "step": self.step,
+            "time": self.time,
+            "next_step": self.next_step,
+            "limit": self.limit,
+            "limited": list(self.limited),
+            "rule": self.rule,
+            "stopped": self.stopped,
+            "pace": self.pace,
+            "swiftest": self.swiftest,
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go on bit for bit from the ``state`` of a flow of the same start."""
+        self.soil.restore(state["soil"])
+        self.soil.facing[:] = state["facing"]
+        self.pairs.restore(state["pairs"])
+        split_rows(self.soil.soil, self.pairs.start, self.pairs.partner, self.split)
+        self.step, self.time, self.next_step = state["step"], state["time"], state["next_step"]
+        self.limit, self.limited, self.rule = state["limit"], list(state["limited"]), state["rule"]
+        self.stopped, self.pace, self.swiftest = state["stopped"], state["pace"], state["swiftest"]

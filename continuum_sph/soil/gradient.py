@@ -1,0 +1,93 @@
+"""Velocity gradients of soil particles: G_i = Σ V_j (v_j - v_i) ⊗ K_i ∇_i W.
+
+K_i is the inverse of M_i = Σ V_j (x_j - x_i) ⊗ ∇_i W, which makes G exact for linear fields and so blind to rigid
+rotation, at free surfaces too: Randles & Libersky, Comput. Methods Appl. Mech. Eng. 139 (1996) 375; Bonet & Lok, ibid.
+180 (1999) 97.  M has the least eigenvalue 0.49 in the first row of a level surface and 0.27 in a corner; below FULL a
+particle has come off and K goes over to the unit tensor, which it is from NONE on.  Eq. 37 of Maeda & Sakai 2004 has
+K = 1, and the opposite sign of v_j - v_i, which is that of strain with compression positive.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from continuum_sph.smoothing import slope_scale, slope_shape
+from continuum_sph.soil.state import GXX, GXY, GYX, GYY, VOLUME, VX, VY, X, Y
+from porescale.ground.jit import inline, parallel_kernel, prange
+from porescale.particles.cells import minimum_image
+
+NONE, FULL = 0.1, 0.25
+
+
+@inline
+def inverse(xx, xy, yy):
+    """xx, xy, yy of K for moments M of such components."""
+    half = 0.5 * (xx + yy)
+    least = half - np.sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy)
+    share = min(1.0, max(0.0, (least - NONE) / (FULL - NONE)))
+    if share == 0.0:
+        return 1.0, 0.0, 1.0
+    whole = share / (xx * yy - xy * xy)
+    rest = 1.0 - share
+    return whole * yy + rest, -whole * xy, whole * xx + rest
+
+
+@inline
+def before(facing, x, y):
+    """Whether soil at (x, y) m lies on the side of a wall that a wall particle's ``facing`` (4,) belongs to."""
+    return (x - facing[0]) * facing[2] + (y - facing[1]) * facing[3] >= 0.0
+
+
+@parallel_kernel
+def velocity_gradients(soil, start, split, partner, record, facing, matrix, corrected, kind, h, period_x, period_y):
+    """Overwrites, of soil, the last four columns of ``record`` (n, 16), G, and ``matrix`` (soil, 4), K and tr M.
+
+    start, split, partner: full list, walls of row i from ``split[i]`` on, which count where soil lies before them;
+    record, facing: see Soil;  corrected: else K = 1;  kind, h: smoothing;  periods, m or 0.
+    """
+    scale = slope_scale(kind, h)
+    inverse_h = 1.0 / h
+    for i in prange(soil):
+        xi = record[i, X]
+        yi = record[i, Y]
+        vxi = record[i, VX]
+        vyi = record[i, VY]
+        mxx = 0.0
+        mxy = 0.0
+        myy = 0.0
+        gxx = 0.0
+        gxy = 0.0
+        gyx = 0.0
+        gyy = 0.0
+        walls = np.uint64(split[i])
+        for k in range(np.uint64(start[i]), np.uint64(start[i + 1])):
+            j = np.uint64(partner[k])
+            dx = minimum_image(xi - record[j, X], period_x)
+            dy = minimum_image(yi - record[j, Y], period_y)
+            if k >= walls and not before(facing[j], record[j, X] + dx, record[j, Y] + dy):
+                continue
+            part = record[j, VOLUME] * scale * slope_shape(kind, np.sqrt(dx * dx + dy * dy) * inverse_h)
+            px = part * dx
+            py = part * dy
+            vx = record[j, VX] - vxi
+            vy = record[j, VY] - vyi
+            mxx -= px * dx
+            mxy -= px * dy
+            myy -= py * dy
+            gxx += vx * px
+            gxy += vx * py
+            gyx += vy * px
+            gyy += vy * py
+        kxx = 1.0
+        kxy = 0.0
+        kyy = 1.0
+        if corrected:
+            kxx, kxy, kyy = inverse(mxx, mxy, myy)
+        matrix[i, 0] = kxx
+        matrix[i, 1] = kxy
+        matrix[i, 2] = kyy
+        matrix[i, 3] = mxx + myy
+        record[i, GXX] = gxx * kxx + gxy * kxy
+        record[i, GXY] = gxx * kxy + gxy * kyy
+        record[i, GYX] = gyx * kxx + gyy * kxy
+        record[i, GYY] = gyx * kxy + gyy * kyy

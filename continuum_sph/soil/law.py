@@ -1,0 +1,44 @@
+"""What the particles of a soil obey, in numbers, and the steps that it allows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from continuum_sph.smoothing import Smoothing
+from continuum_sph.soil.material import Material
+
+RULES = ("sound", "acceleration", "other layers")
+
+
+@dataclass(frozen=True)
+class SoilLaw:
+    """Numbers in SI.
+
+    smoothing : kernel and h;  spacing : of the particles, m;  materials : by the numbers that particles carry;
+    gravity : (x, y) m/s²;  damping : α, of the part of velocity differences that is not linear in place, or with
+    ``printed_damping`` of all of it between particles that approach (eq. 36);  corrected : gradients exact for linear
+    fields;  printed_spin : turn stress as eq. 38 has it, the wrong way;  courant : the 0.25 of eq. 49.
+    """
+
+    smoothing: Smoothing
+    spacing: float
+    materials: tuple[Material, ...]
+    gravity: tuple[float, float]
+    damping: float = 1.0
+    printed_damping: bool = False
+    corrected: bool = True
+    printed_spin: bool = False
+    courant: float = 0.25
+
+    def limits(self, acceleration: float, pace: float, others: float) -> tuple[float, float, float]:
+        """Steps allowed by sound, acceleration (m/s²) and other layers (s), s: eq. 49.
+
+        0.25/max(c/h), 0.25 √(h/|a|);  ``pace``: the largest c/h, 1/s.  The third of eq. 49, h²/8ν with ν = α c h/8 of
+        the damping, is h/(α c) and never less than the first for α up to 4.
+        """
+        h, infinite = self.smoothing.length, float("inf")
+        return (
+            self.courant / pace if pace > 0.0 else infinite,
+            self.courant * (h / acceleration) ** 0.5 if acceleration > 0.0 else infinite,
+            others,
+        )

@@ -1,0 +1,118 @@
+"""Kinds of soil: stiffness, strength, weight, each one row of a table of numbers that kernels read.
+
+E = E0 (p/p0)^m and G = E/2(1+ν) with the mean stress p = (σ_xx + σ_yy)/2 (eq. 42 of Maeda & Sakai 2004).  Of the area
+modulus B, dp = B dε_v, there are two: "plane strain", E/2(1+ν)(1-2ν), which keeps σ_zz = 2ν p as plane strain does, and
+"printed", E/2(1-ν) of eq. 43, which is that of plane stress.  A column that cannot widen has the modulus B + G and the
+stress ratio K0 = (B - G)/(B + G): ν/(1-ν) in plane strain, ν with the printed modulus as long as soil stays elastic.
+
+Strength: τ_f = p sin φ + c cos φ for the radius τ of Mohr's circle in the plane, Mohr-Coulomb while σ_zz lies between
+the other two.  The paper's τ_f = p tan φ_d is the same with sin φ = tan φ_d: its 0.5 is φ = 30°.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.ground.jit import inline
+
+Floats = NDArray[np.float64]
+
+AREA, SHEAR, ACROSS, EXPONENT, REFERENCE, LEAST, SLOPE, COHESION, DILATANCY, TENSION, YIELDS, DENSITY, GRAINS = range(
+    13
+)
+"""Columns of the table: B/E and G/E, dσ_zz/dp; m; p0 Pa; least p for stiffness, Pa; sin φ; c cos φ, Pa; sin ψ; largest
+tension, Pa; 1 if it yields; density at the start, share of grains 1 - n at the start.  B and G are times E0."""
+
+
+@dataclass(frozen=True)
+class Material:
+    """stiffness : E0, Pa at the mean stress ``reference`` (p0, Pa);  exponent : m;  poisson : ν;  modulus : "plane
+    strain" or "printed";  friction : sin φ;  cohesion : c cos φ, Pa;  dilatancy : sin ψ;  tension : largest, Pa;
+    yields : else elastic for ever;  density : of grains per whole volume at the start, kg/m³;  porosity : n then;
+    least : mean stress (Pa) below which soil gets no softer.
+    """
+
+    stiffness: float
+    density: float
+    poisson: float = 0.3
+    exponent: float = 0.0
+    reference: float = 1e5
+    least: float = 10.0
+    modulus: str = "plane strain"
+    friction: float = 0.5
+    cohesion: float = 0.0
+    dilatancy: float = 0.0
+    tension: float = 0.0
+    yields: bool = True
+    porosity: float = 0.4
+
+    @property
+    def printed(self) -> bool:
+        """Whether the area modulus is that of eq. 43."""
+        return self.modulus == "printed"
+
+    @property
+    def area_modulus(self) -> float:
+        """B/E."""
+        if self.printed:
+            return 0.5 / (1.0 - self.poisson)
+        return 0.5 / ((1.0 + self.poisson) * (1.0 - 2.0 * self.poisson))
+
+    @property
+    def shear_modulus(self) -> float:
+        """G/E."""
+        return 0.5 / (1.0 + self.poisson)
+
+    @property
+    def column_modulus(self) -> float:
+        """(B + G) at E0, Pa: stiffness of a column that cannot widen, and of its sound."""
+        return (self.area_modulus + self.shear_modulus) * self.stiffness
+
+    @property
+    def rest(self) -> float:
+        """K0 of a column that settles under its weight from no stress: elastic, or as yielding leaves it."""
+        elastic = (self.area_modulus - self.shear_modulus) / (self.area_modulus + self.shear_modulus)
+        if self.yields and self.cohesion == 0.0:
+            return max(elastic, (1.0 - self.friction) / (1.0 + self.friction))
+        return elastic
+
+    def stiffness_at(self, pressure: float) -> float:
+        """E (Pa) at a mean stress (Pa)."""
+        return float(self.stiffness * (max(pressure, self.least) / self.reference) ** self.exponent)
+
+    def row(self) -> Floats:
+        """Its line of the table, (13,)."""
+        across = 0.0 if self.printed else 2.0 * self.poisson
+        # Tension beyond the tip of the cone, c cot φ, cannot be.
+        tension = min(self.tension, self.cohesion / self.friction if self.friction > 0.0 else math.inf)
+        return np.array(
+            [
+                self.area_modulus * self.stiffness, self.shear_modulus * self.stiffness, across, self.exponent,
+                self.reference, self.least, self.friction, self.cohesion, self.dilatancy, tension, float(self.yields),
+                self.density, 1.0 - self.porosity,
+            ]
+        )  # fmt: skip
+
+
+def table(materials: tuple[Material, ...]) -> Floats:
+    """The table of all materials, (m, 13)."""
+    return np.array([material.row() for material in materials])
+
+
+def porosity(density: Floats, material: NDArray[np.int64], rows: Floats) -> Floats:
+    """Porosity of particles: grains keep their volume.  density kg/m³, material: (soil,);  rows: the table."""
+    own = rows[material]
+    result: Floats = 1.0 - own[:, GRAINS] * density / own[:, DENSITY]
+    return result
+
+
+@inline
+def softening(p, row):
+    """E/E0 at the mean stress p (Pa), eq. 42."""
+    if row[EXPONENT] == 0.0:
+        return 1.0
+    return (max(p, row[LEAST]) / row[REFERENCE]) ** row[EXPONENT]

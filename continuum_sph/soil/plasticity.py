@@ -1,0 +1,99 @@
+"""Stress of one element of soil after a small deformation: turned, strained elastically, brought back to yield.
+
+In the plane a stress is p = (σ_xx + σ_yy)/2 and the vector (s, t) = ((σ_xx - σ_yy)/2, σ_xy) of length r, the radius of
+Mohr's circle.  Turning the soil by θ turns (s, t) by 2θ.  Yield is r = p sin φ + c cos φ, flow takes volume with it as
+sin ψ: dε_v = -sin ψ dγ.  The way back from a trial stress beyond yield is exact, not iterated: with
+f = r - p sin φ - c cos φ,
+
+    dγ = f/(G + B sin φ sin ψ),   r -= G dγ,   p += B sin ψ dγ
+
+and along it (s, t) keeps its direction.  Tension: the smallest principal stress p - r is at least -T, by associated
+flow, and its corner with the cone and its tip are points.  Soil that has come apart bears no stress until its opening
+has closed again (Dunatunga & Kamrin, J. Fluid Mech. 779 (2015) 483); hypo-elasticity without that memory would push as
+soon as things approach.  σ_zz changes with p as plane strain has it while nothing flows across the plane: 2ν dp.
+Source: Bui, Fukagawa, Sako & Ohno, Int. J. Numer. Anal. Meth. Geomech. 32 (2008) 1537 (there Drucker-Prager, scaled
+back); Jaumann's rate: eq. 45 of Maeda & Sakai 2004.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from continuum_sph.soil.material import (
+    ACROSS,
+    AREA,
+    COHESION,
+    DILATANCY,
+    SHEAR,
+    SLOPE,
+    TENSION,
+    YIELDS,
+    softening,
+)
+from porescale.ground.jit import inline
+
+
+@inline
+def returned(p, r, area, shear, row):
+    """(p, r, dγ, opened): a trial stress (Pa) brought back to yield, shear strain that did not come back and share of
+    the volume that came apart;  area, shear: B and G, Pa;  row: the material's."""
+    slope = row[SLOPE]
+    cohesion = row[COHESION]
+    dilatancy = row[DILATANCY]
+    tension = row[TENSION]
+    new_p = p
+    new_r = r
+    if r > slope * p + cohesion:
+        flow = (r - slope * p - cohesion) / (shear + slope * area * dilatancy)
+        new_r = r - shear * flow
+        new_p = p + area * dilatancy * flow
+        if new_r < 0.0:  # beyond the tip
+            new_r = 0.0
+            new_p = -tension
+    opened = 0.0
+    if new_p - new_r < -tension or (new_r == 0.0 and new_p <= -tension and p < new_p):
+        flow = max(0.0, (r - p - tension) / (shear + area))
+        new_r = r - shear * flow
+        new_p = p + area * flow
+        if new_r < 0.0:
+            new_r = 0.0
+            new_p = -tension
+        elif new_r > slope * new_p + cohesion:  # the corner of both
+            new_p = (cohesion - tension) / (1.0 - slope)
+            new_r = new_p + tension
+        opened = max(0.0, (new_p - p) / area)
+    return new_p, new_r, max(0.0, r - new_r) / shear, opened
+
+
+@inline
+def new_stress(xx, yy, xy, zz, gxx, gxy, gyx, gyy, step, opening, row):
+    """(σ_xx, σ_yy, σ_xy, σ_zz, opening, dγ) after ``step`` (s) at the velocity gradient g (1/s);  stresses in Pa.
+
+    opening: share of the volume by which the element has come apart;  row: the material's line of the table.
+    """
+    p = 0.5 * (xx + yy)
+    turn = 0.5 * (gyx - gxy) * step  # tan of half of 2θ: exact in length, third order in angle
+    shorter = 1.0 / (1.0 + turn * turn)
+    cosine = (1.0 - turn * turn) * shorter
+    sine = 2.0 * turn * shorter
+    s = 0.5 * (xx - yy) * cosine - xy * sine
+    t = 0.5 * (xx - yy) * sine + xy * cosine
+    closing = -(gxx + gyy) * step
+    closed = min(opening, max(0.0, closing))
+    opening -= closed
+    soft = softening(p, row)
+    area = row[AREA] * soft
+    shear = row[SHEAR] * soft
+    new_p = p + area * (closing - closed)
+    s -= shear * (gxx - gyy) * step
+    t -= shear * (gxy + gyx) * step
+    flow = 0.0
+    if row[YIELDS] > 0.0:
+        r = np.sqrt(s * s + t * t)
+        new_p, new_r, flow, opened = returned(new_p, r, area, shear, row)
+        if new_r < r:
+            s *= new_r / r
+            t *= new_r / r
+        opening += opened
+    zz += row[ACROSS] * (new_p - p)
+    return new_p + s, new_p - s, t, zz, opening, flow

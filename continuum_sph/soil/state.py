@@ -1,0 +1,80 @@
+"""State of a layer of soil: arrays, soil particles first, wall particles after them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+X, Y, VX, VY, VOLUME, SOUND, RHO, MASS, TXX, TXY, TYX, TYY, GXX, GXY, GYX, GYY = range(16)
+"""Columns of a record, two cache lines: m, m, m/s, m/s, m², m/s, kg/m³, kg/m; σ·K, Pa (xy: row x, column y); velocity
+gradient ∂v_x/∂x, ∂v_x/∂y, ∂v_y/∂x, ∂v_y/∂y, 1/s."""
+XX, YY, XY, ZZ = range(4)
+"""Columns of a stress, Pa, compression positive."""
+
+
+@dataclass
+class Soil:
+    """Particles of soil and of the walls that hold it.
+
+    soil : number of soil particles, the first rows of every array;
+    x (n, 2) m;  v (n, 2) m/s, of walls the wall's own;  mass (n,) kg per metre of depth, of soil that of its grains;
+    density (soil,) kg/m³, grains per whole volume;  stress (n, 4) Pa, effective, of walls that of the soil before them;
+    material (n,) number of the particle's material.  What has happened to a particle: opening (soil,) by how much of
+    its volume it has come apart, plastic (soil,) shear strain that did not come back.  The rest is made of these.
+    """
+
+    soil: int
+    x: Floats
+    v: Floats
+    mass: Floats
+    density: Floats
+    stress: Floats
+    material: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
+    force: Floats = field(init=False)  # (soil, 2) N/m, of other layers
+    acceleration: Floats = field(init=False)  # (soil, 2) m/s²
+    drift: Floats = field(init=False)  # (soil, 2) m/s, what shifting adds to the velocity of moving
+    opening: Floats = field(init=False)
+    plastic: Floats = field(init=False)
+    record: Floats = field(init=False)  # (n, 16) all that a pair reads of a partner
+    matrix: Floats = field(init=False)  # (soil, 4) xx, xy, yy of the gradient correction, trace of the moments
+    facing: Floats = field(init=False)  # (n, 4) of walls: nearest point of the surface, normal into the soil
+    length: Floats = field(init=False)  # (n,) m, smoothing lengths, set by the flow
+
+    def __post_init__(self) -> None:
+        n = len(self.x)
+        assert self.x.shape == self.v.shape == (n, 2)
+        assert self.mass.shape == (n,)
+        assert self.density.shape == (self.soil,)
+        assert self.stress.shape == (n, 4)
+        if not len(self.material):
+            self.material = np.zeros(n, np.int64)
+        self.force, self.acceleration, self.drift = (np.zeros((self.soil, 2)) for _ in range(3))
+        self.opening, self.plastic = np.zeros(self.soil), np.zeros(self.soil)
+        self.record, self.facing, self.length = np.zeros((n, 16)), np.zeros((n, 4)), np.zeros(n)
+        self.matrix = np.tile([1.0, 0.0, 1.0, 2.0], (self.soil, 1))
+
+    @property
+    def count(self) -> int:
+        """All particles."""
+        return len(self.x)
+
+    @property
+    def gradient(self) -> Floats:
+        """Velocity gradients of the last step, (soil, 4) 1/s: ∂v_x/∂x, ∂v_x/∂y, ∂v_y/∂x, ∂v_y/∂y.  A view."""
+        return self.record[: self.soil, GXX:]
+
+    KEPT = ("x", "v", "mass", "density", "stress", "force", "acceleration", "drift", "opening", "plastic", "record",
+    "matrix", "length")  # fmt: skip
+
+    def state(self) -> dict[str, Floats]:
+        """Copies of the arrays that later steps depend on."""
+        return {name: getattr(self, name).copy() for name in self.KEPT}
+
+    def restore(self, state: dict[str, Floats]) -> None:
+        """Take over what `state` of an equal soil gave."""
+        for name in self.KEPT:
+            getattr(self, name)[:] = state[name]
