@@ -25,13 +25,14 @@ def weigh_row(s, sx, sy, inverse, b, even, kept, weighting, solid):
     """What saturated cells need that follows from the bodies alone.
 
     s, sx, sy (nx,) as in collide_saturated_row: sx, sy become the mean solid velocity.  Overwrites inverse, 1 over the
-    sum of the solid fractions, or 1;  b, weight;  even, kept: ``rates``.  A loop of its own, since in one with
-    the collision divisions would wait for each other.
+    sum of the solid fractions, or 1 where there is none to speak of, whose square is 0 (1 over it may be infinite);
+    b, weight;  even, kept: ``rates``.  A loop of its own, since in one with the collision divisions would wait for
+    each other.
     """
     c = numbers(weighting[0])
     for x in range(s.shape[0]):
         e = s[x]
-        share = c.one / (e if e > c.zero else c.one)
+        share = c.one / (e if e * e > c.zero else c.one)
         e = min(c.one, e)
         inverse[x] = share
         sx[x] *= share

@@ -12,8 +12,11 @@ from porescale.coupling import rim
 from porescale.coupling.coverage_rows import make_patches
 from porescale.coupling.experiments_fast import STARTED, started
 from porescale.coupling.saturated import Saturated
+from porescale.coupling.solid.choose import choose_solid
+from porescale.coupling.solid_collision import weigh_row
 from porescale.coupling.verify import VALIDATIONS
 from porescale.coupling.verify_fast import fast_starts
+from porescale.coupling.weighting import choose_weight
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.sides import Sides
 from tests.reference.cylinder_start import CylinderStart
@@ -156,3 +159,18 @@ def test_a_cylinder_held_in_the_stream_feels_what_a_towed_one_does():
     # Galilean twin at 10 cells: the towed one's coverage changes, 1 % by the table of rim constants' own scatter.
     towed_drag, held_drag = (started(100, 10.0, held=held, wide=24)[0] for held in (False, True))
     assert towed_drag == pytest.approx(held_drag, rel=0.012)
+
+
+@pytest.mark.parametrize("least", [1e-45, 1e-39, 1e-30, 0.0])
+def test_a_rim_that_hardly_touches_a_cell_leaves_its_numbers_finite(least):
+    # As motion sets in, rims so little soft are filtered that cells at their corners get less than 1/largest number.
+    solid = choose_solid("exact-wall", 0.501, 1.0, np.float32, soft=True)
+    s, sx, sy = np.full((3, 2), least, np.float32)
+    sx *= np.float32(0.1)
+    inverse, b, even, kept = np.zeros((4, 2), np.float32)
+    law = choose_weight("wall", 0.501, np.float32, soft=True)
+    weigh_row.py_func(s, sx, sy, inverse, b, even, kept, law, solid)
+    for found in (inverse, sx, sy, b, even, kept):
+        assert np.isfinite(found).all()
+    assert (np.abs(sx) <= 0.1 * (1 + 4 * np.finfo(np.float32).eps)).all()
+    assert (b <= 0.001 * s / 0.75 * 1.001 + 1e-45).all()  # k e/(3/4), and the least number there is
