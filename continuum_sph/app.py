@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from continuum_sph.scene.model import Simulation
     from continuum_sph.scene.sections import Scene
     from porescale.runs.drive import Outcome
+    from porescale.runs.model import Array
     from porescale.workbench.benchmarks import Benchmarks
     from porescale.workbench.report import Report
     from porescale.workbench.validations import Validations
@@ -108,6 +109,13 @@ TWO = {0: ("water", "#5b8fd0"), 1: ("second fluid", "#e8a33d")}
 """Names and colours of two fluids."""
 
 
+def table(folder: Path, name: str) -> dict[str, Array]:
+    """Columns of a table of the run in ``folder``, "series" for series.csv; {} when there is none."""
+    from porescale.runs.series import read_series
+
+    return read_series(folder / f"{name}.csv")
+
+
 def validations() -> Validations:
     """All rows of ``verify``."""
     from continuum_sph.scene.validations import VALIDATIONS
@@ -132,6 +140,7 @@ PACKAGE = Package(
     drive=drive,
     report=report,
     show=show,
+    table=table,
     validations=validations,
     benchmarks=benchmarks,
 )

@@ -19,6 +19,7 @@ PACKAGE = Package(
     drive=run.drive,
     report=check.report,
     show=show.show,
+    table=run.table,
     validations=verify.validations,
     benchmarks=bench.benchmarks,
     stability=study.stability,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from porescale.runs.drive import Outcome
+    from porescale.runs.model import Array
     from porescale.scene.sections import Scene
     from porescale.scene.simulation import Simulation
 
@@ -67,3 +68,10 @@ def drive(
     )
     remember(model.derived, outcome.steps_per_second)
     return outcome
+
+
+def table(folder: Path, name: str) -> dict[str, Array]:
+    """Columns of a table of the run in ``folder``, "series" for series.csv; {} when there is none."""
+    from porescale.runs.series import read_series
+
+    return read_series(folder / f"{name}.csv")

@@ -175,11 +175,12 @@ def _loop(run: _Run, record: Record, stop: StopRequest, watch: Watch) -> float:
         _record_due(run, record)
         record.save(model, run.schedules)
     while not run.ended(model.step, model.time):
-        start, before = clock.perf_counter(), model.step
+        start, busy, before = clock.perf_counter(), clock.process_time(), model.step
         model.advance(run.block(rate))
         assert model.step > before, "advance() must count its steps"
         assert run.step_seconds in (None, model.step_seconds), "a varying step needs variable_step = True"
         wall = clock.perf_counter() - start
+        record.cost.block(model.step - before, clock.process_time() - busy)
         rate, spent = (model.step - before) / max(wall, 1e-9), spent + wall
         watch.update(model.step, model.time)
         _after_block(run, record)

@@ -18,6 +18,7 @@ from porescale.ground.check import Fault, InputError
 from porescale.runs import card as cards
 from porescale.runs import snapshots
 from porescale.runs.checkpoint import read_checkpoint, read_header, write_checkpoint
+from porescale.runs.cost import Cost, peak_bytes
 from porescale.runs.model import Model, tables_of
 from porescale.runs.schedule import Schedule
 from porescale.runs.series import NAME as SERIES
@@ -54,6 +55,7 @@ class Record:
         self.began = clock.perf_counter()
         self.saved = self.began
         self.save_cost = 0.0
+        self.cost = Cost()
         self.saved_step: int | None = None
         self.saved_time = 0.0
         self.snapshots = len(snapshots.catalogue(folder))
@@ -112,6 +114,7 @@ class Record:
         record.row_step = record.scheduled_row_step = int(meta["row_step"])
         record.snapshot_step = record.scheduled_snapshot_step = int(meta["snapshot_step"])
         record.saved_step, record.saved_time = model.step, model.time
+        record.cost = Cost.restored(content.get("cost", {}))
         return record
 
     def seconds(self) -> float:
@@ -158,6 +161,7 @@ class Record:
             "step": model.step,
             "time": model.time,
             "seconds": self.seconds(),
+            "cost": self.cost.state(),
             "record": {
                 "series_bytes": self.scheduled_bytes,
                 "table_bytes": self.table_bytes,
@@ -190,6 +194,8 @@ class Record:
     def conclude(self, model: Model, outcome: str, problem: str = "") -> None:
         """Say in the card how the run ended."""
         self.card.update(outcome=outcome, ended=cards.now(), seconds=self.seconds(), step=model.step, time=model.time)
+        self.card["core_seconds"] = self.cost.of(model.step)
+        self.card["peak_bytes"] = max(peak_bytes(), int(self.card.get("peak_bytes") or 0))
         if problem:
             self.card["problem"] = problem
         cards.write_card(self.folder, self.card)

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from cyclopts import App, CycloptsError, Parameter
 
 from porescale.ground.check import InputError, PorescaleError
-from porescale.workbench.commands import bench, check, new, run, show, study, verify
+from porescale.workbench.commands import bench, check, new, run, show, study, sweep, verify
 from porescale.workbench.package import Package
 
 INTERRUPTED = 130
@@ -21,7 +21,7 @@ OF_THE_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EPERM, errno.E
 
 
 def application(package: Package) -> App:
-    """The package's app with run, check, show, new, verify, bench, and study if it has one; more may be added to it."""
+    """The package's app with the commands that all have, and study if it has one; more may be added to it."""
     app = App(
         name=package.name,
         help=package.summary,
@@ -32,7 +32,7 @@ def application(package: Package) -> App:
         print_error=False,
         exit_on_error=False,
     )
-    for part in (run, check, show, new, verify, bench):
+    for part in (run, check, show, new, sweep, verify, bench):
         app.command(part.command(package))
     if package.stability is not None:
         app.command(study.command(package))

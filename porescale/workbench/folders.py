@@ -29,6 +29,16 @@ def refuse_unwritable(folder: Path, key: str) -> None:
                 part.rmdir()
 
 
+def write_whole(path: Path, content: bytes) -> None:
+    """Write a small file, whole or not at all."""
+    beside = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        beside.write_bytes(content)
+        os.replace(beside, path)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
 def unusable(folder: Path, key: str, error: OSError) -> InputError:
     """What the system says about ``folder``, as a fault of the input."""
     problem = f"cannot be written ({error.strerror or error})"

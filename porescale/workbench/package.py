@@ -4,12 +4,14 @@ imported before a command needs it: `--help` must not wait for a compiler.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from porescale.workbench.benchmarks import Benchmarks
     from porescale.workbench.report import Report
     from porescale.workbench.sections import Section
@@ -74,6 +76,7 @@ class Package:
     scene : gives the scene type;  template : gives the commented scene.toml that `new` writes;
     build : scene -> model;  drive : runs it;  report : scene -> what `check` says (it may raise InputError);
     show : makes pictures and a film in a run folder and gives their paths;
+    table : columns of a table of a run folder by its name, "series" for series.csv;
     validations, benchmarks : give the registers;  stability : that of the flows of a stability map, None if there is
     none, and then no `study`.
     """
@@ -87,6 +90,7 @@ class Package:
     drive: Drive
     report: Callable[[Any], Report]
     show: Callable[[Path], Iterable[Path]]
+    table: Callable[[Path, str], Mapping[str, NDArray[Any]]]
     validations: Callable[[], Validations]
     benchmarks: Callable[[], Benchmarks]
     stability: Callable[[], Stability] | None = None

@@ -6,11 +6,11 @@ import csv
 import io
 import json
 import math
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from porescale.workbench.folders import write_whole
 from porescale.workbench.report import shown
 from porescale.workbench.study import RIGHT, STABLE, UNSTABLE, Axis, Flow, Row, holds_up_to
 
@@ -27,19 +27,10 @@ COLOURS = {RIGHT: "#2c7fb8", STABLE: "#fec44f", UNSTABLE: "#a50f15"}
 def write(folder: Path, command: str, version: str, flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> None:
     """Write the four files into ``folder``, which is made if it is not there."""
     folder.mkdir(parents=True, exist_ok=True)
-    _whole(folder / f"{NAME}.json", json_text(command, version, flows, rows, quick).encode())
-    _whole(folder / f"{NAME}.csv", csv_text(rows).encode())
-    _whole(folder / f"{NAME}.md", markdown(command, flows, rows, quick).encode())
-    _whole(folder / f"{NAME}.png", picture(flows, rows, quick))
-
-
-def _whole(path: Path, content: bytes) -> None:
-    beside = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        beside.write_bytes(content)
-        os.replace(beside, path)
-    finally:
-        beside.unlink(missing_ok=True)
+    write_whole(folder / f"{NAME}.json", json_text(command, version, flows, rows, quick).encode())
+    write_whole(folder / f"{NAME}.csv", csv_text(rows).encode())
+    write_whole(folder / f"{NAME}.md", markdown(command, flows, rows, quick).encode())
+    write_whole(folder / f"{NAME}.png", picture(flows, rows, quick))
 
 
 def as_dict(flow: Flow, quick: bool) -> dict[str, Any]:

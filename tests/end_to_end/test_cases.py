@@ -15,6 +15,7 @@ from porescale import open_run
 from porescale.app.main import PACKAGE as PORESCALE
 from porescale.workbench.application import application, main
 from porescale.workbench.package import Package
+from porescale.workbench.quantities import Columns, measured
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 FILES = sorted(path for path in CASES.glob("*/expected.toml") if (path.parent / "scene.toml").exists())
@@ -22,7 +23,6 @@ FILES = sorted(path for path in CASES.glob("*/expected.toml") if (path.parent / 
 KEYS = {"name", "column", "at", "value", "tolerance", "unit", "because"}
 MORE = {"file", "minus", "where"}
 """Keys that a row may have besides: which table it speaks of, another column to take away, rows to look at."""
-Columns = Mapping[str, Any]
 CAVITY = {
     "lowest velocity on the upright middle line", "lowest velocity on the level middle line",
     "highest velocity on the level middle line",
@@ -51,55 +51,6 @@ def expected(case: str) -> list[dict[str, Any]]:
     """The rows of a case's expected.toml."""
     rows: list[dict[str, Any]] = tomllib.loads((CASES / case / "expected.toml").read_text(encoding="utf-8"))["expected"]
     return rows
-
-
-def measured(columns: Columns, row: Mapping[str, Any]) -> float:
-    """The number that a row speaks of, in a run's series.
-
-    at : "end", "max", "min", a time in s (interpolated), or a table with first_below or last_above and a value: the
-    time in s at which the column falls to it for the first time, or is above it for the last; as a share of where it
-    goes with share_of = "fall" (1 at the start, 0 at the end) or "peak" (of its largest value); with quantile, what
-    that share of the rows does not exceed; period_from: mean period (s) about the mean from a time on.  Nan beyond the
-    end of the run, infinity where it never falls so low.
-    """
-    time, values, at = columns["time (s)"], columns[row["column"]], row["at"]
-    if "minus" in row:
-        values = values - columns[row["minus"]]
-    if "where" in row:
-        meant = time == time.max()
-        for name, value in row["where"].items():
-            meant &= columns[name] == value
-        time, values = time[meant], values[meant]
-    if at == "end":
-        return float(values[-1])
-    if at in ("max", "min"):
-        return float(getattr(np, at)(values))
-    if not isinstance(at, Mapping):
-        return float(np.interp(at, time, values, right=np.nan))
-    if "quantile" in at:
-        return float(np.quantile(values, at["quantile"]))
-    if "mean_from" in at:
-        return float(values[time >= at["mean_from"]].mean())
-    if "max_from" in at:
-        return float(values[time >= at["max_from"]].max())
-    if "period_from" in at:
-        late = time >= at["period_from"]
-        late_time, swing = time[late], values[late] - values[late].mean()
-        rising = np.flatnonzero((swing[:-1] < 0) & (swing[1:] >= 0))
-        zero = late_time[rising] - swing[rising] * np.diff(late_time)[rising] / np.diff(swing)[rising]
-        return float(np.diff(zero).mean()) if len(zero) > 1 else np.inf
-    if "rms_from" in at:
-        return float(values[time >= at["rms_from"]].std())
-    share = at.get("share_of")
-    if share == "fall":
-        values = (values - values[-1]) / (values[0] - values[-1])
-    elif share == "peak":
-        values = values / values.max()
-    else:
-        assert share is None
-    if "first_below" in at:
-        return float(min(time[values <= at["first_below"]], default=np.inf))
-    return float(time[np.flatnonzero(values > at["last_above"])[-1]])
 
 
 def missed(

@@ -152,7 +152,7 @@ def test_bench_as_json_and_table(toy) -> None:
 def test_help_and_version(toy) -> None:
     code, out, _ = toy("--help")
     assert code == 0
-    assert all(name in out for name in ("run", "check", "show", "new", "verify", "bench"))
+    assert all(name in out for name in ("run", "check", "show", "new", "sweep", "verify", "bench"))
     assert toy("run", "--help")[0] == 0
     assert toy("--version")[1] == "1.2.3\n"
     assert "--no-" not in toy("run", "--help")[1]
@@ -163,7 +163,7 @@ def test_asking_for_help_imports_nothing_heavy() -> None:
         "import sys; from porescale.workbench.application import application, main\n"
         "from porescale.workbench.package import Package\n"
         "f = lambda *a, **k: 1 / 0\n"
-        "code = main(application(Package('toy', 's', '1', f, f, f, f, f, f, f, f)), ['--help'])\n"
+        "code = main(application(Package('toy', 's', '1', f, f, f, f, f, f, f, f, f)), ['--help'])\n"
         "heavy = {'numba', 'numpy', 'pint', 'pydantic', 'matplotlib', 'h5py'} & set(sys.modules)\n"
         "sys.exit(code or (str(heavy) if heavy else 0))"
     )
@@ -178,7 +178,7 @@ def test_a_reader_that_leaves_is_no_traceback(tmp_path: Path) -> None:
         "from porescale.workbench.sections import Section\n"
         "f = lambda *a, **k: 1 / 0\n"
         "show = lambda folder: (folder / str(i) for i in range(100000))\n"
-        "sys.exit(main(application(Package('toy', 's', '1', lambda: Section, f, f, f, f, show, f, f)), ['show', '.']))"
+        "sys.exit(main(application(Package('toy', 's', '1', lambda: Section, f, f, f, f, show, f, f, f)), ['show', '.']))"
     )
     read, write = os.pipe()
     os.close(read)

@@ -1,0 +1,86 @@
+"""A number that a run is about, taken from the columns of its tables: rows of expected.toml and of studies.
+
+A row names a ``column`` (with its unit) and where to read it:
+
+at : "end", "max", "min", a time in s (interpolated), or a table with first_below or last_above and a value: the
+    time in s at which the column falls to it for the first time, or is above it for the last; as a share of where it
+    goes with share_of = "fall" (1 at the start, 0 at the end) or "peak" (of its largest value); with quantile, what
+    that share of the rows does not exceed; with mean_from, max_from, rms_from, period_from the mean, the largest value,
+    the rms about the mean, the mean period (s) about the mean from a time on.
+minus : another column to take away;  where : {column: value} of the rows to look at, at the table's last time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Columns = Mapping[str, NDArray[Any]]
+
+TIME = "time (s)"
+
+
+def measured(columns: Columns, row: Mapping[str, Any]) -> float:
+    """The number that ``row`` speaks of; nan beyond the end of the run, infinity where it never falls so low.
+
+    Raises KeyError where the table has no such column, ValueError where ``at`` is none of the above.
+    """
+    time, values, at = columns[TIME], columns[row["column"]], row["at"]
+    if "minus" in row:
+        values = values - columns[row["minus"]]
+    if "where" in row:
+        meant = time == time.max()
+        for name, value in row["where"].items():
+            meant &= columns[name] == value
+        time, values = time[meant], values[meant]
+    if isinstance(at, Mapping):
+        return _found(time, values, at)
+    if at == "end":
+        return float(values[-1])
+    if at in ("max", "min"):
+        return float(getattr(np, at)(values))
+    if isinstance(at, str):
+        raise ValueError(f"at = {at!r} is none of end, max, min, a time or a table")
+    return float(np.interp(at, time, values, right=np.nan))
+
+
+def _found(time: NDArray[Any], values: NDArray[Any], at: Mapping[str, Any]) -> float:
+    """What a table says where to read."""
+    for name, of in LATE.items():
+        if name in at:
+            late = time >= at[name]
+            return of(time[late], values[late])
+    if "quantile" in at:
+        return float(np.quantile(values, at["quantile"]))
+    share = at.get("share_of")
+    if share == "fall":
+        values = (values - values[-1]) / (values[0] - values[-1])
+    elif share == "peak":
+        values = values / values.max()
+    elif share is not None:
+        raise ValueError(f"share_of = {share!r} is neither fall nor peak")
+    if "first_below" in at:
+        return float(min(time[values <= at["first_below"]], default=np.inf))
+    if "last_above" in at:
+        return float(time[np.flatnonzero(values > at["last_above"])[-1]])
+    raise ValueError(f"at = {dict(at)!r} says nothing that is known")
+
+
+def _period(time: NDArray[Any], values: NDArray[Any]) -> float:
+    """Mean time between upward crossings of the mean; infinite with fewer than two."""
+    swing = values - values.mean()
+    rising = np.flatnonzero((swing[:-1] < 0) & (swing[1:] >= 0))
+    zero = time[rising] - swing[rising] * np.diff(time)[rising] / np.diff(swing)[rising]
+    return float(np.diff(zero).mean()) if len(zero) > 1 else float("inf")
+
+
+LATE: dict[str, Callable[[NDArray[Any], NDArray[Any]], float]] = {
+    "mean_from": lambda time, values: float(values.mean()),
+    "max_from": lambda time, values: float(values.max()),
+    "rms_from": lambda time, values: float(values.std()),
+    "period_from": _period,
+}
+"""What is taken of the rows from a time on, by key."""

@@ -1,0 +1,199 @@
+"""Points of a sweep, how they are run and what becomes of those that were stopped or went wrong."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from porescale.ground.check import InputError
+from porescale.workbench import sweep_files
+from porescale.workbench.campaign import Campaign, Ended
+from porescale.workbench.commands.sweep import refuse_wrong_points
+from porescale.workbench.points import Point, crossed, named, read_points, varied
+from tests.reference.toy_package import TOY
+
+SCENE = "[decay]\nrate = 3\n[quality.fine.decay]\nstart = 2\n"
+
+
+class Machine:
+    """Runs points without processes: writes the card that a run would, and notes the words it was called with."""
+
+    def __init__(self, outcomes: dict[str, str] | None = None) -> None:
+        self.outcomes, self.called = outcomes or {}, list[list[str]]()
+
+    def __call__(self, words: list[str]) -> tuple[int, str]:
+        self.called.append(words)
+        folder = Path(words[words.index("--out") + 1])
+        settings = [words[at + 1] for at, word in enumerate(words) if word == "--set"]
+        outcome = self.outcomes.get(folder.name, "finished")
+        if outcome == "refused":
+            return 2, "warning: something\ndecay.rate = 3: no\n"
+        folder.mkdir(parents=True, exist_ok=True)
+        rate = float(dict(text.split("=") for text in settings)["decay.rate"])
+        card = {"scene": {"decay": {"rate": rate, "start": 1.0}}, "settings": settings, "outcome": outcome,
+                "seconds": 2.0, "step": 10}  # fmt: skip
+        (folder / "card.json").write_text(json.dumps(card))
+        return {"finished": 0, "unstable": 3, "interrupted": 130}[outcome], "" if outcome == "finished" else "grain 7"
+
+
+def campaign(folder: Path, machine: Machine, **more) -> Campaign:
+    return Campaign("toy", folder / "scene.toml", folder / "out", run=machine, **more)
+
+
+def test_a_csv_gives_a_point_for_each_row(tmp_path):
+    file = tmp_path / "table.csv"
+    file.write_text('name,quality,decay.rate,domain.left\nslow,fine,1,"[0, 1]"\n,,2,\n\n')
+    assert read_points(file) == [
+        Point("slow", ("decay.rate=1", "domain.left=[0, 1]"), "fine"),
+        Point("rate=2", ("decay.rate=2",)),
+    ]
+
+
+def test_toml_gives_points_as_they_are_and_every_combination(tmp_path):
+    file = tmp_path / "table.toml"
+    file.write_text(
+        '[[point]]\nname = "a"\n"decay.rate" = "2 1/s"\n[vary]\ndecay.rate = [1, 2]\ndecay.start = [0.5, 1e-5]\n'
+    )
+    points = read_points(file)
+    assert points[0] == Point("a", ('decay.rate="2 1/s"',))
+    assert [point.settings for point in points[1:]] == [
+        ("decay.rate=1", "decay.start=0.5"), ("decay.rate=1", "decay.start=1e-05"),
+        ("decay.rate=2", "decay.start=0.5"), ("decay.rate=2", "decay.start=1e-05"),
+    ]  # fmt: skip
+    assert points[1].value("decay.start") == "0.5"
+
+
+def test_options_are_split_at_commas_outside_brackets_and_quotes():
+    assert [point.settings for point in varied(["a=1,2", 'b=[0,1],"x,y"'])] == [
+        ("a=1", "b=[0,1]"), ("a=1", 'b="x,y"'), ("a=2", "b=[0,1]"), ("a=2", 'b="x,y"'),
+    ]  # fmt: skip
+    both = crossed([Point("", ("a=1",), "fine"), Point("", ("a=2",))], varied(["b=3"]))
+    assert [(point.settings, point.quality) for point in both] == [(("a=1", "b=3"), "fine"), (("a=2", "b=3"), None)]
+
+
+def test_names_are_folders_anywhere_and_differ():
+    names = [
+        p.name
+        for p in named(
+            [Point("", ('a.b="x/../y"',)), Point("../up", ()), Point("Same", ()), Point("same", ()), Point("..", ())]
+        )
+    ]
+    assert names == ["b=x_.._y", "up", "Same", "same-2", "point"]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("t.csv", "a,a\n1,2\n", "line 1"),
+        ("t.csv", "a,b\n1\n", "line 2: has 1 cells"),
+        ("t.csv", "a\n", "points: are none"),
+        ("t.csv", "a\n\xff", "cannot be read as CSV"),
+        ("t.toml", "pont = 1", "pont: is unknown"),
+        ("t.toml", "point = 1", "point: is not a list of tables"),
+        ("t.toml", "[vary]\na = 1", "is not a list of values"),
+        ("t.toml", "vary = 1", "vary: is not a table"),
+        ("t.toml", "[[point]]\na = 2020-01-01", "is not a number, text, truth or list"),
+        ("t.toml", "[vary]\n" + "".join(f"k{n} = {list(range(50))}\n" for n in range(4)), "too many combinations"),
+        ("t.toml", "a = ", "line 1"),
+    ],
+)
+def test_a_wrong_table_is_said_with_its_place(tmp_path, name, text, said):
+    (tmp_path / name).write_bytes(text.encode("latin-1"))
+    with pytest.raises(InputError) as caught:
+        read_points(tmp_path / name)
+    (fault,) = caught.value.faults
+    assert name in fault.line()
+    assert said in fault.line()
+
+
+@pytest.mark.parametrize("option", ["a", "=1", "a=", "a=1,,2"])
+def test_a_wrong_option_is_said(option):
+    with pytest.raises(InputError, match="is not key=a,b,c"):
+        varied([option])
+
+
+def test_what_is_wrong_with_any_point_is_said_before_any_runs(tmp_path):
+    (tmp_path / "scene.toml").write_text(SCENE)
+    points = varied(["decay.rate=1,-1,200", "decay.tart=1"])
+    with pytest.raises(InputError) as caught:
+        refuse_wrong_points(TOY, tmp_path, points, None, ())
+    lines = [fault.line() for fault in caught.value.faults]
+    assert sum("decay.tart" in line for line in lines) == 1  # wrong in every point, said once
+    assert any(line.startswith("rate=-1") and "> 0" in line for line in lines)
+    with pytest.raises(InputError, match="stable limit"):
+        refuse_wrong_points(TOY, tmp_path, varied(["decay.rate=200"]), None, ())
+    assert refuse_wrong_points(TOY, tmp_path, varied(["decay.rate=1,2"]), "fine", ()) == (
+        tmp_path / "scene.toml", tmp_path.name,
+    )  # fmt: skip
+
+
+def test_finished_points_are_left_alone_and_begun_ones_resume(tmp_path):
+    points = varied(["decay.rate=1,2,3"])
+    first = Machine({"rate=2": "interrupted", "rate=3": "unstable"})
+    said: list[str] = []
+    ends = list(campaign(tmp_path, first).all(points, 1, said.append))
+    assert [ended.outcome for ended in ends] == ["finished", "interrupted", "unstable"]
+    assert ends[2].problem == "grain 7"
+    assert "(3 of 3, about 0 s left)" in said[-1]
+    second = Machine()
+    ends = list(campaign(tmp_path, second).all(points, 2, said.append))
+    assert sorted(ended.outcome for ended in ends) == ["finished", "finished", "unstable"]
+    assert [words[-1] for words in second.called] == ["--resume"]
+    third = Machine()
+    assert all(
+        ended.outcome == "finished" for ended in campaign(tmp_path, third, again=True).all(points, 1, said.append)
+    )
+    assert [words[-1] for words in third.called] == ["--overwrite"]
+
+
+def test_another_run_in_a_points_folder_is_never_taken_for_its_own(tmp_path):
+    list(campaign(tmp_path, Machine()).all(varied(["decay.rate=1"]), 1, print))
+    other = [Point("rate=1", ("decay.rate=1.5",))]
+    with pytest.raises(InputError, match="holds a run with other settings"):
+        list(campaign(tmp_path, Machine()).all(other, 1, print))
+
+
+def test_a_refused_point_says_why(tmp_path):
+    (ended,) = campaign(tmp_path, Machine({"rate=1": "refused"})).all(varied(["decay.rate=1"]), 1, print)
+    assert (ended.outcome, ended.problem) == ("refused", "decay.rate = 3: no")
+
+
+def test_an_exception_among_points_stops_the_rest(tmp_path):
+    called: list[list[str]] = []
+
+    def broken(words: list[str]) -> tuple[int, str]:
+        called.append(words)
+        raise OSError("gone")
+
+    with pytest.raises(OSError, match="gone"):
+        list(Campaign("toy", tmp_path, tmp_path, run=broken).all(varied(["a=" + ",".join("123456789")]), 1, print))
+    assert len(called) == 1
+
+
+def test_the_table_holds_what_was_set_what_it_cost_and_what_came_out(tmp_path):
+    points = varied(["decay.rate=1,2"])
+    ends = list(campaign(tmp_path, Machine({"rate=2": "unstable"})).all(points, 1, print))
+    rows = [{"name": "half", "column": "left (m)", "at": {"first_below": 0.5}, "unit": "s"},
+            {"name": "lost", "column": "nowhere", "at": "end"}]  # fmt: skip
+    sweep_files.write(tmp_path / "out", "toy sweep", ends, rows, TOY.table)
+    lines = list(csv.DictReader((tmp_path / "out" / "sweep.csv").open()))
+    assert [line["decay.rate"] for line in lines] == ["1", "2"]
+    assert float(lines[0]["half (s)"]) == pytest.approx(0.7)  # the first of the tenths beyond ln 2 = 0.693
+    assert (lines[1]["half (s)"], lines[1]["problem"], lines[0]["lost"]) == ("", "grain 7", "")
+    text = (tmp_path / "out" / "sweep.md").read_text()
+    assert "| half (s) |" in text
+    assert "lost" not in text  # an empty column
+    assert (tmp_path / "out" / "sweep.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_number_that_cannot_be_had_is_none(tmp_path):
+    card = {"scene": {"decay": {"rate": 1.0, "start": 1.0}}}
+    (tmp_path / "card.json").write_text(json.dumps(card))
+    ended = Ended(Point("a", ()), tmp_path, "finished", card)
+    assert np.isnan(sweep_files.number(ended, {"column": "left (m)", "at": "begin"}, TOY.table))
+    assert np.isnan(sweep_files.number(ended, {"column": "left (m)", "at": "end", "file": "lines"}, TOY.table))
+    assert sweep_files.number(ended, {"column": "left (m)", "at": "end"}, TOY.table) == pytest.approx(np.exp(-1))
