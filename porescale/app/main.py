@@ -23,6 +23,7 @@ PACKAGE = Package(
     validations=verify.validations,
     benchmarks=bench.benchmarks,
     stability=study.stability,
+    features=study.features,
 )
 
 

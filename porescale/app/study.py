@@ -1,10 +1,13 @@
-"""``porescale study``: where the fluid and its coupling stay stable, and where they are right."""
+"""``porescale study``: what accuracy costs, where the fluid and its coupling stay stable, and where they are right."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from porescale.runs.model import Array
     from porescale.workbench.study import Stability
 
 
@@ -18,3 +21,10 @@ def stability() -> Stability:
     for room in (LBM, COUPLING):
         flows.include(room)
     return flows
+
+
+def features() -> Mapping[str, Callable[[Path, float | None], Array]]:
+    """What a trade study may ask of a run besides its tables."""
+    from porescale.scene.features import FEATURES
+
+    return FEATURES

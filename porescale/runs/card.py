@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib.metadata
 import json
 import math
-import os
 import platform
 import subprocess
 import sys
@@ -20,6 +19,7 @@ import porescale
 from porescale.ground import jit
 from porescale.ground.card import NAME as NAME
 from porescale.ground.card import read_card as read_card
+from porescale.ground.machine import machine as machine
 from porescale.runs.atomic import write_text
 
 RUNNING, FINISHED, INTERRUPTED, UNSTABLE, FAILED = "running", "finished", "interrupted", "unstable", "failed"
@@ -111,25 +111,6 @@ def commit() -> dict[str, Any] | None:
 def _git(root: Path, *words: str) -> str:
     done = subprocess.run(["git", "-C", str(root), *words], capture_output=True, text=True, timeout=10, check=True)
     return done.stdout.strip()
-
-
-def machine() -> dict[str, Any]:
-    """Processor, cores this process may use, memory (bytes), operating system."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    memory = None
-    if hasattr(os, "sysconf") and "SC_PHYS_PAGES" in os.sysconf_names:
-        memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    return {"processor": _processor(), "cores": cores, "memory": memory, "system": platform.platform()}
-
-
-def _processor() -> str:
-    """The processor's own name where the system tells it."""
-    info = Path("/proc/cpuinfo")
-    if info.exists():
-        for line in info.read_text(errors="replace").splitlines():
-            if line.startswith("model name"):
-                return line.partition(":")[2].strip()
-    return platform.processor() or platform.machine()
 
 
 def plain(value: Any) -> Any:

@@ -21,7 +21,7 @@ OF_THE_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EPERM, errno.E
 
 
 def application(package: Package) -> App:
-    """The package's app with the commands that all have, and study if it has one; more may be added to it."""
+    """The package's app with the commands that all have; more may be added to it."""
     app = App(
         name=package.name,
         help=package.summary,
@@ -34,8 +34,7 @@ def application(package: Package) -> App:
     )
     for part in (run, check, show, new, sweep, verify, bench):
         app.command(part.command(package))
-    if package.stability is not None:
-        app.command(study.command(package))
+    app.command(study.command(package))
     return app
 
 

@@ -78,7 +78,8 @@ class Package:
     show : makes pictures and a film in a run folder and gives their paths;
     table : columns of a table of a run folder by its name, "series" for series.csv;
     validations, benchmarks : give the registers;  stability : that of the flows of a stability map, None if there is
-    none, and then no `study`.
+    none;  features : what trade studies make of a run folder at a time (None: its last snapshot), by name, None if
+    there is nothing.
     """
 
     name: str
@@ -94,3 +95,4 @@ class Package:
     validations: Callable[[], Validations]
     benchmarks: Callable[[], Benchmarks]
     stability: Callable[[], Stability] | None = None
+    features: Callable[[], Mapping[str, Callable[[Path, float | None], NDArray[Any]]]] | None = None

@@ -13,6 +13,7 @@ minus : another column to take away;  where : {column: value} of the rows to loo
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from fnmatch import fnmatchcase
 from typing import Any
 
 import numpy as np
@@ -84,3 +85,24 @@ LATE: dict[str, Callable[[NDArray[Any], NDArray[Any]], float]] = {
     "period_from": _period,
 }
 """What is taken of the rows from a time on, by key."""
+
+
+def curve(columns: Columns, row: Mapping[str, Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Places and values (n,) of a curve at the time nearest to ``at``, or the last.
+
+    Where the table has a row for each place, ``along`` names the column of places;  where it has a row for each time
+    and a column for each place, ``column`` is their common name with a * in it, and places are counted.  Raises
+    KeyError where the table has no such columns.
+    """
+    time = columns[TIME]
+    at = time.max() if row["at"] == "end" else float(row["at"])
+    nearest = time == time[np.abs(time - at).argmin()]
+    if row.get("along"):
+        along, values = columns[row["along"]][nearest], columns[row["column"]][nearest]
+        order = np.argsort(along, kind="stable")
+        return along[order], values[order]
+    names = [name for name in columns if fnmatchcase(name, row["column"])]
+    if not names:
+        raise KeyError(row["column"])
+    values = np.array([columns[name][nearest][-1] for name in names])
+    return np.arange(len(values), dtype=float), values

@@ -13,6 +13,7 @@ from cyclopts import Parameter
 from porescale.ground.card import NAME as CARD
 from porescale.ground.card import read_card
 from porescale.ground.check import Fault, InputError
+from porescale.workbench.commands import pick
 from porescale.workbench.commands.options import Quality, Scene, Settings, Threads, use_threads
 from porescale.workbench.folders import refuse_unwritable, unusable
 from porescale.workbench.package import Outcome, Package
@@ -31,17 +32,27 @@ def command(package: Package) -> Callable[..., int]:
         threads: Threads = None,
         resume: Annotated[bool, Parameter(help="go on with the run in the run folder")] = False,
         overwrite: Annotated[bool, Parameter(help="replace the run in the run folder")] = False,
+        error: Annotated[
+            str | None, Parameter(help="5%: the cheapest point of the scene's front that is as good")
+        ] = None,
+        budget: Annotated[str | None, Parameter(help="3min: the best point of its front that takes no longer")] = None,
         quiet: Annotated[bool, Parameter(help="no progress, no summary")] = False,
     ) -> int:
         """Run a scene and write its run folder."""
         from porescale.workbench.sections import open_scene, scene_as_dict
 
-        opened = open_scene(scene, package.scene(), quality=quality, overrides=settings or ())
+        use_threads(threads)
+        chosen = None
+        if error is not None or budget is not None:
+            refuse_choices(quality, resume)
+            chosen = pick.pick(package, scene, error, budget, settings or (), quiet=quiet)
+            settings = [*chosen.point.settings, *(settings or ())]
+        level = chosen.point.quality if chosen else quality
+        opened = open_scene(scene, package.scene(), quality=level, overrides=settings or ())
         if out == "":
             raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
         folder = Path(out) if out is not None else Path("runs") / opened.name
         refuse_folder(folder, package.name, resume=resume, overwrite=overwrite)
-        use_threads(threads)
         card = {
             "package": package.name,
             "name": opened.name,
@@ -50,13 +61,25 @@ def command(package: Package) -> Callable[..., int]:
             "quality": opened.quality,
             "settings": list(opened.settings),
         }
+        if chosen is not None:
+            card["picked"] = chosen.as_dict()
         model = package.build(opened.scene)
         outcome = package.drive(model, folder, opened.scene, card=card, resume=resume, quiet=quiet, overwrite=overwrite)
         if not quiet:
             print(summary(package.name, opened.name, folder, outcome))
+            if chosen is not None:
+                print(f"expected {chosen.seconds:.3g} s, took {outcome.seconds:.3g} s")
         return 0
 
     return run
+
+
+def refuse_choices(quality: str | None, resume: bool) -> None:
+    """InputError where what a front picks is given, too."""
+    for option, given in (("--quality", quality), ("--resume", resume)):
+        if given:
+            repair = "leave one of them out; a run that was picked is resumed with the --quality and --set on its card"
+            raise InputError(Fault(option, None, "contradicts --error and --budget", repair=repair))
 
 
 def refuse_folder(folder: Path, package: str, *, resume: bool, overwrite: bool) -> None:

@@ -1,16 +1,18 @@
-"""`study stability [FLOW…]`: where it stays stable, and where it is right."""
+"""`study trade SCENE`, and `study stability [FLOW…]`: where it stays stable, and where it is right."""
 
 from __future__ import annotations
 
 import json as json_text
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import App, Parameter
 
 from porescale.ground.check import Fault, InputError
+from porescale.workbench.commands import trade
 from porescale.workbench.commands.options import Json, Threads, use_threads
 from porescale.workbench.folders import refuse_unwritable
 from porescale.workbench.package import Package
@@ -18,9 +20,16 @@ from porescale.workbench.package import Package
 
 def command(package: Package) -> App:
     """The `study` command of a package, with a command for each kind of study."""
-    app = App(name="study", help="Measure where it can be trusted.")
+    app = App(name="study", help="Measure what accuracy costs, and where it can be trusted.")
+    app.command(trade.command(package))
+    if package.stability is not None:
+        app.command(_stability(package))
+    return app
 
-    @app.command
+
+def _stability(package: Package) -> Callable[..., int]:
+    """The `study stability` command."""
+
     def stability(
         *names: Annotated[str, Parameter(help="flows, or rooms for all of theirs; all if not given")],
         out: Annotated[str, Parameter(help="folder of stability.json, .csv, .md and .png")] = "runs/stability",
@@ -59,4 +68,4 @@ def command(package: Package) -> App:
             print(f"{len(rows)} tries in {time.perf_counter() - start:.0f} s; {Path(out) / study_files.NAME}.md, .png")
         return 0
 
-    return app
+    return stability

@@ -1,0 +1,66 @@
+"""What `run --error` and `run --budget` pick from the front of a scene."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from porescale.ground.check import Fault, InputError
+from porescale.workbench.package import Package
+
+if TYPE_CHECKING:
+    from porescale.workbench.front import Choice, FrontPoint
+
+
+def pick(
+    package: Package, scene: Path, error: str | None, budget: str | None, settings: Sequence[str], *, quiet: bool
+) -> Choice:
+    """The point, said on stderr with what to expect; InputError on wrong options, no front, or nothing that fits."""
+    from porescale.workbench.front import choose, pace_of, read_front
+    from porescale.workbench.scene_file import find
+    from porescale.workbench.sections import open_scene
+
+    allowed = None if error is None else _share(error)
+    seconds = None if budget is None else _seconds(budget)
+    front = read_front(find(scene))
+
+    def pace(point: FrontPoint) -> float:
+        """Seconds of a step of the point's scene, here."""
+        overrides = (*point.settings, *settings)
+        opened = open_scene(scene, package.scene(), quality=point.quality, overrides=overrides)
+        return pace_of(package.build(opened.scene))
+
+    choice = choose(front, allowed, seconds, pace)
+    if settings and not quiet:
+        print(f"warning: {front.file} was measured without --set {' '.join(settings)}", file=sys.stderr)
+    if not quiet:
+        print(choice.line(front), file=sys.stderr, flush=True)
+    return choice
+
+
+def _share(text: str) -> float:
+    """ "5%", "5 %" or "0.05" as a share."""
+    number, sign, rest = text.partition("%")
+    try:
+        found = float(number) / (100 if sign else 1)
+    except ValueError:
+        found = math.nan
+    if rest.strip() or not 0 < found < math.inf:
+        raise InputError(Fault("--error", text, "is no share", "", "> 0", "write it as 5% or 0.05"))
+    return found
+
+
+def _seconds(text: str) -> float:
+    """ "3min", "90 s", "2 h" as seconds."""
+    from porescale.ground.units import to_si
+
+    try:
+        found = to_si(text, "s") if not text.replace(".", "").isdigit() else float(text)
+    except ValueError as error:
+        raise InputError(Fault("--budget", text, str(error), "s", "> 0", "write it as 3min, 90s or 2h")) from None
+    if not 0 < found < math.inf:
+        raise InputError(Fault("--budget", text, "is no time", "s", "> 0", "write it as 3min, 90s or 2h"))
+    return found

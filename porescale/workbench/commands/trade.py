@@ -1,0 +1,121 @@
+"""`study trade SCENE`: speed against accuracy over a scene's knobs."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from porescale.ground.check import Fault, InputError
+from porescale.workbench.commands.options import Scene, Settings, Threads, use_threads
+from porescale.workbench.commands.sweep import (
+    Again,
+    Jobs,
+    Scheduler,
+    chosen_folder,
+    conclude,
+    enlist,
+    laid_over,
+    module_of,
+    refuse_wrong_points,
+    say,
+)
+from porescale.workbench.package import Package
+
+if TYPE_CHECKING:
+    from porescale.workbench.points import Point
+    from porescale.workbench.trade import Traded
+
+
+def command(package: Package) -> Callable[..., int]:
+    """The `study trade` command of a package."""
+
+    def trade(
+        scene: Scene,
+        /,
+        *,
+        plan: Annotated[Path | None, Parameter(help="what is asked and varied; trade.toml beside the scene")] = None,
+        settings: Settings = None,
+        out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _trade if not given")] = None,
+        jobs: Jobs = 1,
+        threads: Threads = 1,
+        scheduler: Scheduler = None,
+        again: Again = False,
+    ) -> int:
+        """Measure error, core-seconds and memory of a scene over its knobs, and find the front.
+
+        front.json, trade.csv, .md and .png; put front.json beside the scene, and `run --error 5%` or `--budget 3min`
+        pick from it.  A study that was stopped goes on when called again.
+        """
+        from porescale.workbench import trade_files
+        from porescale.workbench.campaign import Campaign
+        from porescale.workbench.scene_file import find
+        from porescale.workbench.trade import Judge, front
+        from porescale.workbench.trade_plan import read_plan
+
+        asked, _ = read_plan(find(scene), plan)
+        features = package.features() if package.features else {}
+        unknown = [quantity.feature for quantity in asked.quantity if quantity.feature not in ("", *features)]
+        if unknown:
+            known = ", ".join(features) or "none"
+            raise InputError(Fault("quantity.feature", unknown[0], "is not known", "", known))
+        reference = asked.reference_point()
+        variants = asked.variants()
+        truth = asked.repeats(reference) if reference else []
+        groups = [asked.repeats(point) for _, _, point in variants]
+        points = [*truth, *(point for group in groups for point in group)]
+        file, name = refuse_wrong_points(package, scene, points, None, settings or ())
+        folder = chosen_folder(out, f"{name}_trade")
+        campaign = Campaign(module_of(package), file, folder / "runs", tuple(settings or ()), None, threads or 1, again)
+        slots = enlist(campaign, jobs, scheduler)
+        ends = {ended.point.name: ended for ended in campaign.all(points, slots, say)}
+        if code := conclude([ends[point.name] for point in truth]):
+            say("the reference did not finish: nothing to hold the others against")
+            return code
+        judge = Judge(asked, package.table, features, [ends[point.name] for point in truth])
+        traded = front(
+            [judge.trade(knob, label, point, [ends[one.name] for one in group])
+             for (knob, label, point), group in zip(variants, groups, strict=True)]
+        )  # fmt: skip
+        use_threads(threads)
+        words = [package.name, "study", "trade", str(scene), *(["--plan", str(plan)] if plan else [])]
+        about = circumstances(package, shlex.join([*words, *laid_over(None, settings)]), threads or 1)
+        about["quantities"] = [one.model_dump(mode="json", exclude_none=True) for one in asked.quantity]
+        trade_files.write(
+            folder, about, traded, judge.packings(), paces(package, scene, traded, groups, settings or [])
+        )
+        print(f"{folder / trade_files.FRONT}, {trade_files.NAME}.csv, .md, .png")
+        return conclude(list(ends.values()))
+
+    return trade
+
+
+def circumstances(package: Package, command: str, threads: int) -> dict[str, Any]:
+    """What made the numbers: command, version, machine, date."""
+    from porescale.ground.machine import machine
+
+    return {
+        "command": command, "package": package.name, "version": package.version, "threads": threads,
+        "machine": machine(),
+        "date": datetime.now(UTC).date().isoformat(),
+    }  # fmt: skip
+
+
+def paces(
+    package: Package, scene: Path, traded: list[Traded], groups: list[list[Point]], settings: list[str]
+) -> dict[str, float]:
+    """Seconds of a step at the start of each point of the front, by the point's name, taken on this machine."""
+    from porescale.workbench.front import pace_of
+    from porescale.workbench.sections import open_scene
+
+    made = {}
+    for one, group in zip(traded, groups, strict=True):
+        if one.on_front:
+            overrides = (*settings, *group[0].settings)
+            opened = open_scene(scene, package.scene(), quality=group[0].quality, overrides=overrides)
+            made[one.point.name] = pace_of(package.build(opened.scene))
+    return made

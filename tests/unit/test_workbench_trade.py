@@ -1,0 +1,296 @@
+"""Errors, costs and the front of a trade study, and what `--error` and `--budget` pick from it."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from porescale.ground.check import InputError
+from porescale.workbench import trade_files
+from porescale.workbench.campaign import Ended
+from porescale.workbench.commands.pick import _seconds, _share
+from porescale.workbench.front import FrontPoint, choose, pace_of, read_front
+from porescale.workbench.points import Point
+from porescale.workbench.quantities import curve, measured
+from porescale.workbench.sections import validate
+from porescale.workbench.trade import Judge, Traded, distance, front
+from porescale.workbench.trade_plan import Plan, read_plan
+
+PLAN = """
+[over]
+key = "grains.seed"
+values = [1, 2]
+[reference]
+quality = "fine"
+[[quantity]]
+name = "end"
+column = "y (m)"
+scale = 2.0
+[[quantity]]
+name = "surface"
+file = "profile"
+column = "height at x = *"
+scale = 1.0
+[[knob]]
+name = "spacing"
+[[knob.point]]
+label = "1"
+settings = { fluid.spacing = 1 }
+[[knob.point]]
+label = "2"
+settings = { fluid.spacing = 2 }
+[[knob]]
+name = "step"
+[[knob.point]]
+label = "as it is"
+settings = { fluid.spacing = 1 }
+"""
+
+
+def plan(tmp_path: Path, text: str = PLAN) -> Plan:
+    (tmp_path / "trade.toml").write_text(text)
+    return read_plan(tmp_path / "scene.toml", None)[0]
+
+
+def ended(name: str, outcome: str = "finished", **card: Any) -> Ended:
+    return Ended(Point(name, ()), Path(name), outcome, {"core_seconds": 2.0, "seconds": 3.0, "step": 10, **card})
+
+
+def tables(folder: Path, name: str) -> dict[str, np.ndarray]:
+    """A run called "a b" ends at a, its surface is b at both places."""
+    a, b = map(float, folder.name.split())
+    if name == "series":
+        return {"time (s)": np.array([0.0, 1.0]), "y (m)": np.array([9.0, a])}
+    places = {f"height at x = {x} m (m)": np.array([7.0, b]) for x in (1, 2)}
+    return {"time (s)": np.array([0.0, 1.0]), **places}
+
+
+def traded(error: float, seconds: float) -> Traded:
+    return Traded(
+        "k", f"{error:g}", Point(f"{error:g}", ()), "finished", {"q": error}, error, 0.0, seconds, seconds, 0, 1
+    )
+
+
+def test_a_plan_has_a_run_for_every_repeat_and_shares_what_two_knobs_have_in_common(tmp_path):
+    made = plan(tmp_path)
+    variants = made.variants()
+    assert [(knob, label) for knob, label, _ in variants] == [
+        ("spacing; step", "spacing 1; step as it is"), ("spacing", "spacing 2"),
+    ]  # fmt: skip
+    repeats = made.repeats(variants[1][2])
+    assert [point.settings for point in repeats] == [
+        ("fluid.spacing=2", "grains.seed=1"), ("fluid.spacing=2", "grains.seed=2"),
+    ]  # fmt: skip
+    assert made.reference_point() == Point("reference", (), "fine")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('[reference]\nquality = "fine"\n', "", "not every quantity is exact"),
+        ('column = "y (m)"', "", "one of them says what is measured"),
+        ('column = "y (m)"', 'column = "y (m)"\nfeature = "field"', "one of them says what is measured"),
+        ('name = "surface"', 'name = "end"', "have one name twice"),
+        (
+            'column = "height at x = *"',
+            'column = "height at x = *"\nexact = 1',
+            "is a number, what is measured a curve",
+        ),
+        ('column = "height at x = *"', 'column = "height at x = *"\nat = "max"', "is not when to look"),
+        ("scale = 2.0", "scale = 0", "out of range"),
+        ("[over]", "[ower]", "unknown"),
+    ],
+)
+def test_a_wrong_plan_is_said_with_its_key(tmp_path, old, new, said):
+    assert old in PLAN
+    with pytest.raises(InputError, match=said):
+        plan(tmp_path, PLAN.replace(old, new))
+
+
+def test_no_plan_is_said(tmp_path):
+    with pytest.raises(InputError, match="is no file"):
+        read_plan(tmp_path / "scene.toml", None)
+
+
+def test_the_error_of_a_point_is_its_distance_from_the_reference_of_the_same_repeat(tmp_path):
+    judge = Judge(plan(tmp_path), tables, {}, [ended("4 1"), ended("6 1")])
+    point = judge.trade("k", "l", Point("p", ()), [ended("5 1"), ended("6 4")])
+    # repeat 1: end off by 1/2, surface by 0; repeat 2: end by 0, surface by 3
+    assert point.errors == pytest.approx({"end": math.sqrt(0.25 / 2), "surface": math.sqrt(9 / 2)})
+    each = [math.sqrt(0.25 / 2), math.sqrt(9 / 2)]
+    assert point.error == pytest.approx(math.sqrt((0.25 + 9) / 4))
+    assert point.scatter == pytest.approx(np.std(each, ddof=1))
+    assert (point.core_seconds, point.seconds, point.steps) == (2.0, 3.0, 10)
+    # 4 and 6 are 1 off their mean, half a scale, and two of them tell it with one degree of freedom
+    assert judge.packings() == pytest.approx({"end": math.sqrt(2) / 2, "surface": 0.0})
+
+
+def test_another_repeat_for_reference_would_give_another_error(tmp_path):  # the twin that must fail
+    swapped = Judge(plan(tmp_path), tables, {}, [ended("6 1"), ended("4 1")])
+    point = swapped.trade("k", "l", Point("p", ()), [ended("5 1"), ended("6 4")])
+    assert point.errors["end"] != pytest.approx(math.sqrt(0.25 / 2))
+
+
+def test_a_point_that_did_not_finish_is_infinitely_wrong_and_never_on_the_front(tmp_path):
+    judge = Judge(plan(tmp_path), tables, {}, [ended("4 1"), ended("6 1")])
+    point = judge.trade("k", "l", Point("p", ()), [ended("4 1"), ended("6 1", "unstable")])
+    assert (point.outcome, point.error) == ("unstable", math.inf)
+    assert not front([point])[0].on_front
+
+
+def test_exact_values_need_no_reference_and_features_are_compared_number_by_number(tmp_path):
+    asked = {"quantity": [{"name": "e", "column": "y (m)", "scale": 1.0, "exact": 3.0}],
+             "knob": [{"name": "k", "point": [{"label": "a"}]}]}  # fmt: skip
+    point = Judge(validate(Plan, asked), tables, {}).trade("k", "a", Point("p", ()), [ended("5 0")])
+    assert point.error == 2.0
+    asked["quantity"] = [{"name": "f", "feature": "flow", "scale": 2.0}]
+    asked["reference"] = {}
+    features = {"flow": lambda folder, at: np.array([float(folder.name[0]), 1.0])}
+    judge = Judge(validate(Plan, asked), tables, features, [ended("1")])
+    assert judge.trade("k", "a", Point("p", ()), [ended("5")]).error == pytest.approx(math.sqrt(4 / 2))
+
+
+def test_what_cannot_be_compared_is_infinitely_far():
+    assert distance(np.zeros(2), np.zeros(3), 1.0) == math.inf
+    assert distance(np.array([np.nan]), np.zeros(1), 1.0) == math.inf
+    assert distance(np.zeros(0), np.zeros(0), 1.0) == math.inf
+
+
+def test_the_front_is_what_nobody_beats():
+    points = [
+        traded(0.1, 10.0),
+        traded(0.2, 5.0),
+        traded(0.2, 6.0),
+        traded(0.05, 10.0),
+        traded(0.3, 5.0),
+        traded(0.0, 90.0),
+    ]
+    assert [one.on_front for one in front(points)] == [False, True, False, True, False, True]
+    same = front([traded(0.1, 1.0), traded(0.1, 1.0)])
+    assert all(one.on_front for one in same)  # neither beats the other
+
+
+def written(tmp_path: Path, points: list[Traded], paces: dict[str, float]) -> Path:
+    about = {"command": "toy study trade", "machine": {"processor": "abacus"}, "date": "2001-01-01"}
+    trade_files.write(tmp_path, about, front(points), {"q": 0.02}, paces)
+    return tmp_path / "scene.toml"
+
+
+def test_the_files_hold_every_point_and_say_which_are_on_the_front(tmp_path):
+    worse = replace(traded(0.3, 9.0), outcome="unstable", error=math.inf, errors={"q": math.inf})
+    scene = written(tmp_path, [traded(0.1, 10.0), traded(0.2, 5.0), worse], {"0.1": 1e-3, "0.2": 5e-4})
+    text = (tmp_path / "trade.md").read_text()
+    assert "| **0.1** | 10 |" in text
+    assert "| 0.3 | 9 | 0 | unstable |" in text
+    assert "another packing" in text
+    assert (tmp_path / "trade.png").read_bytes().startswith(b"\x89PNG")
+    assert len((tmp_path / "trade.csv").read_text().splitlines()) == 4
+    found = read_front(scene)
+    assert [point.label for point in found.points] == ["0.2", "0.1"]  # from cheap to dear
+    assert (found.machine, found.points[0].pace) == ("abacus", 5e-4)
+
+
+@pytest.mark.parametrize("content", ["", "[]", "{}", '{"format": 1, "points": 3}', '{"format": 7}', "\x00"])
+def test_a_damaged_front_is_said(tmp_path, content):
+    (tmp_path / "front.json").write_text(content)
+    with pytest.raises(InputError, match=r"damaged|format"):
+        read_front(tmp_path / "scene.toml")
+
+
+@pytest.mark.parametrize("key", ["pace", "seconds", "error", "label"])
+def test_a_point_without_a_number_is_damage(tmp_path, key):
+    scene = written(tmp_path, [traded(0.1, 10.0)], {"0.1": 1e-3})
+    table = json.loads((tmp_path / "front.json").read_text())
+    table["points"][0][key] = "x" if key != "label" else None
+    if key == "label":
+        del table["points"][0][key]
+    (tmp_path / "front.json").write_text(json.dumps(table))
+    with pytest.raises(InputError, match="damaged"):
+        read_front(scene)
+
+
+def test_no_front_says_how_to_get_one(tmp_path):
+    with pytest.raises(InputError, match="no front was measured"):
+        read_front(tmp_path / "scene.toml")
+
+
+@pytest.fixture
+def measured_front(tmp_path):
+    points = [traded(0.2, 5.0), traded(0.1, 10.0), traded(0.01, 100.0)]
+    return read_front(written(tmp_path, points, {"0.2": 1.0, "0.1": 2.0, "0.01": 4.0}))
+
+
+def twice(point: FrontPoint) -> float:
+    """A machine half as fast as the one of the front."""
+    return 2.0 * point.pace
+
+
+def test_an_error_picks_the_cheapest_point_that_is_as_good(measured_front):
+    choice = choose(measured_front, 0.15, None, twice)
+    assert (choice.point.label, choice.seconds, choice.slowness) == ("0.1", 20.0, 2.0)
+    assert choose(measured_front, 0.1, 20.0, twice).point.label == "0.1"
+    assert "picked 0.1" in choice.line(measured_front)
+    with pytest.raises(InputError, match="below the best"):
+        choose(measured_front, 0.001, None, twice)
+    with pytest.raises(InputError, match="is not enough for an error"):
+        choose(measured_front, 0.1, 19.0, twice)
+
+
+def test_a_budget_picks_the_best_point_that_takes_no_longer_here(measured_front):
+    assert choose(measured_front, None, 1000.0, twice).point.label == "0.01"
+    assert choose(measured_front, None, 100.0, twice).point.label == "0.1"
+    assert choose(measured_front, None, 20.0, twice).point.label == "0.2"  # 20 s are all of the budget, to the last
+    with pytest.raises(InputError, match="the cheapest point"):
+        choose(measured_front, None, 9.0, twice)
+
+
+def test_a_pace_is_that_of_steps_without_the_first_ones():
+    class Slow:
+        step = 0
+
+        def advance(self, steps: int) -> None:
+            self.step += steps
+
+    model = Slow()
+    assert 0.0 < pace_of(model) < 1e-3
+    assert model.step > 8
+
+
+def test_shares_and_times_are_read_as_people_write_them():
+    assert _share("5%") == _share("5 %") == _share("0.05") == 0.05
+    assert _seconds("3min") == 180.0
+    assert _seconds("90") == 90.0
+    assert _seconds("2 h") == 7200.0
+    for wrong in ("", "5%%", "-1%", "nan", "inf", "0"):
+        with pytest.raises(InputError):
+            _share(wrong)
+    for wrong in ("", "3 apples", "-1 s", "0", "3 m"):
+        with pytest.raises(InputError):
+            _seconds(wrong)
+
+
+def test_a_curve_is_read_from_long_and_from_wide_tables():
+    long = {"time (s)": np.array([0, 0, 1, 1.0]), "x (m)": np.array([1, 2, 2, 1.0]), "y": np.array([5, 6, 7, 8.0])}
+    places, values = curve(long, {"column": "y", "along": "x (m)", "at": "end"})
+    assert (places.tolist(), values.tolist()) == ([1, 2], [8, 7])
+    places, values = curve(long, {"column": "y", "along": "x (m)", "at": 0.1})
+    assert values.tolist() == [5, 6]
+    wide = {"time (s)": np.array([0.0, 1.0]), "h at 1": np.array([1.0, 2.0]), "h at 2": np.array([3.0, 4.0])}
+    assert curve(wide, {"column": "h at *", "at": "end"})[1].tolist() == [2, 4]
+    with pytest.raises(KeyError):
+        curve(wide, {"column": "g at *", "at": "end"})
+
+
+def test_a_number_is_read_as_the_row_says():
+    columns = {"time (s)": np.array([0.0, 1.0, 2.0, 3.0]), "y (m)": np.array([8.0, 6.0, 3.0, 4.0])}
+    row = {"column": "y (m)", "at": 0.5}
+    assert measured(columns, row) == 7.0
+    for at in ("begin", {"share_of": "rise", "first_below": 1}, {}):
+        with pytest.raises(ValueError, match=r"at|share_of"):
+            measured(columns, {**row, "at": at})
