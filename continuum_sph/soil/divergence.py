@@ -8,6 +8,12 @@ With K = 1 the first is eq. 33 of Maeda & Sakai 2004 but for V_j/ρ_i in place o
 w is the velocity difference of the pair less what the mean of both gradients makes of their distance: the part that
 gradients, and so stress, do not see.  Zig-zags in it would live on as nothing resists them.  Eq. 36 damps the whole
 difference where particles approach, and with it flow itself.
+
+Zig-zags in stress push nothing and so live on too.  Stress diffuses, dσ_i/dt = -χ h² γ' Σ V_j (σ_j - σ_i) (1/r) W', but
+at the pace of the shear strain rate γ' (mean of the pair), not of sound as in Feng, Fourtakas, Rogers & Lombardi,
+Comput. Geotech. 138 (2021) 104356 and its kin: what is smoothed at the pace of sound must be strained anew for ever to
+carry its weight, so soil at rest creeps.  In the same way particles nearer than a spacing are moved apart, by x_ij A γ'
+(1 - r²/spacing²), only while soil is sheared.  Both are opposite in a pair.
 """
 
 from __future__ import annotations
@@ -22,8 +28,8 @@ from continuum_sph.soil.state import (
     GYX,
     GYY,
     MASS,
-    RHO,
-    SOUND,
+    QUICK,
+    SHEARING,
     TXX,
     TXY,
     TYX,
@@ -31,6 +37,10 @@ from continuum_sph.soil.state import (
     VOLUME,
     VX,
     VY,
+    XX,
+    XY,
+    YY,
+    ZZ,
     X,
     Y,
 )
@@ -42,13 +52,14 @@ SOFTENING = 0.01  # of h²: keeps the quotient finite when two centres meet
 
 @parallel_kernel
 def accelerate(
-    soil, start, split, partner, record, facing, force, acceleration, kind, h, gx, gy, damping, printed,
-    period_x, period_y,
+    soil, start, split, partner, record, facing, force, stress, acceleration, spread, drift, kind, h, gx, gy,
+    damping, printed, diffusion, pace, apart, spacing, period_x, period_y,
 ):  # fmt: skip
-    """Overwrites ``acceleration`` (soil, 2) m/s².
+    """Overwrites ``acceleration`` (soil, 2) m/s², ``spread`` (soil, 4) Pa/s, ``drift`` (soil, 2) m/s.
 
     start, split, partner: full list, walls of row i from ``split[i]`` on;  record, facing: see Soil;  force (soil, 2)
-    N/m of other layers;  kind, h: smoothing;  gx, gy: gravity, m/s²;  damping: α;  printed: as eq. 36;  periods, m.
+    N/m of other layers;  stress (n, 4) Pa;  kind, h: smoothing;  gx, gy: gravity, m/s²;  damping: α;
+    printed: as eq. 36;  diffusion: χ, pace: the same by sound, 1/s;  apart: A;  spacing of the particles, m;  periods, m or 0.
     """
     scale = slope_scale(kind, h)
     inverse_h = 1.0 / h
@@ -60,6 +71,12 @@ def accelerate(
         own = record[i, VOLUME] / record[i, MASS]
         ax = 0.0
         ay = 0.0
+        sxx = 0.0
+        syy = 0.0
+        sxy = 0.0
+        szz = 0.0
+        ux = 0.0
+        uy = 0.0
         walls = np.uint64(split[i])
         for k in range(np.uint64(start[i]), np.uint64(start[i + 1])):
             j = np.uint64(partner[k])
@@ -80,9 +97,25 @@ def accelerate(
             if printed:
                 approach = min(0.0, approach)
             thrust = own * record[j, VOLUME] * slope
-            damp = damping * h * (record[i, SOUND] + record[m, SOUND]) * approach * record[j, MASS] * slope
-            damp /= (distance2 + SOFTENING * h * h) * (record[i, RHO] + record[m, RHO])
+            damp = 0.5 * damping * h * (record[i, QUICK] + record[m, QUICK]) * approach * record[j, MASS] * slope
+            damp /= distance2 + SOFTENING * h * h
             ax += damp * dx - thrust * ((record[i, TXX] + record[j, TXX]) * dx + (record[i, TXY] + record[j, TXY]) * dy)
             ay += damp * dy - thrust * ((record[i, TYX] + record[j, TYX]) * dx + (record[i, TYY] + record[j, TYY]) * dy)
+            if not wall:
+                rate = 0.5 * (record[i, SHEARING] + record[j, SHEARING])
+                part = -h * h * (diffusion * rate + pace) * record[j, VOLUME] * slope
+                sxx += part * (stress[j, XX] - stress[i, XX])
+                syy += part * (stress[j, YY] - stress[i, YY])
+                sxy += part * (stress[j, XY] - stress[i, XY])
+                szz += part * (stress[j, ZZ] - stress[i, ZZ])
+                near = apart * rate * max(0.0, 1.0 - distance2 / (spacing * spacing))
+                ux += near * dx
+                uy += near * dy
+        spread[i, XX] = sxx
+        spread[i, YY] = syy
+        spread[i, XY] = sxy
+        spread[i, ZZ] = szz
+        drift[i, 0] = ux
+        drift[i, 1] = uy
         acceleration[i, 0] = ax + gx + force[i, 0] / record[i, MASS]
         acceleration[i, 1] = ay + gy + force[i, 1] / record[i, MASS]

@@ -7,6 +7,7 @@ Eq. 48 of Maeda & Sakai 2004 has this order but for the rate of the step before,
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -98,8 +99,8 @@ class SoilFlow:
             law.smoothing.kind, law.smoothing.length, *pairs.period,
         )  # fmt: skip
         quickest = deform(
-            soil.density, soil.mass, soil.stress, soil.material, self.table, soil.matrix, soil.opening, soil.plastic,
-            soil.record, step, -1.0 if law.printed_spin else 1.0,
+            soil.density, soil.mass, soil.stress, soil.material, self.table, soil.matrix, soil.spread, soil.opening,
+            soil.plastic, soil.record, step, -1.0 if law.printed_spin else 1.0,
         )  # fmt: skip
         self.pace = float(quickest) ** 0.5 / law.smoothing.length
 
@@ -110,14 +111,16 @@ class SoilFlow:
             self.before_force(self)
         self.show_walls()
         accelerate(
-            soil.soil, pairs.start, self.split, pairs.partner, soil.record, soil.facing, soil.force, soil.acceleration,
-            law.smoothing.kind, law.smoothing.length, *law.gravity, law.damping, law.printed_damping, *pairs.period,
+            soil.soil, pairs.start, self.split, pairs.partner, soil.record, soil.facing, soil.force, soil.stress,
+            soil.acceleration, soil.spread, soil.drift, law.smoothing.kind, law.smoothing.length, *law.gravity,
+            law.damping, law.printed_damping, law.diffusion, law.restless * self.pace, law.apart, law.spacing, *pairs.period,
         )  # fmt: skip
 
     def end(self, step: float) -> None:
         """Second half kick of a ``step`` (s), and length of the next from the largest |a| and c/h."""
         soil = self.soil
-        hardest, swiftest = kick(soil.v, soil.acceleration, 0.5 * step)
+        drag = self.law.drag if self.time < self.law.settle else 0.0
+        hardest, swiftest = kick(soil.v, soil.acceleration, 0.5 * step, math.exp(-drag * step))
         self.swiftest = float(swiftest) ** 0.5
         limits = self.law.limits(float(hardest) ** 0.5, self.pace, self.limit)
         self.rule = int(np.argmin(limits))

@@ -3,7 +3,8 @@
 K_i is the inverse of M_i = Σ V_j (x_j - x_i) ⊗ ∇_i W, which makes G exact for linear fields and so blind to rigid
 rotation, at free surfaces too: Randles & Libersky, Comput. Methods Appl. Mech. Eng. 139 (1996) 375; Bonet & Lok, ibid.
 180 (1999) 97.  M has the least eigenvalue 0.49 in the first row of a level surface and 0.27 in a corner; below FULL a
-particle has come off and K goes over to the unit tensor, which it is from NONE on.  Eq. 37 of Maeda & Sakai 2004 has
+neighbours are too few: K goes over to the unit tensor, which it is from NONE on (from 0.25 and 0.1 on, single grains
+that meet others gain speed from gradients of nothing).  Eq. 37 of Maeda & Sakai 2004 has
 K = 1, and the opposite sign of v_j - v_i, which is that of strain with compression positive.
 """
 
@@ -16,7 +17,7 @@ from continuum_sph.soil.state import GXX, GXY, GYX, GYY, VOLUME, VX, VY, X, Y
 from porescale.ground.jit import inline, parallel_kernel, prange
 from porescale.particles.cells import minimum_image
 
-NONE, FULL = 0.1, 0.25
+NONE, FULL = 0.25, 0.45
 
 
 @inline

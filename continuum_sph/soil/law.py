@@ -17,7 +17,10 @@ class SoilLaw:
     smoothing : kernel and h;  spacing : of the particles, m;  materials : by the numbers that particles carry;
     gravity : (x, y) m/s²;  damping : α, of the part of velocity differences that is not linear in place, or with
     ``printed_damping`` of all of it between particles that approach (eq. 36);  corrected : gradients exact for linear
-    fields;  printed_spin : turn stress as eq. 38 has it, the wrong way;  courant : the 0.25 of eq. 49.
+    fields;  diffusion : χ of stress, per shear strain, see `divergence`;  restless : the same per passage of sound
+    through h, which never rests (for comparison);  apart : A, how fast particles nearer than a spacing part, per shear
+    strain;  drag : 1/s, of all motion until ``settle`` (s), so that a start finds its equilibrium;  printed_spin : turn
+    stress as eq. 38 has it, the wrong way;  courant : the 0.25 of eq. 49.
     """
 
     smoothing: Smoothing
@@ -27,6 +30,11 @@ class SoilLaw:
     damping: float = 1.0
     printed_damping: bool = False
     corrected: bool = True
+    diffusion: float = 30.0
+    restless: float = 0.0
+    apart: float = 4.0
+    drag: float = 0.0
+    settle: float = 0.0
     printed_spin: bool = False
     courant: float = 0.25
 

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-X, Y, VX, VY, VOLUME, SOUND, RHO, MASS, TXX, TXY, TYX, TYY, GXX, GXY, GYX, GYY = range(16)
-"""Columns of a record, two cache lines: m, m, m/s, m/s, m², m/s, kg/m³, kg/m; σ·K, Pa (xy: row x, column y); velocity
-gradient ∂v_x/∂x, ∂v_x/∂y, ∂v_y/∂x, ∂v_y/∂y, 1/s."""
+X, Y, VX, VY, VOLUME, MASS, QUICK, SHEARING, TXX, TXY, TYX, TYY, GXX, GXY, GYX, GYY = range(16)
+"""Columns of a record, two cache lines: m, m, m/s, m/s, m², kg/m, c/ρ in m⁴/(kg s), shear strain rate in 1/s; σ·K, Pa
+(xy: row x, column y); velocity gradient ∂v_x/∂x, ∂v_x/∂y, ∂v_y/∂x, ∂v_y/∂y, 1/s."""
 XX, YY, XY, ZZ = range(4)
 """Columns of a stress, Pa, compression positive."""
 
@@ -36,7 +36,8 @@ class Soil:
     material: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
     force: Floats = field(init=False)  # (soil, 2) N/m, of other layers
     acceleration: Floats = field(init=False)  # (soil, 2) m/s²
-    drift: Floats = field(init=False)  # (soil, 2) m/s, what shifting adds to the velocity of moving
+    drift: Floats = field(init=False)  # (soil, 2) m/s, what keeps particles apart adds to the velocity of moving
+    spread: Floats = field(init=False)  # (soil, 4) Pa/s, stress diffusion
     opening: Floats = field(init=False)
     plastic: Floats = field(init=False)
     record: Floats = field(init=False)  # (n, 16) all that a pair reads of a partner
@@ -53,6 +54,7 @@ class Soil:
         if not len(self.material):
             self.material = np.zeros(n, np.int64)
         self.force, self.acceleration, self.drift = (np.zeros((self.soil, 2)) for _ in range(3))
+        self.spread = np.zeros((self.soil, 4))
         self.opening, self.plastic = np.zeros(self.soil), np.zeros(self.soil)
         self.record, self.facing, self.length = np.zeros((n, 16)), np.zeros((n, 4)), np.zeros(n)
         self.matrix = np.tile([1.0, 0.0, 1.0, 2.0], (self.soil, 1))
@@ -67,8 +69,8 @@ class Soil:
         """Velocity gradients of the last step, (soil, 4) 1/s: ∂v_x/∂x, ∂v_x/∂y, ∂v_y/∂x, ∂v_y/∂y.  A view."""
         return self.record[: self.soil, GXX:]
 
-    KEPT = ("x", "v", "mass", "density", "stress", "force", "acceleration", "drift", "opening", "plastic", "record",
-    "matrix", "length")  # fmt: skip
+    KEPT = ("x", "v", "mass", "density", "stress", "force", "acceleration", "drift", "spread", "opening", "plastic",
+    "record", "matrix", "length")  # fmt: skip
 
     def state(self) -> dict[str, Floats]:
         """Copies of the arrays that later steps depend on."""

@@ -16,8 +16,8 @@ from continuum_sph.soil.state import (
     GXY,
     GYX,
     GYY,
-    RHO,
-    SOUND,
+    QUICK,
+    SHEARING,
     TXX,
     TXY,
     TYX,
@@ -32,12 +32,12 @@ from porescale.ground.jit import parallel_kernel, prange
 
 
 @parallel_kernel
-def deform(density, mass, stress, material, table, matrix, opening, plastic, record, step, spin):
+def deform(density, mass, stress, material, table, matrix, spread, opening, plastic, record, step, spin):
     """Overwrites, of soil, ``density`` (soil,) kg/m³, ``stress`` (n, 4) Pa, ``opening``, ``plastic`` (soil,) and in
-    ``record`` (n, 16) volume, sound, density and σ·K.
+    ``record`` (n, 16) volume, c/ρ, shear strain rate and σ·K.
 
-    step, s;  spin: 1, or -1 to turn stress as eq. 38 is printed.  Returns the largest c², m²/s²; a maximum is exact in
-    any order.
+    mass, material, table, matrix: see Soil;  spread (soil, 4) Pa/s: stress diffusion of `accelerate`;  step, s;  spin:
+    1, or -1 to turn stress as eq. 38 is printed.  Returns the largest c², m²/s²; a maximum is exact in any order.
     """
     quickest = 0.0
     for i in prange(density.shape[0]):
@@ -55,7 +55,8 @@ def deform(density, mass, stress, material, table, matrix, opening, plastic, rec
         strain_xy = 0.5 * (gxy + gyx)
         turn_xy = 0.5 * spin * (gxy - gyx)
         xx, yy, xy, zz, opened, flow = new_stress(
-            stress[i, XX], stress[i, YY], stress[i, XY], stress[i, ZZ],
+            stress[i, XX] + step * spread[i, XX], stress[i, YY] + step * spread[i, YY],
+            stress[i, XY] + step * spread[i, XY], stress[i, ZZ] + step * spread[i, ZZ],
             gxx, strain_xy + turn_xy, strain_xy - turn_xy, gyy, step, opening[i], row,
         )  # fmt: skip
         density[i] *= (1.0 - step * axx) * (1.0 - step * ayy) - step * step * axy * ayx
@@ -71,8 +72,8 @@ def deform(density, mass, stress, material, table, matrix, opening, plastic, rec
         kxy = matrix[i, 1]
         kyy = matrix[i, 2]
         record[i, VOLUME] = mass[i] / density[i]
-        record[i, SOUND] = np.sqrt(speed2)
-        record[i, RHO] = density[i]
+        record[i, QUICK] = np.sqrt(speed2) / density[i]
+        record[i, SHEARING] = np.sqrt((gxx - gyy) * (gxx - gyy) + (gxy + gyx) * (gxy + gyx))
         record[i, TXX] = xx * kxx + xy * kxy
         record[i, TXY] = xx * kxy + xy * kyy
         record[i, TYX] = xy * kxx + yy * kxy

@@ -17,7 +17,6 @@ from continuum_sph.soil.gradient import before
 from continuum_sph.soil.material import AREA, DENSITY, SHEAR
 from continuum_sph.soil.state import (
     MASS,
-    RHO,
     TXX,
     TXY,
     TYX,
@@ -75,7 +74,7 @@ def show_walls(
             bx = gx + force[j, 0] / mass[j]
             by = gy + force[j, 1] / mass[j]
             b2 = bx * bx + by * by
-            more = record[j, RHO] * (bx * dx + by * dy)
+            more = mass[j] / record[j, VOLUME] * (bx * dx + by * dy)
             along = (1.0 - rest) / b2 if b2 > 0.0 else 0.0
             xx += value * (stress[j, XX] + more * (rest + along * bx * bx))
             yy += value * (stress[j, YY] + more * (rest + along * by * by))
