@@ -18,6 +18,9 @@ def show(folder: Path) -> list[Path]:
     from porescale.runs.look import Look
     from porescale.runs.open_run import open_run
     from porescale.runs.picture import paint_last, pictures
+    from porescale.scene.bonds import write_breaks
+    from porescale.scene.frame_clouds import FRAMES
+    from porescale.scene.frame_pictures import cracks
     from porescale.scene.grain_pictures import write_grain_pictures
     from porescale.scene.lines import write_lines
     from porescale.scene.surface import write_surface
@@ -31,14 +34,17 @@ def show(folder: Path) -> list[Path]:
         lines=solid_lines(scene),
         walls="solid_fraction" if scene.get("rectangle") else "",
         streamlines=scene.get("fluid") is not None,
-        colour="speed" if scene.get("fluid") is None else None,
+        colour="velocity" if scene.get("fluid") is None else None,
+        shapes=FRAMES,
+        marks=cracks,
         view=(0.0, scene["domain"]["width"], 0.0, scene["domain"]["height"]),
     )
     written = [*pictures(folder, look), film(folder, look)]
     for name in scene["output"].get("fields", ()):
         written.append(paint_last(folder, name, replace(look, field=name, label="")))
-    if scene.get("grains") is not None:
+    if scene.get("grains") is not None and "grains" in run.clouds:
         written += [write_surface(run, folder), *write_grain_pictures(run, folder, look)]
+    written += write_breaks(run, folder)
     return [*written, *write_lines(run, folder)]
 
 

@@ -206,51 +206,73 @@ def framed(
     discs and halves of segments that are not long);  material : of the discs;  more : as for Grains.
     Raises InputError for plates (make them frames) and for Hertz's law with frames that have no thickness.
     """
-    corners = [_corner_discs(frame) for frame in frames]
     first = 0 if discs is None else discs.count
-    every = together(*([] if discs is None else [discs]), *corners)
-    starts = first + np.concatenate(([0], np.cumsum([part.count for part in corners]))).astype(np.int64)
-    members = [*clumps, *(np.arange(starts[k], starts[k + 1]) for k in range(len(frames)))]
-    bodies = [*(None for _ in clumps), *(frame.mass_properties() for frame in frames)]
-    density = np.concatenate((np.broadcast_to(np.asarray(clump_density, float), (len(clumps),)), np.ones(len(frames))))
+    every = together(*([] if discs is None else [discs]), corner_discs(frames))
     own = np.concatenate([np.full(len(frame.corners), frame.material) for frame in frames])
     given = np.broadcast_to(np.asarray(0 if material is None else material), (first,))
     if more.get("plates"):
         raise InputError(Fault("plates", len(more["plates"]), "do not meet segments", repair="make them frames"))
-    laws = law.all() if isinstance(law, Materials) else [law, more.get("wall_law") or law]
-    if any(isinstance(each, Hertz) for each in laws) and min(frame.thickness for frame in frames) == 0.0:
-        raise InputError(Fault("frame.thickness", 0.0, "the law of Hertz needs a radius of corners", "m", "> 0"))
-    sizes = [*([] if discs is None else discs.radius.tolist()), *_halves(frames)]
+    radii = np.zeros(0) if discs is None else discs.radius
     grains = Grains(
-        every, law, box, skin=SKIN * float(np.mean(sizes)) if skin is None else skin,
+        every, law, box, skin=skin_of(radii, frames) if skin is None else skin,
         material=np.concatenate((given, own)), **more,
     )  # fmt: skip
+    add_frames(grains, frames, clumps=clumps, clump_density=clump_density, rule=rule)
+    return grains
+
+
+def add_frames(
+    grains: Grains,
+    frames: Sequence[Frame],
+    *,
+    clumps: Sequence[ArrayLike] = (),
+    clump_density: ArrayLike = 1.0,
+    clump_bodies: Sequence[Body | None] = (),
+    rule: str = "outline",
+) -> None:
+    """Make ``frames`` of the last discs of ``grains``, their corners (corner_discs), and clumps of others; see framed.
+
+    Clumps that there were are no more.  clump_bodies : mass and inertia by hand.  Raises InputError as framed does.
+    """
+    discs = grains.discs
+    if any(isinstance(each, Hertz) for each in grains.laws) and min(frame.thickness for frame in frames) == 0.0:
+        raise InputError(Fault("frame.thickness", 0.0, "the law of Hertz needs a radius of corners", "m", "> 0"))
+    sizes = [len(frame.corners) for frame in frames]
+    first = discs.count - sum(sizes)
+    starts = first + np.concatenate(([0], np.cumsum(sizes))).astype(np.int64)
+    members = [*clumps, *(np.arange(starts[k], starts[k + 1]) for k in range(len(frames)))]
+    bodies = [*(clump_bodies or [None] * len(clumps)), *(frame.mass_properties() for frame in frames)]
+    density = np.concatenate((np.broadcast_to(np.asarray(clump_density, float), (len(clumps),)), np.ones(len(frames))))
     table = grains.steering.bind(members, density, bodies)
     for k, frame in enumerate(frames):
         body = len(clumps) + k
         table.velocity[body], table.spin[body] = frame.velocity, frame.spin
-    table.place(every)
+    table.place(discs)
     ends = np.concatenate([np.array(frame.ends) + starts[k] for k, frame in enumerate(frames)])
     long = np.concatenate([np.full(len(frame.ends), frame.long) for frame in frames])
-    table.crowd[len(table.member) - len(own) :] = _crowd(every, ends, first)
+    table.crowd[len(table.member) - sum(sizes) :] = _crowd(discs, ends, first)
     grains.segments = SegmentList(grains, ends, long, rule)
     corner = grains.segments.is_corner
     grains.pairs.group = np.where(corner, NOT_PAIRED, table.group).astype(np.int32)
     grains.refresh(anew=True)
-    return grains
+
+
+def skin_of(radius: Array, frames: Sequence[Frame]) -> float:
+    """Skin (m) of the lists of discs with these radii (n,) m and of frames, see framed."""
+    return SKIN * float(np.mean([*radius.tolist(), *_halves(frames)]))
+
+
+def corner_discs(frames: Sequence[Frame]) -> Discs:
+    """Discs at the corners of all frames; their masses are placeholders until the frames are bound."""
+    corners = make_discs([corner for frame in frames for corner in frame.corners], 1.0, 1.0)
+    corners.radius[:] = np.concatenate([np.full(len(frame.corners), frame.thickness) for frame in frames])
+    return corners
 
 
 def _halves(frames: Sequence[Frame]) -> list[float]:
     """Half the length (m) of every segment that is not long, or of all where all are."""
     short = [frame for frame in frames if not frame.long] or frames
     return [0.5 * math.dist(frame.corners[a], frame.corners[b]) for frame in short for a, b in frame.ends]
-
-
-def _corner_discs(frame: Frame) -> Discs:
-    """Discs at the corners; their masses are placeholders until the frame is bound."""
-    corners = make_discs(frame.corners, 1.0, 1.0)
-    corners.radius[:] = frame.thickness
-    return corners
 
 
 def _crowd(discs: Discs, ends: Index, first: int) -> Array:

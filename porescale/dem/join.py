@@ -16,11 +16,12 @@ def together(*parts: Discs) -> Discs:
     return Discs(*(np.concatenate([getattr(part, name) for part in parts]) for name in FIELDS))
 
 
-def joined(grains: Grains, more: Discs) -> Grains:
+def joined(grains: Grains, more: Discs, skin: float | None = None) -> Grains:
     """A new system of ``grains`` followed by ``more``: same laws, box and plates, clock at zero.
 
     The tangential springs of pairs, walls and plates, the forces on walls and plates and the external loads of
-    ``grains`` are kept (m, N/m, N m/m); those of ``more`` start at zero.  Its pair list is up to date.
+    ``grains`` are kept (m, N/m, N m/m); those of ``more`` start at zero.  Its pair list is up to date.  skin : as for
+    Grains.
     """
     if grains.steered:
         raise InputError(
@@ -31,7 +32,8 @@ def joined(grains: Grains, more: Discs) -> Grains:
         Plate(row[X], row[LOW], row[HIGH], row[VELOCITY], friction, name)
         for row, friction, name in zip(grains.plates, grains.plate_frictions, grains.plate_names, strict=True)
     ]
-    new = Grains(together(grains.discs, more), grains.law, grains.box, wall_law=grains.wall_law, plates=plates)
+    every = together(grains.discs, more)
+    new = Grains(every, grains.law, grains.box, wall_law=grains.wall_law, plates=plates, skin=skin)
     new.plates[:] = grains.plates  # one may have been removed
     new.wall_spring[:, :count], new.plate_spring[:, :count] = grains.wall_spring, grains.plate_spring
     new.wall_force[:], new.plate_force[:] = grains.wall_force, grains.plate_force

@@ -7,6 +7,7 @@ import numpy as np
 
 from porescale.runs.look import GRAIN, PAPER, PLATE, RIM, WALL, Survey, magnitude, rgb
 from porescale.runs.model import Array, Cloud, Grid, Snapshot
+from porescale.runs.shapes import paint_marks, paint_shapes
 
 SHIFT = 4
 """OpenCV coordinates in sixteenths of a pixel."""
@@ -45,6 +46,9 @@ class Canvas:
             _blend(image, over_field[..., 3] / 255.0, over_field[..., :3])
         if cloud is not None and len(cloud.position):
             self._cloud(image, cloud)
+        shapes = self.look.shaped(snapshot)
+        if shapes is not None:
+            paint_shapes(image, shapes, self.pixels(shapes.position), self.per_x, self._colours(shapes))
         if grid is not None and self.look.arrows:
             self._arrows(image, grid)
         lines = self.look.lines(snapshot) if callable(self.look.lines) else self.look.lines
@@ -52,6 +56,8 @@ class Canvas:
             at, thick = self.pixels(np.array(ends, float)), max(2, self.width // 250)
             self._line(image, at, rgb(RIM), thick + 2)
             self._line(image, at, rgb(PLATE), thick)
+        if self.look.marks and len(marks := self.look.marks(snapshot)):
+            paint_marks(image, self.pixels(np.array(marks, float).reshape(-1, 2)).reshape(-1, 2, 2))
         return image
 
     def _field(self, image: Array, grid: Grid) -> None:

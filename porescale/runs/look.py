@@ -34,6 +34,8 @@ class Look:
     "radius", dots otherwise;  colour : array of the cloud that colours it (None: plain discs; dots by speed
     when they have one); kinds : value of ``colour`` -> (label, colour), for whole numbers such as materials;
     limits, cloud_limits : range of the colours (None: from the values, robustly);
+    shapes : a second cloud, whose lines and polygons are drawn, coloured as the first;  marks : lines drawn on top in
+    red, a function of the snapshot, such as cracks;
     walls : cell array holding a solid fraction, painted grey;  lines : segments ((x, y), (x, y)) m, or a
     function of the snapshot;  arrows : velocity arrows across the picture, 0 none;  streamlines : an extra
     still with them; dot : radius of a dot, m (None: about half the particles' spacing);  view : (left, right,
@@ -48,6 +50,8 @@ class Look:
     kinds: Mapping[int, tuple[str, str]] = default(default_factory=dict)
     limits: Limits | None = None
     cloud_limits: Limits | None = None
+    shapes: str = ""
+    marks: Callable[[Snapshot], Sequence[Line]] | None = None
     walls: str = ""
     lines: Lines = ()
     arrows: int = 0
@@ -76,6 +80,10 @@ class Look:
         if self.cloud is None:
             return next(iter(snapshot.clouds.values()), None)
         return snapshot.clouds.get(self.cloud)
+
+    def shaped(self, snapshot: Snapshot) -> Cloud | None:
+        """The cloud of lines and polygons, if the snapshot has it."""
+        return snapshot.clouds.get(self.shapes) if self.shapes else None
 
     def colouring(self, cloud: Cloud) -> str:
         """The array that colours a cloud, "" when it is plain."""
@@ -200,12 +208,13 @@ def survey(snapshots: Iterable[Snapshot], look: Look) -> Survey:
             values.append(_thin(magnitude(grid.cells[look.field], 2)))
             field_units = grid.units.get(look.field, "")
             found.view = grid.extent
+        for part in (look.shaped(snapshot), cloud):
+            if part is not None and len(part.position) and look.colouring(part):
+                coloured_by = look.colouring(part)
+                points.append(_thin(magnitude(part.data[coloured_by], 1)))
+                cloud_units = part.units.get(coloured_by, "")
         if cloud is None or not len(cloud.position):
             continue
-        coloured_by = look.colouring(cloud)
-        if coloured_by:
-            points.append(_thin(magnitude(cloud.data[coloured_by], 1)))
-            cloud_units = cloud.units.get(coloured_by, "")
         if "radius" not in cloud.data and not found.dot:
             found.dot = look.dot or 0.55 * _spacing(cloud.position)
         reach = np.broadcast_to(cloud.data.get("radius", found.dot), len(cloud.position))[:, None]

@@ -52,11 +52,16 @@ class Cloud:
     position : (n, 2) m;  data : name -> (n,) or (n, 3) array;  units : name -> unit.
     Discs carry "radius" (m) in ``data``, and "angle" (rad) when they turn.  n may change from one snapshot
     to the next, the names may not.
+
+    Points may be ends of ``lines`` (m, 2), and corners of ``polygons``, (offsets (p + 1,), numbers of points): then
+    these are what is to be seen, with "radius" the half of what they measure across.  Both or neither in all snapshots.
     """
 
     position: Array
     data: dict[str, Array] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
+    lines: Array | None = None
+    polygons: tuple[Array, Array] | None = None
 
 
 @dataclass

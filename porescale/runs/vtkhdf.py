@@ -1,7 +1,8 @@
 """Temporal VTKHDF files: what ParaView >= 5.12, VTK >= 9.3 and h5py open as they are.
 
 A grid becomes an ImageData file: ``CellData/<name>`` of shape (nt, ny, nx[, 3]), one chunk a frame.  A
-cloud becomes a PolyData file whose points are vertices, with ``PointData/<name>`` of shape (sum of n, ...).
+cloud becomes a PolyData file whose points are vertices, or ends of lines and corners of polygons where it has some
+(vtkhdf_cells.py), with ``PointData/<name>`` of shape (sum of n, ...).
 Every dataset is compressed, protected by Fletcher-32 and carries its unit as attribute ``units``.  Steps,
 kind and name of the frames lie in the group ``/porescale``, which VTK ignores.  Layout: the VTKHDF
 specification (docs.vtk.org, "VTKHDF file format"), and what the reader needs, found by removing one item at a time.
@@ -20,8 +21,9 @@ from typing import Any
 import h5py
 import numpy as np
 
-from porescale.runs.atomic import whole
+from porescale.runs.hdf5 import writing
 from porescale.runs.model import Array, Cloud, Grid, with_depth
+from porescale.runs.vtkhdf_cells import NO_CELLS, TOPOLOGIES, Cells, cells_of, read_cells, with_cells
 
 ROWS = 65536
 """Rows of points in a chunk."""
@@ -54,7 +56,7 @@ class Frame:
 
 def write_frame(path: Path, name: str, block: Grid | Cloud, step: int, time: float) -> None:
     """A file of one frame, whole or absent.  ValueError for names, shapes, types it cannot hold."""
-    with whole(path) as beside, h5py.File(beside, "w") as file:
+    with writing(path) as file:
         if isinstance(block, Grid):
             arrays = {key: _storable(key, array) for key, array in block.cells.items()}
             columns = {key: _column(key, array, block.shape, block.units) for key, array in arrays.items()}
@@ -65,7 +67,7 @@ def write_frame(path: Path, name: str, block: Grid | Cloud, step: int, time: flo
             arrays = {key: _storable(key, array) for key, array in block.data.items()}
             count = len(block.position)
             columns = {key: _column(key, array, (count,), block.units) for key, array in arrays.items()}
-            points, data = _points(file, name, columns, [count], [step], [time])
+            points, data = _points(file, name, columns, [count], [step], [time], [cells_of(block)])
             _fill(points, slice(0, count), with_depth(block.position))
             for key, array in arrays.items():
                 _fill(data[key], slice(0, count), array)
@@ -74,7 +76,7 @@ def write_frame(path: Path, name: str, block: Grid | Cloud, step: int, time: flo
 def join(path: Path, frames: Sequence[Frame]) -> None:
     """One file of all ``frames`` (at least one, of files with equal columns), whole or absent."""
     steps, times = [frame.step for frame in frames], [frame.time for frame in frames]
-    with whole(path) as beside, h5py.File(beside, "w") as file:
+    with writing(path) as file:
         with h5py.File(frames[0].path, "r") as first:
             kind, name = _kind(first), str(first["porescale"].attrs["name"])
             columns = _columns(first)
@@ -83,7 +85,8 @@ def join(path: Path, frames: Sequence[Frame]) -> None:
                 data = _image(file, name, origin, spacing, columns, steps, times)
             else:
                 counts = [frame.count for frame in frames]
-                points, data = _points(file, name, columns, counts, steps, times)
+                cells = [_cells(frame) for frame in frames]
+                points, data = _points(file, name, columns, counts, steps, times, cells)
         start = 0
         for place, frame in enumerate(frames):
             with h5py.File(frame.path, "r") as source:
@@ -132,8 +135,9 @@ def _points(
     counts: Sequence[int],
     steps: Sequence[int],
     times: Sequence[float],
+    cells: Sequence[Cells],
 ) -> tuple[h5py.Dataset, h5py.Group]:
-    """The skeleton of a PolyData file of vertices; returns Points and PointData, still to be filled."""
+    """The skeleton of a PolyData file with its ``cells``; returns Points and PointData, still to be filled."""
     root = _root(file, "PolyData", "clouds", name, steps, times)
     n = np.array(counts, np.int64)
     before = np.cumsum(n) - n
@@ -143,27 +147,31 @@ def _points(
     data = root.create_group("PointData")
     for key, column in columns.items():
         _empty(data, key, total, column)
-    # VTK takes steps of equal CellOffsets for one and the same mesh and then reads the first one's offsets
-    # (seen with 9.7): a step without points gets room for one vertex that it does not have.
-    room = np.maximum(n, 1)
-    first = np.cumsum(room) - room
-    for topology in ("Vertices", "Lines", "Polygons", "Strips"):
-        used = topology == "Vertices"
+    firsts, befores = np.zeros((frames, 4), np.int64), np.zeros((frames, 4), np.int64)
+    for side, topology in enumerate(TOPOLOGIES):
         group = root.create_group(topology)
-        _dataset(group, "NumberOfCells", n if used else 0 * n)
-        _dataset(group, "NumberOfConnectivityIds", n if used else 0 * n)
+        own = [each.get(topology, NO_CELLS) for each in cells]
+        counts_of_cells = np.array([len(offsets) - 1 for offsets, _ in own], np.int64)
+        counts_of_ids = np.array([len(ids) for _, ids in own], np.int64)
+        _dataset(group, "NumberOfCells", counts_of_cells)
+        _dataset(group, "NumberOfConnectivityIds", counts_of_ids)
+        # VTK takes steps of equal CellOffsets for one and the same mesh and then reads the first one's offsets
+        # (seen with 9.7): a step without cells gets room for one that it does not have, where others have some.
+        used = any(topology in each for each in cells)
+        room = np.maximum(counts_of_cells, 1) if used else 0 * counts_of_cells
+        firsts[:, side], befores[:, side] = np.cumsum(room) - room, np.cumsum(counts_of_ids) - counts_of_ids
         index = Column(np.dtype(np.int64), (), "1")
-        offsets = _empty(group, "Offsets", frames + used * int(room.sum()), index)
-        ids = _empty(group, "Connectivity", used * total, index)
-        for k in range(frames if used else 0):
-            offsets[first[k] + k : first[k] + k + n[k] + 1] = np.arange(n[k] + 1)
-            _fill(ids, slice(before[k], before[k] + n[k]), np.arange(n[k]))
+        made_offsets = _empty(group, "Offsets", frames + int(room.sum()), index)
+        made_ids = _empty(group, "Connectivity", int(counts_of_ids.sum()), index)
+        for k, (offsets, ids) in enumerate(own if used else []):
+            at, id_at = int(firsts[k, side]) + k, int(befores[k, side])
+            made_offsets[at : at + len(offsets)] = offsets
+            _fill(made_ids, slice(id_at, id_at + len(ids)), ids)
     series = root["Steps"]
-    others = np.zeros((frames, 3), np.int64)
     _dataset(series, "PartOffsets", np.arange(frames))
     _dataset(series, "PointOffsets", before)
-    _dataset(series, "CellOffsets", np.column_stack([first, others]))
-    _dataset(series, "ConnectivityIdOffsets", np.column_stack([before, others]))
+    _dataset(series, "CellOffsets", firsts)
+    _dataset(series, "ConnectivityIdOffsets", befores)
     return points, data
 
 
@@ -257,7 +265,13 @@ def read_frame(path: Path, index: int, cells: Collection[str] | None = None) -> 
             return kind, name, Grid(origin, spacing, {key: stored[key][index] for key in wanted}, units)
         rows = _rows(file, index)
         data = {key: item[rows] for key, item in file["VTKHDF/PointData"].items()}
-        return kind, name, Cloud(file["VTKHDF/Points"][rows][:, :2], data, units)
+        return kind, name, with_cells(Cloud(file["VTKHDF/Points"][rows][:, :2], data, units), read_cells(file, index))
+
+
+def _cells(frame: Frame) -> Cells:
+    """The cells of one frame of a cloud's file."""
+    with h5py.File(frame.path, "r") as file:
+        return read_cells(file, frame.index)
 
 
 def _kind(file: h5py.File) -> str:

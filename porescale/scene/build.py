@@ -25,12 +25,15 @@ from porescale.particles.placement import place
 from porescale.scene.contact import density_of
 from porescale.scene.cost import refuse_too_large
 from porescale.scene.derive import Derived, derive, grain_count
-from porescale.scene.geometry import refuse_overlaps
+from porescale.scene.frame_build import Placed, any_frames, placed_frames, with_corners
+from porescale.scene.frame_places import refuse_overlaps_of_frames
+from porescale.scene.geometry import placed, refuse_overlaps
 from porescale.scene.grain_bodies import by_hand
 from porescale.scene.outfit import fit_out
 from porescale.scene.packing import compressed, radii_of
 from porescale.scene.rectangle_places import refuse_buried
 from porescale.scene.rectangles import Movers, on_the_lattice, stand_ins, take_over
+from porescale.scene.rock import rock_discs, rock_frames
 from porescale.scene.sections import Packing, Scene
 from porescale.scene.sides import Domain
 from porescale.scene.simulation import Gatekeeper, Simulation
@@ -55,7 +58,8 @@ def build(scene: Scene) -> Simulation:
     """
     derived = derive(scene)
     refuse_too_large(derived)
-    grains = _grains(scene, derived) if scene.grains or scene.disc or scene.rectangle else None
+    frames = _frames(scene, derived) if any_frames(scene) else []
+    grains, recorded = _grains(scene, derived, frames) if scene.grains or scene.disc or scene.rectangle else (None, [])
     fluid = _fluid(scene, derived) if scene.fluid else None
     solids = on_the_lattice(scene, derived.scales) if derived.scales else []
     coupled = _coupled(scene, derived, fluid, grains, solids) if fluid and grains else None
@@ -66,7 +70,8 @@ def build(scene: Scene) -> Simulation:
         plate = fluid.add_plate(derived.gate_column or 0) if fluid else None
         gate = Gatekeeper(scene.gate.opens_at, scene.gate.lift_speed, plate, grains, GATE)
     return Simulation(
-        scene, derived, fluid=fluid, grains=grains, coupled=coupled, weight=weight, gate=gate, movers=movers
+        scene, derived, fluid=fluid, grains=grains, coupled=coupled, weight=weight, gate=gate, movers=movers,
+        frames=frames, recorded=recorded,
     )  # fmt: skip
 
 
@@ -123,8 +128,15 @@ def _box(domain: Domain) -> Box:
     return Box((0.0, 0.0), (domain.width, domain.height), **kinds)
 
 
-def _grains(scene: Scene, derived: Derived) -> Grains:
-    """All discs in their order: the packing's, those placed by hand, those that are held."""
+def _frames(scene: Scene, derived: Derived) -> list[Placed]:
+    """All bodies of segments, a rock's last."""
+    rock = rock_frames(scene, derived.law) if scene.rock and derived.law else []
+    return [*placed_frames(scene), *rock]
+
+
+def _grains(scene: Scene, derived: Derived, frames: list[Placed]) -> tuple[Grains, list[str]]:
+    """All discs in their order: the packing's, those placed by hand, those that are held, corners of frames; and names
+    of the bodies that are recorded."""
     box, law, wall_law = _box(scene.domain), derived.law or UNTOUCHED, derived.wall_law
     plates = (
         [Plate(scene.gate.x, 0.0, scene.domain.height, friction=scene.gate.friction, name=GATE)] if scene.gate else []
@@ -132,7 +144,11 @@ def _grains(scene: Scene, derived: Derived) -> Grains:
     packing = scene.grains.packing if scene.grains else None
     parts = [_by_hand(scene)] if by_hand(scene) else []
     parts += [_held(scene)] if scene.disc else []
-    if packing and packing.settle:
+    if scene.rock:
+        of_rock = rock_discs(scene, law)
+        parts = [of_rock, *parts] if of_rock else parts
+        grains = Grains(together(*parts) if parts else NO_DISCS, law, box, wall_law=wall_law)
+    elif packing and packing.settle:
         grains = prepared(scene, packing, box, derived, [*plates, *stand_ins(scene, packing)])
         if parts:
             grains = joined(grains, together(*parts))
@@ -147,13 +163,17 @@ def _grains(scene: Scene, derived: Derived) -> Grains:
     if scene.rectangle:
         take_over(scene, grains)
         refuse_buried(scene, grains.discs)
+    discs = grains.discs
+    grains = with_corners(grains, frames) if frames else grains
     if scene.disc:
-        grains.hold(slice(grains.discs.count - len(scene.disc), None))
-    fit_out(scene, grains, derived.mean_mass)
+        grains.hold(slice(discs.count - len(scene.disc), discs.count))
+    recorded = fit_out(scene, grains, derived.mean_mass, frames)
     added = len(scene.disc) + len(by_hand(scene))
     if added:
-        refuse_overlaps(grains.discs, scene, grains.discs.count - added)
-    return grains
+        refuse_overlaps(discs, scene, discs.count - added)
+    if frames and packing and not scene.rock:
+        refuse_overlaps_of_frames(scene, frames, discs, placed(scene)[0])
+    return grains, recorded
 
 
 def _held(scene: Scene) -> Discs:

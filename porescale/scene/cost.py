@@ -20,6 +20,10 @@ CALLS, COUPLED_CALLS = 5e-6, 45e-6
 without them a run of a small scene would make every machine look slow."""
 
 
+SIDE = 10
+"""What a side of a polygon costs, in discs, at the most (verify measures it)."""
+
+
 def memory(derived: Derived) -> float:
     """Bytes that the simulation's arrays will take: populations, solid fields, patches, grains; an estimate."""
     total = 400.0 * derived.grain_count
@@ -36,8 +40,9 @@ def memory(derived: Derived) -> float:
 def step_seconds(derived: Derived) -> float:
     """Wall-clock seconds of a model step at the nominal rates."""
     cells = derived.cells[0] * derived.cells[1] if derived.cells else 0
+    discs = derived.grain_count + SIDE * derived.corners
     calls = COUPLED_CALLS if cells and derived.grain_count else CALLS
-    return calls + cells / CELLS_PER_SECOND + derived.grain_count * (derived.contact_steps or 0) / DISCS_PER_SECOND
+    return calls + cells / CELLS_PER_SECOND + discs * (derived.contact_steps or 0) / DISCS_PER_SECOND
 
 
 def expected_seconds(derived: Derived, steps: int) -> tuple[float, bool]:

@@ -8,17 +8,24 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Law
+from porescale.dem.discs import make_discs
 from porescale.dem.integrate import packing_limit, stable_step
 from porescale.ground.check import Fault, InputError
 from porescale.lbm.scales import NAMES, Scales, implied
 from porescale.scene.contact import Contact, density_of, laws
 from porescale.scene.fluid import Fluid
-from porescale.scene.geometry import judge_places
+from porescale.scene.frame_build import Placed, lightest_frame, placed_frames, sizes_of
+from porescale.scene.frame_places import judge_frames, thin_for
+from porescale.scene.geometry import judge_places, placed
 from porescale.scene.grain_bodies import by_hand, judge_bodies, lightest
 from porescale.scene.lattice import is_whole
 from porescale.scene.packing import judge_compressed, radii_of
 from porescale.scene.regime import expected_speed, judge
+from porescale.scene.rock import rock_frames
 from porescale.scene.sections import Scene
 
 MANY = 1e6
@@ -44,6 +51,7 @@ class Derived:
     speed: float = 0.0  # m/s, the largest to expect
     density_variation: float = 0.0
     warnings: tuple[str, ...] = field(default=())
+    corners: int = 0  # of bodies of segments
 
 
 def derive(scene: Scene) -> Derived:
@@ -55,7 +63,8 @@ def derive(scene: Scene) -> Derived:
         faults.append(Fault("gate", None, "stands in a periodic box", repair="give the box walls"))
     judge_compressed(scene, faults)
     judge_places(scene, diameters(scene), faults)
-    sizes = diameters(scene, held=False) or diameters(scene)
+    frames = _frames(scene, faults)
+    sizes = diameters(scene, held=False) or diameters(scene) or _equal(sizes_of(frames))
     law = wall_law = limit = step = steps = None
     model_step, mean_mass = scales.step if scales else 0.0, 0.0
     if scene.grains and scene.contact and sizes:
@@ -65,10 +74,16 @@ def derive(scene: Scene) -> Derived:
         law, wall_law, every = laws(scene, mean_mass)
         if scene.clump:
             smallest = min(smallest[0], lightest(scene, every)), smallest[1]
+        if scene.rock and not faults:
+            frames = [*frames, *rock_frames(scene, law)]
+        if frames:
+            smallest = _with_frames(scene, smallest, frames, every)
         limit = min(packing_limit(it, *smallest) for it in every)
         step, steps = _contact_step(scene.contact, stable_step(every, *smallest), limit, scales, faults)
         model_step = scales.step if scales else step
-    speed = expected_speed(scene, scales, sizes)
+    speed = expected_speed(scene, scales, sizes, frames)
+    if frames and isinstance(law, Linear):
+        warnings += filter(None, [thin_for(frames, speed, mean_mass, law.stiffness)])
     variation = 0.0
     if scales:
         variation = judge(scene, scales, speed, sizes, faults, warnings)
@@ -78,8 +93,38 @@ def derive(scene: Scene) -> Derived:
         raise InputError(faults)
     return Derived(
         scales, cells, column, law, wall_law, limit, step, steps, model_step, grain_count(scene), sizes,
-        mean_mass, speed, variation, tuple(warnings),
+        mean_mass, speed, variation, tuple(warnings), sum(len(it.frame.corners) for it in frames),
     )  # fmt: skip
+
+
+def _frames(scene: Scene, faults: list[Fault]) -> list[Placed]:
+    """The frames placed by hand, and faults of them and of where they are; none where they are at fault."""
+    if not (scene.segment or scene.polygon or scene.container):
+        return []
+    try:
+        frames = placed_frames(scene)
+    except InputError as error:
+        faults += error.faults
+        return []
+    names, x, r = placed(scene)
+    faults += judge_frames(scene, frames, make_discs(x, r, np.ones(len(r))), names)
+    return frames
+
+
+def _equal(sizes: list[float]) -> tuple[float, float, float] | None:
+    """Smallest, mean and largest of some diameters, None without any."""
+    return (min(sizes), sum(sizes) / len(sizes), max(sizes)) if sizes else None
+
+
+def _with_frames(
+    scene: Scene, smallest: tuple[float, float], frames: list[Placed], every: list[Law]
+) -> tuple[float, float]:
+    """Mass (kg/m) and radius (m) of the disc that answers as fast as the fastest of discs and frames."""
+    radius = smallest[1] if grain_count(scene) else None
+    light = lightest_frame(frames, every, radius)
+    if light is None:
+        return smallest
+    return (light if radius is None else min(smallest[0], light)), smallest[1]
 
 
 def _loads(scene: Scene, faults: list[Fault]) -> None:
@@ -102,7 +147,7 @@ def grain_count(scene: Scene) -> int:
     """Number of grains and discs that are held."""
     placed = len(scene.disc) + len(by_hand(scene))
     packing = scene.grains.packing if scene.grains else None
-    if packing is None:
+    if packing is None or (scene.rock and scene.rock.polygons):
         return placed
     radii = radii_of(packing)
     if radii is not None:

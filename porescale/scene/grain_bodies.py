@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pydantic
 
-from porescale.dem.clumps import Body, place_members
+from porescale.dem.clumps import Body
 from porescale.dem.contact.materials import Law
 from porescale.dem.discs import make_discs
 from porescale.dem.steering import Clump as ClumpNumber
@@ -20,6 +20,7 @@ from porescale.dem.walls import Box
 from porescale.ground.check import Fault
 from porescale.scene.contact import density_of
 from porescale.scene.courses import Component, Turning
+from porescale.scene.frame_build import PLATES, Placed, bind_frames, plates_of, tell_frames
 from porescale.workbench.sections import Refused, Section, quantity
 
 if TYPE_CHECKING:
@@ -92,14 +93,16 @@ class Clump(Section):
 
 
 class Controlled(Section):
-    """Control of a grain or a clump: each of x, y, rotation "free", or told a velocity, a displacement or a force.
+    """Control of one body: each of x, y, rotation "free", or told a velocity, a displacement or a force.
 
     record = true: force and displacement in control.csv; what a control gives is what contacts, weight and fluid take.
     """
 
     grain: int | None = pydantic.Field(None, ge=0, description="number of the grain: packing first, then by hand")
     clump: int | None = pydantic.Field(None, ge=0, description="number of the clump, copies one after the other")
-    name: str = pydantic.Field("", description="name in the columns (default: grain or clump and its number)")
+    segment: int | None = pydantic.Field(None, ge=0, description="number of the body of segments, likewise")
+    polygon: int | None = pydantic.Field(None, ge=0, description="number of the polygon, likewise")
+    name: str = pydantic.Field("", description="name in the columns (default: what it is and its number)")
     x: Component = Component()
     y: Component = Component()
     rotation: Turning = Turning()
@@ -107,20 +110,40 @@ class Controlled(Section):
 
     @pydantic.model_validator(mode="after")
     def _of_one(self) -> Controlled:
-        if (self.grain is None) == (self.clump is None):
+        if sum(getattr(self, kind) is not None for kind in BODIES) != 1:
             repair = "give one of them"
-            raise Refused(Fault("grain, clump", None, "exactly one of the two is needed", repair=repair))
+            raise Refused(Fault(", ".join(BODIES), None, "exactly one of them is needed", repair=repair))
         return self
 
     @property
-    def body(self) -> int | ClumpNumber:
-        """As the grains name it."""
-        return ClumpNumber(self.clump) if self.clump is not None else int(self.grain or 0)
+    def of(self) -> tuple[str, int]:
+        """Kind of the body and its number."""
+        kind = next(kind for kind in BODIES if getattr(self, kind) is not None)
+        return kind, int(getattr(self, kind))
 
     @property
     def called(self) -> str:
         """Name in the columns."""
-        return self.name or (f"grain {self.grain}" if self.clump is None else f"clump {self.clump}")
+        kind, number = self.of
+        return self.name or f"{kind} {number}"
+
+
+BODIES = ("grain", "clump", "segment", "polygon")
+"""What can be controlled."""
+
+
+def body_of(scene: Scene, it: Controlled) -> int | ClumpNumber:
+    """A controlled body as the grains name it: frames are clumps after the clumps, segments before polygons."""
+    kind, number = it.of
+    counts = [counted(scene, before) for before in BODIES[1 : BODIES.index(kind)]]
+    return number if kind == "grain" else ClumpNumber(number + sum(counts))
+
+
+def counted(scene: Scene, kind: str) -> int:
+    """How many clumps, bodies of segments or polygons a scene has."""
+    if kind == "clump":
+        return sum(len(it.at) for it in scene.clump)
+    return sum(len(it.copies) for it in (scene.segment if kind == "segment" else scene.polygon))
 
 
 @dataclass(frozen=True)
@@ -167,19 +190,16 @@ def judge_bodies(scene: Scene, count: int, faults: list[Fault]) -> None:
     bodies = members(scene)
     single, seen, names = count - sum(map(len, bodies)), [], []
     for k, it in enumerate(scene.control):
-        body, key, number, most = (
-            ("grain", f"control[{k}].grain", it.grain, single) if it.clump is None
-            else ("clump", f"control[{k}].clump", it.clump, len(bodies))
-        )  # fmt: skip
-        assert number is not None
+        body, number = it.of
+        key, most = f"control[{k}].{body}", single if body == "grain" else counted(scene, body)
         if number >= most:
             allowed = f"0 to {most - 1}" if most else f"none: there is no {body} of its own"
             faults.append(Fault(key, number, f"there is no such {body}", "", allowed))
-        if it.body in seen:
+        if it.of in seen:
             faults.append(Fault(key, number, "is controlled twice", repair="put both into one [[control]]"))
         elif it.called in names:
             faults.append(Fault(f"control[{k}].name", it.called, "is taken", repair="give each its own"))
-        seen.append(it.body)
+        seen.append(it.of)
         names.append(it.called)
 
 
@@ -216,43 +236,56 @@ def replace_at(clump: Clump) -> Clump:
 
 def _bind(grains: Grains, clumps: Iterable[Clump], numbers: list[Any], scene: Scene) -> None:
     """Make the copies of ``clumps`` of the discs with these ``numbers``, copy by copy."""
+    grains.steering.bind(*_bodies(clumps, numbers, scene))
+
+
+def _bodies(clumps: Iterable[Clump], numbers: list[Any], scene: Scene) -> tuple[list[Any], list[float], list[Any]]:
+    """Disc numbers, density (kg/m^3) and mass by hand of the copies of ``clumps``."""
     copies = [(it, copy) for it in clumps for copy in range(len(it.at))]
     density = [it.density or density_of(scene, it.material) for it, _ in copies]
-    grains.steering.bind(numbers, density, [it.body(copy) for it, copy in copies])
+    return numbers, density, [it.body(copy) for it, copy in copies]
 
 
-def add_clumps(scene: Scene, grains: Grains) -> None:
-    """Bind the discs of clumps, which come after all other free grains and before those that are held."""
+def add_clumps(scene: Scene, grains: Grains, placed: Sequence[Placed] = ()) -> None:
+    """Bind the discs of clumps, which come after all other free grains and before those that are held, and frames of
+    the corners that come last."""
     sizes = [len(body) for body in members(scene)]
-    first = grains.discs.count - len(scene.disc) - sum(sizes)
+    corners = sum(len(it.frame.corners) for it in placed)
+    first = grains.discs.count - corners - len(scene.disc) - sum(sizes)
     ends = first + np.cumsum([0, *sizes])
-    _bind(grains, scene.clump, [np.arange(*ends[k : k + 2]) for k in range(len(sizes))], scene)
+    clumps = _bodies(scene.clump, [np.arange(*ends[k : k + 2]) for k in range(len(sizes))], scene)
+    if placed:
+        bind_frames(grains, placed, clumps)
+    else:
+        grains.steering.bind(*clumps)
     c, d = grains.steering.clumps, grains.discs
     each = [it for it in scene.clump for _ in it.at]
-    c.velocity[:], c.spin[:] = [it.velocity for it in each], [it.spin for it in each]
-    place_members(
-        c.start, c.member, c.offset, c.arm, c.turn, c.position, c.angle, c.velocity, c.spin,
-        d.position, d.angle, d.velocity, d.spin, 0.0, 0.0, 0.0,
-    )  # fmt: skip
+    if each:
+        c.velocity[: len(each)], c.spin[: len(each)] = [it.velocity for it in each], [it.spin for it in each]
+        c.place(d)
 
 
-def add_controls(scene: Scene, grains: Grains) -> None:
-    """Tell bodies what they are told, and watch those that are recorded."""
+def add_controls(scene: Scene, grains: Grains, placed: Sequence[Placed] = ()) -> list[str]:
+    """Tell bodies what they are told, and watch those that are recorded: their names, in the order of the record."""
+    own = tell_frames(grains, placed) if placed else []
     for it in scene.control:
-        grains.steering.control(it.body, it.x.control, it.y.control, it.rotation.control)
-    recorded = [it.body for it in scene.control if it.record]
-    if recorded:
-        grains.steering.watch(*recorded)
+        grains.steering.control(body_of(scene, it), it.x.control, it.y.control, it.rotation.control)
+    watched = [(it.called, body_of(scene, it)) for it in scene.control if it.record]
+    watched += zip((it.name for it in placed if it.record), own, strict=True)
+    if scene.rock and scene.rock.plates != "none":
+        watched += zip(PLATES, plates_of(grains), strict=True)
+    if watched:
+        grains.steering.watch(*(body for _, body in watched))
+    return [name for name, _ in watched]
 
 
-def control_row(scene: Scene, grains: Grains) -> dict[str, float]:
+def control_row(grains: Grains, recorded: Sequence[str]) -> dict[str, float]:
     """Columns of control.csv but the time: displacement since the start, forces of contacts and of the control.
 
-    Forces are means over the last step of the model.
+    Forces are means over the last step of the model.  recorded : names of the first bodies that are watched.
     """
     row: dict[str, float] = {}
-    recorded = [it.called for it in scene.control if it.record]
-    for name, line in zip(recorded, grains.steering.record(), strict=True):
+    for name, line in zip(recorded, grains.steering.record(), strict=False):
         for what, values, units in (
             ("displacement", line.displacement, ("m", "m", "rad")),
             ("contact", line.contact, ("N/m", "N/m", "N m/m")),

@@ -6,6 +6,7 @@ contact step would use, and changes nothing.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,6 +29,7 @@ from porescale.dem.rigid import areas, as_bodies, body_of
 from porescale.dem.system import Grains
 from porescale.dem.walls import HIGH, LOW, SIDES, X
 from porescale.runs.model import Cloud, Grid, Snapshot
+from porescale.scene.frame_build import Placed, disc_count, free_rows
 from porescale.scene.grain_walls import middles, places
 
 if TYPE_CHECKING:
@@ -45,10 +47,12 @@ FIELDS, CONTACTS = "grain_fields", "contacts"
 class GrainInstruments:
     """The regions, the coarse graining and the wall forces of ``scene``."""
 
-    def __init__(self, scene: Scene, grains: Grains) -> None:
+    def __init__(self, scene: Scene, grains: Grains, placed: Sequence[Placed] = ()) -> None:
         self.scene, self.grains = scene, grains
         self.regions = [(it.name or f"region {k}", Region(it.lower, it.upper)) for k, it in enumerate(scene.region)]
         self.held = np.arange(grains.discs.count) >= grains.discs.count - len(scene.disc)
+        if grains.segments is not None:
+            self.held = ~np.isin(np.arange(grains.discs.count), free_rows(grains, placed, len(scene.disc)))
         friction = max(law.friction for law in grains.laws)
         self.least = LEAST_WITH_FRICTION if friction > 0.0 else LEAST_WITHOUT
 
@@ -89,7 +93,8 @@ class GrainInstruments:
             fx, fy, moment = on_surface(found, name, middle)
             row |= {f"{shown} force x (N/m)": fx, f"{shown} force y (N/m)": fy, f"{shown} moment (N m/m)": moment}
         row |= places(self.scene, grains)
-        for k, (fx, fy, moment) in enumerate(on_discs(found, grains.discs, np.flatnonzero(self.held).tolist())):
+        discs = np.flatnonzero(self.held[: disc_count(grains)]).tolist()
+        for k, (fx, fy, moment) in enumerate(on_discs(found, grains.discs, discs)):
             row |= {f"disc {k} force x (N/m)": float(fx), f"disc {k} force y (N/m)": float(fy),
                     f"disc {k} moment (N m/m)": float(moment)}  # fmt: skip
         return row
@@ -102,10 +107,13 @@ class GrainInstruments:
         found = contacts(self.grains)
         if wanted:
             snapshot.clouds[CONTACTS] = contact_cloud(found, self.grains)
-            grains, number = snapshot.clouds["grains"], body_of(self.grains)
+            split, number = disc_count(self.grains), body_of(self.grains)
             touching = contact_numbers(found.of_bodies(number), len(number))[number]
-            grains.data["contact_number"] = touching.astype(np.int32)
-            grains.data["rattler"] = self.rattling(found)
+            loose = self.rattling(found)
+            for name, rows in (("grains", slice(split)), ("frames", slice(split, None))):
+                if name in snapshot.clouds:
+                    snapshot.clouds[name].data["contact_number"] = touching[rows].astype(np.int32)
+                    snapshot.clouds[name].data["rattler"] = loose[rows]
         if self.scene.coarse_graining:
             snapshot.grids[FIELDS] = self._fields(found)
 

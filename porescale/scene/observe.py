@@ -14,6 +14,7 @@ from porescale.dem.system import Grains
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.observe import stream_function
 from porescale.lbm.scales import Scales
+from porescale.scene.frame_build import Placed, free_rows
 from porescale.scene.sections import Scene
 
 Array = NDArray[np.floating]
@@ -24,22 +25,25 @@ class Watch:
 
     The front is the foremost edge of any grain on the side to which the packing can flow: left if it starts right of
     the middle of the box, right otherwise.  Run-out is how far the front has come since the start.  Discs that are held
-    come after the grains and are none of them.
+    come after the grains and are none of them, nor are frames that move as told (``placed``).
     """
 
-    def __init__(self, scene: Scene, grains: Grains) -> None:
-        self.count = grains.discs.count - len(scene.disc)
+    def __init__(self, scene: Scene, grains: Grains, placed: Sequence[Placed] = ()) -> None:
+        held = len(scene.disc)
+        self.rows: slice | NDArray[np.int64] = slice(grains.discs.count - held)
+        if placed:
+            self.rows = free_rows(grains, placed, held)
         middle = 0.5 * scene.domain.width
         self.leftward = bool(centre_of_mass(self.free(grains))[0] > middle)
         self.start = self.front(grains)
 
     def free(self, grains: Grains) -> Discs:
-        """The grains, as views, without the discs that are held."""
-        return Discs(*(getattr(grains.discs, name)[: self.count] for name in FIELDS))
+        """The grains without the discs that are held; views where there are no frames."""
+        return Discs(*(getattr(grains.discs, name)[self.rows] for name in FIELDS))
 
     def front(self, grains: Grains) -> float:
         """Position of the front, m."""
-        x, r = grains.discs.position[: self.count, 0], grains.discs.radius[: self.count]
+        x, r = grains.discs.position[self.rows, 0], grains.discs.radius[self.rows]
         return float((x - r).min() if self.leftward else (x + r).max())
 
     def row(self, grains: Grains) -> dict[str, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +11,7 @@ from porescale.dem.contact.law import BOOK
 from porescale.dem.energy import energy_book
 from porescale.dem.system import Grains
 from porescale.scene.contact import materials_of
+from porescale.scene.frame_build import Placed
 from porescale.scene.grain_bodies import add_clumps, add_controls, by_hand
 from porescale.scene.grain_cell import strain
 from porescale.scene.grain_walls import add_walls, moving_sides
@@ -20,29 +22,32 @@ if TYPE_CHECKING:
 RESIDUAL = "residual (J/m)"
 
 
-def fit_out(scene: Scene, grains: Grains, mass: float) -> None:
+def fit_out(scene: Scene, grains: Grains, mass: float, placed: Sequence[Placed] = ()) -> list[str]:
     """Give ``grains``, all discs in place, what the scene asks for; nothing is made of what it does not name.
 
-    mass (kg/m): of a mean grain, whose restitution is meant where a material gives one.
+    mass (kg/m): of a mean grain, whose restitution is meant where a material gives one;  placed: its frames, whose
+    corners come last.  Returns the names of the bodies that are recorded.
     """
     materials = materials_of(scene, mass)
     if scene.output.energy:
         grains.book = np.zeros((grains.discs.count, BOOK))
     if materials:
-        names = names_of(scene, grains.discs.count)
+        own = [it.frame.material for it in placed for _ in it.frame.corners]
+        names = names_of(scene, grains.discs.count - len(own))
         if len(materials.names) > 1:
-            grains.material = np.array([materials.names.index(name or materials.names[0]) for name in names], np.uint8)
+            numbers = [materials.names.index(name or materials.names[0]) for name in names]
+            grains.material = np.array(numbers + own, np.uint8)
         grains.set_law(materials)
     elif scene.output.energy:
         grains.set_law(grains.law, grains.wall_law)  # kernels find the book beside the law
-    if scene.clump:
-        add_clumps(scene, grains)
-    if scene.control:
-        add_controls(scene, grains)
+    if scene.clump or placed:
+        add_clumps(scene, grains, placed)
+    recorded = add_controls(scene, grains, placed) if scene.control or placed else []
     if scene.wall or moving_sides(scene):
         add_walls(scene, grains)
     if scene.cell:
         strain(scene, grains)
+    return recorded
 
 
 def names_of(scene: Scene, count: int) -> list[str]:

@@ -220,7 +220,7 @@ def radii_of(packing: Packing) -> Array | None:
 def judge_compressed(scene: Scene, faults: list[Fault]) -> None:
     """A compressed packing fills the box: nothing else would hold it together."""
     packing = scene.grains.packing if scene.grains else None
-    if packing is None or not packing.compress:
+    if packing is None or not packing.compress or scene.rock:
         return
     if scene.contact and scene.contact.law != "linear":
         problem = "packings are compressed under the linear law only"
@@ -242,7 +242,8 @@ def compressed(scene: Scene, packing: Packing, law: Law) -> Compressed:
     radius = radii_of(packing)
     assert radius is not None
     box = (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height)
-    press = Press(*box, law, scene.domain.periodic, packing.settling_friction, scene.grains.density, packing.seed)
+    periodic = (False, False) if scene.rock else scene.domain.periodic
+    press = Press(*box, law, periodic, packing.settling_friction, scene.grains.density, packing.seed)
     try:
         return kept(press, radius, packing.pressure)
     except InputError as error:

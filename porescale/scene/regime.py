@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
+
+import numpy as np
 
 from porescale.coupling.limits import HELD_ONLY
 from porescale.ground.check import Fault
 from porescale.lbm.collision.choose import choose
 from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
 from porescale.lbm.scales import Scales
+from porescale.scene.frame_build import Placed
 from porescale.scene.grain_bodies import by_hand, least_density
 from porescale.scene.limits import (
     CELLS_THICK,
@@ -34,7 +38,7 @@ UNIT: dict[str, Any] = {"relaxation_time": 1.0, "force": (0.0, 0.0), "dtype": "f
 Sizes = tuple[float, float, float]
 
 
-def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None) -> float:
+def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None, frames: Sequence[Placed] = ()) -> float:
     """The largest speed to expect, m/s: an upper estimate from energy, drag and what the scene starts with.
 
     Grains: free fall over the distance they can fall along gravity (rise against it, where they are lighter than the
@@ -44,13 +48,13 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None) -> 
     Fluid under a body force: the parabola between the walls across it, which grains in its way only slow down; under a
     difference of pressure the same, or Bernoulli's speed if that is less.  What is told to move counts as told.
     """
-    g, speed = math.hypot(*scene.gravity), given_speed(scene)
+    g, speed = math.hypot(*scene.gravity), max(given_speed(scene), _framed_speed(scene, frames))
     if scene.grains and sizes:
         for grain in by_hand(scene):
             speed = max(speed, math.hypot(*grain.velocity) + abs(grain.spin) * grain.diameter / 2)
         packing = scene.grains.packing
         lighter = 1 - scales.density / scene.grains.density if scales else 1.0
-        reach, unending = fall(scene, -1.0 if lighter < 0 else 1.0)
+        reach, unending = fall(scene, -1.0 if lighter < 0 else 1.0, frames)
         free = abs(lighter) * g * scene.time.end if unending else math.sqrt(2 * abs(lighter) * g * reach)
         if scales:
             driving = abs(scene.grains.density / scales.density - 1) * g
@@ -90,7 +94,19 @@ def _pressed_speed(scene: Scene, scales: Scales) -> float:
     return min(parabola, math.sqrt(2 * drop / scales.density))
 
 
-def fall(scene: Scene, sense: float) -> tuple[float, bool]:
+def _framed_speed(scene: Scene, frames: Sequence[Placed]) -> float:
+    """The largest speed that bodies of segments start or are told to move with, m/s."""
+    speeds = [0.0]
+    for it in frames:
+        size = float(np.ptp(np.array(it.frame.corners), axis=0).max())
+        speeds.append(math.hypot(*it.frame.velocity) + abs(it.frame.spin) * size)
+    for one in scene.container:
+        size = float(np.ptp(np.array(one.chain or one.ends).reshape(-1, 2), axis=0).max())
+        speeds.append(math.hypot(one.x.fastest, one.y.fastest) + one.rotation.fastest * size)
+    return max(speeds)
+
+
+def fall(scene: Scene, sense: float, frames: Sequence[Placed] = ()) -> tuple[float, bool]:
     """How far (m) a grain can go along gravity (``sense`` 1) or against it (-1), and whether a periodic side makes
     that endless.  From a grain's centre, or the far edge of the packing, to the last corner of the box.
     """
@@ -101,6 +117,7 @@ def fall(scene: Scene, sense: float) -> tuple[float, bool]:
     d = scene.domain
     unending = any(component != 0 and endless for component, endless in zip(along, d.periodic, strict=True))
     starts = [(grain.x, grain.y) for grain in by_hand(scene)]
+    starts += [corner for it in frames if it.free for corner in it.frame.corners]
     if packing := scene.grains.packing:
         right, top = packing.left + packing.width, packing.bottom + packing.height
         starts += [(x, y) for x in (packing.left, right) for y in (packing.bottom, top)]

@@ -33,6 +33,8 @@ def report(scene: Scene) -> Report:
     if scene.grains:
         _grains(scene, derived, out)
         _contact(derived, out)
+    if derived.corners:
+        _frames(scene, derived, out)
     if scene.fluid and scene.grains:
         _regime(scene, derived, out)
     _cost(scene, derived, out)
@@ -44,8 +46,9 @@ def report(scene: Scene) -> Report:
 def _parts(scene: Scene, out: Report) -> None:
     out.heading("Parts")
     parts = (
-        "fluid", "grains", "contact", "material", "clump", "control", "wall", "cell", "gate", "disc", "rectangle",
-        "lubrication", "probe", "line", "flux", "loads", "permeability",
+        "fluid", "grains", "contact", "material", "clump", "segment", "polygon", "container", "bonds", "rock",
+        "control", "wall", "cell", "gate", "disc", "rectangle", "lubrication", "probe", "line", "flux", "loads",
+        "permeability",
     )  # fmt: skip
     out.row("built", ", ".join(name for name in parts if getattr(scene, name)))
     out.row("absent, not built", ", ".join(name for name in parts if not getattr(scene, name)) or "none")
@@ -109,6 +112,21 @@ def _grains(scene: Scene, derived: Derived, out: Report) -> None:
         packing = scene.grains.packing
         if packing:
             _bed(packing.packing_fraction * ratio**2, (0.5 * ratio * mean) ** 2, out)
+
+
+def _frames(scene: Scene, derived: Derived, out: Report) -> None:
+    """Bodies of segments, and what thickness they have."""
+    many = {"segments": scene.segment, "polygons": scene.polygon}
+    out.heading("Bodies of segments")
+    for name, sections in many.items():
+        out.row(name, sum(len(it.copies) for it in sections))
+    out.row("containers", len(scene.container), "", "kept out of the cells")
+    out.row("corners", derived.corners, "", "a side costs up to ten discs")
+    thin = [it.thickness for it in (*scene.segment, *scene.polygon)] + [it.thickness for it in scene.container]
+    if thin:
+        out.row("thickness", f"{min(thin):.4g} … {max(thin):.4g}", "m", "half of what a segment measures across")
+    if scene.rock:
+        out.row("rock", scene.rock.kind, "", "bonded when the run begins")
 
 
 def _bed(solid_fraction: float, square: float, out: Report) -> None:

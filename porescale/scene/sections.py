@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import pydantic
@@ -10,8 +11,11 @@ from porescale.ground.check import Fault
 from porescale.ground.constants import GRAVITY
 from porescale.lbm.scales import NAMES
 from porescale.scene.bodies import Disc, Lubrication
+from porescale.scene.bonds import Bonds, judge_bonds
 from porescale.scene.contact import Contact, Material, judge_contact
 from porescale.scene.fluid import Fluid
+from porescale.scene.frame_places import judge_sections
+from porescale.scene.frames import Container, PolygonBody, SegmentBody
 from porescale.scene.grain_bodies import Clump, Controlled, by_hand
 from porescale.scene.grain_cell import Cell, judge_cell
 from porescale.scene.grain_walls import Wall, judge_walls
@@ -20,6 +24,7 @@ from porescale.scene.measures import FieldName, Flux, Line, Loads, Permeability,
 from porescale.scene.packing import Circles, judged_grading, with_circles, with_consequences
 from porescale.scene.rectangles import Rectangle
 from porescale.scene.regions import CoarseGraining, Region
+from porescale.scene.rock import Rock, judge_rock
 from porescale.scene.sides import Domain
 from porescale.workbench.sections import Refused, Section, quantity
 
@@ -155,6 +160,11 @@ class Scene(Section):
     contact: Contact | None = None
     material: tuple[Material, ...] = ()
     clump: tuple[Clump, ...] = ()
+    segment: tuple[SegmentBody, ...] = ()
+    polygon: tuple[PolygonBody, ...] = ()
+    container: tuple[Container, ...] = ()
+    bonds: tuple[Bonds, ...] = ()
+    rock: Rock | None = None
     control: tuple[Controlled, ...] = ()
     wall: tuple[Wall, ...] = ()
     cell: Cell | None = None
@@ -169,6 +179,12 @@ class Scene(Section):
     region: tuple[Region, ...] = ()
     coarse_graining: CoarseGraining | None = None
     lubrication: Lubrication | None = None
+
+    @pydantic.field_validator("bonds", mode="before")
+    @classmethod
+    def _one_or_more(cls, given: Any) -> Any:
+        """[bonds] is the same as one [[bonds]]."""
+        return [given] if isinstance(given, Mapping) else given
 
     @pydantic.field_validator("fluid")
     @classmethod
@@ -220,7 +236,7 @@ class Scene(Section):
                      "output.energy": self.output.energy}  # fmt: skip
             faults += [Fault(name, None, "there are no grains to measure", repair="add [grains] or leave it out")
                        for name, section in asked.items() if section]  # fmt: skip
-        if self.grains and self.grains.packing is None and not by_hand(self):
+        if self.grains and self.grains.packing is None and not (by_hand(self) or self.segment or self.polygon):
             faults.append(Fault("grains", None, "holds no grain", repair="add [grains.packing] or [[grains.grain]]"))
         of_grains = {"material": self.material, "clump": self.clump, "control": self.control}
         if self.grains is None:
@@ -228,7 +244,7 @@ class Scene(Section):
                        for name, section in of_grains.items() if section]  # fmt: skip
         if self.grains and self.contact:
             faults += judge_contact(self)
-        faults += [*judge_walls(self), *judge_cell(self)]
+        faults += [*judge_walls(self), *judge_cell(self), *judge_sections(self), *judge_bonds(self), *judge_rock(self)]
         if self.lubrication and not (self.fluid and (self.grains or self.disc)):
             faults.append(Fault("lubrication", None, "there are no grains in fluid", repair="leave it out"))
         if self.permeability and self.fluid and self.grains is None:

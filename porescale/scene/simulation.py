@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -15,13 +16,17 @@ from porescale.lbm.fluid import Fluid
 from porescale.lbm.plate import Plate
 from porescale.runs.model import Cloud, Grid, Snapshot
 from porescale.scene import observe
+from porescale.scene.bonds import BONDS, Binder
 from porescale.scene.derive import Derived
+from porescale.scene.frame_build import Placed, disc_count
+from porescale.scene.frame_clouds import FRAMES, frame_cloud
 from porescale.scene.grain_bodies import control_row
 from porescale.scene.grain_cell import Strained
 from porescale.scene.grain_fields import GrainInstruments
 from porescale.scene.instruments import LAMBDA, Instruments, total_pressure
 from porescale.scene.outfit import energy_row
 from porescale.scene.rectangles import Movers
+from porescale.scene.rock import RockWatch
 from porescale.scene.sections import Scene
 
 Array = NDArray[Any]
@@ -73,16 +78,25 @@ class Simulation:
         weight: Array | None,
         gate: Gatekeeper | None,
         movers: Movers | None = None,
+        frames: Sequence[Placed] = (),
+        recorded: Sequence[str] = (),
     ) -> None:
+        """``frames``: the scene's, those of the grains;  recorded : names of the bodies that are watched."""
         self.scene, self.derived = scene, derived
+        self.frames, self._recorded = list(frames), list(recorded)
         self.fluid, self.grains, self.coupled, self.gate = fluid, grains, coupled, gate
         self.weight, self.movers = weight, movers
         self.step = 0
         self.time = 0.0
         self.step_seconds = derived.model_step
         self._mass = fluid.mass_excess() if fluid else 0.0
-        self._watch = observe.Watch(scene, grains) if grains and scene.grains else None
-        self._grain_instruments = GrainInstruments(scene, grains) if grains and scene.grains else None
+        self._watch = observe.Watch(scene, grains, frames) if grains and scene.grains else None
+        self._grain_instruments = GrainInstruments(scene, grains, frames) if grains and scene.grains else None
+        self._binder = Binder(scene, grains, self.frames) if grains and (scene.bonds or scene.rock) else None
+        if self._binder:
+            self._binder.advance(0.0, self.step_seconds)
+        plates = scene.rock is not None and scene.rock.plates != "none"
+        self._rock = RockWatch(scene, grains, len(recorded) - 2) if grains and plates else None
         self._strained = Strained(grains) if grains and scene.cell else None
         self._instruments = (
             Instruments(scene, derived.scales, derived.cells) if derived.scales and derived.cells else None
@@ -122,6 +136,8 @@ class Simulation:
             elif self.fluid:
                 self.fluid.advance()
             elif self.grains:
+                if self._binder:
+                    self._binder.advance(self.time, self.step_seconds)
                 self.grains.step(self.step_seconds, self.weight)
                 if self._strained:
                     self._strained.advance(self.step_seconds)
@@ -169,6 +185,8 @@ class Simulation:
                 row |= self.movers.row(self.coupled)
         if self._strained:
             row |= self._strained.row()
+        if self._binder:
+            row |= self._binder.row()
         if self.grains and self.scene.output.energy:
             row |= energy_row(self.grains, self.scene.gravity)
         return row
@@ -179,8 +197,11 @@ class Simulation:
         tables = self._grain_instruments.tables(self.time) if self._grain_instruments else {}
         if self._instruments and (scene.probe or scene.flux or scene.loads):
             tables |= self._instruments.tables(self.time, self.fields(), self.coupled)
-        if self.grains and any(it.record for it in scene.control):
-            tables["control"] = {"time (s)": self.time} | control_row(scene, self.grains)
+        controlled = self._recorded[: -2 if self._rock else None]
+        if self.grains and controlled:
+            tables["control"] = {"time (s)": self.time} | control_row(self.grains, controlled)
+        if self._rock and self._binder:
+            tables["rock"] = {"time (s)": self.time} | self._rock.row(self._binder.row()["broken bonds ()"])
         return tables
 
     def snapshot(self) -> Snapshot:
@@ -189,19 +210,29 @@ class Simulation:
         if self.fluid and self.derived.scales:
             snapshot.grids["fields"] = self._grid()
         if self.grains and self.grains.discs.count:
-            d = self.grains.discs
-            flat = np.zeros((d.count, 3))
-            position, flat[:, :2] = self._strained.seen() if self._strained else (d.position, d.velocity)
-            data = {"radius": d.radius, "angle": d.angle, "velocity": flat, "spin": d.spin}
-            units = {"radius": "m", "angle": "rad", "velocity": "m/s", "spin": "rad/s"}
-            if self.coupled:
-                data["hydraulic_radius"], units["hydraulic_radius"] = self.coupled.hydraulic_radius, "m"
-            period = np.array([0.0, 0.0] if self._strained else self.grains.box.period)
-            inside = np.where(period > 0, np.mod(position, np.where(period > 0, period, 1.0)), position)
-            snapshot.clouds["grains"] = Cloud(inside, data, units)
+            if disc_count(self.grains):
+                snapshot.clouds["grains"] = self._cloud(self.grains)
+            if self.frames:
+                snapshot.clouds[FRAMES] = frame_cloud(self.grains, self.frames)
+            if self._binder:
+                snapshot.clouds[BONDS] = self._binder.cloud()
             if self._grain_instruments:
                 self._grain_instruments.add_to(snapshot)
         return snapshot
+
+    def _cloud(self, grains: Grains) -> Cloud:
+        """The discs."""
+        own = slice(disc_count(grains))
+        d, flat = grains.discs, np.zeros((disc_count(grains), 3))
+        position, velocity = self._strained.seen() if self._strained else (d.position, d.velocity)
+        flat[:, :2], position = velocity[own], position[own]
+        data = {"radius": d.radius[own], "angle": d.angle[own], "velocity": flat, "spin": d.spin[own]}
+        units = {"radius": "m", "angle": "rad", "velocity": "m/s", "spin": "rad/s"}
+        if self.coupled:
+            data["hydraulic_radius"], units["hydraulic_radius"] = self.coupled.hydraulic_radius, "m"
+        period = np.array([0.0, 0.0] if self._strained else grains.box.period)
+        inside = np.where(period > 0, np.mod(position, np.where(period > 0, period, 1.0)), position)
+        return Cloud(inside, data, units)
 
     def _grid(self) -> Grid:
         s = self.derived.scales
@@ -237,6 +268,8 @@ class Simulation:
             state["made_good"] = self.movers.made_good
         if self._strained:
             state["shear"] = self._strained.shear
+        if self._binder:
+            state["bonds_made"] = self._binder.made
         return state
 
     def restore(self, state: dict[str, Any]) -> None:
@@ -261,3 +294,5 @@ class Simulation:
             self._watch.restore(state["watch"])
         if self._strained:
             self._strained.shear = float(state["shear"])
+        if self._binder:
+            self._binder.made = int(state["bonds_made"])

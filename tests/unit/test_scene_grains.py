@@ -316,7 +316,7 @@ def test_clumps_and_controls_are_taken_up_again_to_the_bit():
         ({"clump": [{**PAIR, "at": [[0.0, 0.002]]}]}, "clump[0] = '(-0.0004, 0.002)': reaches out of the box"),
         ({"clump": [{**PAIR, "at": [[0.0026, 0.002]]}]}, "clump[0]: overlaps grain 0"),
         ({"clump": [{**PAIR, "material": "ice"}]}, "clump[0].material = 'ice': no such material"),
-        ({"control": [{"x": "free"}]}, "control[0].grain, clump: exactly one of the two is needed"),
+        ({"control": [{"x": "free"}]}, "control[0].grain, clump, segment, polygon: exactly one of them is needed"),
         ({"control": [{"grain": 1}]}, "control[0].grain = 1: there is no such grain"),
         ({"control": [{"clump": 0}]}, "control[0].clump = 0: there is no such clump"),
         ({"control": [{"grain": 0}, {"grain": 0}]}, "control[1].grain = 0: is controlled twice"),

@@ -1,0 +1,218 @@
+"""Bonds of a scene: made at their times between chosen bodies, counted, and located when they break: breaks.csv."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pydantic
+from numpy.typing import NDArray
+
+from porescale.dem.bonds import BondList, beside, bond, touched
+from porescale.dem.rigid import as_bodies
+from porescale.dem.steering import Clump as ClumpNumber
+from porescale.dem.system import Grains
+from porescale.ground.check import Fault, InputError
+from porescale.runs.atomic import write_bytes
+from porescale.runs.model import Cloud
+from porescale.scene.frame_build import Placed, disc_count
+from porescale.workbench.sections import Refused, Section, quantity
+
+if TYPE_CHECKING:
+    from porescale.runs.open_run import Run
+    from porescale.scene.sections import Scene
+
+KINDS = ("grain", "clump", "segment", "polygon", "container", "rock", "plate")
+"""Kinds of bodies, in the order of the numbers that the cloud of bonds has for them."""
+BONDS = "bonds"
+"""Name of the cloud in snapshots."""
+TABLE = "breaks.csv"
+Body = tuple[int, int]
+
+
+class Bonds(Section):
+    """Bonds between bodies that touch at a time: the force of each contact is cancelled from then on, until it is gone.
+
+    A bond breaks in tension at k d0, with d0 the overlap when it was made.  ``factor`` makes bonds stronger than that,
+    or weaker, and what stood at rest then moves; ``tension`` says it by the mean back tension.  Never with walls.
+    """
+
+    at: float = quantity("s", 0.0, ge=0, le=1e9, help="time at which they are made")
+    bodies: tuple[str, ...] = pydantic.Field(
+        (), description='which: "polygon" for all of them, "clump 3" for one, numbers from 0 (default: all bodies)'
+    )
+    within: tuple[float, float, float, float] | None = quantity(
+        "m", None, ge=-1e3, le=1e3, help="only of bodies with their centre in it, [left, bottom, right, top]"
+    )
+    factor: float = quantity("", 1.0, gt=0, le=1e6, help="back tension over the force of the contact at the time")
+    tension: float | None = quantity("N/m", None, gt=0, le=1e12, help="mean back tension, instead of factor")
+
+    @pydantic.model_validator(mode="after")
+    def _sense(self) -> Bonds:
+        faults = []
+        for k, word in enumerate(self.bodies):
+            kind, _, number = word.partition(" ")
+            if kind not in KINDS or (number and not number.isdigit()):
+                allowed = ", ".join(KINDS)
+                faults.append(Fault(f"bodies[{k}]", word, "names no body", "", allowed, 'write "grain", or "grain 3"'))
+        if self.within and not (self.within[0] < self.within[2] and self.within[1] < self.within[3]):
+            faults.append(Fault("within", None, "must be [left, bottom, right, top]", "m", repair="order them"))
+        if self.tension is not None and self.factor != 1.0:
+            faults.append(
+                Fault("tension", self.tension, "says nothing beside factor", "N/m", repair="give one of them")
+            )
+        if faults:
+            raise Refused(*faults)
+        return self
+
+
+def judge_bonds(scene: Scene) -> list[Fault]:
+    """What bonds cannot be beside."""
+    if not scene.bonds:
+        return []
+    beside_them = {"fluid": scene.fluid, "cell": scene.cell}
+    faults = [Fault("bonds", None, f"are for dry grains, not for [{name}]" if name == "fluid" else f"and [{name}] "
+                    "do not go together", repair="leave one of them out")
+              for name, given in beside_them.items() if given]  # fmt: skip
+    if scene.grains is None:
+        faults.append(Fault("bonds", None, "there are no grains", repair="add [grains] or leave it out"))
+    for k, it in enumerate(scene.bonds):
+        if it.at >= scene.time.end:
+            faults.append(Fault(f"bonds[{k}].at", it.at, "is past the end", "s", f"< {scene.time.end:g}"))
+    return faults
+
+
+class Bodies:
+    """What the bodies of a system are called: kind and number of every disc's."""
+
+    def __init__(self, scene: Scene, grains: Grains, placed: list[Placed]) -> None:
+        discs, self.clumps = disc_count(grains), grains.steering.clumps if grains.steered else None
+        self.placed = placed
+        self.kind, self.number = np.zeros(grains.discs.count, np.int32), np.arange(grains.discs.count, dtype=np.int32)
+        first = 0 if self.clumps is None else self.clumps.count - len(placed)
+        counts: dict[str, int] = {}
+        self.named: dict[Body, int | ClumpNumber] = {(0, i): i for i in range(discs - len(scene.disc))}
+        for c in range(0 if self.clumps is None else self.clumps.count):
+            kind = "clump" if c < first else placed[c - first].kind
+            number = counts[kind] = counts.get(kind, -1) + 1
+            assert self.clumps is not None
+            own = self.clumps.discs_of(c)
+            self.kind[own], self.number[own] = KINDS.index(kind), number
+            for i in own:
+                self.named.pop((0, int(i)), None)
+            self.named[KINDS.index(kind), number] = ClumpNumber(c)
+
+    def chosen(self, words: tuple[str, ...], key: str) -> list[Body]:
+        """The bodies that words name; raises InputError at one that is not there."""
+        found: list[Body] = []
+        for k, word in enumerate(words):
+            kind, _, number = word.partition(" ")
+            of_kind = [body for body in self.named if body[0] == KINDS.index(kind)]
+            one = [body for body in of_kind if not number or body[1] == int(number)]
+            if not one:
+                there = ", ".join(sorted({KINDS[body[0]] for body in self.named}))
+                raise InputError(Fault(f"{key}.bodies[{k}]", word, "there is no such body", "", f"of {there}"))
+            found += one
+        return found or list(self.named)
+
+
+class Binder:
+    """Makes the bonds of a scene at their times.  made : how many sections have been."""
+
+    def __init__(self, scene: Scene, grains: Grains, placed: list[Placed]) -> None:
+        whole = [("rock", Bonds(bodies=()))] if scene.rock else []
+        own = [(f"bonds[{k}]", it) for k, it in enumerate(scene.bonds)]
+        self.grains, self.bodies = grains, Bodies(scene, grains, placed)
+        self.sections = sorted([*whole, *own], key=lambda it: it[1].at)
+        self.chosen = [self.bodies.chosen(it.bodies, key) for key, it in self.sections]
+        self.made = 0
+
+    def advance(self, time: float, step: float) -> None:
+        """What is to be bonded before the step of ``step`` (s) that begins at ``time`` (s)."""
+        while self.made < len(self.sections) and time >= self.sections[self.made][1].at - 0.5 * step:
+            key, section = self.sections[self.made]
+            bodies = self._within(self.chosen[self.made], section)
+            before = 0 if self.grains.bonds is None else len(self.grains.bonds.back)
+            count = bond(self.grains, [self.bodies.named[body] for body in bodies])
+            if not count and section.at == 0.0:
+                problem, repair = "nothing touches, so there is nothing to bond", "bond later, or place bodies closer"
+                raise InputError(Fault(f"{key}.at", section.at, problem, "s", repair=repair))
+            bonds = self.grains.bonds
+            assert bonds is not None
+            own = bonds.back[before:]
+            factor = section.factor if section.tension is None else section.tension / float(np.mean(own[own > 0.0]))
+            if count and factor != 1.0:
+                own *= factor
+            self.made += 1
+
+    def _within(self, bodies: list[Body], section: Bonds) -> list[Body]:
+        """Those with their centre in the rectangle of a section."""
+        if section.within is None:
+            return bodies
+        left, bottom, right, top = section.within
+        at, clumps = as_bodies(self.grains).position, self.bodies.clumps
+
+        def inside(body: Body) -> bool:
+            name = self.bodies.named[body]
+            if isinstance(name, ClumpNumber):
+                assert clumps is not None
+                name = int(clumps.discs_of(name.number)[0])
+            return bool(left <= at[name, 0] <= right and bottom <= at[name, 1] <= top)
+
+        return [body for body in bodies if inside(body)]
+
+    def row(self) -> dict[str, float]:
+        """Columns of the series."""
+        bonds = self.grains.bonds
+        there = 0 if bonds is None else int(np.sum(bonds.back > 0.0))
+        whole = 0 if bonds is None else bonds.count
+        return {"bonds ()": float(whole), "broken bonds ()": float(there - whole)}
+
+    def cloud(self) -> Cloud:
+        """Bonds as lines between what they hold: two points each, with whether it is whole, its back tension, when and
+        where it broke, and the kind (see KINDS) and number of both bodies."""
+        bonds = self.grains.bonds or BondList(np.zeros((0, 3), np.int64), np.zeros(0))
+        shown = bonds.back > 0.0
+        ends = np.ascontiguousarray(bonds.ends[shown])
+        way, far, other = np.zeros((len(ends), 2)), np.zeros((len(ends), 2)), np.zeros(len(ends), np.int64)
+        known = beside(self.grains)[0]
+        at = self.grains.discs.position
+        if known is not None:
+            touched(at, ends, known, self.grains.cell, way, far, other)
+        points = np.repeat(at[ends[:, 0]], 2, axis=0)
+        points[1::2] += way
+        broken = bonds.broken[shown]
+        data: dict[str, NDArray[Any]] = {
+            "whole": bonds.whole[shown], "back_tension": bonds.back[shown], "broken_time": broken[:, 0],
+            "first_kind": self.bodies.kind[ends[:, 0]], "first_number": self.bodies.number[ends[:, 0]],
+            "second_kind": self.bodies.kind[other], "second_number": self.bodies.number[other],
+        }  # fmt: skip
+        data = {name: np.repeat(values, 2) for name, values in data.items()}
+        data["broken_place"] = np.repeat(np.column_stack((broken[:, 1:], np.zeros(len(ends)))), 2, axis=0)
+        units = {"back_tension": "N/m", "broken_time": "s", "broken_place": "m"}
+        return Cloud(points, data, units, lines=np.arange(len(points)).reshape(-1, 2))
+
+
+def write_breaks(run: Run, folder: Path) -> list[Path]:
+    """Write breaks.csv, a row a bond that broke until the last snapshot, by time; [] where a run has no bonds."""
+    if not len(run) or BONDS not in (clouds := run.snapshot(-1, cells=()).clouds):
+        return []
+    data = {name: np.asarray(values)[::2] for name, values in clouds[BONDS].data.items()}
+    gone = np.flatnonzero(data["whole"] == 0)
+    gone = gone[np.argsort(data["broken_time"][gone], kind="stable")]
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(["time (s)", "x (m)", "y (m)", "strength (N/m)", "body ()", "other body ()"])
+    for k in gone.tolist():
+        x, y = (float(value) for value in data["broken_place"][k, :2])
+        names = [f"{KINDS[int(data[f'{it}_kind'][k])]} {int(data[f'{it}_number'][k])}" for it in ("first", "second")]
+        row = (float(data["broken_time"][k]), x, y, float(data["back_tension"][k]))
+        assert not math.isnan(row[0])
+        table.writerow([*map(repr, row), *names])
+    path = folder / TABLE
+    write_bytes(path, text.getvalue().encode())
+    return [path]
