@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from porescale.ground.jit import inline
+from porescale.ground.lanes import lesser
 
 
 @inline
@@ -15,5 +16,5 @@ def artificial(alpha, beta, sound_speed, length, softening, approach, distance2,
     One division: it is what a pair costs most.
     """
     soft = distance2 + softening * length * length
-    per_mass = length * min(0.0, approach) / (soft * density_sum)  # μ/2ρ̄
+    per_mass = length * lesser(approach, 0.0) / (soft * density_sum)  # μ/2ρ̄
     return 2.0 * (beta * per_mass * density_sum - alpha * sound_speed) * per_mass

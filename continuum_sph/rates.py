@@ -50,8 +50,7 @@ def rates(
 
     start, split, partner: full pair list, wall partners of row i from ``split[i]`` on;  record, ghost, facing,
     material, length, matrix, drift: see Layer;  slant: of `surroundings`;  mass (n,) kg/m;  table (m, 9): the fluids;
-    choices: None for one fluid, plain gradients and walls that take pressures, which is compiled by itself and
-    fastest, or an array of what is NOISE, IMAGED, SHIFTED, CORRECTED, VARIED;  kind, h: smoothing;  gx, gy gravity,
+    choices: what is NOISE, IMAGED, SHIFTED, CORRECTED, VARIED;  kind, h: smoothing;  gx, gy gravity,
     m/s²;  alpha, beta, softening: artificial viscosity;  delta 2 δ h of the density diffusion, m;  sticky: walls hold
     the fluid, else they let it slip;  smoothing: XSPH's ε, for Σ (m_j/ρ̄)(v_j - v_i) W (eq. 53 with the sign that
     smooths);  periods, m or 0.
@@ -60,19 +59,12 @@ def rates(
     that a particle's ``drift`` takes it to;  CORRECTED: gradients by ``matrix``;  VARIED: h by ``length`` (eq. 7).
     """
     wraps = period_x > 0.0 or period_y > 0.0
-    mixed = False
-    noise = HYDROSTATIC
-    imaged = False
-    shifted = False
-    corrected = False
-    varied = False
-    if choices is not None:
-        mixed = table.shape[0] > 1
-        noise = choices[NOISE]
-        imaged = choices[IMAGED] > 0
-        shifted = choices[SHIFTED] > 0
-        corrected = choices[CORRECTED] > 0
-        varied = choices[VARIED] > 0
+    mixed = table.shape[0] > 1
+    noise = choices[NOISE]
+    imaged = choices[IMAGED] > 0
+    shifted = choices[SHIFTED] > 0
+    corrected = choices[CORRECTED] > 0
+    varied = choices[VARIED] > 0
     for i in prange(fluid):
         xi = record[i, X]
         yi = record[i, Y]
@@ -82,15 +74,11 @@ def rates(
         own = record[i, P]
         stiff_i = record[i, STIFF]
         specific = 1.0 / rho
-        own_material = 0
-        if choices is not None:
-            own_material = material[i]
+        own_material = material[i]
         own_viscosity = table[own_material, VISCOSITY]
         sound = table[own_material, SOUND]
         strength = delta * sound
-        pull = 0.0
-        if choices is not None:
-            pull = 2.0 * table[own_material, COHESION] / (mass[i] * mass[i])
+        pull = 2.0 * table[own_material, COHESION] / (mass[i] * mass[i])
         viscosity = own_viscosity
         hij = h
         inverse = 1.0 / h
@@ -151,7 +139,7 @@ def rates(
             both = rho + rho_j
             partner_mass = rho_j * volume
             thrust = (own + record[j, P]) * specific * volume
-            if choices is not None and same:
+            if same:
                 thrust -= pull * partner_mass
             thrust *= slope
             ax -= thrust * tx

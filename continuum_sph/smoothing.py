@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from porescale.ground.jit import inline
+from porescale.ground.lanes import greater
 
 CUBIC, WENDLAND = 0, 1
 NAMES = ("cubic", "wendland")
@@ -25,10 +26,10 @@ def kernel_value(kind, q, h):
     WENDLAND: 7/(4 π h²) (1 - q/2)⁴ (1 + 2q).
     """
     if kind == CUBIC:
-        outer = max(0.0, 2.0 - q)
-        inner = max(0.0, 1.0 - q)
+        outer = greater(2.0 - q, 0.0)
+        inner = greater(1.0 - q, 0.0)
         return 5.0 / (14.0 * np.pi * h * h) * (outer * outer * outer - 4.0 * inner * inner * inner)
-    rest = max(0.0, 1.0 - 0.5 * q)
+    rest = greater(1.0 - 0.5 * q, 0.0)
     square = rest * rest
     return 1.75 / (np.pi * h * h) * square * square * (1.0 + 2.0 * q)
 
@@ -45,11 +46,11 @@ def slope_scale(kind, h):
 def slope_shape(kind, q):
     """The part of `kernel_slope` that depends on q alone."""
     if kind == CUBIC:
-        q = max(q, 1e-9)  # centres that coincide: the limit -2 is reached to 1e-9
-        outer = max(0.0, 2.0 - q)
-        inner = max(0.0, 1.0 - q)
+        q = greater(q, 1e-9)  # centres that coincide: the limit -2 is reached to 1e-9
+        outer = greater(2.0 - q, 0.0)
+        inner = greater(1.0 - q, 0.0)
         return (4.0 * inner * inner - outer * outer) / q
-    rest = max(0.0, 1.0 - 0.5 * q)
+    rest = greater(1.0 - 0.5 * q, 0.0)
     return rest * rest * rest
 
 

@@ -34,6 +34,7 @@ from continuum_sph.law import RULES, Law
 from continuum_sph.layers import Layer
 from continuum_sph.motion import kick, kick_drift, pressurise
 from continuum_sph.rates import rates, split_rows
+from continuum_sph.rates_plain import plain_rates
 from continuum_sph.shifting import MOST, shift
 from continuum_sph.surface_tension import colours, normals, pull_interface
 from porescale.particles import PairList
@@ -78,13 +79,11 @@ class Flow:
         self.colour, self.normal = np.zeros(layer.fluid), np.zeros((layer.fluid, 3))
 
     def choose(self) -> NDArray[np.int64] | None:
-        """What of `rates` goes beyond one fluid, plain gradients and walls that take pressures; None for nothing."""
+        """What of `rates` goes beyond `plain_rates`; None for nothing."""
         law = self.law
         chosen = (law.images, law.shifting > 0.0, law.corrected, law.varied)
-        plain = len(law.fluids) == 1 and law.fluids[0].cohesion == 0.0 and law.noise == HYDROSTATIC
-        if plain and not any(chosen) and not self.layer.material.any():
-            return None
-        return np.array([law.noise, *chosen], np.int64)
+        plain = len(law.fluids) == 1 and law.fluids[0].cohesion == 0.0 and law.noise == HYDROSTATIC and law.xsph == 0.0
+        return None if plain and not any(chosen) else np.array([law.noise, *chosen], np.int64)
 
     @property
     def surveyed(self) -> bool:
@@ -155,13 +154,7 @@ class Flow:
                 fluid, pairs.start, pairs.partner, layer.record, layer.material, layer.matrix, self.openness,
                 self.crowd, self.slant, kind, h, law.spacing, *pairs.period,
             )  # fmt: skip
-        rates(
-            fluid, pairs.start, self.split, pairs.partner, layer.record, layer.ghost, layer.facing, layer.material,
-            layer.length, layer.matrix, self.slant, layer.drift, layer.mass, self.table, self.choices,
-            layer.acceleration, layer.rate, layer.smoothed, layer.power,
-            kind, h, *law.gravity, law.alpha, law.beta, law.softening, 2.0 * law.diffusion * h,
-            law.sticky, law.xsph, *pairs.period,
-        )  # fmt: skip
+        self.sum_pairs()
         if law.tension > 0.0:
             self.pull()
         if law.images:
@@ -174,6 +167,26 @@ class Flow:
             shift(
                 fluid, pairs.start, self.split, pairs.partner, layer.record, layer.material, self.table, self.openness,
                 self.crowd, layer.drift, kind, h, 2.0 * h * law.shifting * self.swiftest, MOST * self.swiftest,
+                *pairs.period,
+            )  # fmt: skip
+
+    def sum_pairs(self) -> None:
+        """The pass over pairs, by the fastest kernel that knows all of the law."""
+        layer, law, pairs = self.layer, self.law, self.pairs
+        where = (layer.fluid, pairs.start, self.split, pairs.partner, layer.record, layer.ghost)
+        how = (
+            law.smoothing.kind, law.smoothing.length, *law.gravity, law.alpha, law.beta, law.softening,
+            2.0 * law.diffusion * law.smoothing.length, law.sticky,
+        )  # fmt: skip
+        if self.choices is None:
+            plain_rates(
+                *where, layer.material, layer.mass, self.table, layer.acceleration, layer.rate, layer.power, *how,
+                *pairs.period,
+            )  # fmt: skip
+        else:
+            rates(
+                *where, layer.facing, layer.material, layer.length, layer.matrix, self.slant, layer.drift, layer.mass,
+                self.table, self.choices, layer.acceleration, layer.rate, layer.smoothed, layer.power, *how, law.xsph,
                 *pairs.period,
             )  # fmt: skip
 

@@ -1,0 +1,94 @@
+"""The pass over pairs of one fluid with plain gradients between walls that take pressures: that of `rates`, faster.
+
+The equations are those of `rates`, its slow twin; nothing is chosen here but the kernel and whether walls hold.  A row
+of partners is taken several at a time (`porescale.ground.lanes`); a particle stands for the missing end of its own row
+and adds nothing, being at no distance from itself and moving as it does.  Factors that all partners share multiply the
+sums.
+"""
+
+from __future__ import annotations
+
+from continuum_sph.artificial_viscosity import artificial
+from continuum_sph.fluids import SOUND, VISCOSITY
+from continuum_sph.layers import BY_WALLS, DIFFUSIVE, RHO, STIFF, VISCOUS, VX, VY, P, X, Y
+from continuum_sph.rates_walls import walls_push
+from continuum_sph.smoothing import slope_scale, slope_shape
+from continuum_sph.viscosity import laminar
+from porescale.ground.jit import parallel_kernel, prange
+from porescale.ground.lanes import LANES, nearest, nothing, root, take_rows, total
+
+
+@parallel_kernel
+def plain_rates(
+    fluid, start, split, partner, record, ghost, material, mass, table,
+    acceleration, rate, power,
+    kind, h, gx, gy, alpha, beta, softening, delta, sticky, period_x, period_y,
+):  # fmt: skip
+    """Overwrites ``acceleration``, ``rate`` and the first three columns of ``power`` as `rates.rates` does.
+
+    Arguments: those of the same names there;  ``table`` (1, 9) has one fluid, without cohesion, and XSPH is off.
+    """
+    viscosity = table[0, VISCOSITY]
+    sound = table[0, SOUND]
+    strength = delta * sound
+    scale = slope_scale(kind, h)
+    inverse = 1.0 / h
+    lift_x = 0.5 * gx
+    lift_y = 0.5 * gy
+    wraps = period_x > 0.0 or period_y > 0.0
+    turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
+    turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
+    for i in prange(fluid):
+        xi = record[i, X]
+        yi = record[i, Y]
+        vxi = record[i, VX]
+        vyi = record[i, VY]
+        rho = record[i, RHO]
+        own = record[i, P]
+        stiff = record[i, STIFF]
+        specific = 1.0 / rho
+        friction = laminar(viscosity, 1.0, specific, 1.0)
+        ax = nothing()
+        ay = nothing()
+        bx = nothing()
+        by = nothing()
+        change = nothing()
+        spread = nothing()
+        k = start[i]
+        while k < split[i]:
+            xj, yj, vxj, vyj, rho_j, pressure_j, volume, stiff_j = take_rows(record, partner, k, split[i], i)
+            k += LANES
+            dx = xi - xj
+            dy = yi - yj
+            if wraps:
+                dx -= period_x * nearest(dx * turns_x)
+                dy -= period_y * nearest(dy * turns_y)
+            vx = vxi - vxj
+            vy = vyi - vyj
+            distance2 = dx * dx + dy * dy
+            q = root(distance2) * inverse
+            part = volume * scale * slope_shape(kind, q)
+            approach = vx * dx + vy * dy
+            change += approach * part
+            spread += (rho - rho_j - (stiff + stiff_j) * (lift_x * dx + lift_y * dy)) * part
+            thrust = (own + pressure_j) * specific * part
+            both = rho + rho_j
+            damp = artificial(alpha, beta, sound, h, softening, approach, distance2, both) * rho_j * part
+            brake = friction * part
+            ax -= thrust * dx
+            ay -= thrust * dy
+            bx += brake * vx - damp * dx
+            by += brake * vy - damp * dy
+        pushed_x, pushed_y, held_x, held_y, swept, given = walls_push(
+            split[i], start[i + 1], partner, record, ghost, material, xi, yi, vxi, vyi, rho, own, viscosity,
+            kind, h, sticky, period_x, period_y,
+        )  # fmt: skip
+        rubbed_x = total(bx) + held_x
+        rubbed_y = total(by) + held_y
+        diffused = strength * total(spread)
+        acceleration[i, 0] = total(ax) + pushed_x + rubbed_x + gx
+        acceleration[i, 1] = total(ay) + pushed_y + rubbed_y + gy
+        rate[i] = rho * total(change) + swept + diffused
+        power[i, VISCOUS] = -mass[i] * (rubbed_x * vxi + rubbed_y * vyi)
+        power[i, DIFFUSIVE] = -mass[i] * own * specific * specific * diffused
+        power[i, BY_WALLS] = mass[i] * given

@@ -1,0 +1,47 @@
+"""What walls that take the pressure of the fluid before them do to one particle (`boundary`)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from continuum_sph.layers import VOLUME, VX, VY, P, X, Y
+from continuum_sph.smoothing import kernel_slope
+from continuum_sph.viscosity import laminar
+from porescale.ground.jit import inline
+from porescale.particles.cells import minimum_image
+
+
+@inline
+def walls_push(
+    begin, end, partner, record, ghost, material, x, y, vx, vy, rho, pressure, viscosity,
+    kind, h, sticky, period_x, period_y,
+):  # fmt: skip
+    """Of wall partners ``partner[begin:end]`` on a particle at (x, y) m, (vx, vy) m/s, ``rho`` kg/m³, ``pressure`` Pa:
+    (acceleration by pressure, m/s², 2;  by friction, 2;  rate of density, kg/(m³ s);  power given per mass, W/kg).
+
+    record, ghost, material: see Layer;  viscosity μ, Pa s;  the rest: as `rates.rates`.
+    """
+    ax = 0.0
+    ay = 0.0
+    bx = 0.0
+    by = 0.0
+    change = 0.0
+    given = 0.0
+    specific = 1.0 / rho
+    for k in range(np.uint64(begin), np.uint64(end)):
+        j = np.uint64(partner[k])
+        dx = minimum_image(x - record[j, X], period_x)
+        dy = minimum_image(y - record[j, Y], period_y)
+        slope = kernel_slope(kind, np.sqrt(dx * dx + dy * dy) / h, h)
+        volume = record[j, VOLUME]
+        swept = volume * ((vx - record[j, VX]) * dx + (vy - record[j, VY]) * dy) * slope
+        change += rho * swept
+        both = pressure + record[j, P]
+        thrust = both * specific * volume * slope
+        brake = laminar(viscosity, volume, specific, slope) if sticky and material[j] == 0 else 0.0
+        ax -= thrust * dx
+        ay -= thrust * dy
+        bx += brake * (vx - ghost[j, 0])
+        by += brake * (vy - ghost[j, 1])
+        given += specific * (pressure * swept - both * volume * slope * (vx * dx + vy * dy))
+    return ax, ay, bx, by, change, given

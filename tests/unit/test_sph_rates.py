@@ -1,0 +1,65 @@
+"""The fast pass over pairs and the one that knows every choice are the same sums."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from continuum_sph import rates_plain
+from continuum_sph.rates import rates
+from continuum_sph.rates_plain import plain_rates
+from continuum_sph.scene.build import flow_of
+from continuum_sph.scene.trials import column_scene, open_box
+
+eps = np.finfo(float).eps
+
+
+def both(flow, fast):
+    """(acceleration, rate, power) by `plain_rates`, compiled or plain, and by `rates`."""
+    layer, law, pairs = flow.layer, flow.law, flow.pairs
+    where = (layer.fluid, pairs.start, flow.split, pairs.partner, layer.record, layer.ghost)
+    how = (law.smoothing.kind, law.smoothing.length, *law.gravity, law.alpha, law.beta, law.softening)
+    how += (2.0 * law.diffusion * law.smoothing.length, law.sticky)
+    found = []
+    for name in ("fast", "all"):
+        acceleration, rate = np.zeros((layer.fluid, 2)), np.zeros(layer.fluid)
+        power, smoothed = np.zeros((layer.fluid, 4)), np.zeros((layer.fluid, 2))
+        if name == "fast":
+            fast(*where, layer.material, layer.mass, flow.table, acceleration, rate, power, *how, *pairs.period)
+        else:
+            choices = np.array([law.noise, 0, 0, 0, 0], np.int64)
+            rates(
+                *where, layer.facing, layer.material, layer.length, layer.matrix, flow.slant, layer.drift, layer.mass,
+                flow.table, choices, acceleration, rate, smoothed, power, *how, law.xsph, *pairs.period,
+            )  # fmt: skip
+        found.append((acceleration, rate, power))
+    return found
+
+
+def walled(walls):
+    """Water on its way down, all kinds of walls about it."""
+    scene = column_scene(0.125, tank=(1.5, 1.5), column=(1.0, 1.0), pressure="released", viscosity=5.0)
+    flow = flow_of(scene.model_copy(update={"tank": scene.tank.model_copy(update={"walls": walls})}))
+    for _ in range(20):
+        flow.advance()
+    return flow
+
+
+@pytest.mark.parametrize("compiled", [True, False])
+@pytest.mark.parametrize("flow", [walled("slip"), walled("floor and lid stick"), open_box(12, seed=1)])
+def test_fast_sums_are_the_slow_ones(flow, compiled, monkeypatch):
+    fast = plain_rates if compiled else plain_rates.py_func
+    if not compiled:  # what it calls as plain Python too: compiled functions take vectors only from kernels
+        for name in ("artificial", "laminar", "slope_shape", "slope_scale"):
+            monkeypatch.setattr(rates_plain, name, getattr(rates_plain, name).py_func)
+    # Round-off: 30 terms of some ten operations each, none more than a hundred times the largest sum.
+    for quick, slow in zip(*both(flow, fast), strict=True):
+        np.testing.assert_allclose(quick, slow, rtol=0, atol=100 * 30 * 10 * eps * np.abs(slow).max())
+
+
+def test_more_artificial_viscosity_is_told_apart():  # the twin that must fail
+    flow = walled("slip")
+    (quick, *_), _ = both(flow, plain_rates)
+    object.__setattr__(flow.law, "alpha", 1.01 * flow.law.alpha)
+    _, (slow, *_) = both(flow, plain_rates)
+    assert np.abs(quick - slow).max() > 1e6 * eps * np.abs(slow).max()
