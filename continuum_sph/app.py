@@ -13,6 +13,7 @@ from porescale.workbench.package import Package
 if TYPE_CHECKING:
     from continuum_sph.scene.model import Simulation
     from continuum_sph.scene.sections import Scene
+    from continuum_sph.scene.soil_model import SoilSimulation
     from porescale.runs.drive import Outcome
     from porescale.runs.model import Array
     from porescale.workbench.benchmarks import Benchmarks
@@ -32,20 +33,25 @@ def template() -> str:
     return Path(__file__).with_name("template.toml").read_text(encoding="utf-8")
 
 
-def build(scene: Scene) -> Simulation:
+def build(scene: Scene) -> Simulation | SoilSimulation:
     """The simulation of a scene; warnings about it go to stderr, refusals are InputErrors."""
     import sys
 
     from continuum_sph.scene.model import Simulation
-    from continuum_sph.scene.report import report as scene_report
+    from continuum_sph.scene.soil_model import SoilSimulation
 
-    for warning in scene_report(scene).warnings:
+    for warning in report(scene).warnings:
         print(f"warning: {warning}", file=sys.stderr)
-    return Simulation(scene)
+    return SoilSimulation(scene) if dry(scene) else Simulation(scene)
+
+
+def dry(scene: Scene) -> bool:
+    """Whether there is soil and no water."""
+    return scene.soil is not None and not scene.water.column
 
 
 def drive(
-    model: Simulation,
+    model: Simulation | SoilSimulation,
     folder: Path,
     scene: Scene,
     *,
@@ -75,16 +81,19 @@ def drive(
 def report(scene: Scene) -> Report:
     """Every derived number of a scene; raises InputError with all refusals."""
     from continuum_sph.scene.report import report as scene_report
+    from continuum_sph.scene.soil_report import soil_report
 
-    return scene_report(scene)
+    return soil_report(scene) if dry(scene) else scene_report(scene)
 
 
 def show(folder: Path) -> list[Path]:
     """Write pictures and film of the run in ``folder``; returns their paths."""
+    from dataclasses import replace
+
     from porescale.runs.film import film
     from porescale.runs.look import Look
     from porescale.runs.open_run import open_run
-    from porescale.runs.picture import pictures
+    from porescale.runs.picture import paint_last, pictures
 
     run = open_run(folder)
     scene = run.card["scene"]
@@ -102,9 +111,15 @@ def show(folder: Path) -> list[Path]:
         dot=0.5 * scene["numerics"]["spacing"],
         view=(-margin, width + margin, -margin, height + margin),
     )
+    if scene["soil"] and not scene["water"]["column"]:
+        look = replace(look, colour="displacement")
+        more = [paint_last(folder, name, replace(look, colour=name)) for name in SOIL]
+        return [*pictures(folder, look), *more, film(folder, look)]
     return [*pictures(folder, look), film(folder, look)]
 
 
+SOIL = ("mean_stress", "plastic_strain", "velocity")
+"""What is shown of soil at the end, besides how far it has come."""
 TWO = {0: ("water", "#5b8fd0"), 1: ("second fluid", "#e8a33d")}
 """Names and colours of two fluids."""
 

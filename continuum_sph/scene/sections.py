@@ -6,6 +6,7 @@ from typing import Literal
 
 import pydantic
 
+from continuum_sph.scene.soil_sections import Ground
 from porescale.ground.check import Fault
 from porescale.ground.constants import GRAVITY
 from porescale.workbench.sections import Refused, Section, quantity
@@ -63,7 +64,7 @@ class Water(Section):
     exponent: float = quantity("", 7.0, ge=1.5, le=20, help="exponent of the equation of state")
     pressure: Literal["hydrostatic", "released", "none"] = "hydrostatic"
     push: Literal["none", "face"] = "none"
-    column: tuple[Column, ...] = pydantic.Field(min_length=1, description="rectangles of water")
+    column: tuple[Column, ...] = pydantic.Field(default=(), description="rectangles of water")
 
 
 class Disc(Section):
@@ -134,12 +135,13 @@ class Output(Section):
 
 
 class Scene(Section):
-    """A tank and its water."""
+    """A tank with water, soil, or both."""
 
     title: str = ""
     gravity: float = quantity("m/s^2", GRAVITY, ge=0, le=1e6, help="acceleration of free fall, downwards")
     tank: Tank
-    water: Water
+    water: Water = Water()
+    soil: Ground | None = None
     inclusion: Inclusion | None = None
     numerics: Numerics
     time: Time
@@ -148,7 +150,7 @@ class Scene(Section):
     @property
     def head(self) -> float:
         """Height of the highest water above the floor, m."""
-        return max(column.bottom + column.height for column in self.water.column)
+        return max((column.bottom + column.height for column in self.water.column), default=0.0)
 
     @property
     def fall_speed(self) -> float:
@@ -171,6 +173,10 @@ class Scene(Section):
     def _fits(self) -> Scene:
         tank, spacing = self.tank, self.numerics.spacing
         faults = self._unresolved()
+        if self.soil is not None:
+            faults += self.soil.faults(tank.width, tank.height, WHOLE * spacing)
+        elif not self.water.column:
+            faults.append(Fault("water.column", None, "is missing", repair="give at least one rectangle of water"))
         for index, column in enumerate(self.water.column):
             key = f"water.column[{index}]"
             slack = WHOLE * spacing
@@ -190,8 +196,9 @@ class Scene(Section):
                     Fault("numerics.spacing", spacing, f"leaves {key} fewer than 4 particles across", "m",
                           f"<= {finest:g}")
                 )  # fmt: skip
-        first = self.water.column[0]
-        if self.water.pressure == "released" and (len(self.water.column) > 1 or first.left > 0 or first.bottom > 0):
+        columns = self.water.column
+        alone = len(columns) == 1 and columns[0].left == columns[0].bottom == 0.0
+        if self.water.pressure == "released" and columns and not alone:
             faults.append(
                 Fault("water.pressure", "released", "is known for one column in the left corner only",
                       repair='use "hydrostatic", or one column with left = bottom = 0')
@@ -199,7 +206,7 @@ class Scene(Section):
         faults += self._misplaced()
         if 0.0 < self.gravity < WEAKEST:
             faults.append(Fault("gravity", self.gravity, "is too weak to move water", "m/s^2", f"0 or >= {WEAKEST:g}"))
-        if self.gravity == 0.0 and self.water.sound_speed is None:
+        if self.gravity == 0.0 and columns and self.water.sound_speed is None:
             faults.append(Fault("water.sound_speed", None, "is needed when there is no gravity to take it from"))
         if faults:
             raise Refused(*faults)

@@ -59,7 +59,7 @@ def accelerate(
 
     start, split, partner: full list, walls of row i from ``split[i]`` on;  record, facing: see Soil;  force (soil, 2)
     N/m of other layers;  stress (n, 4) Pa;  kind, h: smoothing;  gx, gy: gravity, m/s²;  damping: α;
-    printed: as eq. 36;  diffusion: χ, pace: the same by sound, 1/s;  apart: A;  spacing of the particles, m;  periods, m or 0.
+    printed: as eq. 36;  diffusion: χ, pace: the same by sound, 1/s;  apart: A;  spacing, m;  periods, m.
     """
     scale = slope_scale(kind, h)
     inverse_h = 1.0 / h

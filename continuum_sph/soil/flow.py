@@ -113,7 +113,8 @@ class SoilFlow:
         accelerate(
             soil.soil, pairs.start, self.split, pairs.partner, soil.record, soil.facing, soil.force, soil.stress,
             soil.acceleration, soil.spread, soil.drift, law.smoothing.kind, law.smoothing.length, *law.gravity,
-            law.damping, law.printed_damping, law.diffusion, law.restless * self.pace, law.apart, law.spacing, *pairs.period,
+            law.damping, law.printed_damping, law.diffusion, law.restless * self.pace, law.apart,
+            law.spacing, *pairs.period,
         )  # fmt: skip
 
     def end(self, step: float) -> None:

@@ -1,0 +1,137 @@
+"""Soil in a tank as `porescale.runs` drives it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.soil_build import soil_flow
+from continuum_sph.soil import SoilFlow, porosity
+from continuum_sph.soil.law import RULES
+from continuum_sph.soil.state import XX, XY, YY, ZZ
+from porescale.ground.check import Unstable
+from porescale.runs.model import Cloud, Snapshot
+
+DEEPEST = 0.5  # of a porosity at the start, left when soil is pressed together beyond sense
+
+
+class SoilSimulation:
+    """Model of a scene of soil; see `porescale.runs.model.Model`."""
+
+    variable_step = True
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.flow: SoilFlow = soil_flow(scene)
+        self.first = self.flow.soil.x[: self.flow.soil.soil].copy()  # (soil, 2) m, where displacements count from
+        self.counted = scene.soil is not None and scene.soil.numerics.settle == 0.0
+        self._refresh()
+
+    def _refresh(self) -> None:
+        """Steps done, time reached (s) and length of the next step (s), for whoever drives."""
+        self.step: int = self.flow.step
+        self.time: float = self.flow.time
+        self.step_seconds: float = self.flow.next_step
+
+    def advance(self, steps: int) -> None:
+        """Do ``steps`` steps; Unstable when a position is no number any more."""
+        for _ in range(steps):
+            try:
+                self.flow.advance()
+            except ValueError as error:
+                raise Unstable(
+                    str(error), "position", float("nan"), "m", self.step, self.time,
+                    "lower numerics.courant, or raise soil.numerics.damping or soil.stiffness",
+                ) from error  # fmt: skip
+            if not self.counted and self.flow.time >= self.flow.law.settle:
+                self.first[:] = self.flow.soil.x[: len(self.first)]
+                self.counted = True
+            self._refresh()
+
+    def check(self) -> None:
+        """Raise Unstable when soil is faster than its own sound or denser than its grains."""
+        soil, n = self.flow.soil, self.flow.soil.soil
+        speed = np.hypot(soil.v[:n, 0], soil.v[:n, 1])
+        sound = self.flow.pace * self.flow.law.smoothing.length
+        left = porosity(soil.density, soil.material[:n], self.flow.table)
+        for values, wrong, name, unit in (
+            (speed, ~(speed <= sound), "speed", "m/s"),
+            (left, ~(left > -DEEPEST), "porosity", ""),
+        ):
+            bad = np.flatnonzero(wrong)
+            if bad.size:
+                at = bad[0]
+                raise Unstable(
+                    f"particle {at} at ({soil.x[at, 0]:.4g}, {soil.x[at, 1]:.4g}) m", name, float(values[at]), unit,
+                    self.step, self.time, "raise soil.stiffness or soil.numerics.damping, or lower numerics.courant",
+                )  # fmt: skip
+
+    def displacement(self) -> NDArray[np.float64]:
+        """How far each particle has come since the start, or since it settled, (soil,) m."""
+        moved: NDArray[np.float64] = np.hypot(*(self.flow.soil.x[: len(self.first)] - self.first).T)
+        return moved
+
+    def series(self) -> dict[str, float]:
+        """One row: where the soil is, how it moves, how it bears its weight, and how the step was chosen."""
+        flow, soil, n = self.flow, self.flow.soil, self.flow.soil.soil
+        half, gravity = 0.5 * flow.law.spacing, -flow.law.gravity[1]
+        x, v, mass, stress = soil.x[:n], soil.v[:n], soil.mass[:n], soil.stress[:n]
+        volume, moved = mass / soil.density, self.displacement()
+        weight = gravity * float((mass * x[:, 1]).sum())
+        upright, across = float((volume * stress[:, YY]).sum()), float((volume * stress[:, XX]).sum())
+        return {
+            "time (s)": self.time,
+            "step (s)": flow.next_step,
+            "front (m)": float(x[:, 0].max()) + half,
+            "highest soil (m)": float(x[:, 1].max()) + half,
+            "largest displacement (m)": float(moved.max()),
+            "mean displacement (m)": float(moved.mean()),
+            "displacement of 95 % (m)": float(np.quantile(moved, 0.95)),
+            "fastest (m/s)": float(np.hypot(v[:, 0], v[:, 1]).max()),
+            "kinetic energy (J/m)": 0.5 * float((mass * (v * v).sum(axis=1)).sum()),
+            "potential energy (J/m)": weight,
+            "momentum x (kg/s)": float((mass * v[:, 0]).sum()),
+            "stress upright over weight ()": upright / weight if weight > 0.0 else 0.0,
+            "stress across over upright ()": across / upright if upright > 0.0 else 0.0,
+            "plastic strain ()": float(soil.plastic.mean()),
+            "volume (m2)": float(volume.sum()),
+            "share come apart ()": float((soil.opening * volume / (1.0 + soil.opening)).sum() / volume.sum()),
+            "mass (kg/m)": float(mass.sum()),
+            "stops at walls ()": float(flow.stopped),
+            **{f"steps limited by {rule} ()": float(k) for rule, k in zip(RULES, flow.limited, strict=True)},
+        }
+
+    def snapshot(self) -> Snapshot:
+        """The soil as a cloud: velocity, displacement, stress, what yielded and what came apart."""
+        soil, n = self.flow.soil, self.flow.soil.soil
+        velocity = np.zeros((n, 3))
+        velocity[:, :2] = soil.v[:n]
+        stress = soil.stress[:n]
+        data: dict[str, NDArray[Any]] = {
+            "velocity": velocity,
+            "displacement": self.displacement(),
+            "mean_stress": 0.5 * (stress[:, XX] + stress[:, YY]),
+            "stress_xx": stress[:, XX].copy(),
+            "stress_yy": stress[:, YY].copy(),
+            "stress_xy": stress[:, XY].copy(),
+            "stress_zz": stress[:, ZZ].copy(),
+            "plastic_strain": soil.plastic.copy(),
+            "opening": soil.opening.copy(),
+            "porosity": porosity(soil.density, soil.material[:n], self.flow.table),
+        }
+        units = {name: "Pa" for name in data if "stress" in name}
+        units |= {"velocity": "m/s", "displacement": "m"}
+        return Snapshot(self.time, self.step, clouds={"particles": Cloud(soil.x[:n].copy(), data, units)})
+
+    def state(self) -> dict[str, Any]:
+        """Everything that later steps depend on."""
+        return {"flow": self.flow.state(), "first": self.first.copy(), "counted": self.counted}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go on bit for bit from a state of a model of the same scene."""
+        self.flow.restore(state["flow"])
+        self.first[:], self.counted = state["first"], bool(state["counted"])
+        self._refresh()
