@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from continuum_sph.scene import verify, verify_flows, verify_fluids
+from continuum_sph.scene import verify, verify_flows, verify_fluids, verify_seepage
 from porescale.workbench.validations import Validations
 
 VALIDATIONS = Validations()
-for room in (verify, verify_flows, verify_fluids):
+for room in (verify, verify_flows, verify_fluids, verify_seepage):
     VALIDATIONS.include(room.VALIDATIONS)

@@ -1,0 +1,90 @@
+"""Drag between the layers over a given time, exactly opposite on both; derivation: `continuum_sph.seepage`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from continuum_sph.layers import RHO
+from continuum_sph.seepage.mixture import POROSITY, ROOM
+from continuum_sph.seepage.resistance import drag
+from porescale.ground.jit import parallel_kernel, prange
+
+
+@parallel_kernel
+def brake(
+    fluid, near, other, weight, record, pores, mass, v, acceleration, resisting, soil_mass, soil_v, soil_acceleration,
+    law, factor, gravity, seconds, slip, push, heat,
+):  # fmt: skip
+    """Takes the drag of ``seconds`` from the water's ``v`` (fluid…, 2) m/s; what it takes goes to `take`.
+
+    Overwrites ``slip`` (fluid, 2) m/s, velocity of the water over the soil's before, and ``push`` (fluid, 2), the
+    impulse over the weight by which soil particles share it; adds to ``heat`` (fluid…,) J/m the work that it takes
+    from both layers.
+
+    near, other, weight: the overlap, water rows first;  record: true densities of water;  pores: of `blend`;  mass,
+    soil_mass kg/m (infinite: soil is held);  accelerations m/s², of both, without drag;  resisting (s,) m s, grains/k;
+    law, factor, gravity: of `Resistance`.
+    """
+    for i in prange(fluid):
+        sum_of = 0.0
+        partial = 0.0
+        ux = 0.0
+        uy = 0.0
+        bx = 0.0
+        by = 0.0
+        for k in range(np.uint64(near[i]), np.uint64(near[i + 1])):
+            s = np.uint64(other[k]) - np.uint64(fluid)
+            share = resisting[s] * weight[k]
+            sum_of += share
+            partial += soil_mass[s] * weight[k] if weight[k] > 0.0 else 0.0
+            ux += share * soil_v[s, 0]
+            uy += share * soil_v[s, 1]
+            bx += share * soil_acceleration[s, 0]
+            by += share * soil_acceleration[s, 1]
+        push[i, 0] = 0.0
+        push[i, 1] = 0.0
+        slip[i, 0] = 0.0
+        slip[i, 1] = 0.0
+        if sum_of > 0.0:
+            porosity = pores[i, POROSITY]
+            rho = record[i, RHO]
+            volume = mass[i] / (porosity * rho)
+            beta = drag(law, porosity, sum_of / pores[i, ROOM], rho * gravity, factor)
+            wx = v[i, 0] - ux / sum_of
+            wy = v[i, 1] - uy / sum_of
+            ax = acceleration[i, 0] - bx / sum_of
+            ay = acceleration[i, 1] - by / sum_of
+            lightness = 1.0 / (porosity * rho) + pores[i, ROOM] / partial
+            kappa = beta * lightness
+            gone = -np.expm1(-kappa * seconds)
+            late = seconds - gone / kappa
+            impulse = volume / lightness
+            jx = impulse * (gone * wx + late * ax)
+            jy = impulse * (gone * wy + late * ay)
+            slip[i, 0] = wx
+            slip[i, 1] = wy
+            push[i, 0] = jx / sum_of
+            push[i, 1] = jy / sum_of
+            v[i, 0] -= jx / mass[i]
+            v[i, 1] -= jy / mass[i]
+            # Half the velocities before and after, kick included, times the impulse; what soil gains is in `take`.
+            work = jx * (wx + 0.5 * seconds * ax) + jy * (wy + 0.5 * seconds * ay)
+            heat[i] += work - 0.5 * (jx * jx + jy * jy) / mass[i]
+
+
+@parallel_kernel
+def take(fluid, near, other, weight, push, resisting, soil_mass, soil_v, seconds, borne, heat):
+    """Gives ``push`` (fluid, 2), of `brake`, to the soil: adds to ``soil_v`` (s, 2) m/s; overwrites ``borne`` (s, 2)
+    N/m, the mean force over ``seconds``; takes from ``heat`` (fluid + s,) J/m what they do in excess of `brake`'s."""
+    for s in prange(resisting.shape[0]):
+        jx = 0.0
+        jy = 0.0
+        for k in range(np.uint64(near[fluid + s]), np.uint64(near[fluid + s + 1])):
+            water = np.uint64(other[k])
+            jx += weight[k] * push[water, 0]
+            jy += weight[k] * push[water, 1]
+        soil_v[s, 0] += resisting[s] / soil_mass[s] * jx
+        soil_v[s, 1] += resisting[s] / soil_mass[s] * jy
+        borne[s, 0] = resisting[s] / seconds * jx
+        borne[s, 1] = resisting[s] / seconds * jy
+        heat[fluid + s] -= 0.5 * resisting[s] * resisting[s] / soil_mass[s] * (jx * jx + jy * jy)

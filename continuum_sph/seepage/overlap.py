@@ -1,0 +1,68 @@
+"""Which soil particles lie near which water particles, and the kernel between them.
+
+The kernel is the cubic spline: its sum over a square lattice of spacing h/1.3 is 1 to 0.0011 wherever the point lies,
+and so are porosity and drag of water that moves through soil at rest; that of Wendland C2 is to 0.0105.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from continuum_sph.smoothing import CUBIC, kernel_value
+from porescale.ground.jit import parallel_kernel, prange
+from porescale.particles import PairList
+from porescale.particles.cells import minimum_image
+
+Floats = NDArray[np.float64]
+
+
+@parallel_kernel
+def overlap_weights(start, partner, x, weight, h, period_x, period_y):
+    """Overwrites ``weight`` (m,) 1/m², W of every entry of a full list;  x (n, 2) m;  h: smoothing length;  periods, m
+    or 0."""
+    for i in prange(x.shape[0]):
+        for k in range(np.uint64(start[i]), np.uint64(start[i + 1])):
+            j = np.uint64(partner[k])
+            dx = minimum_image(x[i, 0] - x[j, 0], period_x)
+            dy = minimum_image(x[i, 1] - x[j, 1], period_y)
+            weight[k] = kernel_value(CUBIC, np.sqrt(dx * dx + dy * dy) / h, h)
+
+
+class Overlap:
+    """Rows of water particles first, with their soil partners, then rows of soil particles, with their water's.
+
+    Partners of both are numbered as in ``x`` (water + soil, 2) m: soil from ``water`` on.  start, partner: the list;
+    weight : (m,) 1/m², W of each entry.  Pairs within a layer are not listed.
+    """
+
+    def __init__(
+        self,
+        water: int,
+        soil: int,
+        length: float,
+        skin: float,
+        lower: tuple[float, float],
+        upper: tuple[float, float],
+        periodic: tuple[bool, bool] = (False, False),
+    ) -> None:
+        self.water, self.length = water, length
+        self.pairs = PairList(water + soil, skin, lower, upper, periodic, full=True)
+        self.pairs.group = np.repeat(np.array([0, 1], np.int32), [water, soil])
+        self.x = np.zeros((water + soil, 2))
+        self.reach = np.full(water + soil, length)
+        self.weight = np.zeros(0)
+
+    def update(self, water: Floats, soil: Floats) -> None:
+        """Take positions (n, 2) m of both layers; lists and weights follow."""
+        self.x[: self.water], self.x[self.water :] = water, soil
+        pairs = self.pairs
+        pairs.update(self.x, self.reach)
+        if len(self.weight) < len(pairs.partner):
+            self.weight = np.zeros(len(pairs.partner) * 3 // 2)
+        overlap_weights(pairs.start, pairs.partner, self.x, self.weight, self.length, *pairs.period)
+
+    @property
+    def rows(self) -> tuple[NDArray[np.int64], NDArray[np.int32], Floats]:
+        """start, partner, weight."""
+        return self.pairs.start, self.pairs.partner, self.weight

@@ -1,0 +1,110 @@
+"""Water among grains: a `Flow` that sees the soil's particles; derivation: `continuum_sph.seepage`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from continuum_sph.seepage.drain import Drain, drain_walls
+from continuum_sph.seepage.exchange import brake, take
+from continuum_sph.seepage.mixture import GRAINS, POROSITY, ROOM, blend, part_forces
+from continuum_sph.seepage.overlap import Overlap
+from continuum_sph.seepage.resistance import Resistance
+from continuum_sph.seepage.skeleton import Skeleton
+from continuum_sph.step import Flow
+
+Floats = NDArray[np.float64]
+
+
+@dataclass
+class PoreFlow(Flow):
+    """Water of a law among the grains of a skeleton.
+
+    resistance : law of drag;  drains : faces of given pressure;  pores (fluid, 3) porosity, room before walls and
+    grains at water particles;  slip (fluid, 2) m/s, of water over soil, and borne (soil, 2) N/m, drag on the soil, of
+    the last half step;  heat (fluid + soil,) J/m, work that drag
+    took from both layers.
+    """
+
+    skeleton: Skeleton = field(kw_only=True)
+    overlap: Overlap = field(kw_only=True)
+    resistance: Resistance = field(kw_only=True)
+    drains: list[Drain] = field(default_factory=list, kw_only=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        fluid = self.layer.fluid
+        self.pores = np.ones((fluid, 3))
+        self.pores[:, GRAINS] = 0.0
+        self.thrust, self.slip, self.push = (np.zeros((fluid, 2)) for _ in range(3))
+        self.borne = np.zeros((self.skeleton.count, 2))
+        self.heat = np.zeros(fluid + self.skeleton.count)
+
+    def evaluate(self, step: float, ratio: float) -> None:
+        """As of water alone, of the mixture; forces of the water on the soil beside."""
+        layer, soil = self.layer, self.skeleton
+        self.overlap.update(layer.x[: layer.fluid], soil.x)
+        super().evaluate(step, ratio)
+        part_forces(
+            layer.fluid, *self.overlap.rows, soil.grains, layer.mass, layer.acceleration, *self.law.gravity,
+            self.pores, layer.rate, layer.power, self.thrust, soil.force,
+        )  # fmt: skip
+
+    def show_walls(self, step: float, ratio: float) -> None:
+        """What the water sees of walls, of grains and of open faces, a ``step`` (s) on."""
+        super().show_walls(step, ratio)
+        layer, pairs, smoothing = self.layer, self.pairs, self.law.smoothing
+        how = (smoothing.kind, smoothing.length, *pairs.period)
+        blend(
+            layer.fluid, pairs.start, self.split, pairs.partner, layer.record, *self.overlap.rows,
+            self.skeleton.grains, self.skeleton.v, self.pores, *how,
+        )  # fmt: skip
+        for face in self.drains:
+            drain_walls(
+                face.rows, face.pressure, pairs.start, self.split, pairs.partner, layer.x, layer.record,
+                layer.pressure, *face.point, *face.normal, *how,
+            )  # fmt: skip
+
+    def brake(self, seconds: float) -> None:
+        """Drag of ``seconds`` between water and soil, with the accelerations that both have now."""
+        layer, soil, law = self.layer, self.skeleton, self.resistance
+        brake(
+            layer.fluid, *self.overlap.rows, layer.record, self.pores, layer.mass, layer.v, layer.acceleration,
+            soil.resisting, soil.mass, soil.v, soil.acceleration, law.number, law.factor, law.gravity,
+            seconds, self.slip, self.push, self.heat,
+        )  # fmt: skip
+        take(
+            layer.fluid, *self.overlap.rows, self.push, soil.resisting, soil.mass, soil.v, seconds, self.borne,
+            self.heat,
+        )  # fmt: skip
+
+    @property
+    def porosity(self) -> Floats:
+        """n at water particles, (fluid,): 1 in the open."""
+        return self.pores[:, POROSITY]
+
+    @property
+    def room(self) -> Floats:
+        """Ω at water particles, (fluid,)."""
+        return self.pores[:, ROOM]
+
+    def state(self) -> dict[str, Any]:
+        """Everything that later steps depend on."""
+        return super().state() | {
+            "pores": self.pores.copy(),
+            "heat": self.heat.copy(),
+            "borne": self.borne.copy(),
+            "record": self.layer.record.copy(),
+            "overlap": self.overlap.pairs.state(),
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go on bit for bit from the ``state`` of a flow of the same start."""
+        super().restore(state)
+        self.pores[:], self.heat[:], self.borne[:] = state["pores"], state["heat"], state["borne"]
+        self.layer.record[:] = state["record"]
+        self.overlap.pairs.restore(state["overlap"])
+        self.overlap.update(self.layer.x[: self.layer.fluid], self.skeleton.x)

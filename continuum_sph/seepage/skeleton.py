@@ -1,0 +1,87 @@
+"""What water sees of soil: where its grains are, how they move and how hard it is to flow between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from continuum_sph.soil import SoilFlow
+
+Floats = NDArray[np.float64]
+
+
+@dataclass
+class Skeleton:
+    """Views of a soil's arrays, all (soil, …), and what water needs besides.
+
+    x m;  v m/s;  acceleration m/s²;  force N/m, overwritten by water;  mass kg/m, infinite for soil that is held;
+    grains : volume of solid, m² (per metre of depth), constant;  permeability : k, m/s.
+    """
+
+    x: Floats
+    v: Floats
+    acceleration: Floats
+    force: Floats
+    mass: Floats
+    grains: Floats
+    permeability: Floats
+    resisting: Floats = field(init=False)  # grains/k, m s
+
+    def __post_init__(self) -> None:
+        count = len(self.x)
+        for name in ("v", "acceleration", "force"):
+            assert getattr(self, name).shape == (count, 2), name
+        for name in ("mass", "grains", "permeability"):
+            assert getattr(self, name).shape == (count,), name
+        self.resisting = self.grains / self.permeability
+
+    @property
+    def count(self) -> int:
+        """Soil particles."""
+        return len(self.x)
+
+    @property
+    def held(self) -> bool:
+        """Whether the soil cannot move, whatever acts on it."""
+        return bool(np.isinf(self.mass).any())
+
+
+def skeleton_of(flow: SoilFlow, density: float, permeability: Floats | float) -> Skeleton:
+    """What water sees of a soil flow whose grains have ``density`` (kg/m³) and which has ``permeability`` k (m/s)."""
+    soil, n = flow.soil, flow.soil.soil
+    k = np.broadcast_to(np.asarray(permeability, np.float64), n).copy()
+    mass = soil.mass[:n]
+    return Skeleton(soil.x[:n], soil.v[:n], soil.acceleration, soil.force, mass, mass / density, k)
+
+
+class Frame:
+    """Soil that does not move: in the place of a soil flow where only the water matters.
+
+    x : (n, 2) m;  volume : of a particle, grains and pores, m²;  porosity;  permeability : k, m/s.
+    """
+
+    next_step = np.inf
+
+    def __init__(self, x: Floats, volume: float, porosity: float, permeability: Floats | float) -> None:
+        count = len(x)
+        v, acceleration, force = (np.zeros((count, 2)) for _ in range(3))
+        grains = np.full(count, (1.0 - porosity) * volume)
+        k = np.broadcast_to(np.asarray(permeability, np.float64), count).copy()
+        self.skeleton = Skeleton(x, v, acceleration, force, np.full(count, np.inf), grains, k)
+
+    def start(self) -> None:
+        """Nothing to do."""
+
+    def begin(self, step: float) -> None:
+        """Nothing to do."""
+
+    def strain(self, step: float) -> None:
+        """Nothing to do."""
+
+    def push(self) -> None:
+        """Nothing to do."""
+
+    def end(self, step: float) -> None:
+        """Nothing to do."""

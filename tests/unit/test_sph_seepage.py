@@ -1,0 +1,169 @@
+"""Water among grains: the passes over both layers are what their derivation says."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from reference import seepage as slow
+
+from continuum_sph.layers import RHO, VOLUME, VX, VY, P, X, Y
+from continuum_sph.seepage import Frame, Resistance
+from continuum_sph.seepage.drain import drain_walls
+from continuum_sph.seepage.exchange import brake, take
+from continuum_sph.seepage.mixture import POROSITY, blend, part_forces
+from continuum_sph.seepage.overlap import Overlap, overlap_weights
+from continuum_sph.seepage.resistance import drag
+from continuum_sph.smoothing import WENDLAND
+
+eps = np.finfo(float).eps
+H, GRAVITY, POROUS = 0.13, 9.81, 0.4
+PERIOD = np.array([1.0, 1.0])
+
+
+@pytest.fixture(scope="module")
+def place():
+    """A periodic box of 10 by 10 water and soil particles, disordered, with velocities and pressures."""
+    rng = np.random.default_rng(3)
+    i, j = np.meshgrid(np.arange(10), np.arange(10))
+    lattice = (np.column_stack((i.ravel(), j.ravel())) + 0.5) * 0.1
+    x, soil_x = (lattice + rng.uniform(-0.02, 0.02, lattice.shape) for _ in range(2))
+    n = len(x)
+    overlap = Overlap(n, n, H, 0.02, (0.0, 0.0), (1.0, 1.0), (True, True))
+    overlap.pairs.update(np.concatenate((x, soil_x)), overlap.reach)
+    pairs = overlap.pairs
+    weight = np.zeros(len(pairs.partner))
+    overlap_weights.py_func(pairs.start, pairs.partner, np.concatenate((x, soil_x)), weight, H, 1.0, 1.0)
+    values = {name: rng.normal(size=(n, 2)) for name in ("v", "soil_v", "a", "soil_a")}
+    rho = 1000.0 + rng.normal(size=n)
+    rest = {"mass": np.full(n, 4.0), "soil_mass": np.full(n, 15.9), "grains": np.full(n, 6e-3), "rho": rho}
+    return (
+        {"x": x, "soil_x": soil_x, "rows": (pairs.start, pairs.partner, weight), "p": rng.normal(size=n)}
+        | values
+        | rest
+    )
+
+
+def blended(place):
+    """Record and pores after `blend`."""
+    n = len(place["x"])
+    record = np.zeros((n, 8))
+    record[:, [X, Y]], record[:, [VX, VY]] = place["x"], place["v"]
+    record[:, RHO], record[:, P], record[:, VOLUME] = place["rho"], place["p"], place["mass"] / place["rho"]
+    pores, none = np.ones((n, 3)), np.zeros(n + 1, np.int64)
+    blend.py_func(
+        n, none, none[:n], np.zeros(0, np.int32), record, *place["rows"], place["grains"], place["soil_v"], pores,
+        WENDLAND, H, 1.0, 1.0,
+    )  # fmt: skip
+    return record, pores
+
+
+def test_porosity_flux_and_shared_forces_are_those_of_the_dense_sums(place):
+    n = len(place["x"])
+    psi = slow.shares(place["x"], place["soil_x"], place["grains"], H, PERIOD)
+    porosity, rate, acceleration, force = slow.mixture(
+        place["x"], place["v"], place["mass"], place["rho"], place["p"], place["soil_v"], psi, H, PERIOD
+    )
+    record, pores = blended(place)
+    # sums of some 25 terms of one sign
+    np.testing.assert_allclose(pores[:, POROSITY], porosity, rtol=30 * eps)
+    q = porosity[:, None] * place["v"] + psi @ place["soil_v"]
+    np.testing.assert_allclose(record[:, [VX, VY]], q, atol=100 * eps)
+    np.testing.assert_allclose(record[:, VOLUME], place["mass"] / (porosity * place["rho"]), rtol=50 * eps)
+    # continuity of one fluid, as `rates` leaves it, is n times the rate
+    given, power = porosity * rate, np.ones((n, 4))
+    thrust, found = np.zeros((n, 2)), np.zeros((n, 2))
+    falling = acceleration + np.array([0.0, -GRAVITY])
+    part_forces.py_func(
+        n, *place["rows"], place["grains"], place["mass"], falling, 0.0, -GRAVITY, pores, given, power, thrust, found
+    )
+    np.testing.assert_allclose(given, rate, rtol=10 * eps)
+    np.testing.assert_allclose(power, 1.0 / porosity[:, None] * np.ones(4), rtol=10 * eps)
+    # gravity is added and taken off again: eps g over accelerations of size 1
+    np.testing.assert_allclose(found, force, atol=np.abs(force).max() * 1000 * eps)
+    # work: what continuity gives to the water's energy the forces take from both layers' motion
+    gained = (place["mass"] * place["p"] / place["rho"] ** 2 * rate).sum()
+    lost = (place["mass"][:, None] * acceleration * place["v"]).sum() + (force * place["soil_v"]).sum()
+    scale = np.abs(place["mass"][:, None] * acceleration * place["v"]).sum()
+    assert abs(gained + lost) < 200 * eps * scale
+    assert np.abs((place["mass"][:, None] * acceleration).sum(axis=0) + force.sum(axis=0)).max() < 200 * eps * scale
+
+
+def braked(place, seconds, record, pores):
+    """Velocities of both layers after `seconds` of drag, and the heat of it."""
+    n, k = len(place["x"]), 1e-3
+    v, soil_v, push, borne = place["v"].copy(), place["soil_v"].copy(), np.zeros((n, 2)), np.zeros((n, 2))
+    heat, law, resisting = np.zeros(2 * n), Resistance(POROUS), place["grains"] / k
+    brake.py_func(
+        n, *place["rows"], record, pores, place["mass"], v, place["a"], resisting, place["soil_mass"], soil_v,
+        place["soil_a"], law.number, law.factor, law.gravity, seconds, np.zeros((n, 2)), push, heat,
+    )  # fmt: skip
+    take.py_func(n, *place["rows"], push, resisting, place["soil_mass"], soil_v, seconds, borne, heat)
+    return v, soil_v, heat.sum(), borne
+
+
+@pytest.mark.parametrize("seconds", [1e-6, 1e-3, 10.0])
+def test_drag_is_exact_in_time_and_opposite_whatever_the_step(place, seconds):
+    record, pores = blended(place)
+    v, soil_v, heat, borne = braked(place, seconds, record, pores)
+    psi = slow.shares(place["x"], place["soil_x"], place["grains"], H, PERIOD)
+    exact_v, exact_soil_v = slow.drag(
+        place["v"], place["a"], place["mass"], place["rho"], pores[:, POROSITY], place["soil_v"], place["soil_a"],
+        place["soil_mass"], psi, place["grains"], 1e-3, POROUS, Resistance(POROUS).gravity, seconds,
+    )  # fmt: skip
+    largest = np.abs(exact_v).max() + seconds
+    np.testing.assert_allclose(v, exact_v, atol=1e4 * eps * largest)
+    np.testing.assert_allclose(soil_v, exact_soil_v, atol=1e4 * eps * largest)
+    m, s = place["mass"][:, None], place["soil_mass"][:, None]
+    given = (m * (v - place["v"])).sum(axis=0) + (s * (soil_v - place["soil_v"])).sum(axis=0)
+    assert np.abs(given).max() < 1e3 * eps * np.abs(m * place["v"]).sum() * (1.0 + seconds)
+    # first law: kinetic energy with the other forces' kicks is what these gave, less the heat
+    before = 0.5 * ((m * place["v"] ** 2).sum() + (s * place["soil_v"] ** 2).sum())
+    end, soil_end = v + seconds * place["a"], soil_v + seconds * place["soil_a"]
+    after = 0.5 * ((m * end**2).sum() + (s * soil_end**2).sum())
+    work = 0.5 * seconds * ((m * place["a"] * (place["v"] + end)).sum()
+                            + (s * place["soil_a"] * (place["soil_v"] + soil_end)).sum())  # fmt: skip
+    assert abs(after - before - work + heat) < 1e4 * eps * (after + before)
+    np.testing.assert_allclose(borne.sum(axis=0), -(m * (v - place["v"])).sum(axis=0) / seconds, rtol=1e-9)
+
+
+def test_drag_that_is_not_given_to_the_soil_loses_momentum(place):  # the twin that must fail
+    record, pores = blended(place)
+    v, _, _, _ = braked(place, 1e-3, record, pores)
+    assert np.abs((place["mass"][:, None] * (v - place["v"])).sum(axis=0)).max() > 1.0
+
+
+@pytest.mark.parametrize("law", ["constant", "kozeny-carman"])
+def test_resistance_is_that_of_the_permeability_at_hand(law):
+    given = Resistance(POROUS, law)
+    for porosity in (0.35, 0.4, 0.5):
+        k = given.permeability(1e-4, porosity)
+        beta = drag.py_func(given.number, porosity, (1.0 - porosity) / 1e-4, 1000.0 * GRAVITY, given.factor)
+        assert beta == pytest.approx(porosity**2 * 1000.0 * GRAVITY / k, rel=1e-14)
+    assert given.permeability(1e-4, POROUS) == pytest.approx(1e-4, rel=1e-14)
+    # Kozeny 1927: k as n³/(1 - n)²
+    ratio = Resistance(POROUS, "kozeny-carman").permeability(1.0, 0.5)
+    assert ratio == pytest.approx((0.5**3 / 0.25) / (0.4**3 / 0.36), rel=1e-14)
+
+
+def test_a_drained_face_holds_a_linear_pressure():
+    rows = np.arange(4, 7)
+    x = np.array([[0.0, 0.05], [0.1, 0.05], [0.0, 0.15], [0.1, 0.15], [0.05, -0.05], [0.05, -0.15], [0.05, -0.25]])
+    record = np.zeros((7, 8))
+    record[:, [X, Y]] = x
+    record[:4, P], record[:4, VY] = 300.0 + 50.0 * x[:4, 1], 0.2
+    pressure = np.zeros(7)
+    start, split = np.array([0, 0, 0, 0, 0, 4, 8, 8]), np.array([0, 0, 0, 0, 4, 8, 8])
+    partner = np.array([0, 1, 2, 3, 0, 1, 2, 3], np.int32)
+    drain_walls.py_func(
+        rows, np.full(3, 300.0), start, split, partner, x, record, pressure, 0.0, 0.0, 0.0, 1.0, WENDLAND, H, 0.0, 0.0
+    )
+    np.testing.assert_allclose(pressure[4:6], 300.0 + 50.0 * x[4:6, 1], rtol=10 * eps)
+    assert pressure[6] == 300.0  # no water near
+    np.testing.assert_allclose(record[4:6, VY], 0.2, rtol=10 * eps)
+
+
+def test_soil_that_is_held_has_no_speed_and_water_feels_it():
+    frame = Frame(np.zeros((3, 2)), 0.01, POROUS, 1e-4)
+    assert frame.skeleton.held
+    assert frame.next_step == np.inf
+    np.testing.assert_allclose(frame.skeleton.resisting, 0.6 * 0.01 / 1e-4)
