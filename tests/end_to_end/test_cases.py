@@ -104,7 +104,8 @@ def test_every_expectation_is_complete_and_reasoned(case):
 
 
 @pytest.mark.parametrize(
-    "case", ["column_collapse", "column_collapse_table1", "settling_disc", *sorted([*FLOWS, *MOVED])]
+    "case",
+    ["column_collapse", "column_collapse_table1", "column_collapse_tank", "settling_disc", *sorted([*FLOWS, *MOVED])],
 )
 def test_every_case_says_what_it_is_and_how_to_run_it(case):
     text = (CASES / case / "README.md").read_text(encoding="utf-8")
@@ -222,7 +223,7 @@ def test_a_bed_lets_through_in_a_run_what_its_permeability_says(porescale, tmp_p
 
 def test_no_case_is_left_out():
     assert scenes_of(PORESCALE) == sorted(
-        ["column_collapse", "settling_disc", *FLOWS, *MOVED]
+        ["column_collapse", "column_collapse_tank", "settling_disc", *FLOWS, *MOVED]
     )  # each has a test of its own here
     assert sorted([*scenes_of(PORESCALE), *scenes_of(CONTINUUM)]) == [path.parent.name for path in FILES]
 
@@ -268,6 +269,24 @@ def test_another_column_does_not(porescale, tmp_path, setting, end, names):
     rows = [row for row in rows if not isinstance(row["at"], float) or row["at"] < end]
     found = {it.partition(":")[0] for it in missed(columns, rows)}
     assert found == names
+
+
+TANK_COARSE = ("fluid.spacing=1e-3", "fluid.step=8.33333333333333e-5", "output.snapshot_interval=0.75")
+"""Six cells per bead: what expected.toml of the tank says holds for them too, at an eighth of the work."""
+
+
+@pytest.mark.slow
+def test_the_column_in_the_tank_collapses_as_expected(porescale, tmp_path):
+    columns = run(porescale, "column_collapse_tank", tmp_path / "out", *TANK_COARSE)
+    assert missed(columns, expected("column_collapse_tank")) == []
+
+
+@pytest.mark.slow
+def test_a_column_whose_gate_vanishes_is_ahead_of_one_whose_gate_is_lifted(porescale, tmp_path):  # the twin
+    gone = ("rectangle=[]", "gate={x = 0.15, opens_at = 0.05, friction = 0.05}", "time.end=0.26")
+    columns = run(porescale, "column_collapse_tank", tmp_path / "out", *TANK_COARSE, *gone)
+    rows = [row for row in expected("column_collapse_tank") if isinstance(row["at"], float)]
+    assert [it.partition(":")[0] for it in missed(columns, rows)] == ["centre of mass at 0.25 s"]
 
 
 def test_grains_that_never_touch_or_move_would_be_noticed():
