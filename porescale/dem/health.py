@@ -14,13 +14,14 @@ if TYPE_CHECKING:
     from porescale.dem.system import Grains
 
 WORST_OVERLAP = 0.3  # of the smaller radius: the linear law and its lever arms mean nothing beyond
+WORST_OF_CORNERS = 0.8  # of the thicknesses of two segments: small beside bodies, which go through each other at 1
 WORST_TRAVEL = 0.1  # of the smallest radius in one step: a contact would be met after the fact
 
 
 class Health:
     """What is beyond sense: a number that is none; a speed beyond 0.1 smallest radii per step; an overlap beyond 30 %
-    of the radius; a centre behind a solid side (a corner: by 30 % of its segments), or through a plate since the
-    last check.
+    of the radius (of a corner of a frame: 80 % of the thicknesses); a centre behind a solid side (a corner: by 30 % of
+    its segments), or through a plate since the last check.
     """
 
     def __init__(self, plates: int, count: int) -> None:
@@ -61,7 +62,8 @@ class Health:
         grains.current_pairs()
         self._check_plates(grains)
         deepest = max_overlap(grains)
-        if deepest.share > WORST_OVERLAP:
+        corner = grains.segments is not None and deepest.disc >= 0 and grains.segments.is_corner[deepest.disc]
+        if deepest.share > (WORST_OF_CORNERS if corner else WORST_OVERLAP):
             raise _unstable(
                 grains, f"grain {deepest.disc}", f"overlap with {deepest.against} over radius", deepest.share, "",
                 "raise the stiffness or shorten the contact step",

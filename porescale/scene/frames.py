@@ -36,16 +36,14 @@ class Framed(Section):
     velocity: tuple[float, float] = quantity("m/s", (0.0, 0.0), **SPEED, help="velocity of the centre at the start")
     spin: float = quantity("rad/s", 0.0, ge=-1e7, le=1e7, help="angular velocity at the start, counter-clockwise")
     held: bool = pydantic.Field(False, description="stands still whatever pushes it; [[control]] moves it otherwise")
-    at: Points = quantity("m", ((0.0, 0.0),), **PLACE, help="a copy at each of these points")
+    at: Points = quantity("m", (), **PLACE, help="a copy at each of these points (default: one, as it is told)")
     angle: tuple[float, ...] = quantity("rad", (), ge=-1e3, le=1e3, help="by how much each is turned about its point")
 
     def _faults(self) -> list[Fault]:
         """What is wrong with what all have."""
         faults = []
-        if not self.at:
-            faults.append(Fault("at", None, "holds none", repair="give at least one"))
-        if self.angle and len(self.angle) != len(self.at):
-            faults.append(Fault("angle", len(self.angle), "are not as many as bodies", "", str(len(self.at))))
+        if self.angle and len(self.angle) != max(len(self.at), 1):
+            faults.append(Fault("angle", len(self.angle), "are not as many as bodies", "", str(max(len(self.at), 1))))
         if self.held and (self.velocity != (0.0, 0.0) or self.spin):
             faults.append(Fault("held", None, "and a velocity do not go together", repair="move it by a [[control]]"))
         return faults
@@ -53,7 +51,7 @@ class Framed(Section):
     @property
     def copies(self) -> list[tuple[tuple[float, float], float, float]]:
         """Point (m), angle (rad) and relative size of every copy."""
-        return [(at, self.angle[k] if self.angle else 0.0, 1.0) for k, at in enumerate(self.at)]
+        return [(at, self.angle[k] if self.angle else 0.0, 1.0) for k, at in enumerate(self.at or [(0.0, 0.0)])]
 
 
 class SegmentBody(Framed):
@@ -104,7 +102,7 @@ class PolygonBody(Framed):
         if (self.number is None) != (self.within is None):
             missing = "number" if self.number is None else "within"
             faults.append(Fault(missing, None, "is needed with the other", repair="give both, or neither"))
-        if self.number is not None and "at" in self.model_fields_set:
+        if self.number is not None and self.at:
             faults.append(Fault("at", None, "and number cannot both be told", repair="give one of them"))
         if self.size_spread and self.number is None:
             faults.append(Fault("size_spread", self.size_spread, "is of polygons placed at random", repair="leave out"))
