@@ -36,7 +36,8 @@ from porescale.dem.system import Grains
 from porescale.dem.walls import Box
 from porescale.ground.check import Fault, InputError, PorescaleError
 from porescale.particles.placement import place
-from porescale.runs.atomic import whole, write_bytes
+from porescale.runs.atomic import write_bytes
+from porescale.runs.hdf5 import writing
 
 Array = NDArray[np.float64]
 
@@ -243,7 +244,7 @@ def write_packing(path: Path, position: Array, radius: Array) -> None:
         write_bytes(path, text.getvalue().encode())
         return
     _judge_suffix(path)
-    with whole(path) as beside, h5py.File(beside, "w") as file:
+    with writing(path) as file:
         for name, column in zip(("x", "y", "radius"), table.T, strict=True):
             file.create_dataset(name, data=column, fletcher32=True, chunks=(max(len(column), 1),)).attrs["units"] = "m"
 

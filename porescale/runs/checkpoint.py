@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 
 from porescale.ground.check import Fault, InputError
-from porescale.runs.atomic import whole
+from porescale.runs.hdf5 import writing
 from porescale.runs.model import Array
 
 FORMAT = 1
@@ -34,7 +34,7 @@ def write_checkpoint(path: Path, content: dict[str, Any]) -> None:
     """
     arrays: list[tuple[str, Array]] = []
     tree = {"format": FORMAT, "content": _encode(content, "", arrays)}
-    with whole(Path(path)) as beside, h5py.File(beside, "w", libver=("v110", "v110")) as file:
+    with writing(Path(path), libver=("v110", "v110")) as file:
         group = file.create_group("arrays")
         for number, (where, flat) in enumerate(arrays):
             _store(group, f"{number:05d}", flat).attrs["place"] = where.encode("unicode_escape").decode()

@@ -1,0 +1,73 @@
+"""A disk whose n-th call fails: no space, an I/O error, no permission."""
+
+from __future__ import annotations
+
+import builtins
+import io
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+import h5py
+
+CALLS = ("replace", "open", "fsync", "mkdir", "unlink", "rmdir", "write", "ftruncate")
+"""Functions of os that touch the disk; besides these, opening a file by Python and by HDF5."""
+
+
+@dataclass
+class Disk:
+    """Counts the calls that concern ``folder``; the ``nth`` (from 0, -1: none) raises OSError ``errno``.
+
+    sticky : all later ones fail, too, as on a disk that is full or gone;  called : what each call was.
+    """
+
+    folder: Path
+    nth: int = -1
+    errno: int = 28
+    sticky: bool = False
+    called: list[str] = field(default_factory=list)
+
+    def wrap(self, name: str, real: Callable[..., Any]) -> Callable[..., Any]:
+        """``real``, counted."""
+
+        def call(*args: Any, **named: Any) -> Any:
+            if self._concerns(args):
+                self.called.append(name)
+                number = len(self.called) - 1
+                if 0 <= self.nth <= number if self.sticky else number == self.nth:
+                    where = str(args[0]) if isinstance(args[0], str | Path) else None
+                    raise OSError(self.errno, os.strerror(self.errno), where)
+            return real(*args, **named)
+
+        return call
+
+    def _concerns(self, args: tuple[Any, ...]) -> bool:
+        """Whether a call names a file in the folder, or a descriptor, which may be of one."""
+        first = args[0] if args else None
+        return isinstance(first, int) or (isinstance(first, str | Path) and str(first).startswith(str(self.folder)))
+
+
+@contextmanager
+def failing(disk: Disk) -> Iterator[Disk]:
+    """Within it every call goes through ``disk``."""
+    made = h5py.File.__init__
+
+    def h5_file(self: Any, name: Any, *args: Any, **named: Any) -> None:
+        disk.wrap("h5py.File", lambda *_: None)(name)
+        made(self, name, *args, **named)
+
+    patches = [patch.object(os, name, disk.wrap(name, getattr(os, name))) for name in CALLS]
+    opened = disk.wrap("file", io.open)
+    patches += [patch.object(io, "open", opened), patch.object(builtins, "open", opened)]
+    patches.append(patch.object(h5py.File, "__init__", h5_file))
+    for each in patches:
+        each.start()
+    try:
+        yield disk
+    finally:
+        for each in reversed(patches):
+            each.stop()
