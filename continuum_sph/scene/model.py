@@ -11,10 +11,12 @@ from continuum_sph.energy import book
 from continuum_sph.law import RULES
 from continuum_sph.scene.bubble import bubble
 from continuum_sph.scene.build import flow_of, water_of
+from continuum_sph.scene.instruments import Cloud, tables
 from continuum_sph.scene.sections import Scene
 from continuum_sph.step import Flow
 from porescale.ground.check import Unstable
-from porescale.runs.model import Cloud, Snapshot
+from porescale.runs.model import Cloud as Points
+from porescale.runs.model import Snapshot
 
 DENSEST = 1.3  # of ρ0: Tait pressures of half B and more; sound at Mach 0.1 needs 1.01, the hardest impacts 1.15
 
@@ -99,6 +101,18 @@ class Simulation:
             **{f"steps limited by {rule} ()": float(k) for rule, k in zip(RULES, self.flow.limited, strict=True)},
         }
 
+    def tables(self) -> dict[str, dict[str, float]]:
+        """A row of probes.csv and of levels.csv, where the scene asks for them."""
+        scene, layer = self.scene, self.flow.layer
+        if not (scene.probe or scene.level):
+            return {}
+        n = layer.fluid
+        cloud = Cloud(
+            layer.x[:n], layer.mass[:n] / layer.density, layer.pressure[:n], layer.v[:n],
+            self.flow.law.smoothing.length, scene.numerics.spacing, scene.inner[0],
+        )  # fmt: skip
+        return tables(self.time, scene.probe, scene.level, cloud)
+
     def snapshot(self) -> Snapshot:
         """The water as a cloud: velocity, pressure, density."""
         layer = self.flow.layer
@@ -113,7 +127,7 @@ class Simulation:
         if self.scene.inclusion:
             data["fluid"] = layer.material[:n].copy()
         units = {"velocity": "m/s", "pressure": "Pa", "density": "kg/m3"}
-        cloud = Cloud(layer.x[:n].copy(), data, units)
+        cloud = Points(layer.x[:n].copy(), data, units)
         return Snapshot(self.time, self.step, clouds={"particles": cloud})
 
     def state(self) -> dict[str, Any]:

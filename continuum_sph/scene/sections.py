@@ -6,6 +6,7 @@ from typing import Literal
 
 import pydantic
 
+from continuum_sph.scene.instruments import Level, Probe
 from continuum_sph.scene.soil_sections import Ground
 from porescale.ground.check import Fault
 from porescale.ground.constants import GRAVITY
@@ -143,6 +144,8 @@ class Scene(Section):
     water: Water = Water()
     soil: Ground | None = None
     inclusion: Inclusion | None = None
+    probe: tuple[Probe, ...] = ()
+    level: tuple[Level, ...] = ()
     numerics: Numerics
     time: Time
     output: Output
