@@ -81,17 +81,11 @@ def drive_deck(
 ) -> Outcome:
     """Drive a deck to its last step and write the run folder, pictures, film and the deck's own files."""
     from porescale.runs.drive import drive
-    from porescale.runs.film import film
-    from porescale.runs.look import Look
-    from porescale.runs.picture import pictures
 
     deck = model.deck
-    look = Look(title=name, cloud="grains" if any(b.discs for b in deck.bodies) else "ends",
-                colour="velocity", lines=model.lines, view=deck.domain, plain=True)  # fmt: skip
 
     def after(finished: Path) -> None:
-        pictures(finished, look)
-        film(finished, look)
+        show(finished)
         model.write(finished)
 
     return drive(
@@ -106,7 +100,23 @@ def drive_deck(
         overwrite=overwrite,
         quiet=quiet,
         after=after,
+        meanwhile=model.write_tables,
     )
+
+
+def show(folder: Path) -> list[Path]:
+    """Write pictures and a film of the deck's run in ``folder``, finished or not; returns their paths."""
+    from porescale.runs.film import film
+    from porescale.runs.look import Look
+    from porescale.runs.open_run import open_run
+    from porescale.runs.picture import pictures
+
+    run = open_run(folder)
+    x1, x2, y1, y2 = (float(value) for value in run.card["scene"]["deck"]["domain"])
+    sides = [((x1, y1), (x2, y1)), ((x2, y1), (x2, y2)), ((x2, y2), (x1, y2)), ((x1, y2), (x1, y1))]
+    look = Look(title=run.name, cloud="grains", shapes="ends", colour="velocity", lines=sides, view=(x1, x2, y1, y2),
+                plain=True)  # fmt: skip
+    return [*pictures(folder, look), film(folder, look)]
 
 
 def convert(
@@ -122,12 +132,14 @@ def convert(
     release: Annotated[
         Literal["overlap", "force"], Parameter(help="contacts end without overlap, or without force")
     ] = "overlap",
+    rod: Annotated[float | None, Parameter(help="width of segments that weigh; 2 thick, or 0.1, if not given")] = None,
     overwrite: Annotated[bool, Parameter(help="replace the file")] = False,
 ) -> int:
-    """Make a scene of a deck of discs and clumps."""
-    from porescale.decks.build import with_bodies
+    """Make a scene of a deck that does not go on from another run."""
+    from porescale.decks.build import Options, build, with_bodies
     from porescale.decks.convert import UNITS, scene_of, toml
-    from porescale.decks.deck import read_deck
+    from porescale.decks.deck import BONDED, CF0, read_deck
+    from porescale.decks.tension import read_tensions
     from porescale.runs.atomic import write_text
     from porescale.workbench.folders import refuse_unwritable
 
@@ -136,7 +148,10 @@ def convert(
     refuse_unwritable(file.parent, "--out")
     if file.exists() and not overwrite:
         raise InputError(Fault("--out", str(file), "is there already", repair="name another, or --overwrite it"))
-    text = toml(scene_of(with_bodies(read_deck(folder), seed), name, release, UNITS[units]))
+    deck = with_bodies(read_deck(folder), seed)
+    bonded = deck.jclid == BONDED
+    bonds = read_tensions(folder / CF0, build(deck, Options(seed, release, rod=rod))) if bonded else None
+    text = toml(scene_of(deck, name, release, UNITS[units], bonds, rod))
     _refuse_what_scenes_refuse(text)
     write_text(file, text)
     print(f"{file}: check it with porescale check {file}")

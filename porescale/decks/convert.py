@@ -1,18 +1,26 @@
 """A deck as a scene: the tables of a scene.toml, and their text.
 
-Scenes know discs, clumps, materials, walls and controls; their domain begins at the origin.  They know no segments, no
-bonds and no angle at the start: decks with segments, or that go on from another run, are refused, angles left out.
+Scenes know discs, clumps, bodies of segments, materials, walls, controls and bonds; their domain begins at the origin.
+Their bodies are in another order: discs, clumps, segments, polygons, so sums are added up otherwise and runs agree to
+round-off, as long as it does not grow.  Scenes know no angle at the start, which is left out: nothing depends on it.
+Decks that go on from another run (jclid 1) are refused: scenes do not start with springs that are stretched.
 """
 
 from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from porescale.decks.deck import BC, GM, MOVED, NEW, Body, Control, Deck
+import numpy as np
+
+from porescale.decks.build import ROD
+from porescale.decks.deck import BC, GO_ON, MOVED, Body, Control, Deck
 from porescale.decks.numbers import real
+from porescale.decks.tension import Row
+from porescale.dem.frames import from_ends
 from porescale.ground.check import Fault, InputError
 
 OVERLAP = 0.1  # over diameter, the most that a scene lets grains start with
@@ -30,19 +38,15 @@ class Units:
 UNITS = {"plain": Units(), "cgs": Units(1e-2, 1e3), "mm-g": Units(1e-3, 1e6)}
 
 
-def scene_of(deck: Deck, name: str, release: str, units: Units) -> dict[str, Any]:
-    """The tables of the scene of a deck with bodies; raises InputError at what scenes do not know, see module."""
-    faults = [
-        Fault(
-            f"body {k + 1}", problem="is made of segments, which scenes do not know", repair="use demseg run", file=GM
-        )
-        for k, body in enumerate(deck.bodies)
-        if body.segments
-    ]
-    if deck.jclid != NEW:
-        faults.append(Fault("jclid", deck.jclid, "goes on from another run", allowed="0", file=BC))
-    if faults:
-        raise InputError(faults)
+def scene_of(
+    deck: Deck, name: str, release: str, units: Units, bonds: list[Row] | None = None, rod: float | None = None
+) -> dict[str, Any]:
+    """The tables of the scene of a deck with bodies; raises InputError at what scenes do not know, see module.
+
+    bonds : those of a deck with jclid 3, see tension.py;  rod : width of segments that weigh, see build.py.
+    """
+    if deck.jclid == GO_ON:
+        raise InputError(Fault("jclid", deck.jclid, "goes on from another run", allowed="0 or 3", file=BC))
     size, stiff = units.length, units.density * units.length**2  # of the second: stiffness and damping, per depth
     x1, x2, y1, y2 = deck.domain
     scene: dict[str, Any] = {
@@ -62,13 +66,19 @@ def scene_of(deck: Deck, name: str, release: str, units: Units) -> dict[str, Any
         ]
     single = [body for body in deck.bodies if len(body.discs) == 1]
     solid = [body for body in deck.bodies if len(body.discs) > 1]
+    lines = [body for body in deck.bodies if body.segments and _outline(body) is None]
+    loops = [body for body in deck.bodies if body.segments and _outline(body) is not None]
+    order = {"grain": single, "clump": solid, "segment": lines, "polygon": loops}
     scene["grains"]["grain"] = [_grain(body, x1, y1, size, several) for body in single]
     scene["clump"] = [_clump(body, x1, y1, size, several) for body in solid]
+    width = rod if rod is not None else 2.0 * deck.thick or ROD
+    scene["segment"] = [_segment(deck, body, width, size, several) for body in lines]
+    scene["polygon"] = [_polygon(deck, body, size, several) for body in loops]
+    if bonds:
+        scene["bonds"] = {"known": _renumbered(deck, order, bonds, stiff * size)}
     recorded = {control.body for control in deck.controls} | set(deck.recorded)
     told = {control.body: control for control in deck.controls}
-    scene["control"] = [
-        _control(deck, body, single, solid, told.get(body), size, stiff * size) for body in sorted(recorded)
-    ]
+    scene["control"] = [_control(deck, body, order, told.get(body), size, stiff * size) for body in sorted(recorded)]
     return {key: part for key, part in scene.items() if part != []}
 
 
@@ -98,12 +108,55 @@ def _clump(body: Body, x1: float, y1: float, size: float, several: bool) -> dict
     return {"discs": discs, "at": [[0.0, 0.0]], **_own(body, size, several)}
 
 
+def _outline(body: Body) -> list[list[float]] | None:
+    """Corners of segments that go on from each other and close; None of others."""
+    lines = body.segments
+    turns = zip(lines, (*lines[1:], *lines[:1]), strict=True)
+    closed = len(lines) > 2 and all(one[2:] == other[:2] for one, other in turns)
+    return [list(line[:2]) for line in lines] if closed and not body.long else None
+
+
+def _framed(deck: Deck, body: Body, size: float, several: bool) -> dict[str, Any]:
+    return {"thickness": deck.thick * size, **_own(body, size, several)}
+
+
+def _segment(deck: Deck, body: Body, width: float, size: float, several: bool) -> dict[str, Any]:
+    x1, _, y1, _ = deck.domain
+    ends = [[(a - x1) * size, (b - y1) * size, (c - x1) * size, (d - y1) * size] for a, b, c, d in body.segments]
+    return {"ends": ends, "width": width * size, "long": body.long, **_framed(deck, body, size, several)}
+
+
+def _polygon(deck: Deck, body: Body, size: float, several: bool) -> dict[str, Any]:
+    x1, _, y1, _ = deck.domain
+    corners = [[(x - x1) * size, (y - y1) * size] for x, y in _outline(body) or []]
+    return {"corners": corners, **_framed(deck, body, size, several)}
+
+
+def _renumbered(deck: Deck, order: dict[str, list[Body]], bonds: list[Row], force: float) -> list[list[float | int]]:
+    """Bonds by the numbers that points and segments have in the scene, which has bodies in another order."""
+
+    def places(sizes: Callable[[Body], int]) -> list[int]:
+        """Number in the scene of each point, or segment, of the deck, in its order."""
+        first, before = {}, 0
+        for body in (body for kind in order.values() for body in kind):
+            first[id(body)] = before
+            before += sizes(body)
+        return [first[id(body)] + k for body in deck.bodies for k in range(sizes(body))]
+
+    def corners(body: Body) -> int:
+        return len(body.discs) or len(from_ends(np.array(body.segments).reshape(-1, 2, 2), 1.0, 1.0).corners)
+
+    points, segments = places(corners), places(lambda body: len(body.segments))
+    return [
+        [points[one], (segments if sided else points)[other], sided, back * force] for one, other, sided, back in bonds
+    ]
+
+
 def _control(
-    deck: Deck, number: int, single: list[Body], solid: list[Body], told: Control | None, size: float, force: float
+    deck: Deck, number: int, order: dict[str, list[Body]], told: Control | None, size: float, force: float
 ) -> dict[str, Any]:
     body = deck.bodies[number - 1]
-    key, among = ("grain", single) if len(body.discs) == 1 else ("clump", solid)
-    index = next(k for k, other in enumerate(among) if other is body)
+    key, index = next((kind, k) for kind, among in order.items() for k, other in enumerate(among) if other is body)
     row: dict[str, Any] = {key: index, "name": f"body {number}", "record": number in deck.recorded}
     for axis, name in enumerate(KEYS if told else ()):
         assert told is not None

@@ -5,8 +5,9 @@ energy.dat (tutorial I-2): step, then
     enxd work of bodies moved as told;  enxf work of bodies pushed as told;  err what does not balance.
 f-d_curve.dat (I-3): step, body, force x, place x, force y, place y, moment, angle, the order of the printed numbers
 (the text beside them has force and place the other way round); forces are those of contacts.
-Both every nprn2 steps and at both ends; steps count on from iloop.  At the end: new_in_gm.dat, new_in_bc.dat (jclid 1),
-new_in_cf.dat (see state.py) and new_in_cf0.dat (see tension.py), for the next run, without new_.
+Both every nprn2 steps and at both ends, written anew, whole or absent, every nprn1 steps; steps count on from iloop.
+At the end: new_in_gm.dat, new_in_bc.dat (jclid 1), new_in_cf.dat (see state.py) and new_in_cf0.dat (see tension.py),
+for the next run, without new_.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from porescale.decks.numbers import table
 from porescale.decks.state import read_state, state_text
 from porescale.decks.tension import read_tensions, tension_text
 from porescale.dem.energy import LOSSES, WORKS, energy_book
+from porescale.dem.frames import cells_of
 from porescale.dem.system import Grains
 from porescale.ground.check import Fault, InputError, Unstable
 from porescale.runs.atomic import write_text
@@ -122,7 +124,7 @@ class DeckRun:
         return {FORCES: row}
 
     def snapshot(self) -> Snapshot:
-        """Discs, and the ends of segments."""
+        """Discs, and the ends of segments, with what they make: lines and polygons."""
         d, shot = self.grains.discs, Snapshot(self.time, self.step)
         split = sum(len(body.discs) for body in self.deck.bodies)
         for name, own in (("grains", slice(0, split)), ("ends", slice(split, d.count))):
@@ -131,6 +133,9 @@ class DeckRun:
                 flat[:, :2] = d.velocity[own]
                 data = {"radius": d.radius[own], "angle": d.angle[own], "velocity": flat, "spin": d.spin[own]}
                 shot.clouds[name] = Cloud(d.position[own], data)
+        if self.built.frames:
+            lines, polygons = cells_of(self.built.frames)
+            shot.clouds["ends"].lines, shot.clouds["ends"].polygons = lines, polygons
         return shot
 
     def state(self) -> dict[str, Any]:
@@ -142,18 +147,13 @@ class DeckRun:
         self.grains.restore(state["grains"])
         self.step, self.time = int(state["step"]), float(state["time"])
 
-    def lines(self, snapshot: Snapshot) -> list[tuple[tuple[float, float], tuple[float, float]]]:
-        """Segments in a snapshot, and the domain, as lines."""
-        x1, x2, y1, y2 = self.deck.domain
-        found = [((x1, y1), (x2, y1)), ((x2, y1), (x2, y2)), ((x2, y2), (x1, y2)), ((x1, y2), (x1, y1))]
-        if self.grains.segments is not None:
-            at = snapshot.clouds["ends"].position
-            for a, b in self.grains.segments.ends - (self.grains.discs.count - len(at)):
-                found.append(((float(at[a, 0]), float(at[a, 1])), (float(at[b, 0]), float(at[b, 1]))))
-        return found
-
     def write(self, folder: Path) -> None:
-        """energy.dat and f-d_curve.dat from the run folder's tables, and the files of the next run, into it."""
+        """energy.dat and f-d_curve.dat, and the files of the next run, into the run folder."""
+        self.write_tables(folder)
+        self.write_next(folder)
+
+    def write_tables(self, folder: Path) -> None:
+        """energy.dat and f-d_curve.dat from the run folder's tables so far, into it, each whole or absent."""
         energy = read_series(folder / SERIES)
         rows = zip(energy["step"].astype(int).tolist(), *(energy[name].tolist() for name in ENERGY), strict=True)
         write_text(folder / "energy.dat", f"# step {' '.join(ENERGY)}\n" + plain(rows))
@@ -167,7 +167,6 @@ class DeckRun:
             )
             names = "force_x place_x force_y place_y moment angle"
             write_text(folder / "f-d_curve.dat", f"# step body {names}\n" + plain(lines))
-        self.write_next(folder)
 
     def write_next(self, folder: Path) -> None:
         """Write the files of the next run, new_in_*.dat, into ``folder``."""

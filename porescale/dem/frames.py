@@ -269,6 +269,20 @@ def corner_discs(frames: Sequence[Frame]) -> Discs:
     return corners
 
 
+def cells_of(frames: Sequence[Frame], solid: Sequence[bool] | None = None) -> tuple[Index, tuple[Index, Index]]:
+    """What all corners make, for pictures: ends of lines (m, 2), and polygons, (offsets (p + 1,), corners (k,)).
+
+    solid : which of the closed ones are polygons (None: all); numbers of corners go on from frame to frame.
+    """
+    starts = np.cumsum([0, *(len(frame.corners) for frame in frames)])
+    whole = [frame.closed and (solid is None or solid[k]) for k, frame in enumerate(frames)]
+    loops = [starts[k] + frame.loop for k, frame in enumerate(frames) if whole[k]]
+    lines = [starts[k] + np.array(frame.ends) for k, frame in enumerate(frames) if not whole[k]]
+    offsets = np.cumsum([0, *(len(loop) for loop in loops)]).astype(np.int64)
+    none = np.zeros(0, np.int64)
+    return np.concatenate([none.reshape(0, 2), *lines]), (offsets, np.concatenate([none, *loops]))
+
+
 def _halves(frames: Sequence[Frame]) -> list[float]:
     """Half the length (m) of every segment that is not long, or of all where all are."""
     short = [frame for frame in frames if not frame.long] or frames

@@ -54,6 +54,7 @@ def drive(
     overwrite: bool = False,
     quiet: bool = False,
     after: Callable[[Path], object] | None = None,
+    meanwhile: Callable[[Path], object] | None = None,
     free: Collection[str] = cards.FREE,
 ) -> Outcome:
     """Advance ``model`` to ``duration`` (s) and write the run folder.
@@ -61,7 +62,8 @@ def drive(
     Rows and snapshots are made at time 0, at multiples of their intervals (s; ``math.inf``: only first and
     last) and at the end.  With a fixed step, times are rounded to whole steps.  Output never changes the
     steps. checkpoint_seconds : wall clock;  card : {"scene": full scene as dict, "seeds": ...} for card.json;
-    after : called with the folder once all data are in place (pictures, film).
+    after : called with the folder once all data are in place (pictures, film);  meanwhile : called with it whenever
+    a snapshot is on disk.
 
     resume : go on from the checkpoint, bit for bit as the uninterrupted run; without a checkpoint it starts
     from the beginning, and a finished run is left alone.  The scene must be the same but for keys named in
@@ -87,7 +89,7 @@ def drive(
         if not held:
             raise refuse_shared(folder)
         clean(folder)
-        run = _Run(model, duration, step_seconds, schedules, checkpoint_seconds)
+        run = _Run(model, duration, step_seconds, schedules, checkpoint_seconds, meanwhile)
         name = str(card.get("name") or folder.name)
         resume = resume and (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists()
         if resume:
@@ -113,6 +115,7 @@ class _Run:
     step_seconds: float | None
     schedules: dict[str, Schedule]
     checkpoint_seconds: float
+    meanwhile: Callable[[Path], object] | None = None
 
     def ended(self, step: int, time: float) -> bool:
         """Whether the run is over at this step."""
@@ -223,6 +226,8 @@ def _record_due(run: _Run, record: Record) -> bool:
         record.row(model, scheduled=True)
     if snapshot:
         record.snapshot(model, scheduled=True)
+        if run.meanwhile is not None:
+            run.meanwhile(record.folder)
     return snapshot
 
 

@@ -29,7 +29,8 @@ MADE_LATER = (
     "final.png", "montage.png", "streamlines.png", "vorticity.png", "stream_function.png", "film.mp4", "film.webm",
     "profile.csv", "lines.csv", "permeability.csv", "packing.csv", "chains.png", "coordination.png", "rose.png",
     "grains_solid_fraction.png", "grains_density.png", "grains_velocity.png", "grains_strain_rate_shear.png",
-    "breaks.csv", "grains_stress_mean.png", "grains_stress_shear.png", "grains_kinetic_stress_mean.png", "chains.vtp",
+    "grains_stress_mean.png", "grains_stress_shear.png", "grains_kinetic_stress_mean.png", "chains.vtp", "breaks.csv",
+    "energy.dat", "f-d_curve.dat",
 )  # fmt: skip
 """What packages make of a finished run: an older run's must not lie beside a new one that makes none."""
 TABLES = "tables"

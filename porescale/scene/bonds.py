@@ -50,6 +50,9 @@ class Bonds(Section):
     )
     factor: float = quantity("", 1.0, gt=0, le=1e6, help="back tension over the force of the contact at the time")
     tension: float | None = quantity("N/m", None, gt=0, le=1e12, help="mean back tension, instead of factor")
+    known: tuple[tuple[int, int, int, float], ...] = pydantic.Field(
+        (), description="bonds by number, not of contacts: disc (or corner), disc or segment, 1 of a segment, N/m"
+    )
 
     @pydantic.model_validator(mode="after")
     def _sense(self) -> Bonds:
@@ -61,6 +64,8 @@ class Bonds(Section):
                 faults.append(Fault(f"bodies[{k}]", word, "names no body", "", allowed, 'write "grain", or "grain 3"'))
         if self.within and not (self.within[0] < self.within[2] and self.within[1] < self.within[3]):
             faults.append(Fault("within", None, "must be [left, bottom, right, top]", "m", repair="order them"))
+        if self.known and (self.bodies or self.within or self.tension or self.factor != 1.0):
+            faults.append(Fault("known", None, "says all there is to say", repair="leave the other keys out"))
         if self.tension is not None and self.factor != 1.0:
             faults.append(
                 Fault("tension", self.tension, "says nothing beside factor", "N/m", repair="give one of them")
@@ -124,7 +129,7 @@ class Binder:
     """Makes the bonds of a scene at their times.  made : how many sections have been."""
 
     def __init__(self, scene: Scene, grains: Grains, placed: list[Placed]) -> None:
-        whole = [("rock", Bonds(bodies=()))] if scene.rock else []
+        whole = [("rock", Bonds(bodies=(), known=()))] if scene.rock else []
         own = [(f"bonds[{k}]", it) for k, it in enumerate(scene.bonds)]
         self.grains, self.bodies = grains, Bodies(scene, grains, placed)
         self.sections = sorted([*whole, *own], key=lambda it: it[1].at)
@@ -135,6 +140,10 @@ class Binder:
         """What is to be bonded before the step of ``step`` (s) that begins at ``time`` (s)."""
         while self.made < len(self.sections) and time >= self.sections[self.made][1].at - 0.5 * step:
             key, section = self.sections[self.made]
+            if section.known:
+                self._join(key, section)
+                self.made += 1
+                continue
             bodies = self._within(self.chosen[self.made], section)
             before = 0 if self.grains.bonds is None else len(self.grains.bonds.back)
             count = bond(self.grains, [self.bodies.named[body] for body in bodies])
@@ -148,6 +157,19 @@ class Binder:
             if count and factor != 1.0:
                 own *= factor
             self.made += 1
+
+    def _join(self, key: str, section: Bonds) -> None:
+        """The bonds that a section knows by number; raises InputError at a number that there is not."""
+        grains = self.grains
+        ends = np.array([row[:3] for row in section.known], np.int64)
+        segments = 0 if grains.segments is None else len(grains.segments.ends)
+        most = np.where(ends[:, 2] == 1, segments, grains.discs.count)
+        bad = np.flatnonzero((ends < 0).any(axis=1) | (ends[:, 0] >= grains.discs.count) | (ends[:, 1] >= most))
+        if len(bad):
+            problem = f"there are {grains.discs.count} discs and corners, and {segments} segments"
+            raise InputError(Fault(f"{key}.known[{bad[0]}]", None, problem, repair="number them from 0"))
+        made = BondList(ends, np.array([row[3] for row in section.known]))
+        grains.bonds = made if grains.bonds is None else grains.bonds.joined(made)
 
     def _within(self, bodies: list[Body], section: Bonds) -> list[Body]:
         """Those with their centre in the rectangle of a section."""

@@ -112,7 +112,7 @@ def _made(scene: Scene, key: str, kind: Kind, section: SegmentBody | PolygonBody
         if isinstance(section, PolygonBody):
             frame = polygon(_turned(section.points, at, angle, size), section.thickness, density, **more)
         else:
-            frame = _lines(section, at, angle, density, more | {"width": section.width})
+            frame = _lines(section, at, angle, density, more | {"width": section.width, "long": section.long})
         made.append(Placed(key, kind, frame, told))
     return made
 

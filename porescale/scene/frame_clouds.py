@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from porescale.dem.frames import cells_of
 from porescale.dem.system import Grains
 from porescale.runs.model import Array, Cloud
 from porescale.scene.frame_build import Placed, disc_count
@@ -37,14 +38,5 @@ def frame_cloud(grains: Grains, placed: Sequence[Placed]) -> Cloud:
         "kind": np.array([KIND[it.kind] for it in placed], np.int32)[body],
         "driven": np.array([not it.free for it in placed], np.uint8)[body],
     }  # fmt: skip
-    starts = np.concatenate(([0], np.cumsum(sizes)))
-    solid = [it.frame.closed and it.kind != "container" for it in placed]
-    loops = [starts[k] + it.frame.loop for k, it in enumerate(placed) if solid[k]]
-    lines = [starts[k] + np.array(it.frame.ends) for k, it in enumerate(placed) if not solid[k]]
-    offsets = np.concatenate(([0], np.cumsum([len(loop) for loop in loops]))).astype(np.int64)
-    none = np.zeros(0, np.int64)
-    return Cloud(
-        at, data, {"radius": "m", "velocity": "m/s", "spin": "rad/s"},
-        lines=np.concatenate([none.reshape(0, 2), *lines]).astype(np.int64),
-        polygons=(offsets, np.concatenate([none, *loops]).astype(np.int64)),
-    )  # fmt: skip
+    lines, polygons = cells_of([it.frame for it in placed], [it.kind != "container" for it in placed])
+    return Cloud(at, data, {"radius": "m", "velocity": "m/s", "spin": "rad/s"}, lines=lines, polygons=polygons)

@@ -63,6 +63,7 @@ class SegmentBody(Framed):
     chain: Points = quantity("m", (), **PLACE, help="points from which to which segments go")
     ends: Lines = quantity("m", (), **PLACE, help="ends of each segment, [x1, y1, x2, y2]")
     width: float | None = quantity("m", None, **LENGTH, help="width of the rods (default: twice the thickness)")
+    long: bool = pydantic.Field(False, description="much longer than grains: kept out of the cells, as a container")
 
     @pydantic.model_validator(mode="after")
     def _whole(self) -> SegmentBody:

@@ -5,7 +5,7 @@ imported before a command needs it: `--help` must not wait for a compiler.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -77,6 +77,7 @@ class Package:
     build : scene -> model;  drive : runs it;  report : scene -> what `check` says (it may raise InputError);
     show : makes pictures and a film in a run folder and gives their paths;
     table : columns of a table of a run folder by its name, "series" for series.csv;
+    also : the same as show for runs of other commands, by what their cards call them;
     validations, benchmarks : give the registers;  stability : that of the flows of a stability map, None if there is
     none;  features : what trade studies make of a run folder at a time (None: its last snapshot), by name, None if
     there is nothing.
@@ -95,4 +96,5 @@ class Package:
     validations: Callable[[], Validations]
     benchmarks: Callable[[], Benchmarks]
     stability: Callable[[], Stability] | None = None
+    also: Mapping[str, Callable[[Path], Iterable[Path]]] = field(default_factory=dict)
     features: Callable[[], Mapping[str, Callable[[Path, float | None], NDArray[Any]]]] | None = None

@@ -1,4 +1,4 @@
-"""A deck of discs and clumps as a scene says the same in SI; what scenes do not know is refused."""
+"""A deck as a scene says the same in SI, and runs alike; what scenes do not know is refused."""
 
 from __future__ import annotations
 
@@ -77,12 +77,97 @@ def test_random_discs_become_a_scene(tmp_path):
     assert (scene.grains.discs.position == deck.grains.discs.position).all()  # text keeps the bits
 
 
-def test_segments_and_continuations_are_refused_by_name(tmp_path):
+def test_continuations_are_refused_by_name(tmp_path):
     folder = decks.write(tmp_path / "deck", decks.PUSHED, decks.boundary("1 0 20 10 10", *decks.PUSH))
     with pytest.raises(InputError) as caught:
         demseg.convert(folder, out=tmp_path / "a.toml")
-    assert [fault.key for fault in caught.value.faults] == ["body 2", "jclid"]
+    assert [fault.key for fault in caught.value.faults] == ["jclid"]
     assert not (tmp_path / "a.toml").exists()
+
+
+def apart(deck, scene, rows=slice(None)):
+    """Largest distance of the scene's points from the deck's, whose domain begins elsewhere."""
+    left, _, low, _ = deck.deck.domain
+    return float(np.abs(scene.grains.discs.position[rows] + [left, low] - deck.grains.discs.position).max())
+
+
+FALLEN = {
+    "segment": decks.SEGMENT.replace("-2.0d0 2.0d0", "-2.0d0 0.1d0"),
+    "polygon": decks.TRIANGLE.replace("-2 2", "-2 .1"),
+}
+"""Bodies that soon meet the floor."""
+
+
+@pytest.mark.parametrize(
+    ("gm", "bc", "sections"),
+    [
+        (FALLEN["segment"], "", ["segment"]),
+        (FALLEN["polygon"], "", ["polygon"]),
+        (decks.PUSHED, decks.boundary("0 0 900 100 10", *decks.PUSH), ["segment", "control"]),
+    ],
+)  # fmt: skip
+def test_a_scene_of_segments_runs_as_its_deck_to_round_off(tmp_path, gm, bc, sections):
+    deck, scene = converted(tmp_path, gm, bc)
+    assert [name for name in ("segment", "polygon", "control") if getattr(scene.scene, name)] == sections
+    own, other = deck.grains.steering.clumps, scene.grains.steering.clumps
+    assert other.mass == pytest.approx(own.mass, rel=1e-13)
+    assert other.inertia == pytest.approx(own.inertia, rel=1e-12)
+    deck.advance(900)
+    scene.advance(900)
+    assert deck.grains.book is not None
+    assert np.abs(deck.grains.steering.clumps.spin).max() > 0.1 or "control" in sections  # it has met something
+    # Places are off by eps of 10 from the start; a bounce multiplies that by how far a body comes over how deep it
+    # goes, some 1e2: 10 eps 1e2 = 2e-13 a bounce, of which there are a few.
+    assert apart(deck, scene) < 1e-12
+
+
+def test_a_bonded_chain_becomes_a_scene_with_its_bonds(tmp_path):
+    bonds = "1 1\n2 -2.0d7\n2 2\n1 -2.0d7\n3 -2.0d7\n3 1\n2 -2.0d7\n"
+    told = ("1", "3", "2", "1 1 0 1 0 1 0", "3 1 1.0 1 0 1 0")
+    folder = decks.write(tmp_path / "deck", decks.chain(3), decks.boundary("3 1 200 20 10", *told), in_cf0=bonds)
+    assert demseg.convert(folder, out=tmp_path / "a.toml") == 0
+    deck, scene = read(folder, Options()), build(load(tmp_path / "a.toml", Scene))
+    assert scene.grains.bonds.ends.tolist() == deck.grains.bonds.ends.tolist()
+    for model in (deck, scene):
+        model.advance(200)
+    # The same order of bodies, the domain begins at the origin: the same bits.
+    assert (scene.grains.discs.position == deck.grains.discs.position).all()
+    assert (scene.grains.bonds.whole == deck.grains.bonds.whole).all()
+    assert scene.series()["broken bonds ()"] == 2 - deck.grains.bonds.count > 0
+
+
+def test_bonds_of_bodies_in_another_order_are_between_the_same(tmp_path):
+    # A clump before a disc in the deck, after it in the scene; a segment above both.
+    gm = decks.grains(
+        "2 1 0",
+        "1 1 2",
+        "0 0 0",
+        "1 1.0d0",
+        "-1 5 0",
+        "2 1.0d0",
+        "-2 5 0",
+        "2 1 1",
+        "0 0 0",
+        "1 1.0d0",
+        "0.9 5 0",
+        "3 1 1",
+        "0 0 0",
+        "1 0 6.05",
+        "2 6.05",
+    ).replace("10.0d0 0.0d0\n2 1", "10.0d0 0.1\n2 1")
+    gm = gm.replace("5.0d-5", "1.0d-5")
+    first = decks.write(tmp_path / "first", gm, decks.boundary("0 0 1 1 1"))
+    model = read(first, Options())
+    model.write_next(first)
+    cf0 = (first / "new_in_cf0.dat").read_text(encoding="utf-8")
+    assert len(cf0.splitlines()) == 7  # disc with clump, disc with segment, both ways
+    folder = decks.write(tmp_path / "deck", gm, decks.boundary("3 0 50 10 10"), in_cf0=cf0)
+    assert demseg.convert(folder, out=tmp_path / "a.toml") == 0
+    deck, scene = read(folder, Options()), build(load(tmp_path / "a.toml", Scene))
+    assert scene.grains.bonds.back.tolist() == deck.grains.bonds.back.tolist()
+    for model in (deck, scene):
+        model.advance(50)
+    assert apart(deck, scene, [1, 2, 0, 3, 4]) < 1e-12  # sums in another order, as above
 
 
 def test_a_malformed_deck_is_one_line_and_exit_code_2(tmp_path, capsys):
@@ -103,6 +188,8 @@ def test_the_command_leaves_the_decks_files_beside_the_run_folders(tmp_path, cap
     names = {path.name for path in out.iterdir()}
     assert names >= {"energy.dat", "new_in_gm.dat", "new_in_bc.dat", "new_in_cf.dat", "new_in_cf0.dat", "card.json",
                      "checkpoint.h5", "grains.vtkhdf", "final.png", "film.mp4"}  # fmt: skip
+    assert main(commands(), ["show", str(out)]) == 0
+    assert str(out / "film.mp4") in capsys.readouterr().out
     rows = np.loadtxt(out / "energy.dat")
     assert rows[:, 0].tolist() == [0, 10, 20, 30, 40]
     assert rows.shape[1] == 9
