@@ -35,7 +35,7 @@ from continuum_sph.layers import Layer
 from continuum_sph.motion import kick, kick_drift, pressurise
 from continuum_sph.rates import rates, split_rows
 from continuum_sph.rates_plain import plain_rates
-from continuum_sph.shifting import MOST, shift
+from continuum_sph.shifting import MOST, QUIET, shift
 from continuum_sph.surface_tension import colours, normals, pull_interface
 from porescale.particles import PairList
 
@@ -164,10 +164,10 @@ class Flow:
                 self.wall_density, self.wall_rate, step, kind, h, *pairs.period,
             )  # fmt: skip
         if law.shifting > 0.0:
+            urge = max(0.0, self.swiftest - QUIET * law.state.sound_speed)
             shift(
                 fluid, pairs.start, self.split, pairs.partner, layer.record, layer.material, self.table, self.openness,
-                self.crowd, layer.drift, kind, h, 2.0 * h * law.shifting * self.swiftest, MOST * self.swiftest,
-                *pairs.period,
+                self.crowd, layer.drift, kind, h, 2.0 * h * law.shifting * urge, MOST * urge, *pairs.period,
             )  # fmt: skip
 
     def sum_pairs(self) -> None:

@@ -86,6 +86,12 @@ def test_vortices_without_corrected_gradients_fade_too_fast():
 
 
 @pytest.mark.slow
+def test_water_at_rest_that_is_shifted_all_the_same_sinks(monkeypatch):
+    monkeypatch.setattr(step, "QUIET", 0.0)
+    assert verify_flows.sunk(4.0) > 2.0 * tolerance("continuum.shifted_water_keeps_its_volume")
+
+
+@pytest.mark.slow
 def test_heat_counted_as_flow_is_energy_that_grows():
     growth, _ = verify_flows.energy_growth(0.6, heat_kept=True)
     assert growth > 5.0 * tolerance("continuum.energy_never_grows")
@@ -135,6 +141,8 @@ def test_a_front_a_quarter_slower_or_faster_does_not_pass():
         for factor in (0.75, 1.33):
             ratio, _ = verify.front_against(front * [factor, 1.0], series)
             assert abs(ratio - 1.0) > tolerance("continuum.front_speed_of_a_collapsing_column")
+            place = verify.front_since(front * [factor, 1.0], series)
+            assert place > tolerance("continuum.front_of_a_collapsing_column")
 
 
 def test_published_fronts_are_read_whole():
