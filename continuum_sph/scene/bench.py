@@ -6,6 +6,7 @@ from typing import Any
 
 from continuum_sph.scene.build import flow_of
 from continuum_sph.scene.trials import column_scene
+from continuum_sph.scene.trials_seepage import saturated_box
 from porescale.ground.check import Fault, InputError
 from porescale.workbench.benchmarks import Benchmarks, Dtype, Work
 
@@ -44,3 +45,19 @@ def bench_water(size: int | None, threads: int, dtype: Dtype) -> Work:
 def bench_corrected(size: int | None, threads: int, dtype: Dtype) -> Work:
     """The same with corrected gradients and shifting."""
     return collapsing(size, dtype, gradient="corrected", shifting=2.0)
+
+
+@BENCHMARKS.row("seepage")
+def bench_seepage(size: int | None, threads: int, dtype: Dtype) -> Work:
+    """Particle-steps of both layers of a stirred, saturated box of elastic soil; InputError for float32."""
+    if dtype != "float64":
+        raise InputError(Fault("--dtype", dtype, "smoothed particles have", allowed="float64"))
+    both = saturated_box(max(8, round(((size or SIZE) / 2) ** 0.5)), 1, speed=0.1, permeability=1e-3)
+    count = both.water.layer.fluid + both.water.skeleton.count
+
+    def steps() -> None:
+        for _ in range(STEPS):
+            both.advance()
+
+    steps()
+    return Work(steps, float(count * STEPS), "particles/s", count)

@@ -28,6 +28,7 @@ class Skeleton:
     grains: Floats
     permeability: Floats
     resisting: Floats = field(init=False)  # grains/k, m s
+    held: bool = field(init=False)  # whether it cannot move, whatever acts on it
 
     def __post_init__(self) -> None:
         count = len(self.x)
@@ -36,16 +37,12 @@ class Skeleton:
         for name in ("mass", "grains", "permeability"):
             assert getattr(self, name).shape == (count,), name
         self.resisting = self.grains / self.permeability
+        self.held = bool(np.isinf(self.mass).any())
 
     @property
     def count(self) -> int:
         """Soil particles."""
         return len(self.x)
-
-    @property
-    def held(self) -> bool:
-        """Whether the soil cannot move, whatever acts on it."""
-        return bool(np.isinf(self.mass).any())
 
 
 def skeleton_of(flow: SoilFlow, density: float, permeability: Floats | float) -> Skeleton:
