@@ -30,6 +30,7 @@ from porescale.dem.system import Grains
 from porescale.dem.walls import HIGH, LOW, SIDES, X
 from porescale.runs.model import Cloud, Grid, Snapshot
 from porescale.scene.frame_build import Placed, disc_count, free_rows
+from porescale.scene.frame_measures import solid_in
 from porescale.scene.grain_walls import middles, places
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ class GrainInstruments:
     """The regions, the coarse graining and the wall forces of ``scene``."""
 
     def __init__(self, scene: Scene, grains: Grains, placed: Sequence[Placed] = ()) -> None:
-        self.scene, self.grains = scene, grains
+        self.scene, self.grains, self.placed = scene, grains, placed
         self.regions = [(it.name or f"region {k}", Region(it.lower, it.upper)) for k, it in enumerate(scene.region)]
         self.held = np.arange(grains.discs.count) >= grains.discs.count - len(scene.disc)
         if grains.segments is not None:
@@ -66,7 +67,7 @@ class GrainInstruments:
             loose = self.rattling(found)
             tables["regions"] = {"time (s)": time}
             for name, region in self.regions:
-                row = region_row(self.grains, found, region, loose, self.held)
+                row = region_row(self.grains, found, region, loose, self.held, self.placed)
                 tables["regions"] |= {f"{name} {column}": value for column, value in row.items()}
         if self.scene.output.forces:
             tables["forces"] = {"time (s)": time} | self._forces(found)
@@ -184,19 +185,25 @@ def _moving(grains: Grains, region: Region, weight: Array) -> Motion:
     return motion(at, velocity, weight)
 
 
-def region_row(grains: Grains, found: Contacts, region: Region, loose: Array, held: Array) -> Row:
+def region_row(
+    grains: Grains, found: Contacts, region: Region, loose: Array, held: Array, placed: Sequence[Placed] = ()
+) -> Row:
     """What is known of a region, by column with unit.
 
     A region stays where it is, also in a strained cell, whose images are measured wherever they reach into it.
-    Porosity and velocities weigh discs by their area and mass inside, members of clumps by their share of it;
+    Porosity and velocities weigh discs by their area and mass inside, members of clumps by their share of it; polygons
+    (``placed``) take their exact area, and move with their corners;
     coordination and rattlers are of discs and clumps whose centre is inside, held ones left out; fabric and forces of
     contacts whose point is inside.
     """
     d, period = grains.discs, grains.period
     bodies, number = as_bodies(grains), body_of(grains)
     others = held | (number != np.arange(d.count))
-    share = disc_areas(region, d.position, d.radius, period) / d.area
-    pores = 1.0 - float(share @ areas(grains)) / region.area
+    discs = disc_count(grains)
+    share = disc_areas(region, d.position, d.radius, period) / np.where(d.area > 0.0, d.area, 1.0)
+    share = np.where(d.area > 0.0, share, region.holds(d.position, period))
+    solid = float(share[:discs] @ areas(grains)[:discs]) + solid_in(grains, placed, region)
+    pores = 1.0 - solid / region.area
     stress, kinetic = contact_stress(region, found, period), kinetic_stress(region, bodies, period)
     mean, deviator, angle = principal(stress)
     inside = region.holds(bodies.position, period) & ~others

@@ -15,6 +15,7 @@ from porescale.lbm.fluid import Fluid
 from porescale.lbm.observe import stream_function
 from porescale.lbm.scales import Scales
 from porescale.scene.frame_build import Placed, free_rows
+from porescale.scene.frame_measures import coordination_of_bodies
 from porescale.scene.sections import Scene
 
 Array = NDArray[np.floating]
@@ -29,7 +30,8 @@ class Watch:
     """
 
     def __init__(self, scene: Scene, grains: Grains, placed: Sequence[Placed] = ()) -> None:
-        held = len(scene.disc)
+        self.held, self.placed = len(scene.disc), placed
+        held = self.held
         self.rows: slice | NDArray[np.int64] = slice(grains.discs.count - held)
         if placed:
             self.rows = free_rows(grains, placed, held)
@@ -59,8 +61,14 @@ class Watch:
             "kinetic energy of grains (J/m)": kinetic_energy(discs),
             "largest grain speed (m/s)": float(np.hypot(*discs.velocity.T).max()),
             "largest overlap over diameter ()": 0.5 * max_overlap(grains).share,
-            "coordination number ()": coordination(grains),
+            "coordination number ()": self.coordination(grains),
         }
+
+    def coordination(self, grains: Grains) -> float:
+        """Mean number of other bodies that touch one."""
+        if not self.placed:
+            return coordination(grains)
+        return coordination_of_bodies(grains, self.placed, self.held)
 
     def state(self) -> dict[str, Any]:
         """Where the front started."""

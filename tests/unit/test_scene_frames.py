@@ -284,3 +284,18 @@ def test_breaks_are_written_by_time_with_place_and_bodies(tmp_path):
     assert float(said["x (m)"]) == pytest.approx(2.5e-3, abs=2e-6)
     # Both bonds give alike until 2 * 0.5 um: 1 ms, and a quarter of a period, 0.2 ms, at the most.
     assert float(said["time (s)"]) == pytest.approx(1e-3, abs=2e-4)
+
+
+def test_a_region_sees_the_exact_area_of_polygons_and_whom_they_touch(resting):
+    from porescale.dem.measures.region import Region
+    from porescale.scene.frame_measures import clipped_area, solid_in
+
+    frames, grains = resting.frames, resting.grains
+    x, y = grains.steering.clumps.position[0]
+    quarter = Region((float(x), float(y)), (8e-3, 8e-3))
+    assert solid_in(grains, frames, quarter) == pytest.approx(0.25e-6, rel=1e-6)  # a corner of it; it leans by 1e-7
+    assert resting.series()["coordination number ()"] == 1.0  # square and disc each stand on the floor
+    arrow = np.array([[-8.0, -6.0], [0.0, -2.0], [8.0, -6.0], [0.0, 9.0]])
+    # Below y = -4 two tips are left of the arrow: from the sides, which rise 15 in 8, and from the notch, 4 in 8.
+    feet = clipped_area(arrow, Region((-9.0, -9.0), (9.0, -4.0)))
+    assert feet == pytest.approx(2 * 0.5 * 2.0 * (2.0 * 8 / 4 - 2.0 * 8 / 15), rel=1e-12)
