@@ -23,7 +23,8 @@ Array = NDArray[np.float64]
 
 
 class Displaced(NamedTuple):
-    """mass (n,) kg/m, inertia (n,) kg m²/m;  thinness (n,) 1/m: outline over area of the disc, or of its clump."""
+    """mass (n,) kg/m, inertia (n,) kg m²/m;  thinness (n,) 1/m: outline over area of the disc, or of its clump;
+    0 of the corners of frames."""
 
     mass: Array
     inertia: Array
@@ -33,14 +34,22 @@ class Displaced(NamedTuple):
 def displaced(grains: Grains, radius: Array, density: float) -> Displaced:
     """Fluid of ``density`` (kg/m³) within discs of ``radius`` (n,) m at the places of ``grains``.
 
+    Corners of frames share what lies within the frame's outline as they share its mass, whatever their radius.
     Raises InputError at a clump of which no shares can be made.
     """
     mass = density * np.pi * radius**2
-    inertia, thinness = 0.5 * mass * radius**2, 2.0 / radius
+    inertia = 0.5 * mass * radius**2
+    corner = np.zeros(len(radius), bool) if grains.segments is None else grains.segments.is_corner
+    thinness = np.divide(2.0, radius, out=np.zeros(len(radius)), where=~corner)
     clumps = clumps_of(grains)
     for c in range(clumps.count if clumps else 0):
         assert clumps
         own = clumps.discs_of(c)
+        if corner[own].any():
+            lightness = density * clumps.area[c] / clumps.mass[c]
+            mass[own] = lightness * grains.discs.mass[own]
+            inertia[own] = lightness * grains.discs.inertia[own]
+            continue
         at = clumps.offset[clumps.start[c] : clumps.start[c + 1]]
         union = outline(at, radius[own])
         weight = radius[own] * np.maximum(union.exposed, LEAST * radius[own])

@@ -13,6 +13,7 @@ from porescale.coupling.load import add_rows, half_step_correction
 from porescale.coupling.overlap import take_off
 from porescale.coupling.rim import MARGIN, Rim
 from porescale.coupling.shapes.bodies import Bodies
+from porescale.coupling.shapes.polygon import Polygons
 from porescale.coupling.shapes.rectangle import Rectangle
 from porescale.coupling.shapes.ring import Ring
 from porescale.coupling.shapes.shape import Shape
@@ -38,13 +39,14 @@ Array = NDArray[np.floating]
 
 
 class Saturated:
-    """Discs of given radii (cells), rectangles and rings as the fluid sees them.
+    """Discs of given radii (cells), convex polygons, rectangles and rings as the fluid sees them.
 
     force (n, 2), torque (n,): loads of the last step on the discs, lattice units; rectangle_force (m, 2), ring_force,
     ring_torque: on the others, what the fluid inside them takes already given back.  The fluid sees a radius of
     ``covering_radius`` cells.  Rectangles and rings go as their owner says between steps; where they reach through a
     side of the box it moves with them, and ``mass_through_sides`` tells what came in (shapes/crossing.py).  pairs:
-    (p, 2) discs of one rigid body that overlap, see overlap.py.  A step allocates no array of the size of anything.
+    (p, 2) discs of one rigid body that overlap, see overlap.py.  polygon_load (p, 3), polygon_inside (p, 2): of the
+    polygons, as of discs; they go as their owner says.  A step allocates no array of the size of anything.
     """
 
     def __init__(
@@ -56,6 +58,7 @@ class Saturated:
         weighting: str | None = None,
         rectangles: Sequence[Rectangle] = (),
         rings: Sequence[Ring] = (),
+        polygons: Polygons | None = None,
         soft_rim: bool = False,
     ) -> None:
         ny, nx = fluid.ny, fluid.nx
@@ -75,14 +78,19 @@ class Saturated:
             raise ValueError("soft rims go with the solid operator exact-wall")
         width += MARGIN * soft_rim
         high, wide = width, width + 1
+        self.polygons, discs = polygons, len(radius)
+        if polygons:
+            cells = polygons.fit(fluid, shift, discs)
+            high, wide = np.append(high, cells), np.append(wide, cells)
+        movers = len(high)
         shapes: list[Shape] = [*rectangles, *rings]
         self.bodies: Bodies | None = None
         if shapes:
             sizes = [shape.size(fluid, shift) for shape in shapes]
-            self.bodies = Bodies(fluid, len(radius), shapes, len(rectangles))
+            self.bodies = Bodies(fluid, movers, shapes, len(rectangles))
             wide = np.append(wide, [size[0] for size in sizes])
             high = np.append(high, [size[1] for size in sizes])
-        count, discs = len(high), len(radius)
+        count = len(high)
         self._patches = make_patches(wide, high, dtype)
         self._rows = make_rows(self._patches, ny)
         widest, highest = int(self._patches.stride[:discs].max(initial=BLOCK)), int(high.max(initial=0))
@@ -104,11 +112,14 @@ class Saturated:
         self._load, self._inside = np.zeros((count, 3)), np.zeros((count, 2))
         self.force, self.torque = self._load[:discs, :2], self._load[:discs, 2]
         self.inside = self._inside[:discs]
+        self.polygon_load, self.polygon_inside = self._load[discs:movers], self._inside[discs:movers]
         self._corrected, self._slow_load, self._shift = exact, np.zeros((count, 3)), np.zeros((count, 3))
         self._theta = np.zeros(count)
         self.rim = Rim(self.radius, shift, fluid.relaxation_time, self._theta[:discs]) if soft_rim else None
         self._direct = np.zeros((count, 2))
         self._direct[:discs] = -np.pi * self.covering_radius[:, None] ** 2 * np.asarray(fluid.force)
+        if polygons:
+            self._direct[discs:movers] = -polygons.covered_area[:, None] * np.asarray(fluid.force)
 
     @property
     def covered(self) -> Array:
@@ -170,6 +181,9 @@ class Saturated:
         if self.rim:
             self.rim.filter(self._patches)
         motion = centre, velocity, spin
+        if self.polygons:
+            self.polygons.cover(self._patches, len(self.radius))
+            motion = self.polygons.gather(*motion)
         if self.bodies:
             self.bodies.place(self._patches)
             motion = self.bodies.gather(*motion)

@@ -23,11 +23,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.coupling.displaced import displaced, whole
+from porescale.coupling.immersed_polygons import ImmersedPolygons, corners_of
 from porescale.coupling.lubrication import CELLS, Lubrication
 from porescale.coupling.overlap import overlapping
 from porescale.coupling.saturated import Saturated
 from porescale.coupling.shapes.rectangle import Rectangle
 from porescale.dem.system import Grains
+from porescale.ground.check import Fault, InputError
 from porescale.ground.jit import kernel
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
@@ -92,6 +94,8 @@ class Coupled:
     After a step: fluid_force (n, 2) N/m and fluid_torque (n,) N m/m, films not included: drag and lift;  force (n, 2)
     N/m, with the weight, and torque (n,) N m/m as the contact steps hold them;  contact_load(): of other discs, walls
     and plates.
+    polygons : those among the frames of ``grains`` (immersed_polygons.py), None without; their corners, the last discs,
+    have shares of force and torque, and none of the fluid inside.
     Held discs (grains.hold) go as the owner says; the fluid inside follows, ``inner_velocity`` and ``inner_spin``, and
     is given back as for free ones.  A step allocates no array but for a rebuild of the pair list, which looks for
     numbers that are none and may grow its buffers.
@@ -116,14 +120,26 @@ class Coupled:
         discs = grains.discs
         self.fluid, self.grains, self.scales, self.contact_steps = fluid, grains, scales, contact_steps
         self.hydraulic_radius = hydraulic_ratio * discs.radius
+        self.polygons: ImmersedPolygons | None = None
+        self._seen = seen = slice(discs.count - corners_of(grains))  # the discs that are no corners
+        if seen.stop < discs.count:
+            self.hydraulic_radius[seen.stop :] = 0.0
+            self.polygons = ImmersedPolygons(
+                grains, scales.spacing, scales.density, acceleration, LAYER * scales.spacing
+            )  # fmt: skip
+            if lubrication:
+                raise InputError(Fault("lubrication", True, "knows no films between polygons", repair="leave it out"))
         self.saturated = Saturated(
-            fluid, self.hydraulic_radius / scales.spacing, solid_operator=solid_operator, weighting=weighting,
-            rectangles=rectangles, soft_rim=soft_rim,
+            fluid, self.hydraulic_radius[seen] / scales.spacing, solid_operator=solid_operator, weighting=weighting,
+            rectangles=rectangles, polygons=self.polygons.polygons if self.polygons else None, soft_rim=soft_rim,
         )  # fmt: skip
-        self.saturated.pairs = overlapping(grains, self.saturated.covering_radius * scales.spacing)
+        covering = np.zeros(discs.count)
+        covering[seen] = self.saturated.covering_radius * scales.spacing
+        self.saturated.pairs = overlapping(grains, covering)
         self._force_everywhere = solid_operator == "exact-wall"
         inside = displaced(grains, self.hydraulic_radius, scales.density)
         self.inner_mass, self.inner_inertia = inside.mass.copy(), inside.inertia.copy()
+        self.inner_mass[seen.stop :] = self.inner_inertia[seen.stop :] = 0.0
         self._inside = inside
         self.weight = buoyant_weight(grains, scales.density, acceleration)
         self.inner_velocity, self.inner_spin = discs.velocity.copy(), discs.spin.copy()
@@ -132,10 +148,11 @@ class Coupled:
         self._spin = np.zeros(discs.count)
         self.force, self.fluid_force = np.zeros((discs.count, 2)), np.zeros((discs.count, 2))
         self.torque, self.fluid_torque = np.zeros(discs.count), np.zeros(discs.count)
-        layer = LAYER * scales.spacing * inside.thinness
+        layer = LAYER * scales.spacing * inside.thinness[seen]
         solid, fluid_inside = whole(grains, discs.mass, discs.inertia), whole(grains, inside.mass, inside.inertia)
         lightness = np.column_stack([one / other for one, other in zip(solid, fluid_inside, strict=True)])
-        self.uptake = np.minimum(1.0, lightness / layer[:, None])
+        self.uptake = np.ones((discs.count, 2))
+        self.uptake[seen] = np.minimum(1.0, lightness[seen] / layer[:, None])
         mass_unit = scales.density * scales.spacing**2
         self._units = np.array([scales.force, scales.torque, mass_unit, mass_unit * scales.spacing**2])
         self.lubrication: Lubrication | None = None
@@ -147,18 +164,26 @@ class Coupled:
 
     def advance(self) -> None:
         """One fluid step and its contact steps."""
-        discs, scales, wet = self.grains.discs, self.scales, self.saturated
+        discs, scales, wet, seen = self.grains.discs, self.scales, self.saturated, self._seen
         self._to_lattice()
-        wet.advance(self.fluid, self._centre, self._velocity, self._spin)
+        wet.advance(self.fluid, self._centre[seen], self._velocity[seen], self._spin[seen])
         if wet.rim is not None:
             square = (wet.covering_radius / wet.radius) ** 2
-            self.inner_mass[:] = self._inside.mass * square
-            self.inner_inertia[:] = self._inside.inertia * square**2
+            self.inner_mass[seen] = self._inside.mass[seen] * square
+            self.inner_inertia[seen] = self._inside.inertia[seen] * square**2
         total_load(
-            wet.force, wet.torque, wet.inside, self.weight, discs.velocity, discs.spin, self.inner_velocity,
+            wet.force, wet.torque, wet.inside, self.weight, discs.velocity, discs.spin[seen], self.inner_velocity,
             self.inner_spin, self.inner_mass, self.inner_inertia, self.uptake, scales.step, self._units,
             self.inner_momentum, self.fluid_force, self.fluid_torque, self.force, self.torque,
         )  # fmt: skip
+        if self.polygons:
+            p = self.polygons
+            total_load(
+                wet.polygon_load[:, :2], wet.polygon_load[:, 2], wet.polygon_inside, p.weight, p.velocity, p.spin,
+                p.inner_velocity, p.inner_spin, p.inner_mass, p.inner_inertia, p.uptake, scales.step, self._units,
+                p.inner_momentum, p.fluid_force, p.fluid_torque, p.force, p.torque,
+            )  # fmt: skip
+            p.hand_on(self.force, self.torque, self.fluid_force, self.fluid_torque)
         if self.lubrication is None:
             self.grains.step(scales.step / self.contact_steps, self.force, self.torque, self.contact_steps)
         else:
@@ -167,6 +192,10 @@ class Coupled:
     def _to_lattice(self) -> None:
         d, s = self.grains.discs, self.scales
         to_lattice(d.position, d.velocity, d.spin, s.spacing, s.step, self._centre, self._velocity, self._spin)
+        if self.polygons:
+            p, own = self.polygons, self.polygons.polygons
+            to_lattice(p.position, p.velocity, p.spin, s.spacing, s.step, own.centre, own.velocity, own.spin)
+            own.angle[:] = p.angle
 
     def contact_load(self) -> Array:
         """Force and torque of contacts on every disc, (n, 3) N/m, N/m, N m/m; a copy.
@@ -196,8 +225,12 @@ class Coupled:
         wet, s = self.saturated, self.scales
         kept = wet.covering_radius, wet.rim
         wet.covering_radius, wet.rim = wet.radius, None
-        wet.cover(self._centre, self._velocity, self._spin)
+        if wet.polygons:
+            wet.polygons.bare = True
+        wet.cover(self._centre[self._seen], self._velocity[self._seen], self._spin[self._seen])
         wet.covering_radius, wet.rim = kept
+        if wet.polygons:
+            wet.polygons.bare = False
         solid = np.minimum(wet.solid, 1)
         rho, ux, uy = self.fluid.fields(None if self._force_everywhere else wet.weights())
         return (rho - 1) * s.density, ux * s.velocity, uy * s.velocity, solid
@@ -206,13 +239,15 @@ class Coupled:
         """Conserved momentum, kg/s (per metre), (2,): fluid + discs - the fluid inside them and + virtual masses."""
         with_inside = self.grains.discs.mass @ self.grains.discs.velocity - self.inner_momentum.sum(axis=0)
         with_inside = with_inside + (1 / self.uptake[:, 0] - 1) @ self.force * self.scales.step
+        if self.polygons:
+            with_inside = with_inside + self.polygons.momentum(self.scales.step)
         px, py = self.fluid.momentum()
         unit = self.scales.density * self.scales.spacing**2 * self.scales.velocity
         return np.asarray(with_inside + unit * np.array([px, py]))
 
     def state(self) -> dict[str, Any]:
         """Everything needed to go on bit for bit; the cells are covered anew each step."""
-        return {
+        state = {
             "fluid": self.fluid.state(),
             "grains": self.grains.state(),
             "inner_velocity": self.inner_velocity,
@@ -224,6 +259,7 @@ class Coupled:
             "fluid_torque": self.fluid_torque,
             "saturated": self.saturated.state(),
         }
+        return state | ({"polygons": self.polygons.state()} if self.polygons else {})
 
     def restore(self, state: dict[str, Any]) -> None:
         """Take up a state of a system made alike."""
@@ -240,6 +276,8 @@ class Coupled:
             "fluid_torque",
         ):
             getattr(self, name)[...] = state[name]
+        if self.polygons:
+            self.polygons.restore(state["polygons"])
 
 
 def buoyant_weight(grains: Grains, fluid_density: float, acceleration: tuple[float, float]) -> Array:

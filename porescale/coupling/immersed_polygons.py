@@ -1,0 +1,165 @@
+"""Polygons of the contact model in fluid: where they are, what the fluid does to them, and how that reaches them.
+
+A polygon is a frame (dem/frames.py), a rigid body whose corners are rows among the discs.  The fluid sees its outline,
+without the thickness of its segments: bodies that touch keep a film of both thicknesses between them.  Load, fluid
+inside and layer around are those of the body (step.py), and so is the equation of motion; what moves it is handed to
+its corners in shares like those of its mass, which add up to the force and the torque about the centroid however the
+body turns in the contact steps.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.coupling.shapes.polygon import Polygons
+from porescale.dem.clumps import Clumps
+from porescale.dem.frames import Frame, polygon_moments
+from porescale.dem.rigid import clumps_of
+from porescale.dem.system import Grains
+from porescale.ground.check import Fault, InputError
+from porescale.ground.jit import kernel
+
+Array = NDArray[np.float64]
+
+OFF_CENTRE = 1e-9
+"""Of a polygon's size: how far its centre of mass may lie from the middle of its area."""
+KEPT = ("inner_velocity", "inner_spin", "inner_momentum", "force", "fluid_force", "torque", "fluid_torque")
+"""What goes on from step to step."""
+
+
+@kernel
+def share_out(first, start, member, mass, body_mass, force, torque, disc_force, disc_torque):
+    """Hand the force (m, 2) and torque (m,) on polygons to their corners, in proportion to their mass.
+
+    Polygon n is clump first + n with the discs member[start[first + n]] to member[start[first + n + 1] - 1];
+    mass (discs,), body_mass (clumps,) kg/m.  Overwrites these rows of disc_force (discs, 2) and disc_torque (discs,).
+    """
+    for n in range(torque.shape[0]):
+        for k in range(start[first + n], start[first + n + 1]):
+            i = member[k]
+            share = mass[i] / body_mass[first + n]
+            disc_force[i, 0] = share * force[n, 0]
+            disc_force[i, 1] = share * force[n, 1]
+            disc_torque[i] = share * torque[n]
+
+
+def corners_of(grains: Grains) -> int:
+    """How many of the last discs of ``grains`` are corners of frames, which the fluid does not see."""
+    return 0 if grains.segments is None else int(np.count_nonzero(grains.segments.is_corner))
+
+
+def outlines(grains: Grains) -> tuple[int, list[Array]]:
+    """Number of the first frame among the clumps, and corners (k, 2) m of every frame about its centroid, at angle 0.
+
+    Raises InputError at a frame that is no polygon, or whose centre of mass is not the middle of its area.
+    """
+    clumps, found = clumps_of(grains), []
+    first = 0 if clumps is None else clumps.count
+    if grains.segments is None or clumps is None:
+        return first, []
+    ends, corner = grains.segments.ends, grains.segments.is_corner
+    first = int(np.flatnonzero(corner[clumps.member[clumps.start[:-1]]])[0])
+    for c in range(first, clumps.count):
+        own = clumps.discs_of(c)
+        at = clumps.offset[clumps.start[c] : clumps.start[c + 1]]
+        mine = ends[np.isin(ends[:, 0], own)] - own[0]
+        shape = Frame(tuple(map(tuple, at.tolist())), tuple(map(tuple, mine.tolist())), float(clumps.radius.max()), 1.0)
+        name = f"frame[{c - first}]"
+        if not shape.closed:
+            raise InputError(Fault(name, len(at), "is no polygon, and fluid would pass between its segments",
+                                   repair="close it, or make polygons of its rods"))  # fmt: skip
+        found.append(at[shape.loop])
+        _, middle, _ = polygon_moments(found[-1])
+        if np.abs(middle).max() > OFF_CENTRE * np.abs(at).max():
+            problem = "lies off its centre of mass: the middle of the area, where it is pushed up"
+            raise InputError(Fault(f"{name}.body", tuple(middle.tolist()), problem, "m", "(0, 0)"))
+    return first, found
+
+
+def _outline_moments(corners: Array) -> tuple[float, float]:
+    """Length (m) of the outline of corners (k, 2) m, and its second moment (m³) about 0: the layer of a disc has twice
+    the share of the disc's moment of inertia that it has of its mass, and polygons run away without that too."""
+    ahead = np.roll(corners, -1, axis=0)
+    length = np.hypot(*(ahead - corners).T)
+    return float(length.sum()), float(length @ np.sum(corners**2 + corners * ahead + ahead**2, axis=1)) / 3.0
+
+
+class ImmersedPolygons:
+    """The polygons of ``grains``, in the order of the frames.
+
+    polygons : of the lattice, in cells of ``spacing`` m;  weight (m, 2) N/m, less buoyancy;  inner_mass, inner_inertia
+    (m,): of fluid of ``density`` (kg/m³) within;  uptake (m, 2): see step.py;  inner_velocity, inner_spin,
+    inner_momentum: of the fluid inside;  fluid_force (m, 2) N/m, fluid_torque (m,) N m/m;  force, torque: as the
+    contact steps hold them, with the weight.
+    Raises InputError at a frame that is no convex polygon, or whose centre of mass is off.
+    """
+
+    def __init__(
+        self, grains: Grains, spacing: float, density: float, acceleration: tuple[float, float], layer: float
+    ) -> None:
+        """layer: m, that answers within a step, see step.py."""
+        clumps = clumps_of(grains)
+        assert clumps is not None
+        self._grains = grains
+        self.first, corners = outlines(grains)
+        self.polygons = Polygons([each / spacing for each in corners])
+        m = len(corners)
+        moments = np.array([[area, second] for area, _, second in map(polygon_moments, corners)])
+        self.inner_mass, self.inner_inertia = density * moments[:, 0], density * moments[:, 1]
+        mass, inertia = clumps.mass[self.first :], clumps.inertia[self.first :]
+        self.weight = (mass - self.inner_mass)[:, None] * np.asarray(acceleration, float)
+        around = density * layer * np.array([_outline_moments(each) for each in corners])
+        self.uptake = np.minimum(1.0, np.column_stack((mass, inertia)) / around)
+        self.inner_velocity, self.inner_spin = clumps.velocity[self.first :].copy(), clumps.spin[self.first :].copy()
+        self.inner_momentum = self.inner_mass[:, None] * self.inner_velocity
+        self.force, self.fluid_force = np.zeros((m, 2)), np.zeros((m, 2))
+        self.torque, self.fluid_torque = np.zeros(m), np.zeros(m)
+
+    @property
+    def _clumps(self) -> Clumps:
+        return self._grains.steering.clumps
+
+    @property
+    def position(self) -> Array:
+        """Centroids, (m, 2) m."""
+        return self._clumps.position[self.first :]
+
+    @property
+    def angle(self) -> Array:
+        """Angles turned since the start, (m,) rad."""
+        return self._clumps.angle[self.first :]
+
+    @property
+    def velocity(self) -> Array:
+        """(m, 2) m/s, half a step back."""
+        return self._clumps.velocity[self.first :]
+
+    @property
+    def spin(self) -> Array:
+        """(m,) rad/s, half a step back."""
+        return self._clumps.spin[self.first :]
+
+    def hand_on(self, force: Array, torque: Array, fluid_force: Array, fluid_torque: Array) -> None:
+        """Overwrite the corners' rows of these arrays (discs, 2), (discs,) with shares of the polygons' own."""
+        clumps, mass = self._clumps, self._grains.discs.mass
+        for own, turning, rows, turns in (
+            (self.force, self.torque, force, torque),
+            (self.fluid_force, self.fluid_torque, fluid_force, fluid_torque),
+        ):
+            share_out(self.first, clumps.start, clumps.member, mass, clumps.mass, own, turning, rows, turns)
+
+    def momentum(self, step: float) -> Array:
+        """What polygons add to the book of step.py beside their own: virtual masses, less the fluid inside, (2,)."""
+        return np.asarray((1 / self.uptake[:, 0] - 1) @ self.force * step - self.inner_momentum.sum(axis=0))
+
+    def state(self) -> dict[str, Any]:
+        """What the next step takes from those before."""
+        return {name: getattr(self, name) for name in KEPT}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state of the same polygons."""
+        for name in KEPT:
+            getattr(self, name)[...] = state[name]
