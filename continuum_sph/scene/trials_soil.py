@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from continuum_sph.scene.soil_build import placed
 from continuum_sph.smoothing import Smoothing
-from continuum_sph.soil import Material, SoilFlow, SoilLaw
+from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
 from porescale.ground.constants import GRAVITY
+from porescale.particles import PairList
 
 Floats = NDArray[np.float64]
 RATIO = 1.3  # smoothing length over spacing
@@ -49,3 +50,49 @@ def run_until(flow: SoilFlow, time: float, each: Callable[[SoilFlow], None] | No
         if each is not None:
             each(flow)
     return flow
+
+
+def body(
+    x: Floats, spacing: float, material: Material, stress: tuple[float, float, float, float], **law: Any
+) -> SoilFlow:
+    """Soil at ``x`` (n, 2) m without walls and weight, under one ``stress`` (4,) Pa, free on all sides."""
+    n = len(x)
+    smoothing = Smoothing("wendland", RATIO * spacing)
+    soil = Soil(
+        n, x.copy(), np.zeros((n, 2)), np.full(n, material.density * spacing**2), np.full(n, material.density),
+        np.tile(np.array(stress), (n, 1)),
+    )  # fmt: skip
+    reach = float(np.abs(x).max()) + 4.0 * spacing
+    pairs = PairList(n, SKIN * smoothing.length, (-reach, -reach), (reach, reach), full=True)
+    flow = SoilFlow(soil, SoilLaw(smoothing, spacing, (material,), (0.0, 0.0), **law), pairs)
+    flow.start()
+    return flow
+
+
+def turn(flow: SoilFlow, angle: float, steps: int) -> tuple[Floats, Floats]:
+    """Turn soil rigidly about the origin by ``angle`` (rad) in ``steps``, whatever it would do by itself.
+
+    Returns the angles (steps,) rad and the largest change of a particle's stress in the frame that turns with it, over
+    its largest component at the start, (steps,).
+    """
+    soil, n, step = flow.soil, flow.soil.soil, 1.0 / steps
+    first = soil.stress[:n].copy()
+    share = angle / steps
+    cosine, sine = math.cos(share), math.sin(share)
+    angles, errors = share * np.arange(1, steps + 1), np.zeros(steps)
+    for k, by in enumerate(angles):
+        at = soil.x[:n]
+        ahead = np.column_stack((cosine * at[:, 0] - sine * at[:, 1], sine * at[:, 0] + cosine * at[:, 1]))
+        soil.acceleration[:] = 0.0
+        soil.v[:n] = (ahead - at) / step
+        flow.begin(step)
+        flow.strain(step)
+        c, s = math.cos(by), math.sin(by)
+        xx, yy, xy = soil.stress[:n, 0], soil.stress[:n, 1], soil.stress[:n, 2]
+        own = np.column_stack((
+            c * c * xx + s * s * yy + 2.0 * c * s * xy,
+            s * s * xx + c * c * yy - 2.0 * c * s * xy,
+            (c * c - s * s) * xy + c * s * (yy - xx),
+        ))  # fmt: skip
+        errors[k] = np.abs(own - first[:, :3]).max() / np.abs(first).max()
+    return angles, errors

@@ -96,7 +96,7 @@ class SoilFlow:
         self.show_walls()
         velocity_gradients(
             soil.soil, pairs.start, self.split, pairs.partner, soil.record, soil.facing, soil.matrix, law.corrected,
-            law.smoothing.kind, law.smoothing.length, *pairs.period,
+            step, law.smoothing.kind, law.smoothing.length, *pairs.period,
         )  # fmt: skip
         quickest = deform(
             soil.density, soil.mass, soil.stress, soil.material, self.table, soil.matrix, soil.spread, soil.opening,

@@ -2,10 +2,15 @@
 
 K_i is the inverse of M_i = Σ V_j (x_j - x_i) ⊗ ∇_i W, which makes G exact for linear fields and so blind to rigid
 rotation, at free surfaces too: Randles & Libersky, Comput. Methods Appl. Mech. Eng. 139 (1996) 375; Bonet & Lok, ibid.
-180 (1999) 97.  M has the least eigenvalue 0.49 in the first row of a level surface and 0.27 in a corner; below FULL a
+180 (1999) 97.  M has the least eigenvalue 0.49 in the first row of a level surface and 0.27 in a corner; below FULL
 neighbours are too few: K goes over to the unit tensor, which it is from NONE on (from 0.25 and 0.1 on, single grains
-that meet others gain speed from gradients of nothing).  Eq. 37 of Maeda & Sakai 2004 has
-K = 1, and the opposite sign of v_j - v_i, which is that of strain with compression positive.
+that meet others gain speed from gradients of nothing).  G then takes the turning out first, ω = skew G⁰/tr M of the
+plain sums G⁰, which is exact for rigid turning with any neighbours: G = G⁰ K + ω rest J (1 - M), J the quarter turn
+and rest the share of the unit tensor in K.  Seen from its end a step that turns by θ also swells by 1 - cos θ, which
+the sums must not lose either: + (1 - √(1 - ω² Δt²))/Δt rest (1 - M).
+
+Eq. 37 of Maeda & Sakai 2004 has K = 1 and no more, and the opposite sign of v_j - v_i, which is that of strain with
+compression positive.
 """
 
 from __future__ import annotations
@@ -22,15 +27,15 @@ NONE, FULL = 0.25, 0.45
 
 @inline
 def inverse(xx, xy, yy):
-    """xx, xy, yy of K for moments M of such components."""
+    """xx, xy, yy of K for moments M of such components, and the share of the unit tensor in it."""
     half = 0.5 * (xx + yy)
     least = half - np.sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy)
     share = min(1.0, max(0.0, (least - NONE) / (FULL - NONE)))
     if share == 0.0:
-        return 1.0, 0.0, 1.0
+        return 1.0, 0.0, 1.0, 1.0
     whole = share / (xx * yy - xy * xy)
     rest = 1.0 - share
-    return whole * yy + rest, -whole * xy, whole * xx + rest
+    return whole * yy + rest, -whole * xy, whole * xx + rest, rest
 
 
 @inline
@@ -40,11 +45,14 @@ def before(facing, x, y):
 
 
 @parallel_kernel
-def velocity_gradients(soil, start, split, partner, record, facing, matrix, corrected, kind, h, period_x, period_y):
-    """Overwrites, of soil, the last four columns of ``record`` (n, 16), G, and ``matrix`` (soil, 4), K and tr M.
+def velocity_gradients(
+    soil, start, split, partner, record, facing, matrix, corrected, step, kind, h, period_x, period_y
+):
+    """Overwrites, of soil, the last four columns of ``record`` (n, 16), G, and ``matrix`` (soil, 5): xx, xy, yy of
+    K, and M_xy, M_xx - M_yy times rest/tr M.
 
     start, split, partner: full list, walls of row i from ``split[i]`` on, which count where soil lies before them;
-    record, facing: see Soil;  corrected: else K = 1;  kind, h: smoothing;  periods, m or 0.
+    record, facing: see Soil;  corrected: else K = 1;  step, s;  kind, h: smoothing;  periods, m or 0.
     """
     scale = slope_scale(kind, h)
     inverse_h = 1.0 / h
@@ -82,13 +90,22 @@ def velocity_gradients(soil, start, split, partner, record, facing, matrix, corr
         kxx = 1.0
         kxy = 0.0
         kyy = 1.0
+        rest = 0.0
         if corrected:
-            kxx, kxy, kyy = inverse(mxx, mxy, myy)
+            kxx, kxy, kyy, rest = inverse(mxx, mxy, myy)
+        trace = mxx + myy
+        part = rest / trace if trace > 0.0 else 0.0
+        turn = part * (gyx - gxy)
+        swell = 0.0
+        if rest > 0.0 and step > 0.0:
+            sine = turn / rest * step
+            swell = rest * (1.0 - np.sqrt(max(0.0, 1.0 - sine * sine))) / step
         matrix[i, 0] = kxx
         matrix[i, 1] = kxy
         matrix[i, 2] = kyy
-        matrix[i, 3] = mxx + myy
-        record[i, GXX] = gxx * kxx + gxy * kxy
-        record[i, GXY] = gxx * kxy + gxy * kyy
-        record[i, GYX] = gyx * kxx + gyy * kxy
-        record[i, GYY] = gyx * kxy + gyy * kyy
+        matrix[i, 3] = part * mxy
+        matrix[i, 4] = part * (mxx - myy)
+        record[i, GXX] = gxx * kxx + gxy * kxy + turn * mxy + swell * (1.0 - mxx)
+        record[i, GXY] = gxx * kxy + gxy * kyy - turn * (1.0 - myy) - swell * mxy
+        record[i, GYX] = gyx * kxx + gyy * kxy + turn * (1.0 - mxx) - swell * mxy
+        record[i, GYY] = gyx * kxy + gyy * kyy - turn * mxy + swell * (1.0 - myy)

@@ -72,7 +72,8 @@ def new_stress(xx, yy, xy, zz, gxx, gxy, gyx, gyy, step, opening, row):
     opening: share of the volume by which the element has come apart;  row: the material's line of the table.
     """
     p = 0.5 * (xx + yy)
-    turn = 0.5 * (gyx - gxy) * step  # tan of half of 2θ: exact in length, third order in angle
+    half = 0.25 * (gyx - gxy) * step  # tan θ/2 where the gradient is that of the middle of a rigid turn
+    turn = 2.0 * half / (1.0 - half * half)  # tan θ
     shorter = 1.0 / (1.0 + turn * turn)
     cosine = (1.0 - turn * turn) * shorter
     sine = 2.0 * turn * shorter

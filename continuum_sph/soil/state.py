@@ -41,7 +41,7 @@ class Soil:
     opening: Floats = field(init=False)
     plastic: Floats = field(init=False)
     record: Floats = field(init=False)  # (n, 16) all that a pair reads of a partner
-    matrix: Floats = field(init=False)  # (soil, 4) xx, xy, yy of the gradient correction, trace of the moments
+    matrix: Floats = field(init=False)  # (soil, 5) of the gradient correction, see `gradient`
     facing: Floats = field(init=False)  # (n, 4) of walls: nearest point of the surface, normal into the soil
     length: Floats = field(init=False)  # (n,) m, smoothing lengths, set by the flow
 
@@ -57,7 +57,7 @@ class Soil:
         self.spread = np.zeros((self.soil, 4))
         self.opening, self.plastic = np.zeros(self.soil), np.zeros(self.soil)
         self.record, self.facing, self.length = np.zeros((n, 16)), np.zeros((n, 4)), np.zeros(n)
-        self.matrix = np.tile([1.0, 0.0, 1.0, 2.0], (self.soil, 1))
+        self.matrix = np.tile([1.0, 0.0, 1.0, 0.0, 0.0], (self.soil, 1))
 
     @property
     def count(self) -> int:

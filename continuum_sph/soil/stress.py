@@ -3,6 +3,9 @@
 Gradients come from the positions at the end of a step and the velocities of its middle, G' = ∂v½/∂x(t + Δt).  Those of
 the middle are G = G' (1 - Δt/2 G')⁻¹, and skew for every rigid turning, where G' is off by the strain Δt ω²/2: a block
 turned by 90° would strain itself.  Density: ρ' = ρ det(1 - Δt G'), exact for uniform G'.
+
+What pushes is T = σ K + t J, t = rest σ : J (1 - M)/tr M, so that Σ V σ : G is the work of T in the plain sums for
+any velocities: see `gradient` for J and rest.  Rigid turning takes no work, and forces no angular momentum.
 """
 
 from __future__ import annotations
@@ -74,8 +77,9 @@ def deform(density, mass, stress, material, table, matrix, spread, opening, plas
         record[i, VOLUME] = mass[i] / density[i]
         record[i, QUICK] = np.sqrt(speed2) / density[i]
         record[i, SHEARING] = np.sqrt((gxx - gyy) * (gxx - gyy) + (gxy + gyx) * (gxy + gyx))
+        turn = (xx - yy) * matrix[i, 3] - xy * matrix[i, 4]
         record[i, TXX] = xx * kxx + xy * kxy
-        record[i, TXY] = xx * kxy + xy * kyy
-        record[i, TYX] = xy * kxx + yy * kxy
+        record[i, TXY] = xx * kxy + xy * kyy - turn
+        record[i, TYX] = xy * kxx + yy * kxy + turn
         record[i, TYY] = xy * kxy + yy * kyy
     return quickest
