@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from porescale.dem.cell import image
 from porescale.dem.contact.law import material_of, stiffness
@@ -177,10 +179,7 @@ class BondList:
         """Bonds that broke so far, by time: the acoustic emissions."""
         gone = np.flatnonzero((self.whole == 0) & (self.back > 0.0))
         rows = gone[np.argsort(self.broken[gone, 0], kind="stable")]
-        other = self.ends[:, 1].copy()
-        sided = self.ends[:, 2] == 1
-        if grains.segments is not None:
-            other[sided] = grains.segments.ends[other[sided], 0]
+        other = self.partners(grains)[:, 1]
         return [
             Break(
                 float(self.broken[k, 0]), (float(self.broken[k, 1]), float(self.broken[k, 2])),
@@ -188,6 +187,14 @@ class BondList:
             )
             for k in rows
         ]  # fmt: skip
+
+    def partners(self, grains: Grains) -> Index:
+        """Discs (m, 2) that each bond holds together; a segment stands for the disc at its first end."""
+        both = self.ends[:, :2].copy()
+        sided = self.ends[:, 2] == 1
+        if grains.segments is not None:
+            both[sided, 1] = grains.segments.ends[both[sided, 1], 0]
+        return both
 
     def joined(self, more: BondList) -> BondList:
         """These bonds and ``more``."""
@@ -241,6 +248,27 @@ def bond(grains: Grains, bodies: Iterable[int | Clump] | None = None) -> int:
     made = BondList(np.ascontiguousarray(ends[back != 0.0]), back[back != 0.0])
     grains.bonds = made if grains.bonds is None else grains.bonds.joined(made)
     return made.count
+
+
+def pieces(grains: Grains, whole: NDArray[np.uint8] | None = None) -> Index:
+    """Piece that each disc (n,) belongs to: bodies that bonds hold together are one; 0 is the largest.
+
+    whole : (m,) of the bonds, default: as they are.
+    """
+    count, bonds = grains.discs.count, grains.bonds
+    body = np.arange(count)
+    if grains.steered:
+        c = grains.steering.clumps
+        bound = c.group >= 0
+        body[bound] = c.member[c.start[:-1]][c.group[bound]]
+    held = np.zeros((0, 2), np.int64)
+    if bonds is not None:
+        held = bonds.partners(grains)[((bonds.whole if whole is None else whole) != 0) & (bonds.back > 0.0)]
+    one, other = body[held].T
+    ends = np.append(one, body), np.append(other, np.arange(count))
+    joined = coo_array((np.ones(len(one) + count), ends), shape=(count, count))
+    number = connected_components(joined.tocsr(), directed=False)[1]
+    return np.asarray(np.argsort(np.argsort(-np.bincount(number), kind="stable"))[number], np.int64)
 
 
 def _chosen(grains: Grains, bodies: Iterable[int | Clump] | None) -> NDArray[np.bool_]:

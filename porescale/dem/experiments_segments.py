@@ -158,12 +158,19 @@ def bond_strength(what: str, pressed: float = 1e-3, steps: int = 20_000) -> floa
 
 
 def hanging_chain(count: int = 20, span: float = 0.7, relaxation: float = 1.0) -> Array:
-    """Places (count, 2) m of a chain of bonded discs without friction, its ends held ``span`` of its length apart, once
-    it has come to rest under gravity.
+    """Places (count, 2) m of the chain ``hung`` at rest."""
+    return hung(count, span, relaxation).discs.position.copy()
 
-    Laid out as an arc of a circle; drag at ``relaxation`` of critical for its slowest swing.
+
+def hung(
+    count: int = 20, span: float = 0.7, relaxation: float = 1.0, pressed: float = 0.1, law: Linear | None = None
+) -> Grains:
+    """A chain of bonded discs without friction, its ends held ``span`` of its length apart, at rest under gravity.
+
+    Laid out as an arc of a circle of discs that overlap by ``pressed`` radii; drag at ``relaxation`` of critical for
+    its slowest swing.
     """
-    apart = 2.0 * RADIUS * (1.0 - 0.05)
+    apart = (2.0 - pressed) * RADIUS
     links = count - 1
     low, high = 1e-9, math.pi
     for _ in range(60):  # half angle of the arc whose chord is the span
@@ -175,14 +182,14 @@ def hanging_chain(count: int = 20, span: float = 0.7, relaxation: float = 1.0) -
     arc = -half + 2.0 * half * np.arange(count) / links
     ring = 0.5 * apart / math.sin(half / links)
     at = ring * np.column_stack((np.sin(arc), math.cos(half) - np.cos(arc)))
-    grains = free(at, Linear(STIFFNESS))
+    grains = free(at, Linear(STIFFNESS) if law is None else law)
     bond(grains)
     grains.hold(np.array([0, links]))
     dt, load = grains.stable_step(), weights(grains.discs)
     slow = math.sqrt(GRAVITY / (links * apart))
     for _ in range(4):
         grains.step(dt, load, count=int(5.0 / (slow * dt)), drag=4.0 * relaxation * slow)
-    return grains.discs.position.copy()
+    return grains
 
 
 def catenary(at: Array) -> Array:

@@ -11,6 +11,7 @@ Source: Matsushima, DEMseg tutorial II-4.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
@@ -34,6 +35,8 @@ Kind = Literal["discs", "triangles", "cells"]
 
 KINDS = ("discs", "triangles", "cells")
 BEYOND = 0.1  # of the height: how far plates stand out above and below
+NEAR = 0.5  # of the gap, skin of lists of polygons: half a side long it lists twice to three times as many, for bodies
+#             that hardly pass each other
 REST = Moved()
 
 
@@ -65,9 +68,9 @@ class Rock:
 
 
 class Curve(NamedTuple):
-    """A test, moment by moment: time s, strain (> 0 pulled), stress Pa (> 0 tension; mean of both plates, of the time
-    since the last moment), bonds broken so far, and the deepest overlap (measure.max_overlap: polygons go through each
-    other at 1), each (m,)."""
+    """A test, moment by moment: time s, strain (> 0 pulled) and stress Pa (> 0 tension; mean of both plates), both
+    means of the time since the last moment, bonds broken so far, and the deepest overlap (measure.max_overlap: polygons
+    go through each other at 1), each (m,)."""
 
     time: Array
     strain: Array
@@ -97,12 +100,14 @@ def rock(
     *,
     gap: float = 0.0,
     pressed: float = 0.0,
+    rule: str = "outline",
 ) -> Rock:
     """A bonded sample of ``kind`` in the rectangle from ``lower`` to ``upper`` (m), in which ``packing`` lies.
 
     Discs keep their overlaps; they touch the sides left and right as they touch the walls of their box.  Polygons stand
-    ``gap`` (m) apart and their sides overlap by ``pressed`` (m).  density kg/m^3.  Raises InputError for a kind that is
-    none, polygons without gap or overlap, and a sample in which nothing touches.
+    ``gap`` (m) apart and their sides overlap by ``pressed`` (m).  density kg/m^3;  rule : of contacts with segments,
+    see segments.py.  Raises InputError for a kind that is none, polygons without gap or overlap, and a sample in which
+    nothing touches.
     """
     if kind not in KINDS:
         raise InputError(Fault("kind", kind, "no such rock", allowed=", ".join(KINDS)))
@@ -111,7 +116,7 @@ def rock(
         thickness, frames = 0.5 * float(packing.radius.mean()), []
         discs = make_discs(packing.position, packing.radius, density)
         plates = _plates(lower, upper, thickness, thickness, density)
-        grains = framed(discs, plates, law, _open(lower, upper))
+        grains = framed(discs, plates, law, _open(lower, upper), rule=rule)
     else:
         if not (gap > 0.0 and pressed > 0.0):
             bad, name = (gap, "gap") if not gap > 0.0 else (pressed, "pressed")
@@ -122,7 +127,7 @@ def rock(
         left = [shrunk(part, 0.5 * gap, shortest=gap) for part in parts]
         frames = [polygon(part, thickness, density) for part in left if part is not None]
         plates = _plates(lower, upper, thickness, 0.5 * gap, density)
-        grains = framed(None, [*frames, *plates], law, _open(lower, upper))
+        grains = framed(None, [*frames, *plates], law, _open(lower, upper), rule=rule, skin=NEAR * gap)
     made = bond(grains)
     if not made or grains.bonds is None:
         raise InputError(Fault("packing", packing.count, "nothing touches, so there is nothing to bond"))
@@ -131,10 +136,18 @@ def rock(
     return Rock(grains, width, height, diameter, made, float(back[back > 0.0].mean()))
 
 
-def load(rock: Rock, strain: float, seconds: float, moments: int = 200, step: float | None = None) -> Curve:
+def load(
+    rock: Rock,
+    strain: float,
+    seconds: float,
+    moments: int = 200,
+    step: float | None = None,
+    look: Callable[[Grains], object] | None = None,
+) -> Curve:
     """Move the right plate away (strain > 0) or inwards until ``strain`` in ``seconds`` (s), the left one held.
 
-    moments : of the curve;  step : s, default the stable one.  Breaks with their places: ``rock.grains.bonds``.
+    moments : of the curve;  step : s, default the stable one;  look : called at every moment, for pictures.  Breaks
+    with their places: ``rock.grains.bonds``.
     """
     grains, (left, right) = rock.grains, rock.plates
     grains.steering.control(left, REST, REST, REST)
@@ -142,14 +155,17 @@ def load(rock: Rock, strain: float, seconds: float, moments: int = 200, step: fl
     grains.steering.watch(left, right)
     dt = grains.stable_step() if step is None else step
     count = max(round(seconds / (moments * dt)), 1)
-    rows = []
+    rows, before = [], 0.0
     for _ in range(moments):
         grains.step(seconds / (moments * count), count=count)
         one, other = grains.steering.record()
         assert grains.bonds is not None
         pulled = 0.5 * (one.contact[0] - other.contact[0]) / rock.height
         gone, deepest = rock.bonds - grains.bonds.count, max_overlap(grains).share
-        rows.append((grains.time, other.displacement[0] / rock.length, pulled, gone, deepest))
+        rows.append((grains.time, 0.5 * (before + other.displacement[0]) / rock.length, pulled, gone, deepest))
+        before = other.displacement[0]
+        if look is not None:
+            look(grains)
     time, strains, stress, broken, deep = np.array(rows).T
     return Curve(time, strains, stress, broken.astype(np.int64), deep)
 

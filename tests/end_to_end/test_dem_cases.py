@@ -272,3 +272,13 @@ def test_a_strength_that_knows_no_grain_size_does_not():
     off = missed(CASES / "grain_size", case.strengths({n: [same] for n in case.ACROSS}) | {
         "largest difference of stress ratios, grains eight times as large": 0.0})  # fmt: skip
     assert off == ["peak, short boxes less long", "residual, short boxes less long"]
+
+
+@pytest.mark.slow
+def test_a_hanging_chain_is_a_catenary_and_breaks_at_k_overlap():
+    case = script("hanging_chain")
+    numbers, _ = case.measure()
+    assert missed(CASES / "hanging_chain", numbers) == []
+    # The twin that must fail: bonds a hundredth weaker than k δ0.
+    weaker, _ = case.measure(0.99 * case.STRENGTH)
+    assert "pull that breaks it over k δ0" in missed(CASES / "hanging_chain", weaker)

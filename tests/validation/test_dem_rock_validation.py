@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 
 from porescale.dem import experiments_rock as lab
+from porescale.dem.contact.linear import Linear
+from porescale.dem.network import stiffness
 from porescale.dem.rock import load
 from porescale.dem.verify_rock import VALIDATIONS
 
@@ -28,3 +30,19 @@ def test_without_bonds_nothing_bears_tension():  # the twin that must fail
 def test_cells_are_no_weak_rock_as_discs_are():  # the twin that must fail
     tensile, compressive, _ = lab.strengths("cells", 0, 60, 0.05)
     assert compressive / tensile > 3.0
+
+
+def test_without_tangential_springs_a_packing_is_no_solid():  # the twin that must fail
+    row = ROWS["dem.rock_stiffness_of_its_springs"]
+    free = Linear(lab.STIFFNESS, lab.law().damping)
+    made = lab.sample("discs", 0, 60)
+    firm = stiffness(made)
+    made.grains.set_law(free)
+    assert stiffness(made) < 0.1 * firm
+    assert abs(stiffness(made) / firm - 1.0) > 10.0 * row.tolerance
+
+
+@pytest.mark.slow
+def test_square_cells_do_not_break():  # the twin that must fail: every plane of shear ends on a plate
+    row = ROWS["dem.rock_of_slender_cells_breaks"]
+    assert lab.left_when_pressed(1.0, 60, 0.1) > row.tolerance + 0.3
