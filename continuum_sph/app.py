@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from porescale.runs.drive import Outcome
     from porescale.runs.model import Array
     from porescale.workbench.benchmarks import Benchmarks
+    from porescale.workbench.extremes import Extremes
     from porescale.workbench.report import Report
     from porescale.workbench.validations import Validations
 
@@ -145,6 +146,13 @@ def benchmarks() -> Benchmarks:
     return BENCHMARKS
 
 
+def extremes() -> Extremes:
+    """What `study extremes` tries."""
+    from continuum_sph.scene.extremes import EXTREMES
+
+    return EXTREMES
+
+
 PACKAGE = Package(
     name="continuum-sph",
     summary="Soil, water and air as layers of smoothed particles (so far: water in a tank, bubbles and drops in it).",
@@ -158,6 +166,7 @@ PACKAGE = Package(
     table=table,
     validations=validations,
     benchmarks=benchmarks,
+    extremes=extremes,
 )
 
 

@@ -6,10 +6,10 @@ to 2.  Density changes by δu · ∇ρ, so that it stays that of the place (Sun 
 gaps, the more so with corrected gradients, which push them apart less.  Source: Lind et al., J. Comput. Phys. 231
 (2012) 1499; Sun et al., Comput. Methods Appl. Mech. Eng. 315 (2017) 25 (δ⁺-SPH).
 
-Density does not see the drift's own divergence, so what shifting pushes together is lost volume: in water at rest it and
-corrected gradients stir each other, and a column of 1 m sank by 2 cm in 10 s.  (To let density see it keeps the volume,
-but takes 5 % of the speed of vortices, and water tears itself apart at an impact: measured.)  Water at rest has no
-streamlines to line up on: U counts from QUIET of the speed of sound on.
+Density does not see the drift's own divergence, so what shifting pushes together is lost volume: in water at rest it
+and corrected gradients stir each other, and a column of 1 m sank by 2 cm in 10 s.  (To let density see it keeps the
+volume, but takes 5 % of the speed of vortices, and water tears itself apart at an impact: measured.)  Water at rest has
+no streamlines to line up on: U counts from QUIET of the speed of sound on.
 
 Gas is not shifted: its densities do not follow the drift, so a bubble would grow at the pressure it has.
 

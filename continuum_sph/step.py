@@ -245,7 +245,12 @@ class Flow:
         self.rule = int(np.argmin(limits))
         self.next_step = limits[self.rule]
         if not 0.0 < self.next_step < np.inf:
-            raise ValueError(f"the next step would be {self.next_step} s (limited by {RULES[self.rule]})")
+            lost = ~np.isfinite(layer.acceleration).all(axis=1)
+            at = int(np.argmax(lost if lost.any() else np.abs(layer.acceleration).max(axis=1)))
+            raise ValueError(
+                f"the next step would be {self.next_step} s (limited by {RULES[self.rule]}): particle {at} at "
+                f"{layer.x[at].tolist()} m"
+            )
 
     def filter(self) -> None:
         """Normalise the density within each fluid, eq. 27."""

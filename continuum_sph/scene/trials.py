@@ -142,6 +142,31 @@ def taylor_green(across: int, reynolds: float, *, shifting: float = 2.0, correct
     return flow
 
 
+def spinning_square(across: int, *, cut: bool, shifting: float) -> Flow:
+    """A square of water of 1 m that spins at 1 rad/s about its middle, (0, 0), in open space, Mach 0.1.
+
+    It starts with the pressure that keeps it without divergence, ∇²p = 2 ρ ω², p = 0 on its sides: tension within.
+    Source: Colagrossi, thesis, Rome 2005; Le Touzé et al., Int. J. Numer. Methods Fluids 73 (2013) 660.
+    """
+    spacing, density = 1.0 / across, 1000.0
+    x = square_lattice((-0.5, -0.5), (0.5, 0.5), spacing)
+    pressure = np.zeros(len(x))
+    for m in range(1, 40, 2):
+        for n in range(1, 40, 2):
+            wave = np.sin(m * np.pi * (x[:, 0] + 0.5)) * np.sin(n * np.pi * (x[:, 1] + 0.5))
+            pressure -= 32.0 * density / (m * n * np.pi**4 * (m * m + n * n)) * wave
+    state = Tait(density, 10.0 * 0.5**0.5)
+    smoothing = Smoothing("wendland", 1.3 * spacing)
+    law = Law(smoothing, spacing, (Fluid(state),), (0.0, 0.0), alpha=0.02, shifting=shifting, cut=cut)
+    rho = state.density_at(pressure)
+    v = np.column_stack((-x[:, 1], x[:, 0]))
+    layer = Layer(len(x), x, v, rho * spacing**2, rho)
+    pairs = PairList(len(x), 0.25 * smoothing.length, (-1.0, -1.0), (1.0, 1.0), full=True)
+    flow = Flow(layer, law, pairs)
+    flow.start()
+    return flow
+
+
 def wave_amplitude(flow: Flow) -> float:
     """Part of the density, over ρ0, that goes as cos(2πx)."""
     layer = flow.layer

@@ -1,4 +1,4 @@
-"""`study trade SCENE`, and `study stability [FLOW…]`: where it stays stable, and where it is right."""
+"""`study trade SCENE`, `study stability [FLOW…]`: where it stays stable and is right, `study extremes [WHAT…]`."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import json as json_text
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -24,7 +25,46 @@ def command(package: Package) -> App:
     app.command(trade.command(package))
     if package.stability is not None:
         app.command(_stability(package))
+    if package.extremes is not None:
+        app.command(_extremes(package))
     return app
+
+
+def _extremes(package: Package) -> Callable[..., int]:
+    """The `study extremes` command."""
+
+    def extremes(
+        *names: Annotated[str, Parameter(help="what is varied; all if not given")],
+        out: Annotated[str, Parameter(help="folder of extremes.json, .md and .png")] = "runs/extremes",
+        list_: Annotated[bool, Parameter(name="--list", help="only say what is varied")] = False,
+        threads: Threads = 1,
+        json: Json = False,
+    ) -> int:
+        """Ask for more and more: what is stable, what is refused before it starts, what is stopped, and why."""
+        from porescale.workbench import extremes as made
+
+        assert package.extremes is not None
+        tries = package.extremes().chosen(names)
+        if list_:
+            print("\n".join(dict.fromkeys(it.axis for it in tries)))
+            return 0
+        if out == "":
+            raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
+        refuse_unwritable(Path(out), "--out")
+        use_threads(threads)
+        rows = []
+        for it in tries:
+            rows.append(it.tried())
+            print(f"{it.axis} {it.value}: {rows[-1].end} ({len(rows)} of {len(tries)})", file=sys.stderr, flush=True)
+        asked = " ".join(["study extremes", *(json_text.dumps(name) for name in names)])
+        made.write(Path(out), f"{package.name} {asked}", rows)
+        if json:
+            print(json_text.dumps([asdict(row) for row in rows], indent=1, allow_nan=False))
+        else:
+            print(f"{len(rows)} tries; {Path(out) / made.NAME}.md, .png")
+        return 0
+
+    return extremes
 
 
 def _stability(package: Package) -> Callable[..., int]:

@@ -1,0 +1,151 @@
+"""What `continuum-sph study extremes` asks for: each number from mild to absurd, in a flow that shows what it does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from continuum_sph.energy import book
+from continuum_sph.scene import trials
+from continuum_sph.scene.model import Simulation
+from continuum_sph.scene.report import report
+from continuum_sph.scene.sections import Scene
+from porescale.ground.constants import GRAVITY
+from porescale.workbench.extremes import Extreme, Extremes
+from porescale.workbench.sections import validate
+
+WATER = 1.002e-3  # Pa s
+FALL = (2.0 * GRAVITY * 1.0) ** 0.5  # m/s, from the top of the columns below
+CHECKED = 20  # steps between two looks at whether all is in sense
+
+
+def driven(model: Simulation, end: float) -> str:
+    """Take ``model`` to ``end`` (s) and say what became of it; Unstable where it leaves sense."""
+    start = book(model.flow)["energy balance"]
+    fastest = 0.0
+    while model.time < end:
+        model.advance(CHECKED)
+        model.check()
+        fastest = max(fastest, model.flow.swiftest)
+    energy = book(model.flow)["energy balance"] / start if start else 1.0
+    n = model.flow.layer.fluid
+    pressure = model.flow.layer.pressure[:n]
+    outside = n - int(model.inside().sum())
+    said = f"{model.step} steps to {model.time:.3g} s; fastest {fastest:.3g} m/s = {fastest / _sound(model):.2g} c0"
+    said += f"; pressure {pressure.min():.3g} to {pressure.max():.3g} Pa; energy balance {energy:.3f} of the start"
+    return said + (f"; {outside} particles outside" if outside else "")
+
+
+def _sound(model: Simulation) -> float:
+    return float(model.flow.law.state.sound_speed)
+
+
+def collapse(end: float = 0.8, lid: bool = True, **changes: Any) -> Callable[[], str]:
+    """A column of 0.5 m by 1 m let go in a tank of 1.5 m; changes of [water], [tank] (by name) and [numerics]."""
+    tank = {"width": 1.5, "height": 1.2, "lid": lid}
+    water = {
+        "pressure": "released",
+        "viscosity": changes.pop("viscosity", WATER),
+        "column": [{"width": 0.5, "height": 1.0}],
+        "sound_speed": changes.pop("sound_speed", None),
+    }
+    numerics = {"spacing": changes.pop("spacing", 0.05), **changes}
+    return lambda: _run(tank, water, None, numerics, end)
+
+
+def bubble(ratio: float, end: float = 0.1) -> Callable[[], str]:
+    """A disc of liquid ``ratio`` times lighter than the water around it, equally stiff, in a tank of 0.4 m."""
+    tank = {"width": 0.4, "height": 0.6}
+    water = {"column": [{"width": 0.4, "height": 0.4}]}
+    light = {"density": 1000.0 / ratio, "viscosity": 1e-4, "law": "liquid"}
+    light |= {"disc": [{"x": 0.2, "y": 0.16, "radius": 0.08}]}
+    return lambda: _run(tank, water, light, {"spacing": 0.02, "shifting": 1.0}, end)
+
+
+def _run(tank: Any, water: Any, inclusion: Any, numerics: Any, end: float) -> str:
+    """Check a scene of these sections as `run` does, and run it."""
+    scene = validate(
+        Scene,
+        {
+            "tank": tank,
+            "water": water,
+            **({"inclusion": inclusion} if inclusion else {}),
+            "numerics": numerics,
+            "time": {"end": end},
+            "output": {"snapshot_interval": end, "series_interval": end},
+        },
+    )
+    report(scene)
+    return driven(Simulation(scene), end)
+
+
+def spun(tension: str, shifting: float) -> Callable[[], str]:
+    """A square of water that spins in open space: its middle is in tension, `trials.spinning_square`."""
+
+    def run() -> str:
+        flow = trials.spinning_square(24, cut=tension == "cut", shifting=shifting)
+        layer, start, pull = flow.layer, book(flow)["energy balance"], 0.0
+        while flow.time < 0.5 * np.pi:  # a quarter turn
+            flow.advance()
+            pull = min(pull, float(layer.pressure[: layer.fluid].min()))
+        energy = book(flow)["energy balance"] / start
+        apart = float(np.abs(layer.x[: layer.fluid]).max())
+        return f"a quarter turn; least pressure {pull:.3g} Pa; reaches {apart:.3g} m; energy balance {energy:.3f}"
+
+    return run
+
+
+def thrown(speed: float) -> Callable[[], str]:
+    """The collapse in a tank without a lid, its uppermost row thrown up (or down) at ``speed`` times sound."""
+
+    def run() -> str:
+        model = Simulation(trials.column_scene(0.05, tank=(1.5, 1.2), column=(0.5, 1.0), pressure="released"))
+        scene = model.scene.model_copy(update={"tank": model.scene.tank.model_copy(update={"lid": False})})
+        model = Simulation(scene)
+        layer = model.flow.layer
+        top = layer.x[: layer.fluid, 1] > 0.95
+        layer.v[: layer.fluid][top, 1] = speed * _sound(model)
+        return driven(model, 0.5)
+
+    return run
+
+
+def broken() -> str:
+    """The collapse with a particle whose velocity is no number after 10 steps."""
+    model = Simulation(trials.column_scene(0.05, tank=(1.5, 1.2), column=(0.5, 1.0), pressure="released"))
+    model.advance(10)
+    model.flow.layer.v[7] = np.nan
+    return driven(model, 0.5)
+
+
+EXTREMES = Extremes(
+    [
+        *(Extreme("density ratio", f"{ratio:g} : 1", bubble(ratio)) for ratio in (1.0, 10.0, 100.0, 1000.0, 10000.0)),
+        *(
+            Extreme("Mach number", f"{mach:g}", collapse(sound_speed=FALL / mach))
+            for mach in (0.05, 0.1, 0.2, 0.3, 0.4)
+        ),
+        *(
+            Extreme("viscosity / water", f"{times:g}", collapse(viscosity=times * WATER))
+            for times in (0.0, 1.0, 1000.0, 1e5)
+        ),
+        Extreme("viscosity / water", "0, none artificial", collapse(viscosity=0.0, artificial_viscosity=0.0)),
+        *(
+            Extreme(f"neighbours, {kernel}", f"{np.pi * (2.0 * ratio) ** 2:.0f}",
+                    collapse(kernel=kernel, smoothing_ratio=ratio))
+            for kernel in ("wendland", "cubic")
+            for ratio in (0.85, 1.0, 1.3, 1.6, 1.8)
+        ),
+        *(
+            Extreme("negative pressure", f"{tension}, shifting {shifting:g}", spun(tension, shifting))
+            for tension in ("kept", "cut")
+            for shifting in (0.0, 2.0)
+        ),
+        Extreme("leaving the domain", "no lid", collapse(lid=False)),
+        *(Extreme("leaving the domain", f"thrown up at {speed:g} c0", thrown(speed)) for speed in (0.3, 0.9)),
+        *(Extreme("leaving the domain", f"thrown down at {speed:g} c0", thrown(-speed)) for speed in (0.3, 3.0)),
+        Extreme("leaving the domain", "position lost", broken),
+    ]
+)  # fmt: skip
