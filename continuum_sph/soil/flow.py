@@ -20,7 +20,7 @@ from continuum_sph.soil.gradient import velocity_gradients
 from continuum_sph.soil.law import RULES, SoilLaw
 from continuum_sph.soil.material import table
 from continuum_sph.soil.motion import kick, kick_drift
-from continuum_sph.soil.state import VOLUME, Soil
+from continuum_sph.soil.state import Soil
 from continuum_sph.soil.stress import deform
 from continuum_sph.soil.walls import place_walls, show_walls
 from porescale.particles import PairList
@@ -61,8 +61,6 @@ class SoilFlow:
 
     def start(self) -> None:
         """Accelerations of the initial state, from which the first step goes on."""
-        soil = self.soil
-        soil.record[: soil.soil, VOLUME] = soil.mass[: soil.soil] / soil.density
         self.begin(0.0)
         self.strain(0.0)
         self.push()
@@ -83,7 +81,7 @@ class SoilFlow:
         """First half kick and drift of a ``step`` (s)."""
         soil = self.soil
         self.stopped += kick_drift(
-            soil.x, soil.v, soil.mass, soil.acceleration, soil.drift, soil.record, 0.5 * step, step,
+            soil.x, soil.v, soil.mass, soil.density, soil.acceleration, soil.drift, soil.record, 0.5 * step, step,
             self.lower, self.upper,
         )  # fmt: skip
         place_walls(soil.soil, soil.x, soil.v, soil.mass, self.table, soil.facing, soil.record, step)
@@ -99,8 +97,8 @@ class SoilFlow:
             step, law.smoothing.kind, law.smoothing.length, *pairs.period,
         )  # fmt: skip
         quickest = deform(
-            soil.density, soil.mass, soil.stress, soil.material, self.table, soil.matrix, soil.spread, soil.opening,
-            soil.plastic, soil.record, step, -1.0 if law.printed_spin else 1.0,
+            soil.density, soil.stress, soil.material, self.table, soil.matrix, soil.spread, soil.opening, soil.plastic,
+            soil.record, step, -1.0 if law.printed_spin else 1.0,
         )  # fmt: skip
         self.pace = float(quickest) ** 0.5 / law.smoothing.length
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from continuum_sph.soil.state import MASS, VX, VY, X, Y
+from continuum_sph.soil.state import MASS, VOLUME, VX, VY, X, Y
 from porescale.ground.jit import parallel_kernel, prange
 
 
 @parallel_kernel
-def kick_drift(x, v, mass, acceleration, drift, record, half, step, lower, upper):
-    """First half kick and drift of soil; overwrites x, v (n, 2) and, of ``record`` (n, 16), place, velocity, mass.
+def kick_drift(x, v, mass, density, acceleration, drift, record, half, step, lower, upper):
+    """First half kick and drift of soil; overwrites x, v (n, 2) and, of ``record`` (n, 16), place, velocity, mass
+    and the volume before the step: gradients and forces then have the same, which keeps angular momentum.
 
     v += half a;  x += step (v + drift);  half, step: s;  lower, upper (2,) m: surfaces of the walls, on which a
     particle that reaches them is put without its speed into them.  Returns how often.
@@ -32,6 +33,7 @@ def kick_drift(x, v, mass, acceleration, drift, record, half, step, lower, upper
         record[i, VX] = v[i, 0]
         record[i, VY] = v[i, 1]
         record[i, MASS] = mass[i]
+        record[i, VOLUME] = mass[i] / density[i]
     return stopped
 
 

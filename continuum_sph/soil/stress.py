@@ -25,7 +25,6 @@ from continuum_sph.soil.state import (
     TXY,
     TYX,
     TYY,
-    VOLUME,
     XX,
     XY,
     YY,
@@ -35,11 +34,11 @@ from porescale.ground.jit import parallel_kernel, prange
 
 
 @parallel_kernel
-def deform(density, mass, stress, material, table, matrix, spread, opening, plastic, record, step, spin):
+def deform(density, stress, material, table, matrix, spread, opening, plastic, record, step, spin):
     """Overwrites, of soil, ``density`` (soil,) kg/m³, ``stress`` (n, 4) Pa, ``opening``, ``plastic`` (soil,) and in
-    ``record`` (n, 16) volume, c/ρ, shear strain rate and σ·K.
+    ``record`` (n, 16) c/ρ, shear strain rate and σ·K.
 
-    mass, material, table, matrix: see Soil;  spread (soil, 4) Pa/s: stress diffusion of `accelerate`;  step, s;  spin:
+    material, table, matrix: see Soil;  spread (soil, 4) Pa/s: stress diffusion of `accelerate`;  step, s;  spin:
     1, or -1 to turn stress as eq. 38 is printed.  Returns the largest c², m²/s²; a maximum is exact in any order.
     """
     quickest = 0.0
@@ -74,7 +73,6 @@ def deform(density, mass, stress, material, table, matrix, spread, opening, plas
         kxx = matrix[i, 0]
         kxy = matrix[i, 1]
         kyy = matrix[i, 2]
-        record[i, VOLUME] = mass[i] / density[i]
         record[i, QUICK] = np.sqrt(speed2) / density[i]
         record[i, SHEARING] = np.sqrt((gxx - gyy) * (gxx - gyy) + (gxy + gyx) * (gxy + gyx))
         turn = (xx - yy) * matrix[i, 3] - xy * matrix[i, 4]
