@@ -20,6 +20,15 @@ def loose(*grains: dict[str, Any], **changes: Any) -> Scene:
     return dry(**{"grains": {"density": 2500, "grain": list(grains)}, **changes})
 
 
+BOX = {"width": 0.012, "height": 0.008}
+
+
+def framed(**changes: Any) -> Scene:
+    """A dry box with density, law and energy book, and nothing in it but what is told, such as polygons."""
+    given = {"grains": {"density": 2500, **changes.pop("grains", {})}, "domain": BOX, "output__energy": True}
+    return loose(**{**given, **changes})
+
+
 def lines(**changes: Any) -> list[str]:
     """The refusals of a dry box with two grains, changed as in ``table``."""
     given = {"fluid": None, "gate": None, "grains": {"density": 2500, "grain": [grain(0.002, 0.002)]}}

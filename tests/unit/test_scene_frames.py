@@ -18,18 +18,11 @@ from porescale.scene.report import report
 from porescale.scene.sections import Scene
 from porescale.workbench.sections import scene_as_dict, validate
 from tests.reference.scenes import grain, water
-from tests.reference.scenes_of_grains import assert_same_bits, lines, loose, resumed
+from tests.reference.scenes_of_grains import BOX, assert_same_bits, framed, lines, loose, resumed
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 SQUARE = {"corners": [[0, 0], [1e-3, 0], [1e-3, 1e-3], [0, 1e-3]], "thickness": 5e-5}
 FLOOR = {"chain": [[1e-3, 1e-3], [9e-3, 1e-3]], "thickness": 1e-4, "name": "floor", "record": True}
-BOX = {"width": 0.012, "height": 0.008}
-
-
-def framed(**changes: Any) -> Scene:
-    """A dry box with density, law and energy book, and nothing in it but what is told."""
-    given = {"grains": {"density": 2500, **changes.pop("grains", {})}, "domain": BOX, "output__energy": True}
-    return loose(**{**given, **changes})
 
 
 def test_a_scene_without_such_sections_builds_nothing_of_them():
