@@ -5,9 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 from continuum_sph.scene.build import flow_of
+from continuum_sph.scene.soil_build import geostatic
 from continuum_sph.scene.trials import column_scene
 from continuum_sph.scene.trials_seepage import saturated_box
+from continuum_sph.scene.trials_soil import in_tank
+from continuum_sph.soil import Material
 from porescale.ground.check import Fault, InputError
+from porescale.particles import square_lattice
 from porescale.workbench.benchmarks import Benchmarks, Dtype, Work
 
 BENCHMARKS = Benchmarks()
@@ -61,3 +65,24 @@ def bench_seepage(size: int | None, threads: int, dtype: Dtype) -> Work:
 
     steps()
     return Work(steps, float(count * STEPS), "particles/s", count)
+
+
+@BENCHMARKS.row("soil")
+def bench_soil(size: int | None, threads: int, dtype: Dtype) -> Work:
+    """Particle-steps of a collapsing column of soil, walls computed but not counted; InputError for float32."""
+    if dtype != "float64":
+        raise InputError(Fault("--dtype", dtype, "smoothed particles have", allowed="float64"))
+    across = max(8, round((2 * (size or SIZE)) ** 0.5))
+    spacing = 0.2 / across
+    high = across // 2 * spacing
+    material = Material(1e6, 2040.0, friction=0.37)
+    x = square_lattice((0.0, 0.0), (0.2, high), spacing)
+    flow = in_tank(x, geostatic(high - x[:, 1], material), (0.6, 0.15), spacing, material)
+
+    def steps() -> None:
+        for _ in range(STEPS):
+            flow.advance()
+
+    for _ in range(FALLEN // STEPS):
+        steps()
+    return Work(steps, float(len(x) * STEPS), "particles/s", len(x))

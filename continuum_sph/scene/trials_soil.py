@@ -79,8 +79,10 @@ def turn(flow: SoilFlow, angle: float, steps: int) -> tuple[Floats, Floats]:
     first = soil.stress[:n].copy()
     share = angle / steps
     cosine, sine = math.cos(share), math.sin(share)
-    angles, errors = share * np.arange(1, steps + 1), np.zeros(steps)
-    for k, by in enumerate(angles):
+    errors: Floats = np.zeros(steps)
+    angles: Floats = np.arange(1.0, steps + 1.0) * share
+    for k in range(steps):
+        by = share * (k + 1)
         at = soil.x[:n]
         ahead = np.column_stack((cosine * at[:, 0] - sine * at[:, 1], sine * at[:, 0] + cosine * at[:, 1]))
         soil.acceleration[:] = 0.0

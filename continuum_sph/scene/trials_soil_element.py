@@ -24,8 +24,9 @@ class Element:
     def after(self, across: float, upright: float, shear: float = 0.0, turn: float = 0.0) -> tuple[float, ...]:
         """σ_xx, σ_yy, σ_xy, σ_zz (Pa), opening and plastic shear of a further strain (tensor components, compression
         positive) and turn (rad)."""
+        xx, yy, xy, zz = self.stress
         found: tuple[float, ...] = new_stress(
-            *self.stress, -across, -shear - turn, -shear + turn, -upright, 1.0, self.opening, self.row
+            xx, yy, xy, zz, -across, -shear - turn, -shear + turn, -upright, 1.0, self.opening, self.row
         )
         return found
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from continuum_sph.scene import verify, verify_flows, verify_fluids, verify_seepage
+from continuum_sph.scene import verify, verify_flows, verify_fluids, verify_seepage, verify_soil
 from porescale.workbench.validations import Validations
 
 VALIDATIONS = Validations()
-for room in (verify, verify_flows, verify_fluids, verify_seepage):
+for room in (verify, verify_flows, verify_fluids, verify_seepage, verify_soil):
     VALIDATIONS.include(room.VALIDATIONS)

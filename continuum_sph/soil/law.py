@@ -30,7 +30,7 @@ class SoilLaw:
     damping: float = 1.0
     printed_damping: bool = False
     corrected: bool = True
-    diffusion: float = 30.0
+    diffusion: float = 100.0
     restless: float = 0.0
     apart: float = 4.0
     drag: float = 0.0
