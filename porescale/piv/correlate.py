@@ -38,17 +38,16 @@ def block_products(a, b, start, step, lane, found):
                 for x in range(count):
                     lane[row, x] = 0
                 y, d, e = start + row * step, sy - search, start - search + sx
+                own = lane[row, :count]
                 for j in range(y, y + step - 3, 4):  # four rows at once: fewer trips to the lane
+                    a0, a1, a2, a3 = a[j, start:], a[j + 1, start:], a[j + 2, start:], a[j + 3, start:]
+                    b0, b1, b2, b3 = b[j + d, e:], b[j + d + 1, e:], b[j + d + 2, e:], b[j + d + 3, e:]
                     for x in range(count):
-                        lane[row, x] += (
-                            a[j, start + x] * b[j + d, e + x]
-                            + a[j + 1, start + x] * b[j + d + 1, e + x]
-                            + a[j + 2, start + x] * b[j + d + 2, e + x]
-                            + a[j + 3, start + x] * b[j + d + 3, e + x]
-                        )
+                        own[x] += a0[x] * b0[x] + a1[x] * b1[x] + a2[x] * b2[x] + a3[x] * b3[x]
                 for j in range(y + step // 4 * 4, y + step):
+                    a0, b0 = a[j, start:], b[j + d, e:]
                     for x in range(count):
-                        lane[row, x] += a[j, start + x] * b[j + d, e + x]
+                        own[x] += a0[x] * b0[x]
                 for k in range(across):
                     total = lane[row, k * step]
                     for x in range(k * step + 1, (k + 1) * step):

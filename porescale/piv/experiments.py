@@ -89,6 +89,20 @@ def row(name: str, seeds: Iterable[int] = SEEDS, settings: Settings | None = Non
     return trial(flow, camera, seeds, settings)
 
 
+def stated(name: str, seeds: Iterable[int] = SEEDS) -> tuple[float, float]:
+    """Rms error of the valid vectors of a row over the rms of their uncertainties, and the share of errors below it."""
+    flow, camera = TABLE[name]
+    errors_, spreads = [], []
+    for seed in seeds:
+        made = pair(flow, camera, seed)
+        found = measure(made.first, made.second, made.solid if made.solid.any() else None)
+        off, _ = errors(made, found)
+        errors_.append(off[:, found.valid])
+        spreads.append(np.stack([found.uncertainty[found.valid]] * 2))
+    off, spread = np.concatenate(errors_, 1), np.concatenate(spreads, 1)
+    return _rms(off) / _rms(spread), float(np.mean(np.abs(off) < spread))
+
+
 def bias(diameter: float, shifts: Iterable[float], size: int = 256, settings: Settings | None = None) -> Array:
     """Mean error of u on clean pairs of a uniform displacement, px, for each of ``shifts``."""
     camera = Camera((size, size), diameter=diameter, noise=0.0, lost=0.0)

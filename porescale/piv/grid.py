@@ -49,12 +49,38 @@ class Grid:
 
     def at_pixels(self, values: Array) -> NDArray[np.float32]:
         """``values`` (ny, nx) at every pixel, float32: natural cubic splines, straight beyond the outer centres."""
-        down, across = (_axis(self.start, self.step, n, side) for n, side in zip(self.shape, self.size, strict=True))
-        found = np.empty(self.size, np.float32)
-        nodes = (down.coefficients @ values @ across.coefficients.T).astype(np.float32)
-        spare = np.empty((self.size[0], nodes.shape[1]), np.float32)
-        expand(nodes, down.first, down.weights, across.first, across.weights, spare, found)
-        return found
+        return spread(self.coefficients(values), *self.axes())
+
+    def axes(self, every: int = 1) -> tuple[Axis, Axis]:
+        """From coefficients to the middles of blocks of ``every`` px a side (1: pixels), down and across."""
+        down, across = (
+            _axis(self.start, self.step, n, side, every) for n, side in zip(self.shape, self.size, strict=True)
+        )
+        return down, across
+
+    def coefficients(self, values: Array) -> Array:
+        """Coefficients (m, n) of the natural cubic splines through ``values`` (ny, nx), straight beyond the outer
+        centres.
+        """
+        down, across = self.axes()
+        return np.asarray(down.coefficients @ values @ across.coefficients.T)
+
+    def both(self, u: Array, v: Array) -> NDArray[np.float32]:
+        """``coefficients`` of u and v, (2, m, n) float32."""
+        return np.stack([self.coefficients(u), self.coefficients(v)]).astype(np.float32)
+
+    def through(self, other: Grid, values: Array) -> Array:
+        """The splines through ``values`` (ny, nx) at the centres of ``other``, straight beyond the outer ones."""
+        (down, across), c = self.axes(), self.coefficients(values)
+        rows = _matrix(down, other.y, c.shape[0])
+        return np.asarray(rows @ c @ _matrix(across, other.x, c.shape[1]).T)
+
+    def values(self, coefficients: Array) -> Array:
+        """The splines with ``coefficients`` (m, n) at the centres: the inverse of ``coefficients`` on its image."""
+        (top, left), (ny, nx) = (_before(self.start, self.step),) * 2, self.shape
+        mean = np.array([1.0, 4.0, 1.0]) / 6
+        rows = sum(w * coefficients[top - 1 + k : top - 1 + k + ny] for k, w in enumerate(mean))
+        return np.asarray(sum(w * rows[:, left - 1 + k : left - 1 + k + nx] for k, w in enumerate(mean)))
 
     def at(self, other: Grid, values: Array) -> Array:
         """``values`` (ny, nx) at the centres of ``other``; those of the rim beyond it, where no window has been."""
@@ -76,18 +102,38 @@ def _slopes(step: int, count: int) -> Array:
 
 class Axis(NamedTuple):
     """From values on a line of centres to pixels: coefficients (m, n) of cubic B-splines one step apart, straight
-    beyond the ends; at pixel p those from first[p] on count with weights[:, p].
+    beyond the ends; at pixel p those from first[p] on count with weights[:, p].  at (m,) : where the B-splines are, px.
     """
 
     coefficients: Array
+    at: Array
     first: NDArray[np.int64]
     weights: NDArray[np.float32]
 
 
+def _matrix(axis: Axis, at: Array, count: int) -> Array:
+    """(places, coefficients) matrix of an axis of pixels at whole pixels ``at``."""
+    which = np.asarray(at).astype(int)
+    found = np.zeros((len(which), count))
+    for j in range(4):
+        found[np.arange(len(which)), axis.first[which] + j] = axis.weights[j, which]
+    return found
+
+
+def nearest(own: Array, other: Array) -> NDArray[np.int64]:
+    """Number of the value of ``own`` (rising) nearest to each of ``other``."""
+    return np.asarray(np.abs(np.asarray(other)[:, None] - own).argmin(1))
+
+
+def _before(room: int, step: int) -> int:
+    """Coefficients beyond the outer centre, ``room`` px from the edge."""
+    return max(2, -(-room // step) + 2)
+
+
 @lru_cache(maxsize=64)
-def _axis(start: int, step: int, count: int, side: int) -> Axis:
-    """The axis of ``count`` centres from ``start`` on, ``step`` px apart, on ``side`` pixels."""
-    before, after = (max(2, -(-room // step) + 2) for room in (start, side - start - (count - 1) * step))
+def _axis(start: int, step: int, count: int, side: int, every: int) -> Axis:
+    """The axis of ``count`` centres from ``start`` on, ``step`` px apart, on ``side`` pixels in blocks of ``every``."""
+    before, after = (_before(room, step) for room in (start, side - start - (count - 1) * step))
     solve = np.eye(count)
     if count > 2:  # natural: coefficients are straight at the ends, where they are the values
         inner = np.diag(np.full(count, 4.0)) + np.diag(np.ones(count - 1), 1) + np.diag(np.ones(count - 1), -1)
@@ -96,11 +142,22 @@ def _axis(start: int, step: int, count: int, side: int) -> Axis:
     slope = (solve[1] - solve[0], solve[-1] - solve[-2]) if count > 1 else (0 * solve[0], 0 * solve[0])
     rows = [solve[0] - k * slope[0] for k in range(before, 0, -1)]
     rows += [*solve, *(solve[-1] + k * slope[1] for k in range(1, after + 1))]
-    at = (np.arange(side) - start) / step + before
+    middles = (np.arange(-(-side // every)) + 0.5) * every - 0.5
+    at = (middles - start) / step + before
     cell = np.floor(at).astype(np.int64)
     t = at - cell
     weights = np.array([(1 - t) ** 3, 4 - 6 * t**2 + 3 * t**3, 1 + 3 * t + 3 * t**2 - 3 * t**3, t**3]) / 6
-    return Axis(np.array(rows), cell - 1, weights.astype(np.float32))
+    knots: Array = start + (np.arange(len(rows), dtype=float) - before) * step
+    return Axis(np.array(rows), knots, cell - 1, weights.astype(np.float32))
+
+
+def spread(coefficients: Array, down: Axis, across: Axis) -> NDArray[np.float32]:
+    """The spline with ``coefficients`` (m, n) at the places of two axes, float32."""
+    nodes = np.asarray(coefficients, np.float32)
+    rows, columns = down.weights.shape[1], across.weights.shape[1]
+    spare, found = np.empty((rows, nodes.shape[1]), np.float32), np.empty((rows, columns), np.float32)
+    expand(nodes, down.first, down.weights, across.first, across.weights, spare, found)
+    return found
 
 
 @parallel_kernel

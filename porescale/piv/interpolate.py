@@ -37,7 +37,7 @@ def _inverse(taps: int = 21) -> NDArray[np.float64]:
     return response[middle - taps + 1 : middle + taps]
 
 
-INVERSE = _inverse()
+INVERSE = _inverse().astype(F)
 
 
 def coefficients(picture: Array) -> Array:

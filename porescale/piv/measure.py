@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
 
 from porescale.ground.check import Fault, InputError
-from porescale.piv.grid import Grid
+from porescale.ground.jit import threads
+from porescale.piv.fit import Equations, at_places, equations, solved, variances
+from porescale.piv.grid import Grid, nearest
 from porescale.piv.outliers import THRESHOLD, filled, residual
-from porescale.piv.passes import LEAST_WINDOW, Updated, bell, correlation_pass, paths, update_pass
+from porescale.piv.passes import correlation_pass, paths
 from porescale.piv.prepare import Ready, ready
 from porescale.piv.smooth import smoothed
 
@@ -27,17 +29,18 @@ class Settings:
     """How to measure.
 
     window : px, of the last pass, even;  overlap : of neighbouring windows, 0 to below 1;  search : px, largest
-    displacement that the first pass looks for;  updates : Gauss-Newton updates after the last correlation;  width :
-    half-width of their bell, over the window (10 px at least);  noise, slack : residuals from which a pixel counts for
-    less, over the pictures' noise, and in px of displacement;  curved : paths bend as in a steady flow;  smooth : by
-    cross-validation at the end;  least_correlation : below it, alone or in the median around, a vector is invalid.
+    displacement that the first pass looks for;  updates : Gauss-Newton updates after the last correlation, at most;
+    stiffness : weight of second derivatives in them, over that of the pictures, in knots' distances;  noise, slack :
+    residuals from which a pixel counts for less, over the pictures' noise, and in px of displacement;  curved : paths
+    bend as in a steady flow;  smooth : by cross-validation at the end;  least_correlation : below it, alone or in the
+    median around, a vector is invalid.
     """
 
     window: int = 16
     overlap: float = 0.5
     search: int = 16
-    updates: int = 3
-    width: float = 0.35
+    updates: int = 5
+    stiffness: float = 0.001
     noise: float = 2.0
     slack: float = 0.2
     curved: bool = True
@@ -58,6 +61,16 @@ class Settings:
             faults.append(Fault("updates", self.updates, "is out of range", allowed=">= 1"))
         if faults:
             raise InputError(faults)
+
+    @property
+    def firm(self) -> float:
+        """Stiffness of the fit: never less than ``stiffness`` has at FEW px between knots, whatever their distance."""
+        return self.stiffness * max(1.0, (FEW / self.knots) ** 4)
+
+    @property
+    def knots(self) -> int:
+        """Pixels between the knots of the splines: half a window, whatever the overlap."""
+        return max(2, self.window // 2)
 
     @property
     def step(self) -> int:
@@ -85,6 +98,8 @@ class Vectors:
     uncertainty: Array
 
 
+FEW = 8
+"""px between knots below which fewer than three tracers, at the usual seeding, are to tell what a knot does."""
 FIRST = 64
 """Window of the first pass, px, at least."""
 
@@ -131,41 +146,78 @@ def measure_ready(
 
     size : rows, columns;  masks : solids, for the flag ``solid``.
     """
+    if cv2.getNumThreads() != threads():
+        cv2.setNumThreads(threads())  # OpenCV takes no more than the kernels do
     grid, u, v = _coarse(pairs, size, settings)
-    window = FIRST // 2
-    while True:
-        window = max(settings.window, min(window, min(size) // 2 * 2))
-        new = Grid(size, window, settings.step if window == settings.window else window // 2)
+    last, known = settings.window, any(mask is not None for mask in masks)
+    for window in _windows(settings.window, min(size)):
+        new = Grid(size, window, settings.knots if window == last else window // 2)
         u, v = grid.at(new, u), grid.at(new, v)
         grid, fluid = new, _fluid(new, masks)
-        along = paths(grid, u, v, curved=False)
-        halved = window >= COARSE
+        halved = window >= (COARSE if known else FINE)
+        along = paths(grid, grid.both(u, v), curved=False, every=2 if halved else 1)
         found = correlation_pass(pairs, grid, 2 * SEARCH if halved else SEARCH, along, halved=halved)
         good = fluid & (found.value > 0.5 * settings.least_correlation)
         lost = _outliers(u + found.u, v + found.v, found.u, found.v, good, THRESHOLD)
         u, v = filled(u + found.u, v + found.v, good & ~(lost & (found.ratio < CLEAR)))
-        if window == settings.window:
+    fitted = _fitted(pairs, grid, grid.both(u, v), fluid, settings)
+    return _vectors(fitted, Grid(size, window, settings.step), masks, found.ratio, settings)
+
+
+class Fitted(NamedTuple):
+    """A fitted field.  grid : of its knots;  c (2, m, n) : coefficients of u and v;  lost (ny, nx) : knots of the fluid
+    that failed validation;  known : what the pictures said of the last update.
+    """
+
+    grid: Grid
+    c: NDArray[np.float32]
+    lost: Flags
+    known: Equations
+
+
+def _fitted(
+    pairs: Iterable[tuple[Ready, Ready]], grid: Grid, c: NDArray[np.float32], fluid: Flags, settings: Settings
+) -> Fitted:
+    """Updates of all of the field at once, each validated and repaired."""
+    start_u, start_v = (grid.values(it) for it in c)
+    settled = False
+    for number in range(settings.updates):
+        last = number == settings.updates - 1 or (number >= len(EASED) - 1 and settled)
+        along = paths(grid, c, curved=settings.curved, whole=not last)
+        slack = settings.slack * (1.0 if last else EASED[min(number, len(EASED) - 1)])
+        known = equations(pairs, along, settings.noise, slack, exact=last)
+        update = np.clip(solved(grid, c, known, settings.firm), -LARGEST, LARGEST)
+        c = c + update
+        far = float(np.percentile(np.abs([grid.values(it) for it in update])[:, fluid], SHARE)) if fluid.any() else 0.0
+        u, v = (grid.values(it) for it in c)
+        match = at_places(known.correlation, grid.x, grid.y)
+        good = fluid & _alike(match, fluid, settings.least_correlation)
+        settled = not good.any() or far < SETTLED * math.sqrt(max(0.0, 1 - float(np.median(match[good]))))
+        if (match[good] < DOUBT).any():
+            good &= (match >= DOUBT) | ~_outliers(u, v, u - start_u, v - start_v, good, REFINED)
+        if not good[fluid].all():
+            whole_u, whole_v = filled(u, v, good)
+            c = c + grid.both(np.where(fluid, whole_u - u, 0.0), np.where(fluid, whole_v - v, 0.0))
+        if last:
             break
-        window //= 2
-    start_u, start_v = u, v
-    reach = max(LEAST_REACH, settings.width * window)
-    weights = bell(reach)
-    cut = _cut(grid, fluid, masks, round(reach))
-    for _ in range(settings.updates):
-        along = paths(grid, u, v, curved=settings.curved)
-        update = update_pass(pairs, grid, weights, settings.noise, settings.slack, along, cut)
-        u, v, good = _updated(u, v, fluid, start_u, start_v, update, settings)
-    if settings.smooth:
-        u, v = smoothed(u, v, max(1.0, max(window, LEAST_WINDOW) / (2 * grid.step)))
-    return _vectors(grid, u, v, good, fluid, update, found.ratio)
+    return Fitted(grid, c, fluid & ~good, known)
 
 
-LEAST_REACH = 10.0
-"""Half-width of a bell, px, at least: twenty tracers under it at the usual seeding."""
 SEARCH = 3
 """Pixels, of the picture it looks at, that a pass after the first looks for beyond its prediction."""
-COARSE = 32
-"""Windows of this many px and more are correlated at half the resolution: a fraction of the work, and exact enough."""
+COARSE, FINE = 32, 16
+"""Windows of this many px and more are correlated at half the resolution, a fraction of the work, and exact enough for
+fits to begin with: with solids, whose rims half the resolution blurs, and without.
+"""
+
+
+def _windows(last: int, side: int) -> list[int]:
+    """Sides of the windows of the passes after the first, px: halved to the last, wide last ones twice."""
+    found = [min(FIRST // 2, side // 2 * 2)]
+    while found[-1] > last:
+        found.append(max(last, found[-1] // 2))
+    found = [max(last, it) for it in found]
+    return [*found, last] if last >= COARSE else found
 
 
 def _coarse(
@@ -189,15 +241,8 @@ def _fluid(grid: Grid, masks: Sequence[Flags | None]) -> Flags:
     return found
 
 
-def _cut(grid: Grid, fluid: Flags, masks: Sequence[Flags | None], reach: int) -> NDArray[np.int64]:
-    """Row and column (n, 2) of the vectors of the fluid with a solid within ``reach`` px."""
-    known = [mask.astype(np.uint8) for mask in masks if mask is not None]
-    if not known:
-        return np.empty((0, 2), np.int64)
-    near = cv2.dilate(np.maximum.reduce(known), np.ones((2 * reach + 1,) * 2, np.uint8)) > 0
-    return np.argwhere(near[np.ix_(grid.y.astype(int), grid.x.astype(int))] & fluid)
-
-
+SAMPLER = 0.002
+"""px: rms of what the interpolator misplaces, by the fraction of a pixel; see the rows of sub-pixel bias."""
 CLEAR = 1.2
 """Ratio of the first to the second peak from which a correlation is believed before neighbours are."""
 REFINED = 2 * THRESHOLD
@@ -214,43 +259,49 @@ def _outliers(u: Array, v: Array, correction_u: Array, correction_v: Array, use:
     return total & (residual(correction_u, correction_v, use) > bound) if total.any() else total
 
 
-LARGEST = 1.0
-"""Most that one update may move a vector, px: beyond it the linearisation means nothing."""
-
-
-def _updated(
-    u: Array, v: Array, fluid: Flags, start_u: Array, start_v: Array, update: Updated, settings: Settings
-) -> tuple[Array, Array, Flags]:
-    """Add an update, validate, replace."""
-    length = np.hypot(update.u, update.v)
-    good = fluid & np.isfinite(length) & _alike(update.correlation, fluid, settings.least_correlation)
-    short = np.where(good, np.minimum(1.0, LARGEST / np.maximum(length, 1e-12)), 0.0)
-    u, v = u + short * np.where(good, update.u, 0.0), v + short * np.where(good, update.v, 0.0)
-    good &= ~_outliers(u, v, u - start_u, v - start_v, good, REFINED)
-    u, v = filled(u, v, good)
-    return u, v, good
+LARGEST = 2.0
+"""Most that one update may move a coefficient, px: beyond it the linearisation means nothing."""
+EASED = (5.0, 2.0, 1.0)
+"""Factors of the slack in the first updates: first guesses are further off."""
+SETTLED, SHARE = 0.3, 99.0
+"""An update that moves so many per cent of the vectors by less than SETTLED sqrt(1 - correlation) px is followed by the
+last: each leaves a quarter of the one before, and the better pictures match the more of it can be had.
+"""
+DOUBT = 0.6
+"""Correlation from which a fitted vector is believed whatever its neighbours say."""
 
 
 def _alike(correlation: Array, fluid: Flags, least: float) -> Flags:
     """Whether pictures are alike at each vector and around it: few pixels may match by chance, not all around too."""
     own = np.where(fluid & np.isfinite(correlation), correlation, 0.0)
     around = np.where(fluid, own, np.median(own[fluid]) if fluid.any() else 0.0)
-    return np.asarray((own > least) & (median_filter(around, 5, mode="nearest") > least), bool)
+    return np.asarray((own > least) & (cv2.medianBlur(around.astype(np.float32), 5) > least), bool)
 
 
-def _vectors(grid: Grid, u: Array, v: Array, good: Flags, fluid: Flags, update: Updated, ratio: Array) -> Vectors:
-    """The outcome; solids carry zeros."""
-    spread = np.sqrt(0.5 * (update.error_u**2 + update.error_v**2))
-    known = good & np.isfinite(spread)
+def _vectors(fitted: Fitted, grid: Grid, masks: Sequence[Flags | None], ratio: Array, settings: Settings) -> Vectors:
+    """The outcome on the grid asked for; solids carry zeros."""
+    knots, known = fitted.grid, fitted.known
+    u, v = (knots.values(it) for it in fitted.c)
+    crowd = max(1.0, FEW / knots.step)
+    smooth = smoothed(u, v, knots.step, settings.firm, crowd, choose=settings.smooth)
+    fluid = _fluid(grid, masks)
+    near = np.ix_(*(nearest(own, other) for own, other in ((knots.y, grid.y), (knots.x, grid.x))))
+    match = at_places(known.correlation, grid.x, grid.y)
+    good = fluid & ~fitted.lost[near] & (match > settings.least_correlation)
+    u, v = (knots.through(grid, it) for it in (smooth.u, smooth.v))
+    noise = smooth.noise * at_places(variances(known, smooth.freedom), grid.x, grid.y)
+    bias = 0.5 * (smooth.bias_u**2 + smooth.bias_v**2)
+    spread = np.sqrt(noise + bias[near] + SAMPLER**2)
+    valid = good & np.isfinite(spread)
     return Vectors(
         grid.x,
         grid.y,
         np.where(fluid, u, 0.0),
         np.where(fluid, v, 0.0),
-        known,
-        fluid & ~known & known.any(),
+        valid,
+        fluid & ~valid & valid.any(),
         ~fluid,
-        np.where(fluid, np.nan_to_num(update.correlation), 0.0),
-        np.where(fluid, ratio, 0.0),
-        np.where(known, spread, np.inf),
+        np.where(fluid, match, 0.0),
+        np.where(fluid, ratio[near], 0.0),
+        np.where(valid, spread, np.inf),
     )

@@ -5,20 +5,20 @@ The rows of the accuracy table are means over ten seeds; a pair's own value scat
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from porescale.piv import experiments as lab
+from porescale.piv.measure import Settings
 from porescale.workbench.validations import Measured, Validations
 
 VALIDATIONS = Validations()
 
 ROUND_OFF = float(np.finfo(np.float32).eps)
 ROWS = "exact displacement; tracers 2.8 px, 0.05 a pixel, noise 3 grey levels, 5 % lost, window 16, every fluid vector"
-PUBLISHED = (
-    "OpenPIV 0.26.1 (64, 32, 16 px, deformed) reaches {best} px on such pairs; a fifth less at least is asked for"
-)
+PUBLISHED = "OpenPIV 0.26.1 (64, 32, 16 px, deformed) reaches {best} px on such pairs; half of the least is asked for"
 
 
 @VALIDATIONS.row(
@@ -136,27 +136,62 @@ def _table(name: str, tolerance: float, best: str) -> None:
 
 
 for row, bound, others in (
-    ("clean", 0.015, "0.019 to 0.034"),
-    ("uniform", 0.030, "0.038 to 0.043"),
-    ("shear", 0.030, "0.038 to 0.043"),
-    ("stagnation", 0.030, "0.038 to 0.043"),
-    ("lamb_oseen", 0.036, "0.046"),
-    ("taylor_green_128", 0.080, "0.135 to 0.198"),
-    ("taylor_green_64", 0.150, "0.224 to 0.246"),
+    ("clean", 0.0095, "0.019 to 0.034"),
+    ("uniform", 0.019, "0.038 to 0.043"),
+    ("shear", 0.019, "0.038 to 0.043"),
+    ("stagnation", 0.019, "0.038 to 0.043"),
+    ("lamb_oseen", 0.023, "0.046"),
+    ("taylor_green_128", 0.067, "0.135 to 0.198"),
+    ("taylor_green_64", 0.112, "0.224 to 0.246"),
 ):
     _table(row, bound, others)
 
 
 @VALIDATIONS.row(
+    "piv.taylor_green_128_in_wide_windows",
+    source=ROWS.replace("window 16", "window 32"),
+    because="OpenPIV 0.26.1 reaches 0.23 to 0.48 px at that window; 0.13 px is aimed at",
+    tolerance=0.13,
+    slow=True,
+)
+def wide() -> Measured:
+    """Rms error of a component over ten seeds, px."""
+    found = lab.row("taylor_green_128", settings=Settings(window=32)).rms
+    return Measured(0.0, found, found)
+
+
+@VALIDATIONS.row(
     "piv.past_discs",
     source=ROWS + "; no-slip flow past five discs, invalid vectors count 1 px",
-    because="in shares of what OpenPIV 0.26.1 reaches on such pairs, 0.053 px beyond 16 px from a solid and 0.24 px"
-    " nearer; a fifth less is asked for, and no vector in a solid",
-    tolerance=0.8,
+    because="in shares of what is aimed at: 0.042 px beyond 16 px from a solid, a fifth less than OpenPIV 0.26.1 on"
+    " such pairs (0.053), and 0.10 px nearer (OpenPIV 0.24); no vector in a solid",
+    tolerance=1.0,
     slow=True,
 )
 def discs() -> Measured:
     """Rms beyond and within 16 px of a solid, px; the error is the larger share, infinite with a vector in a solid."""
     found = lab.row("discs")
-    share = max(found.far / 0.053, found.near / 0.24)
+    share = max(found.far / 0.042, found.near / 0.10)
     return Measured([0.0, 0.0], [found.far, found.near], share if not found.inside else float("inf"))
+
+
+ROWS_STATED = ("uniform", "shear", "stagnation", "lamb_oseen", "taylor_green_128", "taylor_green_64", "discs", "clean")
+WITHIN = 0.683
+"""Share of normal errors within one standard deviation."""
+
+
+@VALIDATIONS.row(
+    "piv.uncertainty",
+    source="errors of the table's rows, known exactly, over the uncertainties stated with the vectors",
+    because="in shares of a factor of 1.5 between rms error and rms uncertainty, and of 0.2 between the share of errors"
+    " within one deviation and 0.683: fields that are smooth all over have a handful of degrees of freedom, four seeds"
+    " of them scatter by 1/sqrt(2 4 4) = 0.18, and bias is known to its size only",
+    tolerance=1.0,
+    slow=True,
+)
+def uncertainty() -> Measured:
+    """Ratio and share, row by row, over four seeds."""
+    found = [lab.stated(name, range(4)) for name in ROWS_STATED]
+    off = [max(abs(math.log(ratio)) / math.log(1.5), abs(share - WITHIN) / 0.2) for ratio, share in found]
+    numbers = [it for pair in found for it in pair]
+    return Measured([1.0, WITHIN] * len(found), numbers, max(off))
