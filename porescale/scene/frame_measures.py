@@ -7,9 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.contacts import contacts
+from porescale.dem.contacts import nearest_image
 from porescale.dem.frames import polygon_moments
-from porescale.dem.measures.fabric import loads
 from porescale.dem.measures.region import Region
 from porescale.dem.rigid import body_of
 from porescale.dem.system import Grains
@@ -19,16 +18,32 @@ Array = NDArray[np.float64]
 
 
 def coordination_of_bodies(grains: Grains, placed: Sequence[Placed], held: int) -> float:
-    """Mean number of other bodies that press on a grain, clump, polygon or segment that forces move.
+    """Mean number of other bodies that touch a grain, clump, polygon or segment that forces move.
 
     Two faces that touch at several points are one neighbour; walls are none, containers and held discs are.
     """
-    found = contacts(grains)
     number = body_of(grains)
-    pairs = np.column_stack((number[found.first], number[found.second]))[loads(found) & found.pairs]
-    near = np.unique(np.sort(pairs, axis=1), axis=0)
+    near = np.unique(np.sort(number[touching(grains)], axis=1), axis=0)
     free = np.unique(number[free_rows(grains, placed, held)])
     return float(np.isin(near, free).sum() / len(free)) if len(free) else 0.0
+
+
+def touching(grains: Grains) -> NDArray[np.int64]:
+    """Pairs of discs (c, 2) that touch, a segment as the disc at its first end; corners by the segments there."""
+    d, pairs = grains.discs, grains.current_pairs()
+    i, j = np.repeat(np.arange(d.count), np.diff(pairs.start)), pairs.partner.astype(np.int64)
+    apart = np.hypot(*nearest_image(d.position[j] - d.position[i], grains.period).T)
+    near = apart < d.radius[i] + d.radius[j]
+    found = [np.column_stack((i[near], j[near]))]
+    if grains.segments is not None:
+        point, segment = grains.segments.near.T
+        a, b = grains.segments.ends[segment].T
+        way = d.position[b] - d.position[a]
+        gone = nearest_image(d.position[point] - d.position[a], grains.period)
+        share = np.clip(np.sum(gone * way, axis=1) / np.sum(way * way, axis=1), 0.0, 1.0)
+        near = np.hypot(*(gone - share[:, None] * way).T) < d.radius[point] + d.radius[a]
+        found.append(np.column_stack((point[near], a[near])))
+    return np.concatenate(found)
 
 
 def solid_in(grains: Grains, placed: Sequence[Placed], region: Region) -> float:

@@ -186,10 +186,10 @@ def _built(**changes: Any) -> list[str]:
     return [fault.line() for fault in caught.value.faults]
 
 
-def test_a_wet_scene_says_that_they_are_dry():
+def test_a_wet_scene_says_that_bonds_are_dry():
     with pytest.raises(InputError) as caught:
-        water(polygon=[SQUARE], grains={"density": 2500, "hydraulic_radius_ratio": 1.0}, contact={"stiffness": 1})
-    assert any(fault.key == "polygon" and "dry" in fault.problem for fault in caught.value.faults)
+        water(bonds={}, grains={"density": 2500, "hydraulic_radius_ratio": 1.0}, contact={"stiffness": 1})
+    assert any(fault.key == "bonds" and "dry" in fault.problem for fault in caught.value.faults)
 
 
 def test_thin_bodies_at_speed_are_warned_of():
