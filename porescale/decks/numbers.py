@@ -16,6 +16,8 @@ from porescale.ground.check import Fault, InputError
 REAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([edEDqQ][+-]?\d+)?")
 WHOLE = re.compile(r"[+-]?\d+")
 REPEATED = re.compile(r"(\d+)\*(.+)")
+LONGEST_WHOLE = 18
+"""Digits of a whole number: all fit into 64 bits."""
 MOST_REPEATS = 100_000
 Field = tuple[str, type]
 
@@ -90,6 +92,8 @@ class Reader:
         if kind is int:
             if not WHOLE.fullmatch(text):
                 raise self._broken(name, word, "is no whole number", "a whole number")
+            if len(text) > LONGEST_WHOLE:
+                raise self._broken(name, word, "is too large", f"at most {LONGEST_WHOLE} digits")
             return [int(text)] * times
         if not REAL.fullmatch(text):
             raise self._broken(name, word, "is no number", "a number such as 5.0d-5")

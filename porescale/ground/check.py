@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+LONGEST = 200
+"""Characters of a key or value in a line for people."""
+
 
 @dataclass(frozen=True)
 class Fault:
@@ -24,20 +27,26 @@ class Fault:
     file: str = ""
 
     def line(self) -> str:
-        """The fault as one line for people."""
+        """The fault as one line for people; what was given is shortened where it is long."""
         text = f"{self.file}: " if self.file else ""
-        text += self.key
+        text += _shortened(self.key)
         if self.value is not None:
-            text += f" = {self.value!r}" if isinstance(self.value, str) else f" = {self.value}"
+            text += f" = {_shortened(repr(self.value) if isinstance(self.value, str) else str(self.value))}"
             if self.unit and not isinstance(self.value, str):
                 text += f" {self.unit}"
         if self.problem:
-            text += f": {self.problem}"
+            text += f": {_shortened(self.problem, 2 * LONGEST)}"
         if self.allowed:
-            text += f" (allowed: {self.allowed}{' ' + self.unit if self.unit else ''})"
+            text += f" (allowed: {_shortened(self.allowed, 2 * LONGEST)}{' ' + self.unit if self.unit else ''})"
         if self.repair:
-            text += f"; {self.repair}"
+            text += f"; {_shortened(self.repair, 2 * LONGEST)}"
         return text
+
+
+def _shortened(text: str, longest: int = LONGEST) -> str:
+    """``text`` in one line, its middle left out where it is long."""
+    text = " ".join(text.splitlines())
+    return text if len(text) <= longest else f"{text[: longest // 2]}…{text[-longest // 4 :]}"
 
 
 class PorescaleError(Exception):

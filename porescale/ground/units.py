@@ -14,6 +14,8 @@ from typing import Any
 
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
 _POWER = re.compile(r"([^\W\d_])([+-]?\d)")
+LONGEST = 64
+"""Characters of a unit: the parser recurs into what is longer."""
 # No unit has a power of a power or a three-digit number; both would make the parser compute for ever.
 _ABSURD = re.compile(r"\d\s*(\*\*|\^)|\d{3}")
 
@@ -30,7 +32,7 @@ def _parse(unit: str) -> Any:
     """The pint unit that ``unit`` names; ``kg/m3`` is read as ``kg/m^3``.  ValueError if there is none."""
     import pint
 
-    if not _ABSURD.search(unit):
+    if len(unit) <= LONGEST and not _ABSURD.search(unit):
         for text in (unit, _POWER.sub(r"\1^\2", unit)):
             try:
                 return _registry().parse_units(text)

@@ -48,7 +48,7 @@ def read_checkpoint(path: Path) -> dict[str, Any]:
             content = _decode(_tree(file), file["arrays"])
     except FileNotFoundError:
         raise _fault(path, "there is none", "start the run without resuming") from None
-    except (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError) as error:
+    except (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, IndexError, OverflowError) as error:
         raise _damaged(path, error) from error
     if not isinstance(content, dict):
         raise _fault(path, "holds no state", "start the run anew, or take the checkpoint from a backup")
@@ -63,7 +63,7 @@ def read_header(path: Path, skip: str = "state") -> dict[str, Any]:
             header: dict[str, Any] = _decode({"dict": items}, file["arrays"])
     except FileNotFoundError:
         raise _fault(path, "there is none", "start the run without resuming") from None
-    except (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError) as error:
+    except (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, IndexError, OverflowError) as error:
         raise _damaged(path, error) from error
     return header
 

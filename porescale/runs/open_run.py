@@ -18,6 +18,9 @@ from porescale.runs.series import NAME as SERIES
 from porescale.runs.series import read_series
 from porescale.runs.vtkhdf import Frame
 
+DAMAGE = (OSError, KeyError, ValueError, RuntimeError, TypeError, AttributeError, IndexError)
+"""What HDF5 and what reads it may raise on a file that is damaged."""
+
 
 class Run:
     """What a run recorded.  Snapshots are read when asked for, one at a time."""
@@ -71,7 +74,7 @@ class Run:
         step, entry = self._frames[k]
         try:
             return snapshots.load(entry, step, cells)
-        except (OSError, KeyError, ValueError, RuntimeError) as error:
+        except DAMAGE as error:
             raise _damaged(self.folder, error) from error
 
     def nearest(self, time: float) -> Snapshot:
@@ -94,7 +97,7 @@ def open_run(folder: Path | str) -> Run:
         if snapshots.parts(folder):
             _join(folder)
         return Run(folder, card, snapshots.catalogue(folder))
-    except (OSError, KeyError, ValueError, RuntimeError) as error:
+    except DAMAGE as error:
         raise _damaged(folder, error) from error
 
 

@@ -90,14 +90,28 @@ def read_names(path: Path) -> list[str] | None:
 
 
 def read_series(path: Path) -> dict[str, Array]:
-    """Columns by name, each (rows,) float64.  A torn last line is ignored; no file or no rows give {}."""
+    """Columns by name, each (rows,) float64.  A torn last line is ignored; no file or no rows give {}.
+
+    InputError naming the line where a row is damaged.
+    """
     path = Path(path)
     if not path.exists():
         return {}
     content = path.read_bytes()
-    lines = content[: content.rfind(b"\n") + 1].decode()
-    rows = list(csv.reader(io.StringIO(lines)))
-    if not rows:
-        return {}
-    table = np.array([[float(cell) for cell in row] for row in rows[1:]], float).reshape(-1, len(rows[0]))
+    number = 0
+    try:
+        rows = list(csv.reader(io.StringIO(content[: content.rfind(b"\n") + 1].decode())))
+        if not rows:
+            return {}
+        table = np.zeros((len(rows) - 1, len(rows[0])))
+        for number, row in enumerate(rows[1:], 1):
+            if len(row) != len(rows[0]):
+                raise ValueError(f"{len(row)} cells for {len(rows[0])} columns")
+            table[number - 1] = [float(cell) for cell in row]
+    except (ValueError, csv.Error) as error:
+        reason = " ".join(str(error).split())
+        repair = "run it again, or take the file from a backup"
+        raise InputError(
+            Fault(f"line {number + 1}", None, f"is damaged ({reason})", repair=repair, file=str(path))
+        ) from None
     return {name: table[:, column].copy() for column, name in enumerate(rows[0])}

@@ -91,7 +91,7 @@ def read_front(scene: Path) -> Front:
         points = [_point(row) for row in table["points"] if row["on_front"] and row["error"] is not None]
         machine = str(table["machine"]["processor"])
         found = Front(file, machine, str(table["date"]), tuple(sorted(points, key=lambda one: one.core_seconds)))
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
         said = " ".join(f"{type(error).__name__}: {error}".split())[:80]
         raise InputError(Fault(str(file), None, f"is damaged ({said})", repair=repair)) from None
     if not found.points:

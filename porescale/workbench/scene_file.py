@@ -38,10 +38,20 @@ def name_of(file: Path) -> str:
     return file.resolve().parent.name if file.name == SCENE_FILE else file.stem
 
 
+DEEPEST = 30
+"""Tables and lists within each other: no scene needs more than six."""
+
+
 def read(file: Path) -> dict[str, Any]:
     """The tables of a TOML file; InputError naming the line if it is none."""
     try:
-        return tomllib.loads(file.read_text(encoding="utf-8"))
+        table = tomllib.loads(file.read_text(encoding="utf-8"))
+        if _deeper(table, DEEPEST):
+            raise RecursionError
+        return table
+    except RecursionError:
+        problem = "has tables or lists within each other without end"
+        raise InputError(Fault("TOML", None, problem, "", f"<= {DEEPEST} levels", file=str(file))) from None
     except tomllib.TOMLDecodeError as error:
         text, _, place = str(error).partition(" (at ")
         place = place.replace("end of document", f"line {len(file.read_text().splitlines())}, end of file")
@@ -55,6 +65,17 @@ def read(file: Path) -> dict[str, Any]:
         ) from None
     except OSError as error:
         raise InputError(Fault(str(file), problem=f"cannot be read ({error.strerror})")) from None
+
+
+def _deeper(table: Any, levels: int) -> bool:
+    """Whether something lies more than ``levels`` deep in ``table``; found without recursion."""
+    layer = [table]
+    for _ in range(levels):
+        layer = [below for one in layer for below in (one.values() if isinstance(one, dict) else one)
+                 if isinstance(below, dict | list)]  # fmt: skip
+        if not layer:
+            return False
+    return True
 
 
 def merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,10 +1,11 @@
-"""A disk whose n-th call fails: no space, an I/O error, no permission."""
+"""A disk whose n-th call fails: no space, an I/O error, no permission; or kills the process that calls."""
 
 from __future__ import annotations
 
 import builtins
 import io
 import os
+import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -22,13 +23,15 @@ CALLS = ("replace", "open", "fsync", "mkdir", "unlink", "rmdir", "write", "ftrun
 class Disk:
     """Counts the calls that concern ``folder``; the ``nth`` (from 0, -1: none) raises OSError ``errno``.
 
-    sticky : all later ones fail, too, as on a disk that is full or gone;  called : what each call was.
+    sticky : all later ones fail, too, as on a disk that is full or gone;  kill : SIGKILL instead, "before" the call or
+    "after" it;  called : what each call was.
     """
 
     folder: Path
     nth: int = -1
     errno: int = 28
     sticky: bool = False
+    kill: str = ""
     called: list[str] = field(default_factory=list)
 
     def wrap(self, name: str, real: Callable[..., Any]) -> Callable[..., Any]:
@@ -39,6 +42,10 @@ class Disk:
                 self.called.append(name)
                 number = len(self.called) - 1
                 if 0 <= self.nth <= number if self.sticky else number == self.nth:
+                    if self.kill == "after":
+                        real(*args, **named)
+                    if self.kill:
+                        os.kill(os.getpid(), signal.SIGKILL)
                     where = str(args[0]) if isinstance(args[0], str | Path) else None
                     raise OSError(self.errno, os.strerror(self.errno), where)
             return real(*args, **named)

@@ -1,0 +1,179 @@
+"""Whatever is wrong with a file, it is read, or refused in clear lines; no other error, nothing written elsewhere."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from continuum_sph.app import PACKAGE as CONTINUUM
+from porescale.app.main import PACKAGE as PORESCALE
+from porescale.decks.deck import read_deck
+from porescale.dem.packing import read_circles, read_packing, write_packing
+from porescale.ground.card import read_card
+from porescale.ground.check import Fault, InputError
+from porescale.piv.field import read as read_field
+from porescale.piv.film import picture
+from porescale.runs.checkpoint import read_checkpoint, write_checkpoint
+from porescale.runs.open_run import open_run
+from porescale.workbench.front import read_front
+from porescale.workbench.points import read_points
+from porescale.workbench.sections import open_scene
+from porescale.workbench.trade_plan import read_plan
+from tests.reference.spoiled import spoiled
+from tests.reference.toy_model import run_toy
+
+CASES = Path(__file__).resolve().parents[2] / "cases"
+LONGEST = 20.0
+"""Seconds that reading a small file may take on a busy machine before it counts as hanging."""
+TIMES = int(os.environ.get("PORESCALE_SPOILED", "25"))
+"""How often each file is spoilt in the quick test; forty times as often in the slow one."""
+
+Read = Callable[[Path], object]
+
+
+def scene_of(package) -> Read:
+    """Opens a scene and reports it, as `check` does, in any of its qualities."""
+
+    def read(file: Path) -> object:
+        return package.report(open_scene(file, package.scene()).scene)
+
+    return read
+
+
+def whole_run(folder: Path) -> object:
+    """A run and all that it holds."""
+    run = open_run(folder)
+    return [run.snapshot(k) for k in range(len(run))], run.series
+
+
+def deck(name: str) -> Callable[[Path], Path]:
+    return lambda folder: Path(shutil.copytree(CASES / name, folder / name))
+
+
+def made(folder: Path, name: str) -> Path:
+    """A valid file, or folder with one, of each kind; the part after the colon names what is spoilt in it."""
+    kind, _, part = name.partition(":")
+    file = folder / part
+    if kind == "scene":
+        shutil.copytree(CASES / part, folder / part)
+        return folder / part / "scene.toml"
+    if kind == "deck":
+        case, _, part = part.partition("/")
+        return deck(case)(folder) / part
+    if kind == "run":
+        run_toy(folder / "run")
+        return folder / "run" / part
+    if part == "circles.csv":
+        file.write_text("x,y,radius\n0.1,0.2,0.01\n0.3,0.2,0.01\n")
+    elif part == "packing.h5":
+        write_packing(file, np.array([[0.1, 0.2], [0.3, 0.2]]), np.array([0.01, 0.02]))
+    elif part == "checkpoint.h5":
+        write_checkpoint(file, {"step": 3, "time": 0.5, "seconds": 1.0, "state": {"x": np.arange(7.0), "name": "a"}})
+    elif part == "field.csv":
+        rows = "\n".join(f"{x},{y},1.5,-0.5,1,0,0,0.9,0.01" for y in (8, 16) for x in (8, 16, 24))
+        file.write_text(f"x,y,u,v,valid,replaced,solid,correlation,uncertainty\n{rows}\n")
+    elif part == "field.txt":
+        file.write_text("# x y u v flags mask\n" + "".join(f"{x} {y} 1 2 0 0\n" for y in (8, 16) for x in (8, 16)))
+    elif part == "picture.png":
+        cv2.imwrite(str(file), np.arange(64 * 64, dtype=np.uint8).reshape(64, 64))
+    elif part == "points.csv":
+        file.write_text('name,fluid.spacing,gate.x\na,"1 mm",0.1\nb,2e-3,\n')
+    elif part == "points.toml":
+        file.write_text('[[point]]\nname = "a"\nfluid.spacing = "1 mm"\n[vary]\ngate.x = [0.1, 0.2]\n')
+    elif part == "trade.toml":
+        file.write_text('[[quantity]]\nname = "e"\ncolumn = "y"\nscale = 1\nexact = 2\n[[knob]]\nname = "k"\n'
+                        '[[knob.point]]\nlabel = "1"\nsettings = { a.b = 1 }\n')  # fmt: skip
+    elif part == "front.json":
+        file.write_text('{"format": 1, "machine": {"processor": "p"}, "date": "d", "points": [{"label": "a",'
+                        '"on_front": true,'
+                        '"error": 0.1, "scatter": 0, "core_seconds": 1, "seconds": 1, "pace": 1, "quality": null,'
+                        '"settings": ["a.b=1"]}]}')  # fmt: skip
+    return file
+
+
+READERS: dict[str, Read] = {
+    "scene:column_collapse": scene_of(PORESCALE),
+    "scene:lifting_gate": scene_of(PORESCALE),
+    "scene:permeameter": scene_of(PORESCALE),
+    "scene:bubble_in_water": scene_of(CONTINUUM),
+    "deck:demseg_chain/in_gm.dat": lambda file: read_deck(file.parent),
+    "deck:demseg_chain/in_bc.dat": lambda file: read_deck(file.parent),
+    "run:card.json": lambda file: read_card(file.parent),
+    "run:series.csv": lambda file: whole_run(file.parent),
+    "run:fields.vtkhdf": lambda file: whole_run(file.parent),
+    "run:grains.vtkhdf": lambda file: whole_run(file.parent),
+    "of grains:circles.csv": lambda file: read_circles(file, "m"),
+    "of grains:packing.h5": read_packing,
+    "of a run:checkpoint.h5": read_checkpoint,
+    "of film:field.csv": read_field,
+    "of film:field.txt": read_field,
+    "of film:picture.png": picture,
+    "of a sweep:points.csv": read_points,
+    "of a sweep:points.toml": read_points,
+    "of a study:trade.toml": lambda file: read_plan(file.parent / "scene.toml", None),
+    "of a study:front.json": lambda file: read_front(file.parent / "scene.toml"),
+}
+
+
+def everything(folder: Path) -> dict[Path, bytes]:
+    return {path: path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file() and path.name != ".lock"}
+
+
+def faults_of(read: Callable[[], object]) -> list[Fault]:
+    """What reading said was wrong."""
+    try:
+        read()
+    except InputError as error:
+        return list(error.faults) or [Fault("", None, "")]
+    return []
+
+
+def judged(file: Path, read: Read, content: bytes, seed: int) -> bool:
+    """Whether a spoilt file is read; else it is refused, in lines of one line each."""
+    file.write_bytes(spoiled(content, seed))
+    before, start = everything(file.parent), time.perf_counter()
+    faults = faults_of(lambda: read(file))
+    for fault in faults:
+        said = fault.line()
+        assert said.strip()
+        assert len(said.splitlines()) == 1, said
+        assert len(said) < 2000, said
+    assert time.perf_counter() - start < LONGEST
+    assert everything(file.parent) == before
+    return not faults
+
+
+def spoil(name: str, folder: Path, seeds: range) -> None:
+    file, verdicts = made(folder, name), set()
+    content = file.read_bytes()
+    READERS[name](file)  # it is fine as it is
+    for seed in seeds:
+        try:
+            verdicts.add(judged(file, READERS[name], content, seed))
+        except Exception as error:
+            error.add_note(f"{name}, seed {seed}")
+            raise
+    assert False in verdicts  # some of it was noticed
+
+
+@pytest.mark.parametrize("name", READERS)
+def test_a_spoilt_file_is_read_or_refused(tmp_path, name):
+    spoil(name, tmp_path, range(TIMES))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", READERS)
+def test_files_spoilt_in_many_ways_are_read_or_refused(tmp_path, name):
+    spoil(name, tmp_path, range(1000, 1000 + 40 * TIMES))
+
+
+def test_a_reader_that_lets_other_errors_out_is_caught(tmp_path):  # the twin that must fail
+    with pytest.raises(ValueError, match="float"):
+        judged(tmp_path / "n.txt", lambda path: float(path.read_text("latin-1") + "x"), b"1.5", 1)
