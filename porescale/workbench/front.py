@@ -28,7 +28,11 @@ GENTLE = 0.95
 
 @dataclass(frozen=True)
 class FrontPoint:
-    """A point of the front.  error, scatter : shares;  seconds : of the run where it was measured;  pace : s a step."""
+    """A point of the front.
+
+    error, scatter : shares;  seconds : of the run where it was measured;  time : that it simulated, s;  pace : of a
+    step, s.
+    """
 
     label: str
     quality: str | None
@@ -37,6 +41,7 @@ class FrontPoint:
     scatter: float
     core_seconds: float
     seconds: float
+    time: float
     pace: float
 
 
@@ -100,45 +105,51 @@ def read_front(scene: Path) -> Front:
 
 
 def _point(row: dict[str, Any]) -> FrontPoint:
-    numbers = [float(row[key]) for key in ("error", "scatter", "core_seconds", "seconds", "pace")]
-    if not all(math.isfinite(value) and value >= 0 for value in numbers) or not numbers[3] or not numbers[4]:
+    numbers = [float(row[key]) for key in ("error", "scatter", "core_seconds", "seconds", "time", "pace")]
+    if not all(math.isfinite(value) and value >= 0 for value in numbers) or not all(numbers[3:]):
         raise ValueError(f"numbers of {row['label']}")
     quality = None if row["quality"] is None else str(row["quality"])
     return FrontPoint(str(row["label"]), quality, tuple(map(str, row["settings"])), *numbers)
 
 
-def choose(front: Front, error: float | None, budget: float | None, pace: Callable[[FrontPoint], float]) -> Choice:
+Try = Callable[[FrontPoint], tuple[float, float | None]]
+"""Times a step of a point here, s, and says which time (s) is to be simulated, None for that of the front."""
+
+
+def choose(front: Front, error: float | None, budget: float | None, try_here: Try) -> Choice:
     """The cheapest point whose error is at most ``error``; without one the best that ``budget`` (s) allows.
 
-    pace : times a step of a point here, s;  InputError where no point is good enough, or none is cheap enough.
+    InputError where no point is good enough, or none is cheap enough.
     """
     if error is not None:
         good = [point for point in front.points if point.error <= error]
         if not good:
             best = min(point.error for point in front.points)
             raise InputError(Fault("--error", percent(error), "is below the best point measured", "", percent(best)))
-        found = _here(good[0], pace)
+        found = _here(good[0], try_here)
         if budget is not None and found.seconds > budget:
             problem = f"is not enough for an error of {percent(error)}: {found.point.label} takes {found.seconds:.3g} s"
             raise InputError(Fault("--budget", f"{budget:.3g}", problem, "s", repair="allow more of one of them"))
         return found
     assert budget is not None
-    cheapest = _here(front.points[0], pace)
+    cheapest = _here(front.points[0], try_here)
     if cheapest.seconds > budget:
         problem = f"is not enough: {cheapest.point.label}, the cheapest point, takes {cheapest.seconds:.3g} s"
         raise InputError(Fault("--budget", f"{budget:.3g}", problem, "s", repair="allow more"))
+    likely = cheapest.seconds / front.points[0].seconds
     for point in sorted(front.points, key=lambda one: one.error):
-        if point.seconds * cheapest.slowness > 2.0 * budget:  # far out of reach: not worth building
+        if point.seconds * likely > 2.0 * budget:  # far out of reach: not worth building
             continue
-        found = cheapest if point is front.points[0] else _here(point, pace)
+        found = cheapest if point is front.points[0] else _here(point, try_here)
         if found.seconds <= GENTLE * budget or point is front.points[0]:
             return found
     return cheapest
 
 
-def _here(point: FrontPoint, pace: Callable[[FrontPoint], float]) -> Choice:
-    slowness = pace(point) / point.pace
-    return Choice(point, point.seconds * slowness, slowness)
+def _here(point: FrontPoint, try_here: Try) -> Choice:
+    pace, end = try_here(point)
+    slowness = pace / point.pace
+    return Choice(point, point.seconds * slowness * (1.0 if end is None else end / point.time), slowness)
 
 
 def pace_of(model: Any) -> float:

@@ -35,7 +35,8 @@ class Traded:
     """A point of the trade.
 
     errors : of each quantity;  error, scatter : of all together, over repeats;  core_seconds, seconds, peak_bytes,
-    steps : means over repeats;  outcome : "finished" or the first other one, then errors are infinite.
+    steps, time (s, simulated) : means over repeats;  outcome : "finished", or the first other one, and errors are
+    infinite.
     """
 
     knob: str
@@ -49,6 +50,7 @@ class Traded:
     seconds: float
     peak_bytes: float
     steps: int
+    time: float
     on_front: bool = False
     problem: str = ""
 
@@ -130,14 +132,22 @@ def rms(values: Any) -> float:
     return float(np.sqrt(np.mean(np.square(np.asarray(values, float)))))
 
 
-def costs(ends: Sequence[Ended]) -> tuple[float, float, float, int]:
-    """Core-seconds, seconds, bytes, steps: means over runs that say them; seconds stand in for core-seconds."""
+def costs(ends: Sequence[Ended]) -> tuple[float, float, float, int, float]:
+    """Core-seconds, seconds, bytes, steps, simulated time: means over runs that say them; seconds stand in for
+    core-seconds.
+    """
 
     def mean(key: str) -> float:
         known = [float(ended.card[key]) for ended in ends if ended.card.get(key)]
         return sum(known) / len(known) if known else 0.0
 
-    return mean("core_seconds") or mean("seconds"), mean("seconds"), mean("peak_bytes"), round(mean("step"))
+    return (
+        mean("core_seconds") or mean("seconds"),
+        mean("seconds"),
+        mean("peak_bytes"),
+        round(mean("step")),
+        mean("time"),
+    )
 
 
 def front(points: Sequence[Traded]) -> list[Traded]:

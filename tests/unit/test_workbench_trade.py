@@ -73,7 +73,7 @@ def tables(folder: Path, name: str) -> dict[str, np.ndarray]:
 
 def traded(error: float, seconds: float) -> Traded:
     return Traded(
-        "k", f"{error:g}", Point(f"{error:g}", ()), "finished", {"q": error}, error, 0.0, seconds, seconds, 0, 1
+        "k", f"{error:g}", Point(f"{error:g}", ()), "finished", {"q": error}, error, 0.0, seconds, seconds, 0, 1, 2.0
     )
 
 
@@ -203,7 +203,7 @@ def test_a_damaged_front_is_said(tmp_path, content):
         read_front(tmp_path / "scene.toml")
 
 
-@pytest.mark.parametrize("key", ["pace", "seconds", "error", "label"])
+@pytest.mark.parametrize("key", ["pace", "seconds", "time", "error", "label"])
 def test_a_point_without_a_number_is_damage(tmp_path, key):
     scene = written(tmp_path, [traded(0.1, 10.0)], {"0.1": 1e-3})
     table = json.loads((tmp_path / "front.json").read_text())
@@ -226,9 +226,9 @@ def measured_front(tmp_path):
     return read_front(written(tmp_path, points, {"0.2": 1.0, "0.1": 2.0, "0.01": 4.0}))
 
 
-def twice(point: FrontPoint) -> float:
+def twice(point: FrontPoint) -> tuple[float, float | None]:
     """A machine half as fast as the one of the front."""
-    return 2.0 * point.pace
+    return 2.0 * point.pace, None
 
 
 def test_an_error_picks_the_cheapest_point_that_is_as_good(measured_front):
@@ -236,6 +236,8 @@ def test_an_error_picks_the_cheapest_point_that_is_as_good(measured_front):
     assert (choice.point.label, choice.seconds, choice.slowness) == ("0.1", 20.0, 2.0)
     assert choose(measured_front, 0.1, 20.0, twice).point.label == "0.1"
     assert "picked 0.1" in choice.line(measured_front)
+    longer = choose(measured_front, 0.15, None, lambda point: (2.0 * point.pace, 3.0 * point.time))
+    assert (longer.seconds, longer.slowness) == (60.0, 2.0)  # three times the time simulated, on the same machine
     with pytest.raises(InputError, match="below the best"):
         choose(measured_front, 0.001, None, twice)
     with pytest.raises(InputError, match="is not enough for an error"):

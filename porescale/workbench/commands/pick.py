@@ -27,13 +27,14 @@ def pick(
     seconds = None if budget is None else _seconds(budget)
     front = read_front(find(scene))
 
-    def pace(point: FrontPoint) -> float:
-        """Seconds of a step of the point's scene, here."""
+    def here(point: FrontPoint) -> tuple[float, float | None]:
+        """Seconds of a step of the point's scene, and the time it is to simulate, s, where its scene says that."""
         overrides = (*point.settings, *settings)
         opened = open_scene(scene, package.scene(), quality=point.quality, overrides=overrides)
-        return pace_of(package.build(opened.scene))
+        end = getattr(getattr(opened.scene, "time", None), "end", None)
+        return pace_of(package.build(opened.scene)), end
 
-    choice = choose(front, allowed, seconds, pace)
+    choice = choose(front, allowed, seconds, here)
     if settings and not quiet:
         print(f"warning: {front.file} was measured without --set {' '.join(settings)}", file=sys.stderr)
     if not quiet:
