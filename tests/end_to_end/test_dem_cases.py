@@ -282,3 +282,16 @@ def test_a_hanging_chain_is_a_catenary_and_breaks_at_k_overlap():
     # The twin that must fail: bonds a hundredth weaker than k δ0.
     weaker, _ = case.measure(0.99 * case.STRENGTH)
     assert "pull that breaks it over k δ0" in missed(CASES / "hanging_chain", weaker)
+
+
+@pytest.mark.slow
+def test_soil_pushes_a_block_off_its_base_at_the_friction_of_the_base(monkeypatch):
+    case = script("block_pushed_by_soil")
+    numbers, _, found = case.measure(packings=1)
+    assert missed(CASES / "block_pushed_by_soil", numbers) == []
+    ways = [record.gone[-1] for _, record in found.freed]
+    assert ways == sorted(ways, reverse=True)
+    # The twin that must fail: limit equilibrium with half of the friction that the base has.
+    monkeypatch.setattr(case, "FRICTION", 0.5 * case.FRICTION)
+    off = missed(CASES / "block_pushed_by_soil", case.said(found))
+    assert off == [row["name"] for row in expected(CASES / "block_pushed_by_soil")[2:]]
