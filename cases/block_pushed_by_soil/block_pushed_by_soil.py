@@ -234,7 +234,7 @@ def measure(packings: int = 4, seed: int = 1, looks: int = 0) -> tuple[dict[str,
 
 def draw(found: Found) -> Figure:
     """A light block gone, a heavy one pushed, thrust of the drawn one, ways of free ones, forces of the push."""
-    figure, axes = stage(5, 17.0, 3.2)
+    figure, axes = stage(5, 16.0, 3.0)
     light, record = found.freed[0]
     sight(axes[0], record, len(record.shots) - 1)
     axes[0].set_title(f"weight {light:g}, free for {record.time[-1]:.0f} s", fontsize=9)
