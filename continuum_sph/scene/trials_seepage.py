@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +12,7 @@ from continuum_sph.boundary import tank_walls
 from continuum_sph.eos import Tait
 from continuum_sph.fluids import Fluid
 from continuum_sph.law import Law
-from continuum_sph.layers import Layer
+from continuum_sph.layers import VY, Layer
 from continuum_sph.scene.trials_soil import RATIO, in_tank
 from continuum_sph.seepage import Drain, Frame, PoreFlow, Resistance, Seepage, skeleton_of
 from continuum_sph.seepage.overlap import Overlap
@@ -84,7 +84,7 @@ def water_in(
     grains: float = GRAINS,
     permeability: float = 1e-3,
     gravity: float = 0.0,
-    drained: tuple[str, ...] = (),
+    drained: Mapping[str, float] | None = None,
     modulus: float = 0.0,
     load: Floats | None = None,
     v: Floats | None = None,
@@ -92,8 +92,8 @@ def water_in(
 ) -> Seepage:
     """Water at ``x`` (n, 2) m under ``pressure`` (n,) Pa in a periodic column (width, height) m, among the soil there.
 
-    load (soil, 2) N/m: on the soil;  v (n, 2) m/s: of the water, none if absent;
-    drained : "floor", "lid": faces without pressure.
+    load (soil, 2) N/m: on the soil;  v (n, 2) m/s: of the water, none if absent;  drained : pressure (Pa) of faces that
+    water passes, "floor" or "lid".  Each particle takes up a square of the spacing, grains and all.
     """
     width, height = size
     smoothing, state, n = Smoothing("wendland", RATIO * spacing), Tait(WATER, sound_speed), len(x)
@@ -105,24 +105,22 @@ def water_in(
     skin = SKIN * smoothing.length
     overlap = Overlap(n, skeleton.count, smoothing.length, skin, *box)
     overlap.update(x, skeleton.x)
-    porosity = np.full(n, 1.0)
-    inside = np.zeros(n, bool)
-    inside[:] = x[:, 1] < skeleton.x[:, 1].max() + 0.5 * spacing
-    porosity[inside] = resistance.porosity
     rho = state.density_at(pressure)
-    mass = np.concatenate((porosity * rho * spacing**2, np.full(len(walls), WATER * spacing**2)))
+    mass = np.concatenate((rho * spacing**2, np.full(len(walls), WATER * spacing**2)))
     layer = Layer(n, np.concatenate((x, walls)), np.zeros((n + len(walls), 2)), mass, rho)
     if v is not None:
         layer.v[:n] = v
     pairs = PairList(layer.count, skin, *box, full=True)
     flow = PoreFlow(layer, rules, pairs, skeleton=skeleton, overlap=overlap, resistance=resistance)
-    for face in drained:
+    for face, held in (drained or {}).items():
         below = face == "floor"
         rows = n + np.flatnonzero(walls[:, 1] < 0.0 if below else walls[:, 1] > height)
         normal = (0.0, 1.0 if below else -1.0)
-        flow.drains.append(Drain(rows, (0.0, 0.0 if below else height), normal, np.zeros(len(rows))))
+        flow.drains.append(Drain(rows, (0.0, 0.0 if below else height), normal, np.full(len(rows), held)))
     whole = resistance.porosity * WATER + (1.0 - resistance.porosity) * grains
     both = Seepage(flow, ground, modulus, whole if modulus else np.inf, load=load)
+    both.start()
+    layer.mass[:n] = flow.porosity * rho * spacing**2
     both.start()
     return both
 
@@ -162,7 +160,7 @@ def consolidating(given: Consolidation) -> Seepage:
     size = (COLUMNS * spacing, given.height)
     both = water_in(
         ground, soil.x[:n].copy(), u, size, spacing, sound, Resistance(given.porosity),
-        permeability=given.permeability, drained=("floor", "lid"), modulus=given.modulus,
+        permeability=given.permeability, drained={"floor": 0.0, "lid": 0.0}, modulus=given.modulus,
         load=load, v=v,
     )  # fmt: skip
     return both
@@ -239,6 +237,100 @@ def saturated_box(
     both = Seepage(flow, ground, material.column_modulus, whole / share**2)
     both.start()
     return both
+
+
+def permeated(permeability: float, gradient: float, *, law: str = "constant", porosity: float = 0.4) -> Seepage:
+    """Held soil in a periodic box of 12 spacings of 1 cm, its water driven along x by a hydraulic ``gradient``.
+
+    porosity : of the soil, whose permeability is given at 0.4;  water lies at random in it.
+    """
+    across, spacing, given = 12, 0.01, 0.4
+    side = across * spacing
+    box, smoothing = ((0.0, 0.0), (side, side), (True, True)), Smoothing("wendland", RATIO * spacing)
+    rng = np.random.default_rng(4)
+    frame = Frame(square_lattice((0.0, 0.0), (side, side), spacing), spacing**2, porosity, permeability)
+    x = (
+        frame.skeleton.x + rng.uniform(0.0, 1.0, 2) * spacing + rng.uniform(-0.1, 0.1, frame.skeleton.x.shape) * spacing
+    ) % side
+    n, skin = len(x), SKIN * smoothing.length
+    rules = Law(smoothing, spacing, (Fluid(Tait(WATER, 10.0)),), (gradient * GRAVITY, 0.0), diffusion=0.0, cut=False)
+    layer = Layer(n, x, np.zeros((n, 2)), np.full(n, porosity * WATER * spacing**2), np.full(n, WATER))
+    flow = PoreFlow(
+        layer, rules, PairList(n, skin, *box, full=True), skeleton=frame.skeleton,
+        overlap=Overlap(n, n, smoothing.length, skin, *box), resistance=Resistance(given, law),
+    )  # fmt: skip
+    both = Seepage(flow, frame)
+    both.start()
+    return both
+
+
+@dataclass(frozen=True)
+class Permeameter:
+    """Soil under a layer of water, through which water is driven upwards from a porous base.
+
+    rows : of particles over the soil's height;  height : of the soil, cover : of the water above, m;  permeability m/s;
+    held : soil that cannot move, else with a modulus M, Pa, and friction;  sound_speed : of the water, m/s.
+    """
+
+    rows: int = 20
+    height: float = 0.1
+    cover: float = 0.03
+    permeability: float = 5e-3
+    held: bool = True
+    modulus: float = 1e6
+    sound_speed: float = 60.0
+    porosity: float = 0.4
+
+    @property
+    def critical(self) -> float:
+        """i_c = (G_s - 1)(1 - n)."""
+        return (GRAINS / WATER - 1.0) * (1.0 - self.porosity)
+
+    def base(self, gradient: float) -> float:
+        """Pressure (Pa) at the base for a hydraulic ``gradient`` in the soil."""
+        return WATER * GRAVITY * (self.height + self.cover + gradient * self.height)
+
+    def build(self, gradient: float, first: float = 0.0) -> Seepage:
+        """The column under its weight in water whose base is at a ``gradient``, which has not begun to flow.
+
+        first : gradient of the pressures at the start, when the soil is at rest under it.
+        """
+        spacing = self.height / self.rows
+        size = (COLUMNS * spacing, self.height)
+        x = square_lattice((0.0, 0.0), size, spacing)
+        nu, ground = 0.3, None
+        if not self.held:
+            stiff = self.modulus * (1.0 + nu) * (1.0 - 2.0 * nu) / (1.0 - nu)
+            material = Material(stiff, (1.0 - self.porosity) * GRAINS, nu, porosity=self.porosity)
+            weight = ((1.0 - self.porosity) * (GRAINS - WATER) - first * WATER) * GRAVITY
+            upright, k0 = weight * (self.height - x[:, 1]), material.rest
+            stress = upright[:, None] * np.array([k0, 1.0, 0.0, nu * (1.0 + k0)])
+            ground = in_tank(x, stress, size, spacing, material, sides="none")
+        all_of = (size[0], self.height + self.cover)
+        at = square_lattice((0.0, 0.0), all_of, spacing)
+        pressure = WATER * GRAVITY * (all_of[1] - at[:, 1] + first * np.maximum(0.0, self.height - at[:, 1]))
+        return water_in(
+            ground or Frame(x, spacing**2, self.porosity, self.permeability), at, pressure, all_of, spacing,
+            self.sound_speed, Resistance(self.porosity), permeability=self.permeability, gravity=GRAVITY,
+            drained={"floor": self.base(gradient), "lid": 0.0}, modulus=0.0 if self.held else self.modulus,
+        )  # fmt: skip
+
+
+def upward(both: Seepage, lower: float, upper: float) -> float:
+    """Mean flux q of water and grains, upwards, m/s, over the water between heights ``lower`` and ``upper``, m."""
+    layer = both.water.layer
+    n = layer.fluid
+    own = (layer.x[:n, 1] > lower) & (layer.x[:n, 1] < upper)
+    volume = (layer.mass[:n] / (both.water.porosity * layer.density))[own]
+    return float((volume * layer.record[:n, VY][own]).sum() / volume.sum())
+
+
+def discharge(both: Seepage) -> float:
+    """Mean n (v_f - v_s) along x, m/s, over the volume."""
+    layer = both.water.layer
+    n = layer.fluid
+    volume = layer.mass[:n] / (both.water.porosity * layer.density)
+    return float((volume * both.water.porosity * layer.v[:n, 0]).sum() / volume.sum())
 
 
 def momentum(both: Seepage) -> Floats:

@@ -4,6 +4,10 @@ Behind a face z = 0 of pressure p0 the field goes on as a straight line through 
 p0 - (p̄ - p0) d/z̄, p̄ and z̄ being the kernel means of pressure and distance over the water before it; and the mean flux
 q̄, so that flow passes (its gradient across vanishes where p is given for ever).  Exact for linear pressures.
 Adami, Hu & Adams, J. Comput. Phys. 231 (2012) 7057, have the means, for walls that nothing passes.
+
+The particles behind the face go along with the water (`follow`).  If they stayed, water that comes in would leave a gap
+behind its first row, and the pressures about it would push it back.  Good for ways of up to half a spacing: nothing new
+comes in, nothing is taken out.
 """
 
 from __future__ import annotations
@@ -14,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.layers import VX, VY, P, X, Y
-from continuum_sph.smoothing import kernel_value
+from continuum_sph.smoothing import CUBIC, kernel_value
 from porescale.ground.jit import parallel_kernel, prange
 from porescale.particles.cells import minimum_image
 
@@ -80,3 +84,26 @@ def drain_walls(
             record[w, VY] = uy / weight
         record[w, P] = behind
         pressure[w] = behind
+
+
+@parallel_kernel
+def follow(rows, start, split, partner, x, v, nx, ny, step, h, period_x, period_y):
+    """Moves the wall particles ``rows`` (k,) along the normal (nx, ny) by ``step`` (s) at the mean velocity of the
+    water before them; overwrites their ``x`` (n, 2) m.
+
+    start, split, partner: full list, water first in each row;  v (n, 2) m/s;  h: smoothing length;  periods, m or 0.
+    """
+    for number in prange(rows.shape[0]):
+        w = rows[number]
+        weight = 0.0
+        speed = 0.0
+        for k in range(np.uint64(start[w]), np.uint64(split[w])):
+            j = np.uint64(partner[k])
+            dx = minimum_image(x[w, 0] - x[j, 0], period_x)
+            dy = minimum_image(x[w, 1] - x[j, 1], period_y)
+            value = kernel_value(CUBIC, np.sqrt(dx * dx + dy * dy) / h, h)
+            weight += value
+            speed += (v[j, 0] * nx + v[j, 1] * ny) * value
+        if weight > 0.0:
+            x[w, 0] += step * speed / weight * nx
+            x[w, 1] += step * speed / weight * ny

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from continuum_sph.layers import VOLUME, VX, VY, X, Y
-from continuum_sph.smoothing import kernel_value
+from continuum_sph.smoothing import CUBIC, kernel_value
 from porescale.ground.jit import parallel_kernel, prange
 from porescale.particles.cells import minimum_image
 
@@ -20,22 +20,22 @@ LEAST_POROSITY = 0.05  # grains that crowd beyond this leave the water no more v
 
 @parallel_kernel
 def blend(
-    fluid, start, split, partner, record, near, soil, weight, grains, soil_v, pores, kind, h,
+    fluid, start, split, partner, record, home, near, soil, weight, grains, soil_v, pores, h,
     period_x, period_y,
 ):  # fmt: skip
     """Overwrites ``pores`` (fluid, 3), and in ``record`` the velocity by q and the volume by m/(n ρ_f), of water.
 
     start, split, partner: the water's full list, walls from ``split[i]`` on, which have the volume that ``record``
-    gives them;  near, soil, weight: rows of the overlap;  grains (s,) m²;  soil_v (s, 2) m/s;  kind, h:
-    smoothing;  periods, m or 0.
+    gives them and stand at ``home`` (n, 2) m;  near, soil, weight: rows of the overlap;  grains (s,) m²;  soil_v (s, 2)
+    m/s;  h: smoothing length;  periods, m or 0.
     """
     for i in prange(fluid):
         room = 1.0
         for k in range(np.uint64(split[i]), np.uint64(start[i + 1])):
             j = np.uint64(partner[k])
-            dx = minimum_image(record[i, X] - record[j, X], period_x)
-            dy = minimum_image(record[i, Y] - record[j, Y], period_y)
-            room -= record[j, VOLUME] * kernel_value(kind, np.sqrt(dx * dx + dy * dy) / h, h)
+            dx = minimum_image(record[i, X] - home[j, 0], period_x)
+            dy = minimum_image(record[i, Y] - home[j, 1], period_y)
+            room -= record[j, VOLUME] * kernel_value(CUBIC, np.sqrt(dx * dx + dy * dy) / h, h)
         room = max(LEAST_ROOM, room)
         solid = 0.0
         ux = 0.0

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.seepage.drain import Drain, drain_walls
+from continuum_sph.seepage.drain import Drain, drain_walls, follow
 from continuum_sph.seepage.exchange import brake, take
 from continuum_sph.seepage.mixture import GRAINS, POROSITY, ROOM, blend, part_forces
 from continuum_sph.seepage.overlap import Overlap
@@ -39,9 +39,20 @@ class PoreFlow(Flow):
         fluid = self.layer.fluid
         self.pores = np.ones((fluid, 3))
         self.pores[:, GRAINS] = 0.0
+        self.home = self.layer.x.copy()  # of walls: where they stood at the start, grains reach no further
         self.thrust, self.slip, self.push = (np.zeros((fluid, 2)) for _ in range(3))
         self.borne = np.zeros((self.skeleton.count, 2))
         self.heat = np.zeros(fluid + self.skeleton.count)
+
+    def begin(self, step: float) -> float:
+        """As of water alone; what lies behind open faces goes along."""
+        pairs, layer = self.pairs, self.layer
+        for face in self.drains:
+            follow(
+                face.rows, pairs.start, self.split, pairs.partner, layer.x, layer.v, *face.normal, step,
+                self.law.smoothing.length, *pairs.period,
+            )  # fmt: skip
+        return super().begin(step)
 
     def evaluate(self, step: float, ratio: float) -> None:
         """As of water alone, of the mixture; forces of the water on the soil beside."""
@@ -59,8 +70,8 @@ class PoreFlow(Flow):
         layer, pairs, smoothing = self.layer, self.pairs, self.law.smoothing
         how = (smoothing.kind, smoothing.length, *pairs.period)
         blend(
-            layer.fluid, pairs.start, self.split, pairs.partner, layer.record, *self.overlap.rows,
-            self.skeleton.grains, self.skeleton.v, self.pores, *how,
+            layer.fluid, pairs.start, self.split, pairs.partner, layer.record, self.home, *self.overlap.rows,
+            self.skeleton.grains, self.skeleton.v, self.pores, *how[1:],
         )  # fmt: skip
         for face in self.drains:
             drain_walls(
@@ -98,6 +109,7 @@ class PoreFlow(Flow):
             "heat": self.heat.copy(),
             "borne": self.borne.copy(),
             "record": self.layer.record.copy(),
+            "home": self.home.copy(),
             "overlap": self.overlap.pairs.state(),
         }
 
@@ -105,6 +117,6 @@ class PoreFlow(Flow):
         """Go on bit for bit from the ``state`` of a flow of the same start."""
         super().restore(state)
         self.pores[:], self.heat[:], self.borne[:] = state["pores"], state["heat"], state["borne"]
-        self.layer.record[:] = state["record"]
+        self.layer.record[:], self.home[:] = state["record"], state["home"]
         self.overlap.pairs.restore(state["overlap"])
         self.overlap.update(self.layer.x[: self.layer.fluid], self.skeleton.x)

@@ -51,8 +51,8 @@ def blended(place):
     record[:, RHO], record[:, P], record[:, VOLUME] = place["rho"], place["p"], place["mass"] / place["rho"]
     pores, none = np.ones((n, 3)), np.zeros(n + 1, np.int64)
     blend.py_func(
-        n, none, none[:n], np.zeros(0, np.int32), record, *place["rows"], place["grains"], place["soil_v"], pores,
-        WENDLAND, H, 1.0, 1.0,
+        n, none, none[:n], np.zeros(0, np.int32), record, place["x"], *place["rows"], place["grains"],
+        place["soil_v"], pores, H, 1.0, 1.0,
     )  # fmt: skip
     return record, pores
 

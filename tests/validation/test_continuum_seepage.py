@@ -11,7 +11,7 @@ from continuum_sph.scene import verify_seepage
 from continuum_sph.scene.trials_seepage import realised_modulus
 from continuum_sph.scene.validations import VALIDATIONS
 from continuum_sph.scene.verify_seepage import LAYER
-from continuum_sph.seepage import pores
+from continuum_sph.seepage import Resistance, exchange, pores
 
 
 def tolerance(name):
@@ -19,12 +19,15 @@ def tolerance(name):
 
 
 @pytest.mark.slow
-def test_water_that_does_not_feel_the_grains_does_not_consolidate(monkeypatch):
-    # Eq. 46 as printed: layers of full density, no pore volume balance.  The soil swings under its load as if dry.
+def test_layers_of_full_density_consolidate_too_fast(monkeypatch):
+    # Eq. 46 as printed, drag n ρ_f g/k between layers of full density: strong drag still makes soil press its water
+    # out, but with the conductivity k/n.
     monkeypatch.setattr(pores, "blend", lambda *_: None)
     monkeypatch.setattr(pores, "part_forces", lambda *_: None)
-    _, worst = verify_seepage.consolidation.__wrapped__(LAYER, (0.01, 0.05))
+    monkeypatch.setattr(Resistance, "factor", LAYER.porosity / (1.0 - LAYER.porosity))
+    middle, worst = verify_seepage.consolidation.__wrapped__(LAYER, (0.05,))
     assert worst > 10.0 * tolerance("continuum.consolidation")
+    assert middle[0] == pytest.approx(np.exp(-(np.pi**2) * 0.05 / LAYER.porosity), abs=0.1)
 
 
 @pytest.mark.slow
@@ -58,3 +61,34 @@ def test_drag_on_the_water_alone_moves_the_box():
 def test_error_of_the_modulus_falls_with_resolution():
     coarse, fine = (abs(realised_modulus(replace(LAYER, rows=rows)) / LAYER.modulus - 1.0) for rows in (10, 20))
     assert fine < coarse
+
+
+@pytest.mark.slow
+def test_water_that_does_not_feel_the_grains_flows_too_fast(monkeypatch):
+    # A layer of full density has the conductivity k/n and more: its drag is that of pores without grains.
+    monkeypatch.setattr(pores, "blend", lambda *_: None)
+    monkeypatch.setattr(pores, "part_forces", lambda *_: None)
+    found = verify_seepage.darcy.__wrapped__(1e-3, steps=400)
+    assert abs(found - 1.0) > tolerance("continuum.permeameter")
+
+
+@pytest.mark.slow
+def test_soil_starts_to_move_when_it_boils():
+    _, calm, boiling = verify_seepage.boiling()
+    assert boiling > 5.0 * calm
+
+
+@pytest.mark.slow
+def test_soil_that_feels_no_drag_does_not_boil_at_the_critical_gradient(monkeypatch):
+    monkeypatch.setattr(pores, "take", lambda *_: None)
+    found, _, _ = verify_seepage.boiling.__wrapped__(verify_seepage.BOILING)
+    assert abs(found - 1.0) > tolerance("continuum.boiling_gradient")
+
+
+@pytest.mark.slow
+def test_drag_in_explicit_steps_makes_energy_out_of_nothing(monkeypatch):
+    # 1 - e^(-κT) → κT: unstable for T beyond 2/κ.
+    monkeypatch.setattr(exchange.np, "expm1", lambda x: x)
+    monkeypatch.setattr(pores, "brake", exchange.brake.py_func)
+    with pytest.raises(ValueError, match="position"):
+        verify_seepage.growth_of_energy.__wrapped__(1e-7)
