@@ -42,8 +42,9 @@ def show(folder: Path) -> list[Path]:
     written = [*pictures(folder, look), film(folder, look)]
     for name in scene["output"].get("fields", ()):
         written.append(paint_last(folder, name, replace(look, field=name, label="")))
-    if scene.get("grains") is not None and "grains" in run.clouds:
-        written += [write_surface(run, folder), *write_grain_pictures(run, folder, look)]
+    if scene.get("grains") is not None:
+        written += [write_surface(run, folder)] if "grains" in run.clouds else []
+        written += write_grain_pictures(run, folder, look)
     written += write_breaks(run, folder)
     return [*written, *write_lines(run, folder)]
 

@@ -1,11 +1,15 @@
-"""Cracks of a run with bonds, for pictures and films: lines where bonds are gone that the bodies have not left yet."""
+"""Bodies of segments in pictures; cracks: lines where bonds are gone that bodies have not left yet."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
 
 from porescale.runs.look import Line
-from porescale.runs.model import Array, Snapshot
+from porescale.runs.model import Array, Cloud, Snapshot
 from porescale.scene.bonds import BONDS
 
 OPEN = 1.5
@@ -52,3 +56,22 @@ def _through(points: Array) -> Line:
 
 def _line(a: Array, b: Array) -> Line:
     return (float(a[0]), float(a[1])), (float(b[0]), float(b[1]))
+
+
+def draw_frames(axes: Axes, frames: Cloud, factor: float, colours: Any, rims: Any) -> None:
+    """Polygons filled, other segments as lines; ``colours`` and ``rims``: one for all, or one of each point.
+
+    factor : of lengths in m to the axes' unit.
+    """
+    at = factor * frames.position
+    offsets, corners = frames.polygons or (np.zeros(1, np.int64), np.zeros(0, np.int64))
+    loops = [corners[a:b] for a, b in zip(offsets[:-1].tolist(), offsets[1:].tolist(), strict=True)]
+    first = np.array([loop[0] for loop in loops], np.int64)
+    one = isinstance(colours, str)
+    faces, edges = (colours, rims) if one else (colours[first], np.asarray(rims)[first].tolist())
+    axes.add_collection(
+        PolyCollection([at[loop] for loop in loops], facecolors=faces, edgecolors=edges, linewidths=0.6)
+    )
+    if frames.lines is not None and len(frames.lines):
+        shade = rims if one else np.asarray(rims)[frames.lines[:, 0]].tolist()
+        axes.add_collection(LineCollection(list(at[frames.lines]), colors=shade, linewidths=2.0, capstyle="round"))

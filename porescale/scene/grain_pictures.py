@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,6 +21,8 @@ from porescale.runs.atomic import save
 from porescale.runs.look import Look, length_unit, time_text
 from porescale.runs.model import Cloud, Snapshot
 from porescale.runs.picture import paint_last
+from porescale.scene.frame_clouds import FRAMES
+from porescale.scene.frame_pictures import draw_frames
 from porescale.scene.grain_fields import CONTACTS, FIELDS
 from porescale.scene.grain_lines import write_lines
 
@@ -44,11 +47,11 @@ def write_grain_pictures(run: Run, folder: Path, look: Look) -> list[Path]:
     rose.png where contacts were recorded, with chains.vtp, their lines for ParaView; and packing.csv, the grains as
     they lie, to start another run from."""
     last = run.snapshot(-1)
-    if "grains" not in last.clouds:
-        return []
-    grains = last.clouds["grains"]
-    made = [folder / "packing.csv"]
-    write_packing(made[0], grains.position, np.asarray(grains.data["radius"], float))
+    made: list[Path] = []
+    if "grains" in last.clouds:
+        grains = last.clouds["grains"]
+        made = [folder / "packing.csv"]
+        write_packing(made[0], grains.position, np.asarray(grains.data["radius"], float))
     if FIELDS in last.grids:
         for name in (it for it in SHOWN if it in last.grids[FIELDS].cells):
             label = "speed of the grains" if name == "velocity" else ""
@@ -72,21 +75,24 @@ def write_chains(path: Path, snapshot: Snapshot) -> None:
     names = "normal_force", "tangential_force", "sliding"
     data = {name: np.asarray(contacts.data[name])[loaded] for name in names}
     data["sliding"] = data["sliding"].astype(bool)
-    write_lines(path, branches(snapshot.clouds["grains"], contacts)[loaded], data)
+    write_lines(path, branches(all_points(snapshot), contacts)[loaded], data)
 
 
 def chains(snapshot: Snapshot, look: Look) -> Figure:
     """Discs, and a line along every contact's branch, as wide as its normal force is large; sliding ones lighter."""
-    grains, contacts = snapshot.clouds["grains"], snapshot.clouds[CONTACTS]
+    grains, contacts = all_points(snapshot), snapshot.clouds[CONTACTS]
     title = f"{look.title}: normal forces, {time_text(snapshot.time, snapshot.time)}"
     figure, axes, factor, points = _stage(look, title)
-    _discs(axes, grains, factor, ["#efe9dc"] * len(grains.position))
+    if "grains" in snapshot.clouds:
+        _discs(axes, snapshot.clouds["grains"], factor, ["#efe9dc"] * len(snapshot.clouds["grains"].position))
+    if FRAMES in snapshot.clouds:
+        draw_frames(axes, snapshot.clouds[FRAMES], factor, "#efe9dc", "#b5ab98")
     force = np.asarray(contacts.data["normal_force"], float)
     loaded = force > 0.0
     if loaded.any():
         lines = branches(grains, contacts)[loaded] * factor
         strongest = float(np.percentile(force[loaded], 99))
-        thickest = THICKEST * 2.0 * float(np.mean(grains.data["radius"])) * points
+        thickest = THICKEST * 2.0 * _mean_radius(snapshot) * points
         width = np.minimum(force[loaded] / strongest, 2.0) * thickest
         colours = np.where(np.asarray(contacts.data["sliding"], bool)[loaded], "#e2893b", "#8c1c2f")
         axes.add_collection(LineCollection(list(lines), linewidths=width, colors=colours.tolist(), capstyle="round"))
@@ -98,12 +104,18 @@ def chains(snapshot: Snapshot, look: Look) -> Figure:
 
 def numbers(snapshot: Snapshot, look: Look) -> Figure:
     """Discs coloured by their number of loaded contacts; rattlers with a blue rim."""
-    grains = snapshot.clouds["grains"]
+    grains = snapshot.clouds.get("grains", Cloud(np.zeros((0, 2)), {
+        "radius": np.zeros(0), "contact_number": np.zeros(0), "rattler": np.zeros(0)}))  # fmt: skip
     figure, axes, factor, _ = _stage(look, f"{look.title}: contacts, {time_text(snapshot.time, snapshot.time)}")
     count = np.minimum(np.asarray(grains.data["contact_number"], int), MOST)
     loose = np.asarray(grains.data["rattler"], bool)
     painted = ListedColormap(COLOURS)(count)
     _discs(axes, grains, factor, painted, ["#2f6fb0" if it else "#3b352b" for it in loose], np.where(loose, 1.2, 0.4))
+    if FRAMES in snapshot.clouds:
+        frames = snapshot.clouds[FRAMES]
+        shown = ListedColormap(COLOURS)(np.minimum(np.asarray(frames.data["contact_number"], int), MOST))
+        rims = np.where(np.asarray(frames.data["rattler"], bool), "#2f6fb0", "#3b352b")
+        draw_frames(axes, frames, factor, shown, rims)
     handles = [
         Patch(facecolor=colour, edgecolor="#3b352b", label=f"{k}{' and more' if k == MOST else ''}")
         for k, colour in enumerate(COLOURS)
@@ -141,6 +153,13 @@ def rose_of(snapshot: Snapshot, look: Look) -> Figure:
     return figure
 
 
+def all_points(snapshot: Snapshot) -> Cloud:
+    """Discs, then the corners of bodies of segments, as contacts number them."""
+    parts = [snapshot.clouds[name] for name in ("grains", FRAMES) if name in snapshot.clouds]
+    radius = np.concatenate([np.asarray(part.data["radius"], float) for part in parts])
+    return Cloud(np.concatenate([part.position for part in parts]), {"radius": radius})
+
+
 def branches(grains: Cloud, contacts: Cloud) -> Array:
     """Ends (c, 2, 2) m of the ways between centres of discs that touch, or from one to a surface, beside their points:
     of images of discs where those are nearer."""
@@ -151,6 +170,17 @@ def branches(grains: Cloud, contacts: Cloud) -> Array:
     start = contacts.position - mean[:, None] * normal
     length = radius[first] - overlap + np.where(second >= 0, radius[second], 0.0)
     return np.stack((start, start + length[:, None] * normal), axis=1)
+
+
+def _mean_radius(snapshot: Snapshot) -> float:
+    """Mean radius of discs, m, or a fifth of the mean side of polygons where there are none."""
+    if "grains" in snapshot.clouds:
+        return float(np.mean(snapshot.clouds["grains"].data["radius"]))
+    frames = snapshot.clouds[FRAMES]
+    offsets, corners = frames.polygons or (np.zeros(1, int), np.zeros(0, int))
+    at = frames.position[corners]
+    sides = [np.hypot(*np.diff(at[a:b], axis=0).T) for a, b in itertools.pairwise(offsets)]
+    return 0.2 * float(np.mean(np.concatenate(sides))) if sides else float(np.mean(frames.data["radius"]))
 
 
 def _stage(look: Look, title: str) -> tuple[Figure, Axes, float, float]:

@@ -292,3 +292,29 @@ def test_a_region_sees_the_exact_area_of_polygons_and_whom_they_touch(resting):
     # Below y = -4 two tips are left of the arrow: from the sides, which rise 15 in 8, and from the notch, 4 in 8.
     feet = clipped_area(arrow, Region((-9.0, -9.0), (9.0, -4.0)))
     assert feet == pytest.approx(2 * 0.5 * 2.0 * (2.0 * 8 / 4 - 2.0 * 8 / 15), rel=1e-12)
+
+
+def test_pictures_of_contacts_show_discs_and_polygons_alike(tmp_path):
+    from porescale.runs.look import Look
+    from porescale.scene.grain_pictures import all_points, branches, chains, numbers, write_chains
+
+    scene = framed(
+        polygon=[{**SQUARE, "at": [[4e-3, 1.1495e-3]]}], container=[FLOOR], output__contacts=True,
+        grains={"grain": [grain(7e-3, 1.5995e-3)]},
+    )  # fmt: skip
+    simulation = build(scene)
+    simulation.advance(1)
+    snapshot = simulation.snapshot()
+    contacts = snapshot.clouds["contacts"]
+    assert snapshot.clouds["grains"].data["contact_number"].tolist() == [1]
+    # Two corners of the square stand on the floor, a contact each; their body has both, the floor all three.
+    assert snapshot.clouds["frames"].data["contact_number"].tolist() == [2, 2, 2, 2, 3, 3]
+    write_chains(tmp_path / "chains.vtp", snapshot)
+    assert 'NumberOfLines="3"' in (tmp_path / "chains.vtp").read_text(encoding="utf-8")
+    look = Look(view=(0.0, 0.012, 0.0, 0.008))
+    for figure in (chains(snapshot, look), numbers(snapshot, look)):
+        kinds = {type(it).__name__ for it in figure.axes[0].collections}
+        assert {"EllipseCollection", "PolyCollection", "LineCollection"} <= kinds
+
+    ends = branches(all_points(snapshot), contacts)
+    assert ends[:, 1, 1] == pytest.approx(1e-3, abs=1e-6)  # each ends on the line of the floor
