@@ -1,17 +1,19 @@
 """The energies of a flow and what became of them: a book that closes.
 
-kinetic + potential + compressive + heat (viscosity) + diffused (density diffusion) - work of walls - work of surface
-tension stays what it was, but for the steps in time, for particles stopped at a wall's surface or held at the least
-density, and for what moves particles otherwise than with their velocity (XSPH, shifting) or changes densities otherwise
-than by continuity (filter).
+kinetic + potential + compressive + heat (viscosity) + diffused (density diffusion) + stopped (at a wall's surface) less
+the work of walls, of surface tension and of shifting stays what it was, but for the steps in time, for particles held
+at the least density, and for XSPH, which moves particles, and the filter, which changes densities, otherwise than their
+rates do.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from continuum_sph.layers import BY_TENSION, BY_WALLS, DIFFUSIVE, VISCOUS
+from continuum_sph.layers import BY_SHIFTING, BY_TENSION, BY_WALLS, DIFFUSIVE, STOPPED, VISCOUS
 from continuum_sph.step import Flow
+
+LOST, GIVEN = [VISCOUS, DIFFUSIVE, STOPPED], [BY_WALLS, BY_TENSION, BY_SHIFTING]
 
 
 def book(flow: Flow) -> dict[str, float]:
@@ -39,6 +41,8 @@ def book(flow: Flow) -> dict[str, float]:
         "energy diffused": float(turned[DIFFUSIVE]),
         "work of walls": float(turned[BY_WALLS]),
         "work of surface tension": float(turned[BY_TENSION]),
+        "work of shifting": float(turned[BY_SHIFTING]),
+        "energy stopped at walls": float(turned[STOPPED]),
         "total energy": total,
-        "energy balance": total + float(turned[VISCOUS] + turned[DIFFUSIVE] - turned[BY_WALLS] - turned[BY_TENSION]),
+        "energy balance": total + float(turned[LOST].sum() - turned[GIVEN].sum()),
     }

@@ -11,9 +11,9 @@ Floats = NDArray[np.float64]
 
 X, Y, VX, VY, RHO, P, VOLUME, STIFF = range(8)
 """Columns of a record: m, m, m/s, m/s, kg/m³, Pa, m/ρ (m²), ρ/c² (kg s²/m⁵)."""
-VISCOUS, DIFFUSIVE, BY_WALLS, BY_TENSION = range(4)
+VISCOUS, DIFFUSIVE, BY_WALLS, BY_TENSION, BY_SHIFTING, STOPPED = range(6)
 """Columns of energy turned over: by viscosity into heat, by density diffusion into nothing, given by walls, by
-surface tension."""
+surface tension, by shifting; lost by particles stopped at a wall's surface."""
 
 
 @dataclass
@@ -44,8 +44,8 @@ class Layer:
     length: Floats = field(init=False)  # (n,) m, smoothing lengths, set by the flow
     matrix: Floats = field(init=False)  # (n, 3) xx, xy, yy of the gradient correction
     facing: Floats = field(init=False)  # (n, 4) of walls: nearest point of the surface, normal into the fluid
-    power: Floats = field(init=False)  # (fluid, 4) W/m, see VISCOUS, …, BY_TENSION
-    energy: Floats = field(init=False)  # (fluid, 4) J/m, the same summed over time
+    power: Floats = field(init=False)  # (fluid, 6) W/m, see VISCOUS, …, STOPPED
+    energy: Floats = field(init=False)  # (fluid, 6) J/m, the same summed over time
 
     def __post_init__(self) -> None:
         n = len(self.x)
@@ -62,7 +62,7 @@ class Layer:
         self.record, self.ghost = np.zeros((n, 8)), np.zeros((n, 2))
         self.length, self.facing = np.zeros(n), np.zeros((n, 4))
         self.matrix = np.tile([1.0, 0.0, 1.0], (n, 1))
-        self.power, self.energy = np.zeros((self.fluid, 4)), np.zeros((self.fluid, 4))
+        self.power, self.energy = np.zeros((self.fluid, 6)), np.zeros((self.fluid, 6))
 
     @property
     def count(self) -> int:

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from continuum_sph.eos import printed_gas, tait
 from continuum_sph.fluids import DENSITY, EXPONENT, PRINTED, SOUND, STIFFNESS, THINNEST
-from continuum_sph.layers import RHO, STIFF, VOLUME, VX, VY, P, X, Y
+from continuum_sph.layers import RHO, STIFF, STOPPED, VOLUME, VX, VY, P, X, Y
 from porescale.ground.jit import parallel_kernel, prange
 
 
 @parallel_kernel
 def kick_drift(
-    x, v, acceleration, smoothed, drift, density, rate, rate_before, predicted, half, step, ratio, lower, upper
+    x, v, acceleration, smoothed, drift, density, rate, rate_before, predicted, mass, energy, half, step, ratio,
+    lower, upper,
 ):  # fmt: skip
     """First half kick, drift and prediction of density for fluid particles; overwrites x, v, predicted.
 
     v += half a;  x += step (v + smoothed + drift);  predicted = ρ + step {D + ratio (D - D_before)}.  half, step: s;
     lower, upper (2,) m: surfaces of the walls.  The pressure of wall particles keeps water out of walls, but spray
-    carries none: a particle that reaches a surface is put on it and loses its speed into it.  Returns how often.
+    carries none: a particle that reaches a surface is put on it and loses its speed into it, whose energy is added to
+    ``energy`` (fluid, 6) J/m, mass (n,) kg/m.  Returns how often.
     """
     stopped = 0
     for i in prange(density.shape[0]):
@@ -25,10 +27,12 @@ def kick_drift(
             at = x[i, axis] + step * (v[i, axis] + smoothed[i, axis] + drift[i, axis])
             if at < lower[axis]:
                 at = lower[axis]
+                energy[i, STOPPED] += 0.5 * mass[i] * min(0.0, v[i, axis]) ** 2
                 v[i, axis] = max(0.0, v[i, axis])
                 stopped += 1
             if at > upper[axis]:
                 at = upper[axis]
+                energy[i, STOPPED] += 0.5 * mass[i] * max(0.0, v[i, axis]) ** 2
                 v[i, axis] = min(0.0, v[i, axis])
                 stopped += 1
             x[i, axis] = at
@@ -75,8 +79,8 @@ def kick(v, acceleration, density, rate, material, length, table, power, energy,
 
     Continuity follows a particle that leaves its neighbours down to the density of a cloud, below zero if they were
     crowded: densities stop at the fluid's least.  varied: h -= step h/(2ρ) dρ/dt, eq. 52 in two dimensions.
-    energy (fluid, 4) J/m grows by step times ``power``.  Returns the largest |a|² (m²/s⁴) and |v|² (m²/s²), which limit
-    the next step and its shifting.
+    energy (fluid, 6) J/m grows by step times ``power`` but for what was STOPPED.  Returns the largest |a|² (m²/s⁴) and
+    |v|² (m²/s²), which limit the next step and its shifting.
     """
     hardest = 0.0
     swiftest = 0.0
@@ -88,7 +92,7 @@ def kick(v, acceleration, density, rate, material, length, table, power, energy,
         if varied:
             length[i] -= step * length[i] / (2.0 * density[i]) * rate[i]
         density[i] = max(table[material[i], THINNEST], density[i] + step * rate[i])
-        for k in range(4):
+        for k in range(STOPPED):
             energy[i, k] += step * power[i, k]
         hardest = max(hardest, ax * ax + ay * ay)
         swiftest = max(swiftest, v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1])

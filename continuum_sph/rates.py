@@ -19,7 +19,7 @@ from continuum_sph.artificial_viscosity import artificial
 from continuum_sph.boundary_paper import image
 from continuum_sph.density import HYDROSTATIC, LINEAR, continuity, diffusion
 from continuum_sph.fluids import COHESION, SOUND, VISCOSITY
-from continuum_sph.layers import BY_WALLS, DIFFUSIVE, RHO, STIFF, VISCOUS, VOLUME, VX, VY, P, X, Y
+from continuum_sph.layers import BY_SHIFTING, BY_WALLS, DIFFUSIVE, RHO, STIFF, VISCOUS, VOLUME, VX, VY, P, X, Y
 from continuum_sph.smoothing import kernel_value, slope_scale, slope_shape
 from continuum_sph.viscosity import between, laminar
 from porescale.ground.jit import parallel_kernel, prange
@@ -43,17 +43,17 @@ def split_rows(fluid, start, partner, split):
 def rates(
     fluid, start, split, partner, record, ghost, facing, material, length, matrix, slant, drift, mass, table, choices,
     acceleration, rate, smoothed, power,
-    kind, h, gx, gy, alpha, beta, softening, delta, sticky, smoothing, period_x, period_y,
+    kind, h, gx, gy, alpha, beta, softening, delta, sticky, smoothing, period_x, period_y, half,
 ):  # fmt: skip
     """Overwrites ``acceleration`` (fluid, 2) m/s², ``rate`` (fluid,) kg/(m³ s), ``smoothed`` (fluid, 2) m/s and the
-    first three columns of ``power`` (fluid, 4) W/m.
+    columns of ``power`` (fluid, 6) W/m but for BY_TENSION.
 
     start, split, partner: full pair list, wall partners of row i from ``split[i]`` on;  record, ghost, facing,
     material, length, matrix, drift: see Layer;  slant: of `surroundings`;  mass (n,) kg/m;  table (m, 9): the fluids;
     choices: what is NOISE, IMAGED, SHIFTED, CORRECTED, VARIED;  kind, h: smoothing;  gx, gy gravity,
     m/s²;  alpha, beta, softening: artificial viscosity;  delta 2 δ h of the density diffusion, m;  sticky: walls hold
     the fluid, else they let it slip;  smoothing: XSPH's ε, for Σ (m_j/ρ̄)(v_j - v_i) W (eq. 53 with the sign that
-    smooths);  periods, m or 0.
+    smooths);  periods, m or 0;  half: of the step that ends here, s.
 
     NOISE: what density diffusion takes for noise;  IMAGED: walls of the paper;  SHIFTED: density is that of the place
     that a particle's ``drift`` takes it to;  CORRECTED: gradients by ``matrix``;  VARIED: h by ``length`` (eq. 7).
@@ -152,7 +152,9 @@ def rates(
                 weight = smoothing * 2.0 * partner_mass / both * kernel_value(kind, q, hij)
                 sx -= weight * vx
                 sy -= weight * vy
-        given = 0.0
+        swept = 0.0
+        pushed_x = 0.0
+        pushed_y = 0.0
         for k in range(np.uint64(split[i]), np.uint64(start[i + 1])):
             j = np.uint64(partner[k])
             dx = xi - record[j, X]
@@ -183,22 +185,28 @@ def rates(
                 tx = matrix[i, 0] * dx + matrix[i, 1] * dy
                 ty = matrix[i, 1] * dx + matrix[i, 2] * dy
                 braking = 0.5 * (matrix[i, 0] + matrix[i, 2]) * slope
-            swept = volume * (vx * tx + vy * ty) * slope
-            change += rho * swept
+            swept += rho * volume * (vx * tx + vy * ty) * slope
             thrust = (own + record[j, P]) * specific * volume * slope
             brake = laminar(own_viscosity, volume, specific, braking) if sticky and material[j] == 0 else 0.0
-            ax -= thrust * tx
-            ay -= thrust * ty
+            pushed_x -= thrust * tx
+            pushed_y -= thrust * ty
             bx += brake * ux
             by += brake * uy
-            given += specific * (own * swept - (own + record[j, P]) * volume * slope * (vxi * tx + vyi * ty))
+        moved = 0.0
+        lifted = 0.0
         if shifted:
-            change += drift[i, 0] * slant[i, 0] + drift[i, 1] * slant[i, 1]
-        acceleration[i, 0] = ax + bx + gx
-        acceleration[i, 1] = ay + by + gy
-        rate[i] = change + spread
+            moved = drift[i, 0] * slant[i, 0] + drift[i, 1] * slant[i, 1]
+            lifted = gx * drift[i, 0] + gy * drift[i, 1]
+        acceleration[i, 0] = ax + pushed_x + bx + gx
+        acceleration[i, 1] = ay + pushed_y + by + gy
+        rate[i] = change + swept + moved + spread
         smoothed[i, 0] = sx
         smoothed[i, 1] = sy
+        # What these do to speeds they do at the step's end, and what they do to densities at its middle.
+        vxi += half * acceleration[i, 0]
+        vyi += half * acceleration[i, 1]
+        work = mass[i] * specific * specific * (own - half * rho / stiff_i * rate[i])
         power[i, VISCOUS] = -mass[i] * (bx * vxi + by * vyi)
-        power[i, DIFFUSIVE] = -mass[i] * own * specific * specific * spread
-        power[i, BY_WALLS] = mass[i] * given
+        power[i, DIFFUSIVE] = -work * spread
+        power[i, BY_WALLS] = work * swept + mass[i] * (pushed_x * vxi + pushed_y * vyi)
+        power[i, BY_SHIFTING] = work * moved - mass[i] * lifted

@@ -22,9 +22,9 @@ from porescale.ground.lanes import LANES, nearest, nothing, root, take_rows, tot
 def plain_rates(
     fluid, start, split, partner, record, ghost, material, mass, table,
     acceleration, rate, power,
-    kind, h, gx, gy, alpha, beta, softening, delta, sticky, period_x, period_y,
+    kind, h, gx, gy, alpha, beta, softening, delta, sticky, period_x, period_y, half,
 ):  # fmt: skip
-    """Overwrites ``acceleration``, ``rate`` and the first three columns of ``power`` as `rates.rates` does.
+    """Overwrites ``acceleration``, ``rate`` and the first three columns of ``power`` (fluid, 6) as `rates.rates` does.
 
     Arguments: those of the same names there;  ``table`` (1, 9) has one fluid, without cohesion, and XSPH is off.
     """
@@ -79,7 +79,7 @@ def plain_rates(
             ay -= thrust * dy
             bx += brake * vx - damp * dx
             by += brake * vy - damp * dy
-        pushed_x, pushed_y, held_x, held_y, swept, given = walls_push(
+        pushed_x, pushed_y, held_x, held_y, swept = walls_push(
             split[i], start[i + 1], partner, record, ghost, material, xi, yi, vxi, vyi, rho, own, viscosity,
             kind, h, sticky, period_x, period_y,
         )  # fmt: skip
@@ -89,6 +89,10 @@ def plain_rates(
         acceleration[i, 0] = total(ax) + pushed_x + rubbed_x + gx
         acceleration[i, 1] = total(ay) + pushed_y + rubbed_y + gy
         rate[i] = rho * total(change) + swept + diffused
+        # What these do to speeds they do at the step's end, and what they do to densities at its middle.
+        vxi += half * acceleration[i, 0]
+        vyi += half * acceleration[i, 1]
+        work = mass[i] * specific * specific * (own - half * rho / stiff * rate[i])
         power[i, VISCOUS] = -mass[i] * (rubbed_x * vxi + rubbed_y * vyi)
-        power[i, DIFFUSIVE] = -mass[i] * own * specific * specific * diffused
-        power[i, BY_WALLS] = mass[i] * given
+        power[i, DIFFUSIVE] = -work * diffused
+        power[i, BY_WALLS] = work * swept + mass[i] * (pushed_x * vxi + pushed_y * vyi)

@@ -17,7 +17,7 @@ def walls_push(
     kind, h, sticky, period_x, period_y,
 ):  # fmt: skip
     """Of wall partners ``partner[begin:end]`` on a particle at (x, y) m, (vx, vy) m/s, ``rho`` kg/m³, ``pressure`` Pa:
-    (acceleration by pressure, m/s², 2;  by friction, 2;  rate of density, kg/(m³ s);  power given per mass, W/kg).
+    (acceleration by pressure, m/s², 2;  by friction, 2;  rate of density, kg/(m³ s)).
 
     record, ghost, material: see Layer;  viscosity μ, Pa s;  the rest: as `rates.rates`.
     """
@@ -26,7 +26,6 @@ def walls_push(
     bx = 0.0
     by = 0.0
     change = 0.0
-    given = 0.0
     specific = 1.0 / rho
     for k in range(np.uint64(begin), np.uint64(end)):
         j = np.uint64(partner[k])
@@ -36,12 +35,10 @@ def walls_push(
         volume = record[j, VOLUME]
         swept = volume * ((vx - record[j, VX]) * dx + (vy - record[j, VY]) * dy) * slope
         change += rho * swept
-        both = pressure + record[j, P]
-        thrust = both * specific * volume * slope
+        thrust = (pressure + record[j, P]) * specific * volume * slope
         brake = laminar(viscosity, volume, specific, slope) if sticky and material[j] == 0 else 0.0
         ax -= thrust * dx
         ay -= thrust * dy
         bx += brake * (vx - ghost[j, 0])
         by += brake * (vy - ghost[j, 1])
-        given += specific * (pressure * swept - both * volume * slope * (vx * dx + vy * dy))
-    return ax, ay, bx, by, change, given
+    return ax, ay, bx, by, change

@@ -121,7 +121,8 @@ class Flow:
         ratio = (step + self.last_steps[0]) / (self.last_steps[0] + self.last_steps[1])
         self.stopped += kick_drift(
             layer.x, layer.v, layer.acceleration, layer.smoothed, layer.drift, layer.density, layer.rate,
-            layer.rate_before, layer.predicted, 0.5 * step, step, ratio, self.lower, self.upper,
+            layer.rate_before, layer.predicted, layer.mass, layer.energy, 0.5 * step, step, ratio,
+            self.lower, self.upper,
         )  # fmt: skip
         layer.rate, layer.rate_before = layer.rate_before, layer.rate
         return ratio
@@ -154,7 +155,7 @@ class Flow:
                 fluid, pairs.start, pairs.partner, layer.record, layer.material, layer.matrix, self.openness,
                 self.crowd, self.slant, kind, h, law.spacing, *pairs.period,
             )  # fmt: skip
-        self.sum_pairs()
+        self.sum_pairs(0.5 * step)
         if law.tension > 0.0:
             self.pull()
         if law.images:
@@ -170,8 +171,8 @@ class Flow:
                 self.crowd, layer.drift, kind, h, 2.0 * h * law.shifting * urge, MOST * urge, *pairs.period,
             )  # fmt: skip
 
-    def sum_pairs(self) -> None:
-        """The pass over pairs, by the fastest kernel that knows all of the law."""
+    def sum_pairs(self, half: float) -> None:
+        """The pass over pairs, by the fastest kernel that knows all of the law;  half : of the step that ends, s."""
         layer, law, pairs = self.layer, self.law, self.pairs
         where = (layer.fluid, pairs.start, self.split, pairs.partner, layer.record, layer.ghost)
         how = (
@@ -181,13 +182,13 @@ class Flow:
         if self.choices is None:
             plain_rates(
                 *where, layer.material, layer.mass, self.table, layer.acceleration, layer.rate, layer.power, *how,
-                *pairs.period,
+                *pairs.period, half,
             )  # fmt: skip
         else:
             rates(
                 *where, layer.facing, layer.material, layer.length, layer.matrix, self.slant, layer.drift, layer.mass,
                 self.table, self.choices, layer.acceleration, layer.rate, layer.smoothed, layer.power, *how, law.xsph,
-                *pairs.period,
+                *pairs.period, half,
             )  # fmt: skip
 
     def pull(self) -> None:

@@ -79,7 +79,7 @@ def pull_interface(
     fluid, start, split, partner, record, normal, tension, acceleration, mass, v, power, kind, h,
     period_x, period_y,
 ):  # fmt: skip
-    """Adds -(σ/ρ) κ ∇c to ``acceleration`` (fluid, 2) m/s² and its power to ``power`` (fluid, 4) W/m.
+    """Adds -(σ/ρ) κ ∇c to ``acceleration`` (fluid, 2) m/s² and its power to ``power`` (fluid, 6) W/m.
 
     κ = Σ V_j (n_j - n_i) · L_i ∇_i W, L_i⁻¹ = Σ V_j (x_j - x_i) ⊗ ∇_i W, over partners with a normal;  tension σ, N/m;
     mass (n,) kg/m;  v (n, 2) m/s;  the rest: as `colours`.

@@ -23,14 +23,14 @@ def both(flow, fast):
     found = []
     for name in ("fast", "all"):
         acceleration, rate = np.zeros((layer.fluid, 2)), np.zeros(layer.fluid)
-        power, smoothed = np.zeros((layer.fluid, 4)), np.zeros((layer.fluid, 2))
+        power, smoothed = np.zeros((layer.fluid, 6)), np.zeros((layer.fluid, 2))
         if name == "fast":
-            fast(*where, layer.material, layer.mass, flow.table, acceleration, rate, power, *how, *pairs.period)
+            fast(*where, layer.material, layer.mass, flow.table, acceleration, rate, power, *how, *pairs.period, 1e-3)
         else:
             choices = np.array([law.noise, 0, 0, 0, 0], np.int64)
             rates(
                 *where, layer.facing, layer.material, layer.length, layer.matrix, flow.slant, layer.drift, layer.mass,
-                flow.table, choices, acceleration, rate, smoothed, power, *how, law.xsph, *pairs.period,
+                flow.table, choices, acceleration, rate, smoothed, power, *how, law.xsph, *pairs.period, 1e-3,
             )  # fmt: skip
         found.append((acceleration, rate, power))
     return found

@@ -104,6 +104,14 @@ def test_a_book_without_its_heat_does_not_close(monkeypatch):
     assert drift > 5.0 * tolerance("continuum.energy_balance")
 
 
+@pytest.mark.slow
+def test_a_book_of_speeds_at_mid_step_does_not_close_over_an_impact(monkeypatch):
+    plain_rates = step.plain_rates
+    monkeypatch.setattr(step, "plain_rates", lambda *arguments: plain_rates(*arguments[:-1], 0.0))
+    _, drift = verify_flows.energy_growth(1.2)
+    assert drift > tolerance("continuum.energy_balance_over_an_impact")
+
+
 def _kick_without_heat(v, acceleration, density, rate, material, length, table, power, *rest, kick=step.kick):
     power[:, VISCOUS] = 0.0
     return kick(v, acceleration, density, rate, material, length, table, power, *rest)
