@@ -8,11 +8,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from porescale.coupling.coverage_rows import make_patches
 from porescale.coupling.experiments import DEFAULT, LAW, TAU, Method
 from porescale.coupling.saturated import Saturated
 from porescale.coupling.shapes.polygon import Polygons
 from porescale.coupling.step import Coupled
-from porescale.dem.discs import Discs
+from porescale.dem.discs import Discs, make_discs
 from porescale.dem.frames import framed, polygon
 from porescale.dem.walls import Box
 from porescale.lbm.experiments import one_thread
@@ -144,3 +145,124 @@ def immersed_polygons(
         fluid, grains, scales, hydraulic_ratio=1.0, contact_steps=contact_steps, acceleration=acceleration,
         solid_operator=method.solid_operator, weighting=method.weighting,
     )  # fmt: skip
+
+
+def area_errors(shapes: Sequence[Array], angles: int) -> list[float]:
+    """Largest errors of the sum of solid fractions over angles and places, cells², of each polygon (k, 2)."""
+    fluid, found = Fluid(64, 64, TAU), []
+    for corners in shapes:
+        body = Polygons([corners])
+        cells = body.fit(fluid, 0.0, 0)
+        patches = make_patches(cells, cells, np.dtype(np.float64))
+        worst = 0.0
+        for k in range(angles):
+            body.angle[0], body.centre[0] = math.pi * k / angles, (20.0 + 0.618 * k % 1.0, 30.0 + 0.414 * k % 1.0)
+            body.cover(patches, 0)
+            covered = patches.fraction[: patches.height[0] * patches.stride[0]]
+            worst = max(worst, abs(float(covered.sum()) - float(body.area[0])))
+        found.append(worst)
+    return found
+
+
+def three(ratio: float, velocity: Sequence[tuple[float, float]], spin: Sequence[float], g: float) -> Coupled:
+    """A square, a triangle and a plate, and two discs, in a periodic box of 52 x 52 cells."""
+    bodies = [
+        regular(4, 80.0, 20.0) + np.array((12.3, 15.2)), regular(3, 60.0, 77.0) + np.array((28.0, 17.0)),
+        plate(18.0, 4.0, 30.0) + np.array((25.0, 34.0)),
+    ]  # fmt: skip
+    discs = make_discs([(8.0, 30.0), (40.0, 8.0)], [4.0, 4.0], ratio, [velocity[0], velocity[1]])
+    return immersed_polygons(
+        (52, 52), bodies, ratio, velocity=velocity, spin=spin, discs=discs, sides=("periodic", "periodic"),
+        acceleration=(0.0, g),
+    )  # fmt: skip
+
+
+def loads_on_neutral(steps: int, extra: float = 0.0) -> list[float]:
+    """Largest force, and torque over five cells, on polygons of density 1 that a uniform flow of 0.036 carries.
+
+    extra: what they are faster by.
+    """
+    coupled = three(1.0, [(0.03 + extra, 0.02)] * 3, [0.0] * 3, 0.0)
+    coupled.fluid.set_flow(0.03, 0.02)
+    force = torque = 0.0
+    with one_thread():
+        for _ in range(steps):
+            coupled.advance()
+            load = np.abs(coupled.saturated.polygon_load)
+            force, torque = max(force, float(load[:, :2].max())), max(torque, float(load[:, 2].max()) / 5.0)
+    return [force, torque]
+
+
+def momentum_error(steps: int, ratio: float = 2.0, g: float = -1e-5, *, inside: bool = True) -> float:
+    """Largest error of the momentum book over sum m |v| at the start: polygons and discs that meet in a periodic box.
+
+    inside: or else the fluid inside the polygons, and their virtual masses, are left out of the book.
+    """
+    coupled = three(ratio, [(0.04, 0.01), (-0.04, 0.0), (0.0, -0.04)], [0.002, -0.004, 0.01], g)
+    polygons = coupled.polygons
+    assert polygons
+    discs = coupled.grains.discs
+    size = float(np.sum(discs.mass[:, None] * np.abs(discs.velocity)))
+
+    def book() -> Array:
+        return np.array(coupled.momentum() - (0.0 if inside else polygons.momentum(coupled.scales.step)))
+
+    first, per_step, worst = book(), coupled.weight.sum(axis=0), 0.0
+    with one_thread():
+        for step in range(1, steps + 1):
+            coupled.advance()
+            worst = max(worst, float(np.abs(book() - first - step * per_step).max()))
+    return worst / size
+
+
+def level_plate(degrees: float, steps: int = 300) -> tuple[float, float]:
+    """Sideways speed, and speed of the tips, over the speed down of a plate that sinks from rest in a closed box."""
+    body = plate(16.0, 4.0, degrees) + np.array((24.0, 40.0))
+    coupled = immersed_polygons((48, 64), [body], acceleration=(0.0, -1e-5))
+    with one_thread():
+        for _ in range(steps):
+            coupled.advance()
+    assert coupled.polygons
+    (x, y), spin = coupled.polygons.velocity[0], float(coupled.polygons.spin[0])
+    return float(x / y), float(8.0 * spin / y)
+
+
+def half_turn(
+    cells: int = 64, a: float = 10.0, b: float = 5.0, reynolds: float = 0.5, *, relaxation_time: float = 1.0
+) -> float:  # fmt: skip
+    """Time of half a turn times the shear rate g: an ellipse of half axes a and b, as heavy as the fluid, free in the
+    middle of a channel ``cells`` wide and twice as long, whose walls slide;  reynolds: g a²/nu.
+
+    It starts along the flow, turning as it would there, and counts from 20 degrees on, for half a turn.
+    """
+    rate = reynolds * viscosity(relaxation_time) / a**2
+    speed = 0.5 * rate * cells
+    fluid = Fluid(
+        2 * cells, cells, relaxation_time,
+        sides=Sides("periodic", "periodic", "wall", "wall", bottom_speed=-speed, top_speed=speed),
+    )  # fmt: skip
+    y = (np.arange(cells) + 0.5)[:, None] - 0.5 * cells
+    fluid.set_flow(rate * y * np.ones((1, 2 * cells)), np.zeros((cells, 2 * cells)))
+    body = polygon(
+        ellipse(a, b) + np.array((cells, 0.5 * cells)), THICKNESS, 1.0, spin=-rate * b**2 / (a**2 + b**2)
+    )  # fmt: skip
+    box = Box((0.0, 0.0), (2.0 * cells, float(cells)), "periodic", "periodic", "solid", "solid")
+    coupled = Coupled(
+        fluid, framed(None, [body], LAW, box), Scales(1.0, 1.0, relaxation_time, 1.0), hydraulic_ratio=1.0,
+        contact_steps=1, acceleration=(0.0, 0.0),
+    )  # fmt: skip
+    assert coupled.polygons
+    begun = 0.0
+    with one_thread():
+        while True:
+            before = -float(coupled.polygons.angle[0])
+            coupled.advance()
+            now = -float(coupled.polygons.angle[0])
+            for mark in (math.radians(20.0), math.radians(200.0)):
+                if before < mark <= now:
+                    at = coupled.fluid.step - (now - mark) / (now - before)
+                    if begun:
+                        return (at - begun) * rate
+                    begun = at
+            if coupled.fluid.step * rate > 40.0:
+                return math.inf

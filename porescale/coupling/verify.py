@@ -10,6 +10,7 @@ from porescale.coupling import (
     verify_clumps,
     verify_fast,
     verify_moving,
+    verify_polygons,
     verify_rings,
     verify_towed,
 )
@@ -123,5 +124,6 @@ for _more in (
     verify_fast.VALIDATIONS,
     verify_rings.VALIDATIONS,
     verify_clumps.VALIDATIONS,
+    verify_polygons.VALIDATIONS,
 ):
     VALIDATIONS.include(_more)

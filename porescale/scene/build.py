@@ -25,7 +25,7 @@ from porescale.particles.placement import place
 from porescale.scene.contact import density_of
 from porescale.scene.cost import refuse_too_large
 from porescale.scene.derive import Derived, derive, grain_count
-from porescale.scene.frame_build import Placed, any_frames, placed_frames, with_corners
+from porescale.scene.frame_build import Placed, any_frames, disc_count, placed_frames, with_corners
 from porescale.scene.frame_places import refuse_overlaps_of_frames
 from porescale.scene.geometry import placed, refuse_overlaps
 from porescale.scene.grain_bodies import by_hand
@@ -81,7 +81,7 @@ def _coupled(scene: Scene, derived: Derived, fluid: Fluid, grains: Grains, recta
     assert derived.scales
     ratio = np.ones(grains.discs.count)
     if scene.grains and scene.grains.hydraulic_radius_ratio:
-        ratio[: grains.discs.count - len(scene.disc)] = scene.grains.hydraulic_radius_ratio
+        ratio[: disc_count(grains) - len(scene.disc)] = scene.grains.hydraulic_radius_ratio
     size: Any = ratio
     films = scene.lubrication
     return Coupled(
@@ -159,7 +159,8 @@ def _grains(scene: Scene, derived: Derived, frames: list[Placed]) -> tuple[Grain
     else:
         parts = [_placed(scene, packing), *parts] if packing else parts
         grains = Grains(together(*parts) if parts else NO_DISCS, law, box, wall_law=wall_law, plates=plates)
-        grains.refresh()  # contacts count from the first row of the series on
+        if grains.discs.count:  # where bodies of segments are all there is they come with lists of their own
+            grains.refresh()  # contacts count from the first row of the series on
     if scene.rectangle:
         take_over(scene, grains)
         refuse_buried(scene, grains.discs)

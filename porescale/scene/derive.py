@@ -24,6 +24,7 @@ from porescale.scene.geometry import judge_places, placed
 from porescale.scene.grain_bodies import by_hand, judge_bodies, lightest
 from porescale.scene.lattice import is_whole
 from porescale.scene.packing import judge_compressed, radii_of
+from porescale.scene.polygons_in_fluid import longest_step, too_few_cells
 from porescale.scene.regime import expected_speed, judge
 from porescale.scene.rock import rock_frames
 from porescale.scene.sections import Scene
@@ -79,13 +80,17 @@ def derive(scene: Scene) -> Derived:
         if frames:
             smallest = _with_frames(scene, smallest, frames, every)
         limit = min(packing_limit(it, *smallest) for it in every)
-        step, steps = _contact_step(scene.contact, stable_step(every, *smallest), limit, scales, faults)
+        safe = stable_step(every, *smallest)
+        if frames and scales:
+            safe = min(safe, longest_step(frames, expected_speed(scene, scales, sizes, frames)))
+        step, steps = _contact_step(scene.contact, safe, limit, scales, faults)
         model_step = scales.step if scales else step
     speed = expected_speed(scene, scales, sizes, frames)
     if frames and isinstance(law, Linear):
         warnings += filter(None, [thin_for(frames, speed, mean_mass, law.stiffness)])
     variation = 0.0
     if scales:
+        warnings += filter(None, [too_few_cells(frames, scales.spacing)])
         variation = judge(scene, scales, speed, sizes, faults, warnings)
     _loads(scene, faults)
     judge_bodies(scene, grain_count(scene) - len(scene.disc), faults)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from porescale.dem.discs import Discs
 from porescale.ground.check import Fault, InputError
 from porescale.scene.frame_build import Placed
+from porescale.scene.polygons_in_fluid import judge_in_fluid
 
 if TYPE_CHECKING:
     from porescale.scene.sections import Scene
@@ -36,8 +37,7 @@ def judge_sections(scene: Scene) -> list[Fault]:
         return []
     first, faults = frames[0], []
     if scene.fluid:
-        faults += [Fault(it, None, "is for dry grains", repair="leave [fluid] or it out, or take a clump")
-                   for it in frames]  # fmt: skip
+        faults += judge_in_fluid(scene, frames)
     if scene.grains is None:
         faults.append(Fault(first, None, "needs [grains], which says what is dense", repair="add [grains] and density"))
     beside = {"gate": (scene.gate, "make it a [[container]] that moves"), "cell": (scene.cell, "leave one of them out"),

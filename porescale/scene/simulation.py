@@ -229,7 +229,7 @@ class Simulation:
         data = {"radius": d.radius[own], "angle": d.angle[own], "velocity": flat, "spin": d.spin[own]}
         units = {"radius": "m", "angle": "rad", "velocity": "m/s", "spin": "rad/s"}
         if self.coupled:
-            data["hydraulic_radius"], units["hydraulic_radius"] = self.coupled.hydraulic_radius, "m"
+            data["hydraulic_radius"], units["hydraulic_radius"] = self.coupled.hydraulic_radius[own], "m"
         period = np.array([0.0, 0.0] if self._strained else grains.box.period)
         inside = np.where(period > 0, np.mod(position, np.where(period > 0, period, 1.0)), position)
         return Cloud(inside, data, units)

@@ -1,0 +1,88 @@
+"""Scenes of polygons in water: convex ones, resolved, seen by fluid and grains; what cannot be is said."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from porescale.ground.check import InputError
+from porescale.scene.build import build
+from porescale.scene.derive import derive
+from porescale.scene.polygons_in_fluid import too_few_cells, widths
+from tests.reference.scenes import column, grain
+
+SQUARE = {"sides": 4, "diameter": 0.0014, "thickness": 2e-5, "at": [[0.004, 0.005]], "angle": [0.3]}
+WATER = {"gate": None, "grains__packing": None, "domain__top": "wall"}
+
+
+def wet(*polygons, **changes):
+    return column(**WATER, polygon=list(polygons), **changes)
+
+
+def faults(*polygons, **changes):
+    with pytest.raises(InputError) as caught:
+        derive(wet(*polygons, **changes))
+    return " ".join(f"{fault.key} {fault.problem} {fault.repair}" for fault in caught.value.faults)
+
+
+@pytest.mark.usefixtures("one_thread")
+def test_a_polygon_sinks_beside_a_grain_and_goes_on_bit_for_bit():
+    # A held disc and a free grain besides: rows of discs come before those of corners.
+    scene = wet(
+        SQUARE, grains__grain=[grain(0.008, 0.005)], disc=[{"x": 0.002, "y": 0.002, "diameter": 0.001}],
+        grains__hydraulic_radius_ratio=0.8,
+    )  # fmt: skip
+    one, other = build(scene), build(scene)
+    one.advance(30)
+    coupled = one.coupled
+    np.testing.assert_allclose(coupled.hydraulic_radius, [0.0004, 0.0005, 0.0, 0.0, 0.0, 0.0], rtol=1e-12)
+    assert coupled.polygons.velocity[0, 1] < 0.0 > coupled.grains.discs.velocity[0, 1]
+    area, cell = 0.5 * 0.0014**2, 0.0002**2
+    solid = one.snapshot().grids["fields"].cells["solid_fraction"]
+    assert solid.sum() * cell == pytest.approx(area + np.pi * (0.0004**2 + 0.0005**2), rel=1e-5)
+    assert len(one.snapshot().clouds["grains"].position) == 2
+    assert len(one.snapshot().clouds["frames"].position) == 4
+    other.restore(one.state())
+    for simulation in (one, other):
+        simulation.advance(10)
+    np.testing.assert_array_equal(one.fluid.populations, other.fluid.populations)
+    assert one.series() == other.series()
+
+
+@pytest.mark.usefixtures("one_thread")
+def test_a_polygon_that_is_told_stays():
+    simulation = build(wet(SQUARE | {"held": True}, grains__grain=[grain(0.008, 0.005)]))
+    simulation.advance(5)
+    np.testing.assert_array_equal(simulation.coupled.polygons.velocity, 0.0)
+
+
+def test_what_is_no_convex_polygon_is_dry():
+    rod = {"chain": [[0.006, 0.002], [0.007, 0.002]], "thickness": 1e-4, "width": 1e-4}
+    assert "segment is for dry grains" in faults(SQUARE, segment=[rod])
+    arrow = {"corners": [[0, 0], [0.002, 0], [0.0005, 0.0005], [0, 0.002]], "thickness": 2e-5, "at": [[0.004, 0.004]]}
+    said = faults(arrow)
+    assert "polygon[0]" in said
+    assert "cut it into convex polygons" in said
+    assert "no films between polygons" in faults(SQUARE, lubrication={})
+
+
+def test_a_plate_of_two_cells_is_warned_of():
+    plate = {"corners": [[0, 0], [0.004, 0], [0.004, 0.0004], [0, 0.0004]], "thickness": 2e-5, "at": [[0.004, 0.004]]}
+    assert any("polygon[0] is 2 cells across" in word for word in derive(wet(plate)).warnings)
+    assert not any("cells across" in word for word in derive(wet(SQUARE)).warnings)
+
+
+def test_no_polygon_goes_further_in_a_contact_step_than_its_thickness_bears():
+    found = derive(wet(SQUARE))
+    assert found.contact_step * found.speed <= 0.05 * 2e-5 < 2 * found.contact_step * found.speed
+
+
+def test_the_width_of_a_polygon_is_the_least_between_parallels():
+    frames = build(wet(SQUARE)).frames
+    assert widths(frames) == pytest.approx([0.0014 / np.sqrt(2)], rel=1e-12)
+    assert too_few_cells(frames, 0.0002) == ""
+
+
+def test_polygons_alone_may_fall_in_a_small_periodic_box():
+    scene = wet(SQUARE, domain__left="periodic", domain__right="periodic")
+    assert build(scene).grains.discs.count == 4
