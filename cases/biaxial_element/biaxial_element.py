@@ -28,7 +28,7 @@ def main() -> int:
     figure, (left, middle, right) = stage(3, 12.0, 3.8)
     numbers = {}
     for name, material in KINDS.items():
-        element, rows = biaxial(material, PRESSURE, 0.02, words.steps)
+        _, rows = biaxial(material, PRESSURE, 0.02, words.steps)
         upright, across, major, minor = rows.T
         left.plot(100.0 * upright, major / minor, label=name)
         middle.plot(100.0 * upright, 100.0 * (upright + across), label=name)

@@ -1,4 +1,4 @@
-"""A stressed block turned rigidly by a right angle: its stress has to turn with it, with eq. 38 as printed it does not."""
+"""A stressed block turned by a right angle: its stress has to turn with it; with eq. 38 as printed it does not."""
 
 from __future__ import annotations
 

@@ -1,0 +1,121 @@
+"""What must fail where rows of soil hold, and the cases of soil at their default quality."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from continuum_sph.scene import verify_soil
+from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.soil_model import SoilSimulation
+from continuum_sph.scene.validations import VALIDATIONS
+from porescale.workbench.sections import load
+
+CASES = Path(__file__).resolve().parents[2] / "cases"
+STEEP = "soil.body=[{outline=[[0,0],[3.6,0],[3.6,0.2],[2.04,0.2],[0.5,1.2],[0,1.2]]}]"  # 33 degrees
+
+
+def tolerance(name):
+    return VALIDATIONS[name].tolerance
+
+
+def test_friction_taken_for_the_angle_of_its_tangent_fails_at_another_ratio():
+    # tan 30° where the paper's tan φ is sin 30°
+    assert abs(verify_soil.failure_ratio(3.0**-0.5) - 3.0) > 0.7
+
+
+def test_soil_of_another_dilatancy_is_told_apart():
+    assert abs(verify_soil.dilation(0.21) - 0.2) > 1e6 * tolerance("continuum.soil_dilates_as_told")
+
+
+def test_the_printed_modulus_does_not_rest_as_plane_strain_does():
+    assert abs(verify_soil.rest_ratio("printed") - 3.0 / 7.0) > 0.09
+
+
+def test_the_printed_sign_of_turning_loses_the_stress_on_the_way():
+    # At 90° itself both signs meet again: turning a stress by 90° either way gives the same.
+    error = verify_soil.turned_error(90, printed_spin=True)
+    assert error > 1e6 * tolerance("continuum.soil_turned_keeps_its_stress")
+
+
+def test_plain_gradients_strain_what_only_turns():
+    assert verify_soil.turned_error(4, corrected=False) > 1.0
+
+
+def test_the_modulus_of_a_column_is_not_that_of_the_area():
+    # B in place of B + G: the time is longer by √((B + G)/B) = 1.18
+    assert abs(verify_soil.crossing("plane strain", 20) * 1.4**0.5 - 1.0) > tolerance("continuum.soil_column_modulus")
+
+
+def test_a_force_on_one_of_a_pair_alone_makes_momentum():
+    assert verify_soil.kept(one_sided=True)[0] > 1e6 * tolerance("continuum.soil_momentum")
+
+
+def test_plain_gradients_make_angular_momentum():
+    assert verify_soil.kept(corrected=False)[1] > 0.1
+
+
+def test_friction_of_thirty_degrees_by_its_tangent_does_not_slide_at_28():
+    acceleration, exact = verify_soil.sliding(28.0, rows=10, friction=3.0**-0.5)
+    assert abs(acceleration / exact - 1.0) > 0.9
+
+
+def test_stress_diffused_by_sound_lets_level_ground_creep():
+    assert verify_soil.rest(1.0, restless=0.1)[0] > 5.0 * tolerance("continuum.soil_at_rest_stays")
+
+
+@pytest.mark.slow
+def test_a_slope_beyond_its_limit_fails():
+    assert verify_soil.slope(33.0, 2.0) > 100.0 * tolerance("continuum.soil_slope_below_its_limit_stays")
+
+
+def test_stress_diffused_by_sound_lets_a_slope_creep():
+    assert verify_soil.slope(22.0, 1.0, 0.1) > 5.0 * tolerance("continuum.soil_slope_below_its_limit_stays")
+
+
+def series(case, *settings):
+    """Columns of a case's series, a row every 200 steps and at the end."""
+    scene = load(CASES / case, Scene, overrides=settings)
+    model = SoilSimulation(scene)
+    rows = [model.series()]
+    while model.time < scene.time.end:
+        model.advance(200)
+        model.check()
+        rows.append(model.series())
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+
+def missed(case, columns):
+    """Names of the expectations of ``case`` that ``columns`` do not meet."""
+    names = []
+    for row in tomllib.loads((CASES / case / "expected.toml").read_text(encoding="utf-8"))["expected"]:
+        values = columns[row["column"]]
+        value = {"end": values[-1], "max": values.max()}[row["at"]]
+        if not abs(value - row["value"]) <= row["tolerance"]:
+            names.append(row["name"])
+    return names
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", ["geostatic_column", "dry_slope", "soil_column_collapse"])
+def test_soil_does_as_its_case_says(case):
+    assert missed(case, series(case)) == []
+
+
+def test_level_ground_without_stress_settles():  # the twin that must fail
+    assert "nothing moves" in missed("geostatic_column", series("geostatic_column", "soil.stress=none", "time.end=0.2"))
+
+
+@pytest.mark.slow
+def test_a_steep_slope_does_not_rest():  # the twin that must fail
+    columns = series("dry_slope", STEEP, "time.end=2.5", "numerics.spacing=0.1")
+    assert {"nothing creeps", "it rests"} <= set(missed("dry_slope", columns))
+
+
+@pytest.mark.slow
+def test_soil_of_little_friction_runs_too_far():  # the twin that must fail
+    columns = series("soil_column_collapse", "soil.friction_angle=8 degree", "numerics.spacing=0.01", "time.end=0.5")
+    assert "where the front stops" in missed("soil_column_collapse", columns)
