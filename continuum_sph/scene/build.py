@@ -14,6 +14,7 @@ from continuum_sph.exact import released_pressure
 from continuum_sph.fluids import Fluid
 from continuum_sph.law import Law
 from continuum_sph.layers import Layer
+from continuum_sph.scene.release import lattice_pressure
 from continuum_sph.scene.sections import Scene
 from continuum_sph.smoothing import SUPPORT, Smoothing
 from continuum_sph.step import Flow
@@ -80,9 +81,9 @@ def fluid_of(scene: Scene, law: Law) -> tuple[Floats, Floats, Floats]:
         x = square_lattice(corner, (column.left + column.width, column.bottom + column.height), spacing)
         top = column.bottom + column.height
         depth = top - x[:, 1]
-        if water.pressure == "hydrostatic":
+        if water.pressure == "hydrostatic" or (water.pressure == "released" and scene.inclusion):
             rho = tait.settled_density(depth, scene.gravity)
-        elif water.pressure == "released":
+        elif water.pressure == "released" and scene.inclusion is None:
             p = released_pressure(x[:, 0], x[:, 1], column.width, column.height, water.density, scene.gravity)
             rho = tait.density * (1.0 + p / tait.stiffness) ** (1.0 / tait.exponent)
         else:
@@ -100,15 +101,22 @@ def fluid_of(scene: Scene, law: Law) -> tuple[Floats, Floats, Floats]:
 def fill(scene: Scene, law: Law, x: Floats, rho: Floats, material: NDArray[np.int64]) -> None:
     """Turn water at ``x`` (n, 2) m in the discs of the second fluid into it; overwrites there ``rho`` and ``material``.
 
-    Its pressure is that of the water in its place, and of surface tension σ/R more.
+    Its pressure is that of the water in its place, or that of both the instant they are released (`release`), which
+    overwrites all of ``rho``; and of surface tension σ/R more.
     """
     assert scene.inclusion is not None
-    first, second = law.fluids[0].state, law.fluids[1].state
+    states, numerics = [fluid.state for fluid in law.fluids], scene.numerics
+    pressure, pull = states[0].pressure(rho), np.zeros(len(x))
     for disc in scene.inclusion.disc:
         inside = np.flatnonzero(np.hypot(x[:, 0] - disc.x, x[:, 1] - disc.y) < disc.radius)
-        pressure = first.pressure(rho[inside]) + scene.inclusion.surface_tension / disc.radius
-        rho[inside] = second.density_at(pressure)
+        pull[inside] = scene.inclusion.surface_tension / disc.radius
         material[inside] = 1
+    if scene.water.pressure == "released":
+        heavy = np.array([state.density for state in states])[material[: len(x)]]
+        pressure = lattice_pressure(x, heavy, numerics.spacing, scene.gravity, scene.inner, scene.tank.lid)
+    for number, state in enumerate(states):
+        own = material[: len(x)] == number
+        rho[own] = state.density_at(pressure[own] + pull[own])
 
 
 def flow_of(scene: Scene) -> Flow:

@@ -54,7 +54,7 @@ class Column(Section):
 class Water(Section):
     """A weakly compressible liquid.
 
-    pressure : at the start, "hydrostatic", that of a column whose right face is free ("released"), or "none"
+    pressure : at the start, "hydrostatic", that of fluids just let go ("released"), or "none"
     (density ρ0 everywhere, as in the paper);  push : "face" gives the particles of the right face √(2g(H-y)) to
     the right, as in figs 6 and 7 of the paper.
     """

@@ -101,7 +101,7 @@ def picture(rows: Sequence[Row]) -> bytes:
         for place, row in enumerate(row for row in rows if row.axis == axis):
             plot.barh(line, 0.96, left=place, height=0.9, color=COLOURS[row.end])
             ink = "black" if row.end == REFUSED else "white"
-            plot.text(place + 0.48, line, row.value, ha="center", va="center", color=ink, fontsize=8)
+            plot.text(place + 0.48, line, row.value, ha="center", va="center", color=ink, fontsize=7)
     plot.set_yticks(range(len(axes)), axes)
     plot.set_xticks([])
     plot.invert_yaxis()
