@@ -21,10 +21,12 @@ from continuum_sph.soil.plasticity import returned
 from continuum_sph.soil.state import XX, YY
 from continuum_sph.soil.stress import deform
 from porescale.ground.check import InputError, Unstable
+from porescale.ground.jit import set_threads
 from porescale.particles import square_lattice
 from porescale.runs.checkpoint import read_checkpoint, write_checkpoint
 from porescale.runs.model import Model
 from porescale.workbench.sections import validate
+from tests.reference.memory import growth
 
 ELASTIC = Material(1e7, 1600.0, yields=False)
 SAND = Material(1e6, 1600.0)
@@ -205,6 +207,41 @@ def test_restored_soil_goes_on_bit_for_bit(tmp_path, choice):
     resumed.advance(150)
     assert bits(straight) == bits(resumed)
     assert straight.flow.pairs.builds > 1
+
+
+def test_one_thread_and_many_give_the_same_bits():
+    found = []
+    for count in (1, 2):
+        set_threads(count)
+        model = SoilSimulation(scene())
+        model.advance(120)
+        found.append(bits(model))
+    set_threads(None)
+    assert found[0] == found[1]
+
+
+def crowd():
+    """1600 particles of soil: the smallest array, one number each, is 13 kB."""
+    x = square_lattice((0.0, 0.0), (0.4, 0.4), 0.01)
+    return in_tank(x, geostatic(0.4 - x[:, 1], SAND), (0.5, 0.5), 0.01, SAND)
+
+
+def test_no_array_is_made_in_a_step():
+    flow = crowd()
+    builds = flow.pairs.builds
+    # What Python itself needs for its calls stays below 4 kB.
+    assert growth(flow.advance, steps=10) < 4096
+    assert flow.pairs.builds == builds  # a rebuild may make room for more pairs
+
+
+def test_an_array_in_a_step_would_be_noticed():  # the twin that must fail
+    flow = crowd()
+
+    def step_and_copy():
+        flow.advance()
+        flow.soil.density.copy()
+
+    assert growth(step_and_copy, steps=10) > 8192
 
 
 def test_soil_beyond_sense_is_said_to_be_unstable():

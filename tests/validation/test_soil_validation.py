@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import tomllib
 from pathlib import Path
 
@@ -72,6 +73,7 @@ def test_a_slope_beyond_its_limit_fails():
     assert verify_soil.slope(33.0, 2.0) > 100.0 * tolerance("continuum.soil_slope_below_its_limit_stays")
 
 
+@pytest.mark.slow
 def test_stress_diffused_by_sound_lets_a_slope_creep():
     assert verify_soil.slope(22.0, 1.0, 0.1) > 5.0 * tolerance("continuum.soil_slope_below_its_limit_stays")
 
@@ -103,6 +105,28 @@ def missed(case, columns):
 @pytest.mark.parametrize("case", ["geostatic_column", "dry_slope", "soil_column_collapse"])
 def test_soil_does_as_its_case_says(case):
     assert missed(case, series(case)) == []
+
+
+def script(case):
+    """The script of a case, as a module of its own."""
+    spec = importlib.util.spec_from_file_location(f"case_{case}", CASES / case / f"{case}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", ["biaxial_element", "turned_stressed_block"])
+def test_scripts_of_soil_find_what_they_expect(case, tmp_path, monkeypatch):
+    monkeypatch.setattr("sys.argv", [case, "--out", str(tmp_path)])
+    assert script(case).main() == 0
+
+
+def test_turning_in_few_steps_with_the_printed_sign_is_found(tmp_path, monkeypatch):  # the twin that must fail
+    turned = script("turned_stressed_block")
+    monkeypatch.setattr(turned, "METHODS", {"as computed": {"printed_spin": True}, "sign of eq. 38": {}})
+    monkeypatch.setattr("sys.argv", ["turned_stressed_block", "--out", str(tmp_path), "--steps", "20"])
+    assert turned.main() == 1
 
 
 def test_level_ground_without_stress_settles():  # the twin that must fail
