@@ -11,11 +11,9 @@ from porescale.workbench import application
 from porescale.workbench.package import Package
 
 if TYPE_CHECKING:
-    from continuum_sph.scene.model import Simulation
     from continuum_sph.scene.sections import Scene
-    from continuum_sph.scene.soil_model import SoilSimulation
     from porescale.runs.drive import Outcome
-    from porescale.runs.model import Array
+    from porescale.runs.model import Array, Model
     from porescale.workbench.benchmarks import Benchmarks
     from porescale.workbench.extremes import Extremes
     from porescale.workbench.report import Report
@@ -34,16 +32,19 @@ def template() -> str:
     return Path(__file__).with_name("template.toml").read_text(encoding="utf-8")
 
 
-def build(scene: Scene) -> Simulation | SoilSimulation:
+def build(scene: Scene) -> Model:
     """The simulation of a scene; warnings about it go to stderr, refusals are InputErrors."""
     import sys
 
     from continuum_sph.scene.model import Simulation
+    from continuum_sph.scene.seepage_model import SeepageSimulation
     from continuum_sph.scene.soil_model import SoilSimulation
 
     for warning in report(scene).warnings:
         print(f"warning: {warning}", file=sys.stderr)
-    return SoilSimulation(scene) if dry(scene) else Simulation(scene)
+    if scene.soil is None:
+        return Simulation(scene)
+    return SoilSimulation(scene) if dry(scene) else SeepageSimulation(scene)
 
 
 def dry(scene: Scene) -> bool:
@@ -52,7 +53,7 @@ def dry(scene: Scene) -> bool:
 
 
 def drive(
-    model: Simulation | SoilSimulation,
+    model: Model,
     folder: Path,
     scene: Scene,
     *,
@@ -82,9 +83,12 @@ def drive(
 def report(scene: Scene) -> Report:
     """Every derived number of a scene; raises InputError with all refusals."""
     from continuum_sph.scene.report import report as scene_report
+    from continuum_sph.scene.seepage_report import seepage_report
     from continuum_sph.scene.soil_report import soil_report
 
-    return soil_report(scene) if dry(scene) else scene_report(scene)
+    if scene.soil is None:
+        return scene_report(scene)
+    return soil_report(scene) if dry(scene) else seepage_report(scene)
 
 
 def show(folder: Path) -> list[Path]:
@@ -116,9 +120,17 @@ def show(folder: Path) -> list[Path]:
         look = replace(look, colour="displacement")
         more = [paint_last(folder, name, replace(look, colour=name)) for name in SOIL]
         return [*pictures(folder, look), *more, film(folder, look)]
+    if scene["soil"]:
+        look = replace(look, colour="layer", kinds=LAYERS)
+        more = [paint_last(folder, name, replace(look, colour=name, kinds={})) for name in SEEPAGE]
+        return [*pictures(folder, look), *more, film(folder, look)]
     return [*pictures(folder, look), film(folder, look)]
 
 
+SEEPAGE = ("pressure", "velocity", "porosity")
+"""What is shown of soil and water at the end, besides where they are."""
+LAYERS = {0: ("water", "#5b8fd0"), 1: ("dry soil", "#d9bd82"), 2: ("wet soil", "#8a6d3b")}
+"""Names and colours of water and soil."""
 SOIL = ("mean_stress", "plastic_strain", "velocity")
 """What is shown of soil at the end, besides how far it has come."""
 TWO = {0: ("water", "#5b8fd0"), 1: ("second fluid", "#e8a33d")}
@@ -155,7 +167,7 @@ def extremes() -> Extremes:
 
 PACKAGE = Package(
     name="continuum-sph",
-    summary="Soil, water and air as layers of smoothed particles (so far: water in a tank, bubbles and drops in it).",
+    summary="Soil, water and air as layers of smoothed particles (water and soil in a tank, seepage, bubbles).",
     version=porescale.__version__,
     scene=scene_type,
     template=template,

@@ -26,12 +26,13 @@ class Simulation:
 
     variable_step = True
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, flow: Flow | None = None) -> None:
+        """flow : that of the scene's water where soil has it made."""
         self.scene = scene
-        self.flow: Flow = flow_of(scene)
-        self._refresh()
+        self.flow: Flow = flow or flow_of(scene)
+        self.refresh()
 
-    def _refresh(self) -> None:
+    def refresh(self) -> None:
         """Steps done, time reached (s) and length of the next step (s), for whoever drives."""
         self.step: int = self.flow.step
         self.time: float = self.flow.time
@@ -47,7 +48,7 @@ class Simulation:
                     str(error), "position", float("nan"), "m", self.step, self.time,
                     "lower numerics.courant, or raise numerics.artificial_viscosity or water.sound_speed",
                 ) from error  # fmt: skip
-            self._refresh()
+            self.refresh()
 
     def inside(self) -> NDArray[np.bool_]:
         """Which water particles are in the tank, (fluid,)."""
@@ -137,4 +138,4 @@ class Simulation:
     def restore(self, state: dict[str, Any]) -> None:
         """Go on bit for bit from a state of a model of the same scene."""
         self.flow.restore(state["flow"])
-        self._refresh()
+        self.refresh()

@@ -23,14 +23,15 @@ class SoilSimulation:
 
     variable_step = True
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, flow: SoilFlow | None = None) -> None:
+        """flow : that of the scene's soil where water has it made."""
         self.scene = scene
-        self.flow: SoilFlow = soil_flow(scene)
+        self.flow: SoilFlow = flow or soil_flow(scene)
         self.first = self.flow.soil.x[: self.flow.soil.soil].copy()  # (soil, 2) m, where displacements count from
         self.counted = scene.soil is not None and scene.soil.numerics.settle == 0.0
-        self._refresh()
+        self.refresh()
 
-    def _refresh(self) -> None:
+    def refresh(self) -> None:
         """Steps done, time reached (s) and length of the next step (s), for whoever drives."""
         self.step: int = self.flow.step
         self.time: float = self.flow.time
@@ -49,7 +50,7 @@ class SoilSimulation:
             if not self.counted and self.flow.time >= self.flow.law.settle:
                 self.first[:] = self.flow.soil.x[: len(self.first)]
                 self.counted = True
-            self._refresh()
+            self.refresh()
 
     def check(self) -> None:
         """Raise Unstable when soil is faster than its own sound or denser than its grains."""
@@ -134,4 +135,4 @@ class SoilSimulation:
         """Go on bit for bit from a state of a model of the same scene."""
         self.flow.restore(state["flow"])
         self.first[:], self.counted = state["first"], bool(state["counted"])
-        self._refresh()
+        self.refresh()

@@ -61,7 +61,8 @@ class Ground(Section):
 
     friction_angle : φ; the paper's tan φ = 0.5 is sin φ = 0.5, 30 degrees;  modulus : "printed" is eq. 43, of plane
     stress;  stress : at the start, "geostatic" below its surface with K0 = rest (left out: as it would settle), or
-    "none";  floor, sides : of the tank, "hold" the soil or let it "slip".
+    "none";  permeability_law : how k follows the porosity;  floor, sides : of the tank, "hold" the soil or let it
+    "slip".
     """
 
     density: float = quantity("kg/m^3", 1590.0, ge=1, le=1e5, help="of grains per whole volume: (1 - n) times theirs")
@@ -77,6 +78,8 @@ class Ground(Section):
     cohesion: float = quantity("Pa", 0.0, ge=0, le=1e9, help="cohesion")
     tension: float = quantity("Pa", 0.0, ge=0, le=1e9, help="largest tension")
     elastic: bool = pydantic.Field(False, description="never yields")
+    permeability: float = quantity("m/s", 1e-3, ge=1e-12, le=10, help="k at the porosity of the start")
+    permeability_law: Literal["constant", "kozeny-carman"] = "constant"
     stress: Literal["geostatic", "none"] = "geostatic"
     rest: float | None = quantity("", None, ge=0, le=5, help="K0 at the start")
     floor: Literal["hold", "slip"] = "hold"

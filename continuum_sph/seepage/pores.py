@@ -102,6 +102,17 @@ class PoreFlow(Flow):
         """Ω at water particles, (fluid,)."""
         return self.pores[:, ROOM]
 
+    def saturation(self) -> Floats:
+        """Share of the volume about each soil particle that water and its grains take up, (soil,): 1 where pores are
+        full, less near walls and the surface of the water."""
+        start, partner, weight = self.overlap.rows
+        n, count = self.layer.fluid, self.skeleton.count
+        volume = self.layer.mass[:n] / (self.porosity * self.layer.density * self.room)
+        first, last = int(start[n]), int(start[n + count])
+        row = np.repeat(np.arange(count), np.diff(start[n : n + count + 1]))
+        full = np.bincount(row, weight[first:last] * volume[partner[first:last]], count)
+        return np.minimum(1.0, full.astype(np.float64))
+
     def state(self) -> dict[str, Any]:
         """Everything that later steps depend on."""
         return super().state() | {

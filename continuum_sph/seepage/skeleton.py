@@ -62,6 +62,7 @@ class Frame:
     next_step = np.inf
 
     def __init__(self, x: Floats, volume: float, porosity: float, permeability: Floats | float) -> None:
+        self.step, self.time = 0, 0.0
         count = len(x)
         v, acceleration, force = (np.zeros((count, 2)) for _ in range(3))
         grains = np.full(count, (1.0 - porosity) * volume)

@@ -17,6 +17,8 @@ SHARE = 0.25
 class Ground(Protocol):
     """Soil that moves with its water: `soil.SoilFlow`, or a `Frame`."""
 
+    step: int
+    time: float
     next_step: float
 
     def start(self) -> None:
@@ -87,6 +89,8 @@ class Seepage:
         self.take_up()
         water.brake(0.5 * step)
         ground.end(step)
+        ground.step += 1
+        ground.time += step
         water.end(step)
         self.choose()
 

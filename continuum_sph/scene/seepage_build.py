@@ -1,0 +1,94 @@
+"""From a scene with soil and water to both layers, moving together."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from continuum_sph.boundary import tank_walls
+from continuum_sph.density import LINEAR
+from continuum_sph.law import Law
+from continuum_sph.layers import Layer
+from continuum_sph.scene.build import fluid_of, law_of, wall_layers
+from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.soil_build import ground_of, soil_flow
+from continuum_sph.seepage import PoreFlow, Resistance, Seepage, skeleton_of
+from continuum_sph.seepage.overlap import Overlap
+from continuum_sph.soil import SoilFlow
+from porescale.particles import PairList
+
+Floats = NDArray[np.float64]
+
+
+def pore_law(scene: Scene) -> Law:
+    """What the water of a scene with soil obeys.
+
+    Gradients are corrected, as those of the soil are: total stress is in balance where pressure and effective stress
+    cancel, and would not by 2.6 % of both.  Density diffusion takes departures from linear fields only: any other lets
+    water through that the soil keeps back; it is as much less as pores are smaller than the whole.
+    """
+    law = law_of(scene)
+    strength = 0.5 * law.diffusion * ground_of(scene).porosity
+    return replace(law, corrected=True, noise=LINEAR, diffusion=strength)
+
+
+def wet_height(scene: Scene, x: Floats) -> Floats:
+    """Height of water at the start above each of ``x`` (n, 2) m, that within soil included, (n,) m."""
+    found = np.zeros(len(x))
+    for column in scene.water.column:
+        over = (x[:, 0] > column.left) & (x[:, 0] < column.left + column.width)
+        top = column.bottom + column.height
+        found = np.where(over & (x[:, 1] < top), np.maximum(found, top - np.maximum(x[:, 1], column.bottom)), found)
+    return found
+
+
+def submerge(scene: Scene, ground: SoilFlow) -> None:
+    """Take the buoyancy of the grains off the stress of soil that is at rest under its dry weight."""
+    section, soil = ground_of(scene), ground.soil
+    if section.stress == "none":
+        return
+    n = soil.soil
+    x = soil.x[:n]
+    top = np.max([body.top(x[:, 0]) for body in section.body], axis=0)
+    above = np.column_stack((x[:, 0], np.minimum(top, scene.inner[1])))
+    grains = wet_height(scene, x) - wet_height(scene, above)  # of the soil above a particle, what is wet
+    lost = (1.0 - section.porosity) * scene.water.density * scene.gravity * np.maximum(grains, 0.0)
+    upright = np.maximum(soil.stress[:n, 1], 1e-300)
+    soil.stress[:n] *= (1.0 - np.minimum(1.0, lost / upright))[:, None]
+
+
+def seepage_of(scene: Scene) -> Seepage:
+    """Soil and water of a scene, ready for their first step."""
+    section, law, spacing = ground_of(scene), pore_law(scene), scene.numerics.spacing
+    ground = soil_flow(scene)
+    submerge(scene, ground)
+    skeleton = skeleton_of(ground, section.density / (1.0 - section.porosity), section.permeability)
+    x, v, rho = fluid_of(scene, law)
+    layers, (width, height), area = wall_layers(law, spacing), scene.inner, spacing * spacing
+    walls = tank_walls(width, height, spacing, layers, lid=scene.tank.lid)
+    mass = np.concatenate((rho * area, np.full(len(walls), law.state.density * area)))
+    layer = Layer(len(x), np.concatenate((x, walls)), np.concatenate((v, np.zeros_like(walls))), mass, rho)
+    margin, skin = layers * spacing, scene.numerics.skin * law.smoothing.length
+    box = (-margin, -margin), (width + margin, height + margin)
+    overlap = Overlap(len(x), skeleton.count, law.smoothing.length, skin, *box)
+    flow = PoreFlow(
+        layer, law, PairList(layer.count, skin, *box, full=True), skeleton=skeleton, overlap=overlap,
+        resistance=Resistance(section.porosity, section.permeability_law),
+    )  # fmt: skip
+    flow.lower[:] = 0.0
+    flow.upper[:] = width, height if scene.tank.lid else np.inf
+    both = Seepage(flow, ground, stiffest(scene), section.porosity * scene.water.density + section.density)
+    both.start()
+    layer.mass[: len(x)] = flow.porosity * rho * area
+    both.start()
+    return both
+
+
+def stiffest(scene: Scene) -> float:
+    """Modulus (Pa) of a column of the scene's soil under the largest mean stress that its dry weight makes."""
+    section = ground_of(scene)
+    material = section.material
+    pressure = 0.5 * material.density * scene.gravity * section.height * (1.0 + material.rest)
+    return material.column_modulus * material.stiffness_at(pressure) / material.stiffness

@@ -1,0 +1,114 @@
+"""Soil with water in it as `porescale.runs` drives it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from continuum_sph.scene.instruments import Cloud, tables
+from continuum_sph.scene.model import Simulation
+from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.seepage_build import seepage_of
+from continuum_sph.scene.soil_model import SoilSimulation
+from continuum_sph.seepage import Seepage
+from continuum_sph.soil import SoilFlow
+from porescale.ground.check import Unstable
+from porescale.runs.model import Cloud as Points
+from porescale.runs.model import Snapshot
+
+WATER, DRY, WET = range(3)
+"""Values of "layer" in a snapshot's particles: water, soil whose pores are less than half full, other soil."""
+
+
+class SeepageSimulation:
+    """Model of a scene with soil and water; see `porescale.runs.model.Model`."""
+
+    variable_step = True
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.both: Seepage = seepage_of(scene)
+        ground = self.both.ground
+        assert isinstance(ground, SoilFlow)
+        self.water = Simulation(scene, self.both.water)
+        self.soil = SoilSimulation(scene, ground)
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Steps done, time reached (s) and length of the next step (s), for whoever drives."""
+        self.step: int = self.both.water.step
+        self.time: float = self.both.time
+        self.step_seconds: float = self.both.next_step
+        self.water.refresh()
+        self.soil.refresh()
+
+    def advance(self, steps: int) -> None:
+        """Do ``steps`` steps; Unstable when a position is no number any more."""
+        for _ in range(steps):
+            try:
+                self.both.advance()
+            except ValueError as error:
+                raise Unstable(
+                    str(error), "position", float("nan"), "m", self.step, self.time,
+                    "lower numerics.courant, or raise numerics.artificial_viscosity or water.sound_speed",
+                ) from error  # fmt: skip
+            self.refresh()
+
+    def check(self) -> None:
+        """Raise Unstable when water or soil has left what makes sense."""
+        self.water.check()
+        self.soil.check()
+
+    def series(self) -> dict[str, float]:
+        """One row: that of the water, and of the soil what it does not share with it."""
+        water, soil, flow = self.water.series(), self.soil.series(), self.both.water
+        shared = {"time (s)", "step (s)"}
+        row = {name: value for name, value in water.items() if not name.startswith("steps limited")}
+        row |= {f"soil: {name}": value for name, value in soil.items() if name not in shared}
+        slip, inside = np.hypot(flow.slip[:, 0], flow.slip[:, 1]), flow.porosity < 1.0
+        row["fastest seepage (m/s)"] = float((flow.porosity * slip)[inside].max(initial=0.0))
+        row["heat of drag (J/m)"] = float(flow.heat.sum())
+        row["water in pores (kg/m)"] = float(flow.layer.mass[: flow.layer.fluid][inside].sum())
+        return row
+
+    def tables(self) -> dict[str, dict[str, float]]:
+        """A row of probes.csv and of levels.csv, where the scene asks for them."""
+        scene, flow = self.scene, self.both.water
+        if not (scene.probe or scene.level):
+            return {}
+        layer, n = flow.layer, flow.layer.fluid
+        volume = layer.mass[:n] / (flow.porosity * layer.density)
+        length, spacing = flow.law.smoothing.length, scene.numerics.spacing
+        cloud = Cloud(layer.x[:n], volume, layer.pressure[:n], layer.v[:n], length, spacing, scene.inner[0])
+        return tables(self.time, scene.probe, scene.level, cloud)
+
+    def snapshot(self) -> Snapshot:
+        """Water and soil as a cloud each, and both as one to look at, soil over water: layer, velocity, pressure (of
+        soil mean effective stress), porosity."""
+        water = self.water.snapshot().clouds["particles"]
+        soil = self.soil.snapshot().clouds["particles"]
+        water.data["porosity"] = self.both.water.porosity.copy()
+        soil.data["saturation"] = self.both.water.saturation()
+        kind = np.where(soil.data["saturation"] < 0.5, DRY, WET)
+        parts = (
+            ("layer", np.full(len(water.position), WATER), kind),
+            ("velocity", water.data["velocity"], soil.data["velocity"]),
+            ("pressure", water.data["pressure"], soil.data["mean_stress"]),
+            ("porosity", water.data["porosity"], soil.data["porosity"]),
+        )
+        data = {name: np.concatenate((first, second)) for name, first, second in parts}
+        units = {"velocity": "m/s", "pressure": "Pa"}
+        whole = Points(np.concatenate((water.position, soil.position)), data, units)
+        return Snapshot(self.time, self.step, clouds={"particles": whole, "water": water, "soil": soil})
+
+    def state(self) -> dict[str, Any]:
+        """Everything that later steps depend on."""
+        return {"water": self.water.state(), "soil": self.soil.state(), "next_step": self.both.next_step}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go on bit for bit from a state of a model of the same scene."""
+        self.soil.restore(state["soil"])
+        self.water.restore(state["water"])
+        self.both.next_step = float(state["next_step"])
+        self.refresh()

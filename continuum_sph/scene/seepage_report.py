@@ -1,0 +1,54 @@
+"""What `check` says about a scene of soil and water before it runs."""
+
+from __future__ import annotations
+
+from continuum_sph.scene.build import water_of
+from continuum_sph.scene.report import report as water_report
+from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.seepage_build import pore_law, stiffest
+from continuum_sph.scene.soil_build import ground_of, soil_law, soil_particles
+from continuum_sph.seepage.step import SHARE
+from porescale.ground.check import Fault, InputError
+from porescale.workbench.report import Report
+
+RATE = 4e5  # particle-steps of both layers per second and thread, on a busy two-core machine, rounded down
+STIFF = 10.0  # K_w/(n M): water below this is what consolidation waits for
+
+
+def seepage_report(scene: Scene) -> Report:
+    """The water's report, and how the two layers stand to each other; InputError for what they cannot have together."""
+    if scene.inclusion is not None:
+        raise InputError(Fault("inclusion", "given", "cannot be with soil", repair="take out [inclusion] or [soil]"))
+    if scene.tank.wall_particles == "images":
+        raise InputError(Fault("tank.wall_particles", "images", "cannot be with soil", repair='use "pressure"'))
+    section, out = ground_of(scene), water_report(scene)
+    law, state, modulus = pore_law(scene), water_of(scene), stiffest(scene)
+    soil, _ = soil_particles(scene)
+    out.heading("soil")
+    out.row("soil particles", len(soil))
+    out.row("modulus of a column at the floor", modulus, "Pa")
+    out.row("longest step for its sound", min(soil_law(scene).limits(0.0, (modulus / section.density) ** 0.5
+            / law.smoothing.length, float("inf"))), "s")  # fmt: skip
+    out.heading("soil and water")
+    porosity, density, gravity = section.porosity, scene.water.density, scene.gravity
+    stiff = state.density * state.sound_speed**2
+    ratio = stiff / (porosity * modulus)
+    whole = porosity * density + section.density
+    out.row("stiffness of the water K_w/(n M)", ratio, "", f"at least {STIFF:g}: what soil squeezes out is not stored")
+    out.row("critical gradient", (section.density / density - (1.0 - porosity)), "", "(G_s - 1)(1 - n)")
+    if gravity > 0.0:
+        drag = section.permeability / (porosity * gravity)
+        out.row("time in which drag stops water in pores", drag, "s", "integrated exactly: no bound on the step")
+        spread = section.permeability * modulus / (density * gravity)
+        out.row("consolidation coefficient", spread, "m2/s")
+        out.row("time to consolidate", section.height**2 / spread, "s", "of the soil's height, drained at one face")
+    step = SHARE * law.smoothing.length / ((modulus + stiff / porosity) / whole) ** 0.5
+    out.row("longest step for sound in both together", step, "s")
+    out.row("expected time", scene.time.end / step * (len(soil) + len(soil)) / RATE, "s", "of both layers, about")
+    if ratio < STIFF:
+        speed = (STIFF * porosity * modulus / density) ** 0.5
+        out.warn(
+            f"water is {ratio:.2g} times as stiff as n M: pore pressures are late by {100.0 / (1.0 + ratio):.2g} %; "
+            f"raise water.sound_speed to {speed:.4g} m/s or lower soil.stiffness"
+        )
+    return out

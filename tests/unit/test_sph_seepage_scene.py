@@ -1,0 +1,89 @@
+"""Scenes of soil and water: refused, built, at rest, resumed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from continuum_sph.app import PACKAGE
+from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.seepage_model import DRY, WET, SeepageSimulation
+from continuum_sph.scene.seepage_report import seepage_report
+from continuum_sph.soil.state import YY
+from porescale.ground.check import InputError
+from porescale.ground.constants import GRAVITY
+from porescale.workbench.sections import validate
+
+OUTLINE = [[0, 0], [0.3, 0], [0.3, 0.2], [0, 0.2]]
+
+
+def scene(**changes):
+    given = {
+        "tank": {"width": 0.3, "height": 0.5},
+        "water": {"column": [{"width": 0.3, "height": 0.4}], "sound_speed": 80.0},
+        "soil": {"stiffness": 1e6, "permeability": 1e-3, "body": [{"outline": OUTLINE}]},
+        "numerics": {"spacing": 0.02, "artificial_viscosity": 0.1},
+        "probe": [{"x": 0.15, "y": 0.1}],
+        "level": [{"x": 0.15}],
+        "time": {"end": 1.0},
+        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
+    }
+    return validate(Scene, given | changes)
+
+
+def test_soft_water_is_warned_of_and_second_fluids_are_refused():
+    soft = scene(water={"column": [{"width": 0.3, "height": 0.4}]})
+    assert any("n M" in warning for warning in seepage_report(soft).warnings)
+    assert not seepage_report(scene()).warnings
+    bubble = {"disc": [{"x": 0.15, "y": 0.3, "radius": 0.08}]}
+    with pytest.raises(InputError, match="inclusion"):
+        seepage_report(scene(inclusion=bubble))
+
+
+@pytest.mark.slow
+def test_soil_under_water_bears_its_weight_less_buoyancy_and_stays_at_rest():
+    model = SeepageSimulation(scene())
+    soil, n = model.soil.flow.soil, model.soil.flow.soil.soil
+    depth = 0.2 - soil.x[:n, 1]
+    buoyant = 0.6 * 1650.0 * GRAVITY
+    np.testing.assert_allclose(soil.stress[:n, YY], buoyant * depth, rtol=1e-12)
+    model.advance(600)
+    model.check()
+    row = model.series()
+    # Gradients are exact but at the surface of the soil, where the weight of half a row, 1/20, is borne as it may be:
+    # the layer settles by that share of its elastic settlement, buoyant H²/2M
+    assert row["soil: largest displacement (m)"] < 0.05 * buoyant * 0.2**2 / (2.0 * 1.35e6) * 10.0
+    assert row["soil: stress upright over weight ()"] == pytest.approx(1650.0 / 2650.0, rel=0.05)
+    tables = model.tables()
+    assert tables["levels"]["level 0 (m)"] == pytest.approx(0.4, abs=0.01)
+    assert tables["probes"]["probe 0 pressure (Pa)"] == pytest.approx(0.3 * 1000.0 * GRAVITY, rel=0.03)
+    cloud = model.snapshot().clouds["particles"]
+    assert np.isin(cloud.data["layer"], (0, DRY, WET)).all()
+    assert (cloud.data["layer"] == WET).sum() == n
+
+
+@pytest.mark.slow
+def test_a_resumed_run_goes_on_bit_for_bit():
+    whole, part, resumed = (SeepageSimulation(scene()) for _ in range(3))
+    whole.advance(30)
+    part.advance(13)
+    resumed.restore(part.state())
+    resumed.advance(17)
+    assert np.array_equal(whole.both.water.layer.x, resumed.both.water.layer.x)
+    assert np.array_equal(whole.soil.flow.soil.stress, resumed.soil.flow.soil.stress)
+    assert whole.series() == resumed.series()
+
+
+@pytest.mark.slow
+def test_soil_that_forgets_its_buoyancy_swells(monkeypatch):  # the twin that must fail
+    import continuum_sph.scene.seepage_build as made
+
+    monkeypatch.setattr(made, "submerge", lambda *_: None)
+    model = SeepageSimulation(scene())
+    model.advance(300)
+    assert model.series()["soil: stress upright over weight ()"] > 0.8
+
+
+@pytest.mark.slow
+def test_the_command_builds_what_the_scene_holds():
+    assert isinstance(PACKAGE.build(scene()), SeepageSimulation)
