@@ -19,7 +19,7 @@ from porescale.lbm.scales import NAMES, Scales, implied
 from porescale.scene.contact import Contact, density_of, laws
 from porescale.scene.fluid import Fluid
 from porescale.scene.frame_build import Placed, lightest_frame, placed_frames, sizes_of
-from porescale.scene.frame_places import judge_frames, thin_for
+from porescale.scene.frame_places import judge_frames, strays, thin_for
 from porescale.scene.geometry import judge_places, placed
 from porescale.scene.grain_bodies import by_hand, judge_bodies, lightest
 from porescale.scene.lattice import is_whole
@@ -88,6 +88,7 @@ def derive(scene: Scene) -> Derived:
     speed = expected_speed(scene, scales, sizes, frames)
     if frames and isinstance(law, Linear):
         warnings += filter(None, [thin_for(frames, speed, mean_mass, law.stiffness)])
+    warnings += strays(scene, frames)
     variation = 0.0
     if scales:
         warnings += filter(None, [too_few_cells(frames, scales.spacing)])

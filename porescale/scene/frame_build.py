@@ -222,13 +222,20 @@ def lightest_frame(placed: Sequence[Placed], every: list[Law], radius: float | N
 
     radius (m): of the smallest disc that can lie at a segment, None without discs.
     """
-    moving = [replace(it.frame, long=False) for it in placed if it.free]
+    sizes: dict[tuple[str, float], Frame] = {}
+    for it in (it for it in placed if it.free):
+        # Copies of a section that weigh the same are alike; polygons of a rock are each their own.
+        own = len(sizes) if it.kind == "rock" else float(f"{it.frame.mass_properties().mass:.9g}")
+        sizes[it.key, own] = it.frame
+    moving = list(sizes.values())
     if not moving:
         return None
-    far = np.array([np.ptp(np.array(frame.corners), axis=0).max() for frame in moving]).max()
-    small = None if radius is None else make_discs([(-1e3 - far, -1e3)], radius, 1.0)
-    box = Box((-2e3, -2e3), (2e3, 2e3), *["open"] * 4)
-    grains = framed(small, moving, every[0], box, skin=1e-3 * far)
+    corners = np.concatenate([np.array(frame.corners) for frame in moving])
+    far = 1.0 + float(np.ptp(corners, axis=0).max())
+    (left, low), (right, top) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
+    small = None if radius is None else make_discs([(left - far, low)], radius, 1.0)
+    box = Box((left - 2.0 * far, low - far), (right + far, top + far), *["open"] * 4)
+    grains = framed(small, moving, every[0], box)
     return grains.steering.lightest(every)
 
 

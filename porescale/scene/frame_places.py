@@ -11,9 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.dem.control import Control, Moved, schedule_of
+from porescale.dem.control import Placed as PlacedControl
 from porescale.dem.discs import Discs
+from porescale.dem.schedule import schedule_rows, value_at
 from porescale.ground.check import Fault, InputError
 from porescale.scene.frame_build import Placed
+from porescale.scene.grain_walls import across_walls
 from porescale.scene.polygons_in_fluid import judge_in_fluid
 
 if TYPE_CHECKING:
@@ -25,6 +29,8 @@ MOST = 0.25
 """Overlap over the sum of radius and thickness up to which bodies may start: a system beyond 0.3 is beyond sense."""
 EDGE = 1e-9
 """Relative slack of places at the edge of the box."""
+LOOKS = 201
+"""Moments at which the way of a container is looked at."""
 WAVES = 0.5
 """Share of the way to the middle of two segments that the speed to expect may press them: beyond, there is a word."""
 
@@ -58,6 +64,12 @@ def judge_sections(scene: Scene) -> list[Fault]:
 def judge_frames(scene: Scene, placed: Sequence[Placed], discs: Discs, names: Sequence[str]) -> list[Fault]:
     """Faults of the places of frames among each other and the discs placed by hand, which have ``names``."""
     faults = [*_out_of_the_box(scene, placed), *_too_thin(scene, placed)]
+    moving = [it for it in placed if it.kind != "container"]
+    if scene.wall and moving and not faults:
+        corners = np.concatenate([np.array(it.frame.corners) for it in moving])
+        reach = np.concatenate([np.full(len(it.frame.corners), it.frame.thickness) for it in moving])
+        keys = [it.key for it in moving for _ in it.frame.corners]
+        faults += across_walls(scene, corners, reach, keys, 0.0)
     found = None if faults else first_overlap(scene, placed, discs, names)
     return faults + ([found] if found else [])
 
@@ -108,6 +120,8 @@ def first_overlap(scene: Scene, placed: Sequence[Placed], discs: Discs, names: S
     """A fault for the first frame, in their order, that lies too deep in a disc (``names``) or an earlier frame."""
     share = scene.grains.overlap if scene.grains else 0.0
     shapes = [_Shape(it) for it in placed]
+    low, high = np.array([it.low for it in shapes]), np.array([it.high for it in shapes])
+    thickness = np.array([it.thickness for it in shapes])
     for k, shape in enumerate(shapes):
         if discs.count:
             depth = shape.depth_of(discs.position, discs.radius)
@@ -116,10 +130,10 @@ def first_overlap(scene: Scene, placed: Sequence[Placed], discs: Discs, names: S
             worst = int((depth - allowed).argmax())
             if depth[worst] > allowed[worst]:
                 return _lies_in(shape, _plain(names[worst]), float(depth[worst]))
-        for other in shapes[:k]:
+        both = (shape.thickness + thickness[:k])[:, None]
+        apart = (shape.low - both > high[:k]) | (low[:k] - both > shape.high)
+        for other in (shapes[j] for j in np.flatnonzero(~apart.any(axis=1))):
             reach_of_both = shape.thickness + other.thickness
-            if np.any(shape.low - reach_of_both > other.high) or np.any(other.low - reach_of_both > shape.high):
-                continue
             allowed_depth = min(share * min(shape.size, other.size), MOST * reach_of_both)
             deep = shape.depth_in(other)
             if deep > allowed_depth:
@@ -213,3 +227,41 @@ def thin_for(placed: Sequence[Placed], speed: float, mass: float, stiffness: flo
         f" m/s to expect, and go through beyond {2.0 * min(pairs):.2g} m: a stiffness of"
         f" {stiffness * (deep / (WAVES * min(pairs))) ** 2:.2g} N/m, or thicker ones, withstand it"
     )
+
+
+def strays(scene: Scene, placed: Sequence[Placed]) -> list[str]:
+    """Words on containers that leave a box with solid sides as they move, and are pushed by these then."""
+    size, periodic = np.array([scene.domain.width, scene.domain.height]), np.array(scene.domain.periodic)
+    said = []
+    for it in placed:
+        told = [control for control in it.told if control is not None]
+        if it.kind != "container" or len(told) != len(it.told):
+            continue
+        times = np.linspace(0.0, scene.time.end, LOOKS)
+        x, y, turn = (_path(control, times) for control in told)
+        about = np.array(it.frame.mass_properties().centroid)
+        arms = np.array(it.frame.corners) - about
+        for time, gone, angle in zip(times, np.column_stack((x, y)), turn, strict=True):
+            c, s = np.cos(angle), np.sin(angle)
+            at = arms @ np.array([[c, s], [-s, c]]) + about + gone
+            out = ((at < -EDGE * size) | (at > (1.0 + EDGE) * size)) & ~periodic
+            if out.any():
+                corner = at[out.any(axis=1).argmax()]
+                said.append(
+                    f"{it.name or it.key} leaves the box at t = {time:.3g} s, at ({corner[0]:.3g}, {corner[1]:.3g}) m:"
+                    " the sides push it there, and that is in its record and in the energy book; make the box larger"
+                )
+                break
+    return said
+
+
+def _path(control: Control, times: Array) -> Array:
+    """Displacement (m, rad) of a component at ``times`` (s) since the first, as told by velocity or displacement."""
+    rows, points = schedule_rows([schedule_of(control)])
+    values = np.array([value_at(rows, points, 0, time) for time in times])
+    if isinstance(control, PlacedControl):
+        return np.asarray(values - values[0])
+    if not isinstance(control, Moved):
+        return np.zeros(len(times))
+    steps = 0.5 * (values[1:] + values[:-1]) * np.diff(times)
+    return np.concatenate(([0.0], np.cumsum(steps)))

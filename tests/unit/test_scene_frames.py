@@ -204,6 +204,24 @@ def test_thin_bodies_at_speed_are_warned_of():
     assert not warned(5e-4)
 
 
+def test_a_container_that_leaves_the_box_as_it_turns_is_warned_of():
+    def warned(angle: float) -> list[str]:
+        turn = {"rotation": {"displacement": [[0, 0], [0.01, angle]]}, "pivot": [2e-3, 1e-3]}
+        scene = framed(container=[{**FLOOR, **turn}], grains={"grain": [grain(6e-3, 6e-3)]})
+        return [it for it in derive(scene).warnings if "leaves the box" in it]
+
+    # 7 mm from the pivot to its far end, 1 mm above the floor of the box, which it meets at asin(1/7) = 0.143 rad.
+    assert warned(-0.14) == []
+    (said,) = warned(-0.16)
+    assert said.startswith("floor leaves the box at t = 0.009")
+
+
+def test_a_polygon_behind_a_wall_is_refused():
+    slope = {"x": 0.006, "y": 0.0, "normal": [-1.0, 1.0]}
+    found = refused(wall=[slope], polygon=[{**SQUARE, "at": [[9e-3, 2e-3]]}])
+    assert found == ["polygon[0] = '(0.009, 0.002)': stands across or behind wall[0]; move one of them"]
+
+
 def test_lines_and_polygons_come_back_from_the_file(tmp_path):
     from porescale.runs.vtkhdf import frames_of, join, read_frame, write_frame
 
