@@ -17,6 +17,7 @@ from porescale.piv import experiments as lab
 from porescale.piv import flows
 from porescale.piv.measure import Settings, measure
 from porescale.piv.synth import Camera, Pair, pair
+from porescale.runs.atomic import write_text
 from porescale.scene.case import conclude, options, stage
 
 Array = NDArray[np.float64]
@@ -60,12 +61,13 @@ def compare(name: str, window: int, seeds: range) -> dict[str, float]:
     """Means over the seeds of a row: "ours" and, where OpenPIV is there, "openpiv", by part and with seconds."""
     flow, camera = lab.TABLE[name]
     settings = Settings(window=window)
-    ours, others = [], []
+    ours, others, stated = [], [], []
     for seed in seeds:
         made = pair(flow, camera, seed)
         start = time.process_time()
         found = measure(made.first, made.second, made.solid if made.solid.any() else None, settings)
         spent = time.process_time() - start
+        stated.append(float(np.sqrt(np.mean(found.uncertainty[found.valid] ** 2))))
         off, distance = lab.errors(made, found)
         counted = np.where(found.valid, off, lab.INVALID)
         fluid = ~found.solid
@@ -76,6 +78,7 @@ def compare(name: str, window: int, seeds: range) -> dict[str, float]:
             others.append(theirs(made, window))
     keys = ("rms", "far", "near", "seconds")
     mean = {f"ours {key}": value for key, value in zip(keys, np.mean(ours, 0), strict=True)}
+    mean["stated"] = float(np.sqrt(np.mean(np.square(stated))))
     if others:
         mean |= {f"openpiv {key}": value for key, value in zip(keys, np.mean(others, 0), strict=True)}
     return mean
@@ -91,10 +94,15 @@ def their_bias(diameter: float, size: int = 256) -> Array:
 
 def main() -> int:
     """Measure every row, print the table, judge it, draw it."""
-    given = options(__doc__ or "", HERE, seeds=(int, 10, "pairs of every row"))
+    words = "write the table into README.md"
+    given = options(__doc__ or "", HERE, seeds=(int, 10, "pairs of every row"), readme=(bool, False, words))
     set_threads(1)
+    warm = pair(*lab.TABLE["discs"], 0)
+    for solid in (None, warm.solid):
+        measure(warm.first, warm.second, solid)  # kernels are compiled before anything is timed
     numbers: dict[str, float] = {}
     bars: list[tuple[str, float, float | None]] = []
+    lines: list[str] = []
     for window, names in ((16, tuple(lab.TABLE)), (32, COARSE)):
         for name in names:
             row = compare(name, window, range(given.seeds))
@@ -102,14 +110,33 @@ def main() -> int:
                 label = name.replace("_", " ") + {"far": ", far", "near": ", near", "rms": ""}[part] + f", {window} px"
                 numbers[label] = row[f"ours {part}"]
                 bars.append((label, row[f"ours {part}"], row.get(f"openpiv {part}")))
-                beside = f"{row[f'openpiv {part}']:.4f} px, {row['openpiv seconds']:.2f} s" if len(row) > 4 else "–"
-                print(
-                    f"{label}: {row[f'ours {part}']:.4f} px, {row['ours seconds']:.2f} s; OpenPIV {beside}", flush=True
-                )
+                theirs_ = row.get(f"openpiv {part}", float("nan")), row.get("openpiv seconds", float("nan"))
+                cells = (row[f"ours {part}"], theirs_[0], row["stated"], row["ours seconds"], theirs_[1])
+                lines.append(f"| {label} | " + " | ".join(f"{it:.4f}" for it in cells) + " |")
+                print(lines[-1], flush=True)
     curves = {diameter: lab.bias(diameter, SHIFTS) for diameter in (2.8, 2.0)}
     for diameter, curve in curves.items():
         numbers[f"bias, tracers {diameter:g} px"] = float(np.abs(curve).max())
+        lines.append(
+            f"| largest bias, tracers of {diameter:g} px | {np.abs(curve).max():.4f} | {_beside(diameter)} | | | |"
+        )
+        print(lines[-1], flush=True)
+    if given.readme:
+        into_readme(lines)
     return conclude(HERE, numbers, drawn(bars, curves), given.out)
+
+
+def _beside(diameter: float) -> str:
+    return f"{np.abs(their_bias(diameter)).max():.4f}" if find_spec("openpiv") else "nan"
+
+
+def into_readme(lines: list[str]) -> None:
+    """Put the table's rows between its heading and the next empty line."""
+    path = HERE / "README.md"
+    text = path.read_text(encoding="utf-8")
+    start = text.index("|---|") + len("|---|---|---|---|---|---|\n")
+    stop = text.index("\n\n", start)
+    write_text(path, text[:start] + "\n".join(lines) + text[stop:])
 
 
 def drawn(bars: list[tuple[str, float, float | None]], curves: dict[float, Array]) -> Figure:

@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from porescale.piv.field import Field
 
 
+FILMS = (".mp4", ".avi", ".mov", ".mkv", ".webm")
+"""Endings of films."""
+
+
 def command() -> App:
     """The `piv` command with its own commands."""
     app = App(
@@ -141,18 +145,26 @@ def compare(
     ] = None,
     at: Annotated[str | None, Parameter(name="--time", help='of a run: the snapshot nearest to it; "0.5 s"')] = None,
     within: Annotated[float | None, Parameter(help="largest distance of vortices that match, px or m")] = None,
+    factor: Annotated[float, Parameter(help="most between circulations of vortices that match")] = 2.0,
     json: Json = False,
 ) -> int:
-    """Compare two fields: differences over the reference's rms speed, directions, vortices by place and sign."""
+    """Compare two fields: differences over the reference's rms speed, directions, vortices by place, sign and
+    circulation, surfaces of piles.
+    """
     from porescale.piv import compare as comparing
+    from porescale.piv.of_run import surface_of_run
     from porescale.piv.pictures import comparison
     from porescale.runs.atomic import write_text
 
     if out is not None:
         refuse_unwritable(out, "--out")
     moment = None if at is None else quantity("--time", at, "s")
+    if factor <= 1 or (within is not None and within <= 0):
+        bad = ("--factor", factor, "> 1") if factor <= 1 else ("--within", within, "> 0")
+        raise InputError(Fault(bad[0], bad[1], "is out of range", allowed=bad[2]))
     first, second = _field(reference, moment), _field(other, moment)
-    found = comparing.compare(first, second, within)
+    one, two = (surface_of_run(path, first.x, moment) if path.is_dir() else None for path in (reference, other))
+    found = comparing.compare(first, second, within, factor, (one, two))
     text = json_text.dumps(_finite(found.as_dict()), indent=1, allow_nan=False)
     if out is not None:
         write_text(out / "compare.json", text + "\n")
@@ -165,6 +177,11 @@ def compare(
     print(f"difference over it: rms {found.rms:.4g}, largest {found.largest:.4g}")
     print(f"bias over it: u {found.bias_u:.3g}, v {found.bias_v:.3g}")
     print(f"mean cosine between directions {found.direction:.5g}, correlation {found.correlation:.5g}")
+    print(f"{100 * found.aligned:.1f} % of the directions within {comparing.ALIGNED:g} degrees")
+    if found.surface is not None:
+        rms, largest, mean, highest = found.surface
+        unit = unit.split("/")[0].split(" ")[0]
+        print(f"surface of the pile, {highest:.4g} {unit} high: rms {rms:.4g}, largest {largest:.4g}, mean {mean:.4g}")
     for row in found.as_dict()["vortices"]:
         told = [_vortex(row[key], area) for key in ("reference", "other")]
         print(f"vortex: {told[0]} | {told[1]}")
@@ -183,6 +200,9 @@ def _field(path: Path, moment: float | None) -> Field:
     from porescale.piv.field import read
     from porescale.piv.of_run import field_of_run
 
+    if path.suffix.lower() in FILMS or (path.is_dir() and any(path.glob("*.png")) and not any(path.glob("*.vtkhdf"))):
+        repair = f"porescale piv measure {path} --out FOLDER, then compare FOLDER"
+        raise InputError(Fault("field", str(path), "is a film that has not been measured", repair=repair))
     return field_of_run(path, moment) if path.is_dir() else read(path)
 
 

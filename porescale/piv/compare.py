@@ -11,10 +11,13 @@ from scipy.interpolate import RegularGridInterpolator
 
 from porescale.ground.check import Fault, InputError
 from porescale.piv.field import Field
-from porescale.piv.vortices import Vortex, matched, vortices
+from porescale.piv.surface import Difference, Surface, difference, of_field
+from porescale.piv.vortices import ALIKE, Vortex, matched, vortices
 
 Array = NDArray[np.float64]
 
+ALIGNED = 30.0
+"""Degrees between two directions that count as one."""
 SLOW = 0.05
 """Share of the rms speed below which a vector has no direction to compare."""
 
@@ -25,8 +28,9 @@ class Comparison:
 
     points : compared;  speed : rms of the reference, its unit;  rms, largest : of the difference, over that speed;
     bias_u, bias_v : mean difference over it;  direction : mean cosine of the angle between the two, where neither is
-    slow; correlation : of both components together;  reference_vortices, other_vortices, pairs : by falling strength,
-    and matched;  difference_u, difference_v (ny, nx) : nan outside the common region.
+    slow;  aligned : share of those that are within ALIGNED degrees;  correlation : of both components together;
+    surface : of the piles, None where one has none;  surfaces : both;  reference_vortices, other_vortices, pairs : by
+    falling strength, and matched;  difference_u, difference_v (ny, nx) : nan outside the common region.
     """
 
     points: int
@@ -42,24 +46,42 @@ class Comparison:
     pairs: list[tuple[Vortex, Vortex]]
     difference_u: Array
     difference_v: Array
+    aligned: float
+    surface: Difference | None
+    surfaces: tuple[Surface, Surface] | None
 
     def as_dict(self) -> dict[str, Any]:
         """JSON-able: the numbers, and each vortex with its partner."""
-        names = ("points", "speed", "rms", "largest", "bias_u", "bias_v", "direction", "correlation")
+        names = ("points", "speed", "rms", "largest", "bias_u", "bias_v", "direction", "aligned", "correlation")
         partners = {id(a): b for a, b in self.pairs}
         taken = {id(b) for _, b in self.pairs}
-        rows = [
-            {"reference": a.as_dict(), "other": partners[id(a)].as_dict() if id(a) in partners else None}
-            for a in self.reference_vortices
-        ]
+        rows = [_row(a, partners.get(id(a))) for a in self.reference_vortices]
         rows += [{"reference": None, "other": b.as_dict()} for b in self.other_vortices if id(b) not in taken]
-        return {**{name: getattr(self, name) for name in names}, "vortices": rows}
+        surface = None if self.surface is None else self.surface._asdict()
+        return {**{name: getattr(self, name) for name in names}, "vortices": rows, "surface": surface}
 
 
-def compare(reference: Field, other: Field, within: float | None = None) -> Comparison:
-    """Compare ``other`` with ``reference``; vortices within the distance ``within`` (None: the larger radius) match.
+def _row(reference: Vortex, other: Vortex | None) -> dict[str, Any]:
+    """A vortex beside its partner, how far they are apart, and how much stronger the partner is."""
+    if other is None:
+        return {"reference": reference.as_dict(), "other": None}
+    apart = float(np.hypot(reference.x - other.x, reference.y - other.y))
+    ratio = other.circulation / reference.circulation
+    return {"reference": reference.as_dict(), "other": other.as_dict(), "apart": apart, "ratio": ratio}
 
-    InputError where the fields share no fluid, or one is in pixels and the other in metres.
+
+def compare(
+    reference: Field,
+    other: Field,
+    within: float | None = None,
+    factor: float = ALIKE,
+    surfaces: tuple[Surface | None, Surface | None] = (None, None),
+) -> Comparison:
+    """Compare ``other`` with ``reference``.
+
+    within, factor : distance (None: the larger radius) and factor in circulation up to which vortices of one sign
+    match;  surfaces : of the piles; what a field has solid stands for one that is None.  InputError where the fields
+    share no fluid, or one is in pixels and the other in metres.
     """
     if reference.upwards != other.upwards:
         repair = "give both a scale, or none"
@@ -76,6 +98,9 @@ def compare(reference: Field, other: Field, within: float | None = None) -> Comp
     first = np.concatenate([reference.u[common], reference.v[common]])
     second = np.concatenate([u[common], v[common]])
     own, theirs = vortices(reference), vortices(other)
+    direction, aligned = _direction(reference, u, v, common, speed)
+    tops = [known or of_field(field) for known, field in zip(surfaces, (reference, other), strict=True)]
+    piles = None if tops[0] is None or tops[1] is None else (tops[0], tops[1])
     return Comparison(
         points=int(common.sum()),
         speed=speed,
@@ -83,13 +108,16 @@ def compare(reference: Field, other: Field, within: float | None = None) -> Comp
         largest=float(size.max()) / speed,
         bias_u=float(np.mean(du[common])) / speed,
         bias_v=float(np.mean(dv[common])) / speed,
-        direction=_direction(reference, u, v, common, speed),
+        direction=direction,
         correlation=_correlation(first, second),
         reference_vortices=own,
         other_vortices=theirs,
-        pairs=matched(own, theirs, within),
+        pairs=matched(own, theirs, within, factor),
         difference_u=du,
         difference_v=dv,
+        aligned=aligned,
+        surface=None if piles is None else difference(*piles),
+        surfaces=piles,
     )
 
 
@@ -110,14 +138,16 @@ def _onto(field: Field, values: Array, target: Field) -> Array:
     return np.asarray(known((y, x)))
 
 
-def _direction(reference: Field, u: Array, v: Array, common: NDArray[np.bool_], speed: float) -> float:
-    """Mean cosine between the fields where both are faster than SLOW; nan if nowhere."""
+def _direction(reference: Field, u: Array, v: Array, common: NDArray[np.bool_], speed: float) -> tuple[float, float]:
+    """Mean cosine between the fields where both are faster than SLOW, and the share of these that are aligned; nan if
+    nowhere.
+    """
     own, theirs = np.hypot(reference.u, reference.v), np.hypot(u, v)
     fast = common & (own > SLOW * speed) & (theirs > SLOW * speed)
     if not fast.any():
-        return float("nan")
+        return float("nan"), float("nan")
     cosine = (reference.u * u + reference.v * v)[fast] / (own * theirs)[fast]
-    return float(np.mean(cosine))
+    return float(np.mean(cosine)), float(np.mean(cosine > np.cos(np.radians(ALIGNED))))
 
 
 def _correlation(first: Array, second: Array) -> float:

@@ -14,6 +14,7 @@ from porescale.piv.flows import Flow
 from porescale.piv.interpolate import coefficients, sample
 from porescale.piv.measure import Settings, Vectors, measure
 from porescale.piv.spots import add_spots
+from porescale.piv.surface import of_grains, of_solids
 from porescale.piv.synth import Camera, Pair, pair
 from porescale.piv.vortices import vortices
 
@@ -156,6 +157,24 @@ def turned(angle: float, radius: float) -> tuple[float, float]:
     flow = flows.rotation((side, side), angle * radius)
     u, v = flow.displacement(np.array([2 * radius]), np.array([radius]))
     return float(np.hypot(u, v)[0]), 2 * radius * float(np.sin(angle / 2))
+
+
+def pile(step: float) -> tuple[list[float], list[float]]:
+    """Areas below the surface of a disc beside three that stand as a triangle, from discs and from a picture of them.
+
+    step : px of columns.  Radius 40 px; exact: r^2 (2 + pi/2) under a disc, as much under the outer halves of the
+    lower two, and r^2 (2 + 2 3^(1/2) + pi/2) under the one on top.  A fifth disc flies.
+    """
+    r = 40.0
+    x = np.array([60.0, 160.0, 240.0, 200.0, 330.0])
+    y = np.array([r, r, r, r + np.sqrt(3) * r, 300.0])
+    discs = flows.Discs(x, y, np.full(5, r))
+    columns: Array = 20.0 + step * (np.arange(round(360 / step), dtype=float) + 0.5)
+    rows: Array = 399.5 - np.arange(400, dtype=float)
+    solid = discs.inside(*np.meshgrid(columns, rows))
+    found = [of_grains(discs, columns), of_solids(columns, rows, solid)]
+    exact = r * r * (2 * (2 + np.pi / 2) + 2 + 2 * np.sqrt(3) + np.pi / 2)
+    return [float(it.height.sum() * step) for it in found], [float(exact)] * 2
 
 
 def light(sigma: float) -> float:

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from porescale.ground.check import Fault, InputError
 from porescale.piv.field import Field
+from porescale.piv.moving import grains_of
+from porescale.piv.surface import Surface, of_grains
 from porescale.runs import snapshots
 from porescale.runs.model import Grid, Snapshot
 from porescale.runs.open_run import open_run
@@ -39,6 +41,16 @@ def field_of_run(folder: Path, time: float | None = None) -> Field:
             raise InputError(Fault("run folder", str(folder), "holds no snapshot yet"))
         snapshot = run.snapshot(-1) if time is None else run.nearest(time)
     return _field(_grid(snapshot, folder))
+
+
+def surface_of_run(folder: Path, x: Array, time: float | None = None) -> Surface | None:
+    """The pile's surface at columns x, m, from the grains of a run; None for a folder without (a film's, say)."""
+    if (folder / f"{MEASURED}.vtkhdf").exists():
+        return None
+    run = open_run(folder)
+    snapshot = run.snapshot(-1) if time is None else run.nearest(time)
+    grains = grains_of(snapshot)
+    return of_grains(grains, x) if len(grains.x) else None
 
 
 def fields_of_film(folder: Path) -> Iterator[Field]:

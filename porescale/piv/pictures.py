@@ -65,9 +65,12 @@ def vorticity(field: Field, path: Path) -> Path:
 
 
 def comparison(reference: Field, other: Field, found: Comparison, path: Path, titles: tuple[str, str]) -> Path:
-    """Vorticity of both fields with their vortices, and the size of the difference over the reference's rms speed."""
-    figure = Figure(figsize=(15, 5), layout="constrained")
-    panels = figure.subplots(1, 3)
+    """Vorticity of both fields with their vortices, the size of the difference over the reference's rms speed, and the
+    surfaces of both piles where there are any.
+    """
+    count = 3 if found.surfaces is None else 4
+    figure = Figure(figsize=(5 * count, 5), layout="constrained")
+    panels = figure.subplots(1, count)
     top = max(_largest(reference.vorticity()), _largest(other.vorticity()))
     for axes, field, title in zip(panels[:2], (reference, other), titles, strict=True):
         _dressed(axes, field)
@@ -78,6 +81,14 @@ def comparison(reference: Field, other: Field, found: Comparison, path: Path, ti
     size = np.hypot(found.difference_u, found.difference_v) / found.speed
     _painted(figure, panels[2], reference, size, "difference over rms speed", centred=False)
     panels[2].set_title(f"rms {found.rms:.3g}, largest {found.largest:.3g}")
+    if found.surfaces is not None:
+        for surface, title, style in zip(found.surfaces, titles, ("k-", "--"), strict=True):
+            panels[3].plot(surface.x, surface.height, style, label=title)
+        unit = "m" if reference.upwards else "px"
+        panels[3].set(xlabel=f"x, {unit}", ylabel=f"height of the pile, {unit}", ylim=(0, None))
+        panels[3].legend()
+        if found.surface is not None:
+            panels[3].set_title(f"rms {found.surface.rms:.3g}, mean {found.surface.mean:.3g} {unit}")
     return _saved(figure, path)
 
 

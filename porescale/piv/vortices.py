@@ -115,25 +115,34 @@ def _centre(field: Field, height: Array) -> tuple[float, float]:
     return float((weight * x).sum() / weight.sum()), float((weight * y).sum() / weight.sum())
 
 
-def matched(
-    reference: Sequence[Vortex], other: Sequence[Vortex], within: float | None = None
-) -> list[tuple[Vortex, Vortex]]:
-    """Pairs of the same sign, nearest first, no vortex twice.
+ALIKE = 2.0
+"""Factor between circulations up to which two vortices may be one: cores a step wider or narrower, which noise and
+resolution do to them, change what is counted as theirs by less.
+"""
 
-    within : largest distance of a pair; None: the larger radius of the two.
+
+def matched(
+    reference: Sequence[Vortex], other: Sequence[Vortex], within: float | None = None, factor: float = ALIKE
+) -> list[tuple[Vortex, Vortex]]:
+    """Pairs of the same sign, near each other and about as strong, best first, no vortex twice.
+
+    within : largest distance of a pair; None: the larger radius of the two;  factor : most between their circulations.
+    The best has the least distance over the bound plus logarithm of the ratio over that of the factor.
     """
-    candidates = sorted(
-        (float(np.hypot(a.x - b.x, a.y - b.y)), i, j)
-        for i, a in enumerate(reference)
-        for j, b in enumerate(other)
-        if a.circulation * b.circulation > 0
-    )
+    candidates = []
+    for i, a in enumerate(reference):
+        for j, b in enumerate(other):
+            if a.circulation * b.circulation <= 0:
+                continue
+            apart = float(np.hypot(a.x - b.x, a.y - b.y)) / (within or max(a.radius, b.radius))
+            ratio = abs(float(np.log(b.circulation / a.circulation))) / float(np.log(factor))
+            if apart <= 1 and ratio <= 1:
+                candidates.append((apart + ratio, i, j))
     taken_a: set[int] = set()
     taken_b: set[int] = set()
     pairs = []
-    for distance, i, j in candidates:
-        bound = within if within is not None else max(reference[i].radius, other[j].radius)
-        if i not in taken_a and j not in taken_b and distance <= bound:
+    for _, i, j in sorted(candidates):
+        if i not in taken_a and j not in taken_b:
             taken_a.add(i)
             taken_b.add(j)
             pairs.append((reference[i], other[j]))
