@@ -9,6 +9,7 @@ import numpy as np
 
 from continuum_sph.energy import book
 from continuum_sph.scene import trials
+from continuum_sph.scene.extremes_seepage import SEEPAGE
 from continuum_sph.scene.model import Simulation
 from continuum_sph.scene.report import report
 from continuum_sph.scene.sections import Scene
@@ -148,5 +149,6 @@ EXTREMES = Extremes(
         *(Extreme("leaving the domain", f"thrown up at {speed:g} c0", thrown(speed)) for speed in (0.3, 0.9)),
         *(Extreme("leaving the domain", f"thrown down at {speed:g} c0", thrown(-speed)) for speed in (0.3, 3.0)),
         Extreme("leaving the domain", "position lost", broken),
+        *SEEPAGE,
     ]
 )  # fmt: skip
