@@ -63,12 +63,32 @@ def accelerate(
     """
     scale = slope_scale(kind, h)
     inverse_h = 1.0 / h
+    soft = SOFTENING * h * h
+    braking = 0.5 * damping * h
+    smooth = -h * h * diffusion
+    restless = -h * h * pace
+    inverse_spacing2 = 1.0 / (spacing * spacing)
+    wraps = period_x > 0.0 or period_y > 0.0
     for i in prange(soil):
         xi = record[i, X]
         yi = record[i, Y]
         vxi = record[i, VX]
         vyi = record[i, VY]
         own = record[i, VOLUME] / record[i, MASS]
+        quick = record[i, QUICK]
+        shearing = record[i, SHEARING]
+        txx = record[i, TXX]
+        txy = record[i, TXY]
+        tyx = record[i, TYX]
+        tyy = record[i, TYY]
+        gxx = record[i, GXX]
+        gxy = record[i, GXY]
+        gyx = record[i, GYX]
+        gyy = record[i, GYY]
+        xx = stress[i, XX]
+        yy = stress[i, YY]
+        xy = stress[i, XY]
+        zz = stress[i, ZZ]
         ax = 0.0
         ay = 0.0
         sxx = 0.0
@@ -77,45 +97,65 @@ def accelerate(
         szz = 0.0
         ux = 0.0
         uy = 0.0
-        walls = np.uint64(split[i])
-        for k in range(np.uint64(start[i]), np.uint64(start[i + 1])):
+        for k in range(np.uint64(start[i]), np.uint64(split[i])):
             j = np.uint64(partner[k])
-            dx = minimum_image(xi - record[j, X], period_x)
-            dy = minimum_image(yi - record[j, Y], period_y)
-            wall = k >= walls
-            if wall and not before(facing[j], record[j, X] + dx, record[j, Y] + dy):
+            dx = xi - record[j, X]
+            dy = yi - record[j, Y]
+            if wraps:
+                dx = minimum_image(dx, period_x)
+                dy = minimum_image(dy, period_y)
+            distance2 = dx * dx + dy * dy
+            slope = scale * slope_shape(kind, np.sqrt(distance2) * inverse_h)
+            vx = vxi - record[j, VX]
+            vy = vyi - record[j, VY]
+            if not printed:
+                vx -= 0.5 * ((gxx + record[j, GXX]) * dx + (gxy + record[j, GXY]) * dy)
+                vy -= 0.5 * ((gyx + record[j, GYX]) * dx + (gyy + record[j, GYY]) * dy)
+            approach = vx * dx + vy * dy
+            if printed:
+                approach = min(0.0, approach)
+            swept = record[j, VOLUME] * slope
+            thrust = own * swept
+            damp = braking * (quick + record[j, QUICK]) * approach * record[j, MASS] * slope / (distance2 + soft)
+            ax += damp * dx - thrust * ((txx + record[j, TXX]) * dx + (txy + record[j, TXY]) * dy)
+            ay += damp * dy - thrust * ((tyx + record[j, TYX]) * dx + (tyy + record[j, TYY]) * dy)
+            rate = 0.5 * (shearing + record[j, SHEARING])
+            part = (smooth * rate + restless) * swept
+            sxx += part * (stress[j, XX] - xx)
+            syy += part * (stress[j, YY] - yy)
+            sxy += part * (stress[j, XY] - xy)
+            szz += part * (stress[j, ZZ] - zz)
+            near = rate * max(0.0, 1.0 - distance2 * inverse_spacing2)
+            ux += near * dx
+            uy += near * dy
+        for k in range(np.uint64(split[i]), np.uint64(start[i + 1])):
+            j = np.uint64(partner[k])
+            dx = xi - record[j, X]
+            dy = yi - record[j, Y]
+            if wraps:
+                dx = minimum_image(dx, period_x)
+                dy = minimum_image(dy, period_y)
+            if not before(facing, j, record[j, X] + dx, record[j, Y] + dy):
                 continue
             distance2 = dx * dx + dy * dy
             slope = scale * slope_shape(kind, np.sqrt(distance2) * inverse_h)
             vx = vxi - record[j, VX]
             vy = vyi - record[j, VY]
-            m = np.uint64(i) if wall else j  # a wall's gradients, density and sound are those of the soil before it
-            if not printed:
-                vx -= 0.5 * ((record[i, GXX] + record[m, GXX]) * dx + (record[i, GXY] + record[m, GXY]) * dy)
-                vy -= 0.5 * ((record[i, GYX] + record[m, GYX]) * dx + (record[i, GYY] + record[m, GYY]) * dy)
+            if not printed:  # a wall's gradient and sound are those of the soil before it
+                vx -= gxx * dx + gxy * dy
+                vy -= gyx * dx + gyy * dy
             approach = vx * dx + vy * dy
             if printed:
                 approach = min(0.0, approach)
             thrust = own * record[j, VOLUME] * slope
-            damp = 0.5 * damping * h * (record[i, QUICK] + record[m, QUICK]) * approach * record[j, MASS] * slope
-            damp /= distance2 + SOFTENING * h * h
-            ax += damp * dx - thrust * ((record[i, TXX] + record[j, TXX]) * dx + (record[i, TXY] + record[j, TXY]) * dy)
-            ay += damp * dy - thrust * ((record[i, TYX] + record[j, TYX]) * dx + (record[i, TYY] + record[j, TYY]) * dy)
-            if not wall:
-                rate = 0.5 * (record[i, SHEARING] + record[j, SHEARING])
-                part = -h * h * (diffusion * rate + pace) * record[j, VOLUME] * slope
-                sxx += part * (stress[j, XX] - stress[i, XX])
-                syy += part * (stress[j, YY] - stress[i, YY])
-                sxy += part * (stress[j, XY] - stress[i, XY])
-                szz += part * (stress[j, ZZ] - stress[i, ZZ])
-                near = apart * rate * max(0.0, 1.0 - distance2 / (spacing * spacing))
-                ux += near * dx
-                uy += near * dy
+            damp = 2.0 * braking * quick * approach * record[j, MASS] * slope / (distance2 + soft)
+            ax += damp * dx - thrust * ((txx + record[j, TXX]) * dx + (txy + record[j, TXY]) * dy)
+            ay += damp * dy - thrust * ((tyx + record[j, TYX]) * dx + (tyy + record[j, TYY]) * dy)
         spread[i, XX] = sxx
         spread[i, YY] = syy
         spread[i, XY] = sxy
         spread[i, ZZ] = szz
-        drift[i, 0] = ux
-        drift[i, 1] = uy
+        drift[i, 0] = apart * ux
+        drift[i, 1] = apart * uy
         acceleration[i, 0] = ax + gx + force[i, 0] / record[i, MASS]
         acceleration[i, 1] = ay + gy + force[i, 1] / record[i, MASS]

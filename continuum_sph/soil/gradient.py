@@ -39,9 +39,9 @@ def inverse(xx, xy, yy):
 
 
 @inline
-def before(facing, x, y):
-    """Whether soil at (x, y) m lies on the side of a wall that a wall particle's ``facing`` (4,) belongs to."""
-    return (x - facing[0]) * facing[2] + (y - facing[1]) * facing[3] >= 0.0
+def before(facing, w, x, y):
+    """Whether soil at (x, y) m lies on the side of the wall that particle w, with its row of ``facing`` (n, 4), is of."""
+    return (x - facing[w, 0]) * facing[w, 2] + (y - facing[w, 1]) * facing[w, 3] >= 0.0
 
 
 @parallel_kernel
@@ -56,6 +56,7 @@ def velocity_gradients(
     """
     scale = slope_scale(kind, h)
     inverse_h = 1.0 / h
+    wraps = period_x > 0.0 or period_y > 0.0
     for i in prange(soil):
         xi = record[i, X]
         yi = record[i, Y]
@@ -71,9 +72,12 @@ def velocity_gradients(
         walls = np.uint64(split[i])
         for k in range(np.uint64(start[i]), np.uint64(start[i + 1])):
             j = np.uint64(partner[k])
-            dx = minimum_image(xi - record[j, X], period_x)
-            dy = minimum_image(yi - record[j, Y], period_y)
-            if k >= walls and not before(facing[j], record[j, X] + dx, record[j, Y] + dy):
+            dx = xi - record[j, X]
+            dy = yi - record[j, Y]
+            if wraps:
+                dx = minimum_image(dx, period_x)
+                dy = minimum_image(dy, period_y)
+            if k >= walls and not before(facing, j, record[j, X] + dx, record[j, Y] + dy):
                 continue
             part = record[j, VOLUME] * scale * slope_shape(kind, np.sqrt(dx * dx + dy * dy) * inverse_h)
             px = part * dx

@@ -66,7 +66,7 @@ def show_walls(
             j = np.uint64(partner[k])
             dx = minimum_image(wx - record[j, X], period_x)
             dy = minimum_image(wy - record[j, Y], period_y)
-            if not before(facing[w], wx - dx, wy - dy):
+            if not before(facing, w, wx - dx, wy - dy):
                 continue
             value = kernel_value(kind, np.sqrt(dx * dx + dy * dy) / h, h)
             row = table[material[j]]
