@@ -40,7 +40,7 @@ def inverse(xx, xy, yy):
 
 @inline
 def before(facing, w, x, y):
-    """Whether soil at (x, y) m lies on the side of the wall that particle w, with its row of ``facing`` (n, 4), is of."""
+    """Whether soil at (x, y) m lies on the side of the wall that wall particle w is of;  facing (n, 4): see Soil."""
     return (x - facing[w, 0]) * facing[w, 2] + (y - facing[w, 1]) * facing[w, 3] >= 0.0
 
 
