@@ -48,6 +48,6 @@ def paint_shapes(image: Array, cloud: Cloud, at: Array, scale: float, colours: A
 
 def paint_marks(image: Array, ends: Array) -> None:
     """Paint marks, such as cracks, between ``ends`` (m, 2, 2) pixels."""
-    wide = max(2, image.shape[1] // 400)
+    wide = max(2, image.shape[1] // 250)
     for start, end in np.rint(ends * ONE).astype(int).tolist():
         cv2.line(image, start, end, rgb(CRACK), wide, cv2.LINE_AA, SHIFT)

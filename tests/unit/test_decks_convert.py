@@ -98,9 +98,16 @@ FALLEN = {
 """Bodies that soon meet the floor."""
 
 
+CONTAINER = decks.grains(
+    "1 0 1", "1 1 1", "0 0 0", "1 1.0d0", "0 2.11 0", "2 1 2", "0 0 0", "1 -4 1", "4 1", "2 4 1", "4 3", dt="1.0d-5"
+).replace("10.0d0 0.0d0\n1 0 1", "10.0d0 0.1\n1 0 1")  # fmt: skip
+"""A disc falls onto a corner of thick segments, which are kept out of the cells and moved by 0.1 to the left."""
+
+
 @pytest.mark.parametrize(
     ("gm", "bc", "sections"),
     [
+        (CONTAINER, decks.boundary("0 0 1500 100 10", "0", "1", "2 1 -0.1 1 0 1 0"), ["segment", "control"]),
         (FALLEN["segment"], "", ["segment"]),
         (FALLEN["polygon"], "", ["polygon"]),
         (decks.PUSHED, decks.boundary("0 0 900 100 10", *decks.PUSH), ["segment", "control"]),
