@@ -165,7 +165,8 @@ class Flow:
                 self.wall_density, self.wall_rate, step, kind, h, *pairs.period,
             )  # fmt: skip
         if law.shifting > 0.0:
-            urge = max(0.0, self.swiftest - QUIET * law.state.sound_speed)
+            quiet = QUIET * law.state.sound_speed if len(law.fluids) == 1 else 0.0
+            urge = max(0.0, self.swiftest - quiet)
             shift(
                 fluid, pairs.start, self.split, pairs.partner, layer.record, layer.material, self.table, self.openness,
                 self.crowd, layer.drift, kind, h, 2.0 * h * law.shifting * urge, MOST * urge, *pairs.period,
