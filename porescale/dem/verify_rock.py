@@ -104,5 +104,5 @@ def ratio_of_polygons() -> Measured:
 )
 def slender() -> Measured:
     """Stress that Voronoi cells bear at the end over their compressive strength."""
-    found = lab.left_when_pressed(lab.SLENDER, SEEDS, 2.0 * FAST)
+    found = lab.left_when_pressed(lab.SLENDER, SEEDS, FAST)
     return Measured(0.0, found, max(0.0, found))

@@ -295,3 +295,24 @@ def test_soil_pushes_a_block_off_its_base_at_the_friction_of_the_base(monkeypatc
     monkeypatch.setattr(case, "FRICTION", 0.5 * case.FRICTION)
     off = missed(CASES / "block_pushed_by_soil", case.said(found))
     assert off == [row["name"] for row in expected(CASES / "block_pushed_by_soil")[2:]]
+
+
+@pytest.mark.slow
+def test_rock_of_discs_bears_what_its_case_says():
+    # Polygons: the rows dem.rock_of_polygons... and dem.rock_of_slender_cells_breaks of verify hold the same.
+    case = script("rock")
+    others = {row["name"]: row["value"] for row in expected(CASES / "rock")}
+    numbers, _, tests = case.measure(sorts=("discs",))
+    assert missed(CASES / "rock", others | numbers) == []
+    assert case.later(tests["discs"][0][0]) <= case.MOMENTS
+
+
+@pytest.mark.slow
+def test_rock_of_discs_packed_without_friction_bears_more(monkeypatch):
+    # The twin that must fail: the packing decides.
+    case = script("rock")
+    monkeypatch.setattr(case.lab.sample, "__defaults__", (0, case.lab.COUNT, 0.0, *case.lab.sample.__defaults__[3:]))
+    others = {row["name"]: row["value"] for row in expected(CASES / "rock")}
+    firm = case.said("discs", [case.pair("discs", seed, case.lab.COUNT) for seed in range(3)])
+    off = {f"discs: {what}" for what in ("stiffness", "tensile strength", "compressive strength")}
+    assert set(missed(CASES / "rock", others | firm)) >= off
