@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Law
 from porescale.dem.discs import make_discs
 from porescale.dem.integrate import packing_limit, stable_step
@@ -86,8 +85,8 @@ def derive(scene: Scene) -> Derived:
         step, steps = _contact_step(scene.contact, safe, limit, scales, faults)
         model_step = scales.step if scales else step
     speed = expected_speed(scene, scales, sizes, frames)
-    if frames and isinstance(law, Linear):
-        warnings += filter(None, [thin_for(frames, speed, mean_mass, law.stiffness)])
+    if frames and law:
+        warnings += filter(None, [thin_for(frames, speed, mean_mass, law)])
     warnings += strays(scene, frames)
     variation = 0.0
     if scales:

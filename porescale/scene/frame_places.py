@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.dem.contact.linear import Linear
+from porescale.dem.contact.materials import Law
 from porescale.dem.control import Control, Moved, schedule_of
 from porescale.dem.control import Placed as PlacedControl
 from porescale.dem.discs import Discs
@@ -213,19 +215,27 @@ def _cross(one: Array, other: Array) -> bool:
     return bool(np.any((left(a, b, c) * left(a, b, d) < 0.0) & (left(c, d, a) * left(c, d, b) < 0.0)))
 
 
-def thin_for(placed: Sequence[Placed], speed: float, mass: float, stiffness: float) -> str:
+def thin_for(placed: Sequence[Placed], speed: float, mass: float, law: Law) -> str:
     """A doubt about frames that the speed (m/s) to expect would press through each other; "" where there is none.
 
-    mass (kg/m): of a mean grain; a head-on impact of two on a spring (N/m) goes  v sqrt(m/2k)  deep, at the most.
+    mass (kg/m): of a mean grain.  A head-on impact of two goes  v sqrt(m/2k)  deep on springs, and by Hertz's law
+    (15 m v^2/32 E sqrt(R))^(2/5), with R half the thickness.
     """
-    pairs = [it.frame.thickness for it in placed if it.frame.thickness > 0.0]
-    deep = speed * float(np.sqrt(0.5 * mass / stiffness))
-    if len(pairs) < 2 or deep <= WAVES * 2.0 * min(pairs):
+    found = [it.frame.thickness for it in placed if it.frame.thickness > 0.0]
+    if len(found) < 2:
+        return ""
+    thin = min(found)
+    if isinstance(law, Linear):
+        deep, power = speed * float(np.sqrt(0.5 * mass / law.stiffness)), 2.0
+    else:
+        deep, power = float((15.0 * mass * speed**2 / (32.0 * law.modulus * np.sqrt(0.5 * thin))) ** 0.4), 2.5
+    allowed = WAVES * 2.0 * thin
+    if deep <= allowed:
         return ""
     return (
-        f"bodies of segments {min(pairs):.2g} m thick would be pressed {deep:.2g} m into each other at the {speed:.2g}"
-        f" m/s to expect, and go through beyond {2.0 * min(pairs):.2g} m: a stiffness of"
-        f" {stiffness * (deep / (WAVES * min(pairs))) ** 2:.2g} N/m, or thicker ones, withstand it"
+        f"bodies of segments {thin:.2g} m thick would be pressed {deep:.2g} m into each other at the {speed:.2g} m/s to"
+        f" expect, and go through beyond {2.0 * thin:.2g} m: contacts {(deep / allowed) ** power:.2g} times as stiff,"
+        " or thicker bodies, withstand it"
     )
 
 

@@ -193,15 +193,18 @@ def test_a_wet_scene_says_that_bonds_are_dry():
 
 
 def test_thin_bodies_at_speed_are_warned_of():
-    def warned(thickness: float) -> bool:
+    def warned(thickness: float, **law: Any) -> bool:
         at = {"at": [[2e-3, 2e-3], [4e-3, 6e-3]], "thickness": thickness}
-        return any(
-            "through" in it for it in derive(framed(polygon=[{**SQUARE, **at}], contact__stiffness=1e4)).warnings
-        )
+        derived = derive(framed(polygon=[{**SQUARE, **at}], **(law or {"contact__stiffness": 1e4})))
+        return any("go through" in it for it in derived.warnings)
 
     # 0.4 m/s and 2.5 g/m on 1e4 N/m go v sqrt(m/2k) = 0.14 mm deep.
     assert warned(5e-5)
     assert not warned(5e-4)
+    # By Hertz's law (15 m v^2/32 E sqrt(R))^(2/5) with R = 25 um and E = 5e6/0.91/2: 0.18 mm.
+    hertz = {"law": "hertz", "young": 5e6, "poisson": 0.3, "restitution": 0.5, "friction": 0.5}
+    assert warned(5e-5, contact=hertz)
+    assert not warned(5e-5, contact={**hertz, "young": 1e10})
 
 
 def test_a_container_that_leaves_the_box_as_it_turns_is_warned_of():
