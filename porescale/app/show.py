@@ -23,6 +23,7 @@ def show(folder: Path) -> list[Path]:
     from porescale.scene.frame_pictures import cracks
     from porescale.scene.grain_pictures import write_grain_pictures
     from porescale.scene.lines import write_lines
+    from porescale.scene.rock_pictures import write_rock_picture
     from porescale.scene.surface import write_surface
 
     run = open_run(folder)
@@ -45,7 +46,7 @@ def show(folder: Path) -> list[Path]:
     if scene.get("grains") is not None:
         written += [write_surface(run, folder)] if "grains" in run.clouds else []
         written += write_grain_pictures(run, folder, look)
-    written += write_breaks(run, folder)
+    written += [*write_breaks(run, folder), *write_rock_picture(run, folder)]
     return [*written, *write_lines(run, folder)]
 
 

@@ -13,6 +13,7 @@ from porescale.scene.build import build
 from porescale.scene.derive import derive
 from porescale.scene.frame_pictures import cracks
 from porescale.scene.rock import rock_discs
+from porescale.scene.rock_pictures import drawn, write_rock_picture
 from porescale.scene.sections import Scene
 from porescale.workbench.sections import scene_as_dict, validate
 from tests.reference.scenes_of_grains import assert_same_bits, framed, resumed
@@ -180,3 +181,25 @@ def test_rock_without_a_pressed_packing_is_refused():
     with pytest.raises(InputError) as caught:
         derive(framed(**{**ROCK, "grains": {"density": 2500, "packing": packing}}, rock={"kind": "discs"}))
     assert [fault.key for fault in caught.value.faults] == ["rock"]
+
+
+def test_a_rocks_picture_counts_the_breaks_of_its_table(tmp_path):
+    class Run:
+        name = "rock"
+
+        def __init__(self, rows: int) -> None:
+            self.rows = rows
+
+        def table(self, name: str) -> dict[str, Any]:
+            strain = np.linspace(0, 1e-3, self.rows)
+            return {"strain ()": strain, "stress (Pa)": 1e9 * strain, "broken bonds ()": np.arange(self.rows) // 2}
+
+    assert write_rock_picture(Run(1), tmp_path) == []  # type: ignore[arg-type]
+    (path,) = write_rock_picture(Run(11), tmp_path)  # type: ignore[arg-type]
+    assert path.read_bytes().startswith(b"\x89PNG")
+    table = Run(11).table("rock")
+    figure = drawn(*(table[name] for name in ("strain ()", "stress (Pa)", "broken bonds ()")), "rock")
+    stress, counts = figure.axes
+    assert "(kPa)" in stress.get_ylabel()
+    assert sum(bar.get_height() for bar in counts.patches) == 5.0
+    assert "5 in all" in counts.get_ylabel()
