@@ -192,7 +192,7 @@ def test_a_rocks_picture_counts_the_breaks_of_its_table(tmp_path):
 
         def table(self, name: str) -> dict[str, Any]:
             strain = np.linspace(0, 1e-3, self.rows)
-            return {"strain ()": strain, "stress (Pa)": 1e9 * strain, "broken bonds ()": np.arange(self.rows) // 2}
+            return {"strain ()": strain, "stress (Pa)": 1e8 * strain, "broken bonds ()": np.arange(self.rows) // 2}
 
     assert write_rock_picture(Run(1), tmp_path) == []  # type: ignore[arg-type]
     (path,) = write_rock_picture(Run(11), tmp_path)  # type: ignore[arg-type]
