@@ -33,6 +33,7 @@ FLOWS = {
     "lid_driven_cavity": (CAVITY, "fluid.viscosity=2e-3", CAVITY),
     "permeameter": ({"permeability", "flux at the outlet"}, "grains.hydraulic_radius_ratio=0.6",
                     {"permeability", "flux at the outlet"}),
+    "settling_square": ({"speed"}, "grains.density=1350", {"speed"}),
     "towed_cylinder": (set(), "fluid.viscosity=1.1e-3", {"drag"}),
     "vortex_street": ({"lift coefficient"}, "fluid.viscosity=2e-3", {"lift coefficient", "period of the lift"}),
 }  # fmt: skip

@@ -316,3 +316,20 @@ def test_rock_of_discs_packed_without_friction_bears_more(monkeypatch):
     firm = case.said("discs", [case.pair("discs", seed, case.lab.COUNT) for seed in range(3)])
     off = {f"discs: {what}" for what in ("stiffness", "tensile strength", "compressive strength")}
     assert set(missed(CASES / "rock", others | firm)) >= off
+
+
+@pytest.mark.slow
+def test_a_light_plate_flutters_in_water_and_a_heavy_one_tumbles():
+    case = script("tumbling_plate")
+    numbers, _ = case.measure()
+    assert missed(CASES / "tumbling_plate", numbers) == []
+
+
+@pytest.mark.slow
+def test_a_plate_as_light_as_the_other_does_not_tumble(monkeypatch):
+    # The twin that must fail: both as light.
+    case = script("tumbling_plate")
+    light = case.fall(case.LIGHT)
+    monkeypatch.setattr(case, "fall", lambda density, quality: light)
+    numbers, _ = case.measure()
+    assert "turns of the heavy plate" in missed(CASES / "tumbling_plate", numbers)

@@ -66,9 +66,9 @@ def test_what_is_no_convex_polygon_is_dry():
     assert "no films between polygons" in faults(SQUARE, lubrication={})
 
 
-def test_a_plate_of_two_cells_is_warned_of():
-    plate = {"corners": [[0, 0], [0.004, 0], [0.004, 0.0004], [0, 0.0004]], "thickness": 2e-5, "at": [[0.004, 0.004]]}
-    assert any("polygon[0] is 2 cells across" in word for word in derive(wet(plate)).warnings)
+def test_a_plate_of_one_cell_is_warned_of():
+    plate = {"corners": [[0, 0], [0.004, 0], [0.004, 0.0002], [0, 0.0002]], "thickness": 2e-5, "at": [[0.004, 0.004]]}
+    assert any("polygon[0] is 1 cells across" in word for word in derive(wet(plate)).warnings)
     assert not any("cells across" in word for word in derive(wet(SQUARE)).warnings)
 
 

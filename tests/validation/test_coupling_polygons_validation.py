@@ -36,6 +36,14 @@ def test_drag_and_torque_of_squares_are_those_of_forces_along_their_sides(degree
 
 
 @pytest.mark.slow
+def test_drag_of_plates_is_that_of_forces_along_their_sides():
+    array = Turning(lab.plate(0.6, 0.075), levels=5, order=6)
+    along, across = array.loads([1.0, 0.0])[0][0], array.loads([0.0, 1.0])[0][1]
+    assert along == pytest.approx(verify_polygons.PLATES[0], rel=2e-4)
+    assert across == pytest.approx(verify_polygons.PLATES[90], rel=2e-4)
+
+
+@pytest.mark.slow
 def test_forces_along_many_sides_give_the_drag_of_discs():
     force, _ = Turning(regular(24, 0.2), levels=1, order=4).loads([1.0, 0.0])
     # The outline leaves the circle of its area by R (pi/n)²/3 at most, and drag goes with the radius to the power 1.4.
@@ -58,6 +66,11 @@ def test_squares_without_tips_let_too_much_through(monkeypatch):
     monkeypatch.setattr(saturated, "RADIUS_SHIFT", 0.0)
     found = lab.array_drag(verify_polygons.square(0.1, 20.0), 32, places=[(0.3, 0.1)])[0]
     assert found / verify_polygons.SQUARES[20] < 1 - 3 * tolerance("square_arrays_of_squares")
+
+
+def test_a_plate_of_one_cell_is_no_plate():
+    found = [verify_polygons.plate_drag(13, turn) / verify_polygons.PLATES[turn] - 1 for turn in (0, 90)]
+    assert np.abs(found).max() > 2 * tolerance("arrays_of_plates")
 
 
 def test_squares_half_a_cell_larger_take_too_much_torque():
