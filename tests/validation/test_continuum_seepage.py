@@ -99,3 +99,19 @@ def test_drag_in_explicit_steps_makes_energy_out_of_nothing(monkeypatch):
 def test_water_does_not_pass_a_pile_of_half_the_depth_as_easily():
     found = verify_seepage.pile(0.25, 16)[0] * SheetPile(0.25).discharge
     assert abs(found / SheetPile(0.5).discharge - 1.0) > tolerance("continuum.sheet_pile_50")
+
+
+@pytest.mark.slow
+def test_water_sinks_faster_through_the_printed_drag(monkeypatch):
+    # Drag n ρ_f g/k of eq. 46 per volume of water: n² ρ_f g/k of the whole, and 1/n of that per volume of pores.
+    monkeypatch.setattr(Resistance, "factor", LAYER.porosity / (1.0 - LAYER.porosity))
+    found = verify_seepage.way_of_the_front()
+    assert abs(found - 1.0) > 3.0 * tolerance("continuum.infiltration")
+
+
+def test_the_front_is_that_of_a_constant_head_at_first():
+    given = verify_seepage.SINKING
+    # of first order in z/h0: (2/3) a z/h0 of the depth, z = 1e-4
+    early = given.time(1e-4)
+    assert (2.0 * given.permeability * given.standing * early / given.porosity) ** 0.5 == pytest.approx(1e-4, rel=1e-3)
+    assert given.time(given.front(0.5)) == pytest.approx(0.5, rel=1e-9)

@@ -1,0 +1,68 @@
+"""Water that stands on dry soil and sinks into it.  SI.
+
+Without capillarity the wetted soil above the front, at depth z, is full; at its surface stands the water that is left,
+h = h0 - n z.  Darcy: n dz/dt = k (h + z)/z, so that with a = 1 - n
+
+    t = (n/k) {z/a - (h0/a²) ln(1 + a z/h0)}
+
+and z = √(2 k h0 t/n) at first, imbibition under a constant head (Green & Ampt 1911).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from continuum_sph.scene.trials_seepage import COLUMNS, WATER, water_in
+from continuum_sph.seepage import Frame, Resistance, Seepage
+from porescale.ground.constants import GRAVITY
+from porescale.particles import square_lattice
+
+
+@dataclass(frozen=True)
+class Infiltration:
+    """rows : particles over the soil's height;  height : of the soil, standing : h0, of the water on it, m;
+    permeability m/s;  sound_speed m/s."""
+
+    rows: int = 30
+    height: float = 0.3
+    standing: float = 0.15
+    permeability: float = 0.03
+    sound_speed: float = 40.0
+    porosity: float = 0.4
+
+    def time(self, depth: float) -> float:
+        """When (s) the front is at ``depth`` (m)."""
+        a, h0 = 1.0 - self.porosity, self.standing
+        return float(self.porosity / self.permeability * (depth / a - h0 / a**2 * np.log(1.0 + a * depth / h0)))
+
+    def front(self, time: float) -> float:
+        """Depth (m) of the front at ``time`` (s) while water still stands on the soil."""
+        return float(brentq(lambda z: self.time(z) - time, 0.0, self.standing / self.porosity))
+
+    def build(self) -> Seepage:
+        """Held, dry soil in a periodic column, and still water on it that is let go."""
+        spacing = self.height / self.rows
+        size = COLUMNS * spacing, self.height + self.standing
+        soil = Frame(
+            square_lattice((0.0, 0.0), (size[0], self.height), spacing), spacing**2, self.porosity, self.permeability
+        )
+        x = square_lattice((0.0, self.height), size, spacing)
+        return water_in(
+            soil, x, WATER * GRAVITY * (size[1] - x[:, 1]), size, spacing, self.sound_speed, Resistance(self.porosity),
+            gravity=GRAVITY, cut=True, alpha=0.1, shifting=1.0,
+        )  # fmt: skip
+
+    def reached(self, both: Seepage) -> float:
+        """Depth (m) at which a level across the soil is half full of water and its grains."""
+        layer, h = both.water.layer, both.water.law.smoothing.length
+        n = layer.fluid
+        volume = layer.mass[:n] / (both.water.porosity * layer.density)
+        heights = np.linspace(0.0, self.height, 40 * self.rows + 1)
+        q = np.abs(heights[:, None] - layer.x[:n, 1]) / h
+        kernel = (np.maximum(0.0, 2.0 - q) ** 3 - 4.0 * np.maximum(0.0, 1.0 - q) ** 3) / (6.0 * h)
+        full = kernel @ volume * self.rows / (COLUMNS * self.height)
+        wet = np.flatnonzero(full > 0.5)
+        return float(self.height - heights[wet[0]]) if wet.size else 0.0
