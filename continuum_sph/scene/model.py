@@ -21,6 +21,9 @@ from porescale.runs.model import Snapshot
 DENSEST = 1.3  # of ρ0: Tait pressures of half B and more; sound at Mach 0.1 needs 1.01, the hardest impacts 1.15
 
 
+REPAIR = "lower numerics.courant, or raise numerics.artificial_viscosity or water.sound_speed"
+
+
 class Simulation:
     """Model of a scene; see `porescale.runs.model.Model`."""
 
@@ -46,7 +49,7 @@ class Simulation:
             except ValueError as error:
                 raise Unstable(
                     str(error), "position", float("nan"), "m", self.step, self.time,
-                    "lower numerics.courant, or raise numerics.artificial_viscosity or water.sound_speed",
+                    REPAIR,
                 ) from error  # fmt: skip
             self.refresh()
 
@@ -58,8 +61,15 @@ class Simulation:
         return inside
 
     def check(self) -> None:
-        """Raise Unstable when water in the tank is faster than sound or too dense to mean anything."""
+        """Raise Unstable when a particle is nowhere, or water in the tank is faster than sound or too dense to mean
+        anything.
+        """
         layer, tait = self.flow.layer, water_of(self.scene)
+        for name, unit, array in (("position", "m", layer.x), ("velocity", "m/s", layer.v), ("density", "kg/m³",
+                                  layer.density[:, None])):  # fmt: skip
+            nowhere = np.flatnonzero(~np.isfinite(array[: layer.fluid]).all(axis=1))
+            if nowhere.size:
+                raise Unstable(f"particle {nowhere[0]}", name, float("nan"), unit, self.step, self.time, REPAIR)
         inside = np.flatnonzero(self.inside() & (layer.material[: layer.fluid] == 0))
         speed = np.hypot(layer.v[inside, 0], layer.v[inside, 1])
         ratio = layer.density[inside] / tait.density
@@ -73,7 +83,7 @@ class Simulation:
                 raise Unstable(
                     f"particle {at} at ({layer.x[at, 0]:.4g}, {layer.x[at, 1]:.4g}) m", name,
                     float(values[bad[0]]) * scale, unit, self.step, self.time,
-                    "raise water.sound_speed or numerics.artificial_viscosity, or lower numerics.courant",
+                    REPAIR,
                 )  # fmt: skip
 
     def series(self) -> dict[str, float]:

@@ -70,11 +70,18 @@ class Health:
             )  # fmt: skip
 
     def check_finite(self, grains: Grains) -> None:
-        """Raise Unstable at a position, velocity or spin that is no number."""
+        """Raise Unstable at a position, velocity, spin or angle, or a place of a plate, that is no number."""
         d = grains.discs
+        if np.isnan(grains.plates).any():
+            nowhere = int(np.isnan(grains.plates).any(axis=1).argmax())
+            raise _unstable(
+                grains, f"plate {grains.plate_names[nowhere]}", "place", float("nan"), "m", "a motion without numbers"
+            )
         bad, column = first_without_number(d.position, d.velocity, d.spin)
+        if bad < 0 and not np.isfinite(d.angle).all():
+            bad, column = int((~np.isfinite(d.angle)).argmax()), 3
         if bad >= 0:
-            quantity, unit = (("position", "m"), ("velocity", "m/s"), ("spin", "rad/s"))[column]
+            quantity, unit = (("position", "m"), ("velocity", "m/s"), ("spin", "rad/s"), ("angle", "rad"))[column]
             raise _unstable(
                 grains, f"grain {bad}", quantity, float("nan"), unit,
                 "two centres met or the contact step is beyond its stability limit",
