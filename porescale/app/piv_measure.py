@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 CHANCE = 0.05
 """Share of vectors of the fluid that passes validation by chance where two pictures have nothing in common (measured:
 up to 0.04 of small ones)."""
+STRANGERS = Fault("pictures", None, "do not show the same tracers: hardly a vector passes validation")
 PATIENCE = 10.0
 """Seconds between lines of progress."""
 
@@ -38,6 +39,7 @@ def measure(
     overlap: Annotated[float, Parameter(help="of neighbouring windows")] = 0.5,
     search: Annotated[int, Parameter(help="largest displacement looked for, px")] = 16,
     smooth: Annotated[bool, Parameter(help="no more than the noise asks for", negative="--no-smooth")] = True,
+    no_slip: Annotated[bool, Parameter(help="the flow stands still at rims of solids that do", negative="")] = False,
     mask: Annotated[
         str | None, Parameter(help="bitmap or film of bitmaps, solid white; or bright, dark: segment")
     ] = None,
@@ -69,8 +71,10 @@ def measure(
     folder = out if out or ((csv or openpiv) and not overlay) else Path("runs") / f"piv_{_stem(films[0])}"
     if folder is not None:
         refuse_unwritable(folder, "--out")
+    if no_slip and not (mask or polygon):
+        raise InputError(Fault("--no-slip", None, "there are no solids", repair="give --mask or --polygon"))
     use_threads(threads)
-    settings = Settings(window=window, overlap=overlap, search=search, smooth=smooth)
+    settings = Settings(window=window, overlap=overlap, search=search, smooth=smooth, no_slip=no_slip)
     film = open_film(films, start=start, end=end, step=step, region=_box(region))
     pixel, seconds = _scales(scale, interval, film.rate)
     shots = Shots(film, mask, tuple(polygon or ()), background)
@@ -80,8 +84,13 @@ def measure(
         field = in_pixels(vectors, corner(film))
         return field if pixel is None or seconds is None else in_metres(field, rows, pixel, seconds * step)
 
-    fields = (finished(it) for it in ([averaged(shots, settings)] if average else measured(shots, settings)))
-    total = 1 if average else max(0, film.count() - 1)
+    pairs = max(0, film.count() - 1)
+    total = 1 if average else pairs
+    if average:
+        found: Iterable[Vectors] = (averaged(shots, settings, _passes(pairs)) for _ in range(1))
+    else:
+        found = measured(shots, settings, _aside if pairs > 1 else None)
+    fields = (finished(it) for it in found)
 
     def span(shape: tuple[int, ...]) -> tuple[float, ...]:
         return _span(shape, corner(film), rows, pixel)
@@ -128,6 +137,25 @@ def _scales(scale: str | None, interval: str | None, rate: float | None) -> tupl
     return pixel, seconds
 
 
+def _aside(text: str) -> None:
+    """Tell something beside the outcome."""
+    print(text, file=sys.stderr, flush=True)
+
+
+def _passes(pairs: int) -> Callable[[], None]:
+    """Counts the pairs that passes over a film go through, and says so now and then."""
+    done, last = 0, time.perf_counter()
+
+    def tell() -> None:
+        nonlocal done, last
+        done += 1
+        if time.perf_counter() - last > PATIENCE:
+            last = time.perf_counter()
+            _aside(f"pass {(done - 1) // max(1, pairs) + 1}: {(done - 1) % max(1, pairs) + 1} of {pairs} pairs")
+
+    return tell
+
+
 def _progress(fields: Iterable[Field], total: int) -> Iterator[tuple[Field, int]]:
     """Fields as they come, with a line on stderr now and then."""
     start = last = time.perf_counter()
@@ -167,7 +195,7 @@ def _written(
         snapshots.clear(folder)
     for field, number in fields:
         if alone and field.valid.sum() < CHANCE * (~field.solid).sum():
-            raise InputError(Fault("pictures", None, "do not show the same tracers: hardly a vector passes validation"))
+            raise InputError(STRANGERS)
         last = field
         counts["pairs"] += 1
         counts["vectors"] += field.u.size
@@ -184,6 +212,10 @@ def _written(
             files += [table] if number == 1 else []
             moment = times[0] + (number - 1) * times[1]
             snapshots.write_part(folder, Snapshot(moment, number - 1, grids={"piv": as_grid(field)}))
+    if not alone and counts["valid"] < CHANCE * (counts["vectors"] - counts["solid"]):
+        if folder is not None:
+            snapshots.clear(folder)
+        raise InputError(STRANGERS)
     if folder is not None and last is not None:
         snapshots.assemble(folder)
         image = next(iter(shots.film))

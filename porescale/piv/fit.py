@@ -23,6 +23,7 @@ from porescale.piv.interpolate import sample
 from porescale.piv.lattice import bending, collect, moments, weighted
 from porescale.piv.passes import Paths, moved, places, seen
 from porescale.piv.prepare import Ready
+from porescale.piv.rims import WEIGHT, Rims
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
@@ -33,8 +34,12 @@ BLOCK = 4
 """Side of the blocks that pixels are summed over, px: about a spot; within one the field is taken as one."""
 AROUND = 6.0
 """Standard deviation of the bell that local means, contrast and correlation are taken over, px."""
-FLAT = 1e-9
-"""Variance of grey levels below which there is nothing to see."""
+FLAT = 1e-6
+"""Share of the largest variance of grey levels below which there is nothing to see."""
+ROUND = 0.01
+"""Determinant of H over its squared trace, 1/4 for round spots and 0 for straight edges, from which both components are
+told.
+"""
 LEAST_FREE = np.float32(0.25)
 """Share of the spots' freedom that is left at least, when variances are judged."""
 ROUNDS, CLOSE = 30, 0.02
@@ -96,7 +101,7 @@ def _local(sums: Single, least: float) -> tuple[Single, Single]:
     light = np.maximum(around[0], np.float32(1e-6))
     a, b = around[1] / light, around[2] / light
     var_a, var_b = around[3] / light - a * a, around[4] / light - b * b
-    good = (around[0] > 0) & (var_a > FLAT) & (var_b > FLAT)
+    good = (around[0] > 0) & (np.minimum(var_a, var_b) > FLAT * max(1e-30, float(var_a.max()), float(var_b.max())))
     gain = np.sqrt(np.where(good, var_a, 1) / np.where(good, var_b, 1))
     alike = np.where(good, (around[5] / light - a * b) / np.sqrt(np.where(good, var_a * var_b, 1)), 0)
     floor = np.maximum(np.float32(least), np.float32(1e-6) * np.where(good, var_a, 1))
@@ -114,15 +119,16 @@ BENT = 20.0
 """Diagonal of ``bending`` away from the edges."""
 
 
-def solved(grid: Grid, c: Single, known: Equations, stiffness: float) -> Single:
+def solved(grid: Grid, c: Single, known: Equations, stiffness: float, still: Rims | None = None) -> Single:
     """Update of the coefficients c (2, m, n) of u and v, by conjugate gradients.
 
-    stiffness : s over the mean of w g^2 in the fluid and the square of a step.
+    stiffness : s over the mean of w g^2 in the fluid and the square of a step;  still : rims where the field is zero.
     """
     down, across = grid.axes(BLOCK)
     hxx, hxy, hyy, bx, by = known.sums
     mean = 0.5 * float((hxx + hyy).sum(dtype=np.float64)) / max(1.0, float(known.seen.sum(dtype=np.float64)))
     s = np.float32(stiffness * mean * grid.step**2)
+    held = np.float32(WEIGHT * mean)
     spare = np.empty((2, hxx.shape[0], c.shape[2]), np.float32)
     at = np.empty((2, *hxx.shape), np.float32)
 
@@ -136,17 +142,22 @@ def solved(grid: Grid, c: Single, known: Equations, stiffness: float) -> Single:
         found = np.empty_like(p)
         for k in (0, 1):
             bending(p[k], found[k])
+            found[k] *= s
+            if still is not None:
+                found[k] += held * still.pulled(p[k])
         return found
 
     def applied(p: Single) -> Single:
         for k in (0, 1):
             expand(p[k], down.first, down.weights, across.first, across.weights, spare[k], at[k])
         u, v = at
-        return carried((hxx * u + hxy * v, hxy * u + hyy * v)) + s * bent(p)
+        return carried((hxx * u + hxy * v, hxy * u + hyy * v)) + bent(p)
 
     squared = down._replace(weights=down.weights**2), across._replace(weights=across.weights**2)
     diagonal = carried((hxx, hyy), squared) + np.float32(BENT) * s + np.float32(1e-12)
-    left = carried((bx, by)) - s * bent(c)
+    if still is not None:
+        diagonal += held * still.diagonal((c.shape[1], c.shape[2]))
+    left = carried((bx, by)) - bent(c)
     found = np.zeros_like(c)
     eased = left / diagonal
     p, power = eased.copy(), _dot(left, eased)
@@ -175,7 +186,8 @@ def variances(known: Equations, freedom: float) -> Single:
 
     freedom : of the fit, coefficients a square px of one component.  Spots are few: with n of them to p coefficients
     residuals are short by 1 - p/n, and scattered spots tell less than the same light spread out by as much again (n of
-    blocks: squared mean over mean square of H).  Infinite where pictures tell nothing.
+    blocks: squared mean over mean square of H).  Infinite where pictures tell nothing, or of one component only, as
+    a straight edge does.
     """
     area = np.float32(BLOCK**2)
     hxx, hxy, hyy = (blurred(it) / area for it in known.sums[:3])
@@ -184,8 +196,8 @@ def variances(known: Equations, freedom: float) -> Single:
     spots = blurred(trace) ** 2 / np.maximum(blurred(trace * trace), np.float32(1e-12)) / area
     short = np.maximum(LEAST_FREE, 1 - np.float32(freedom) / np.maximum(spots, np.float32(1e-12)))
     det = hxx * hyy - hxy * hxy
-    good = det > 1e-6 * (hxx + hyy) ** 2
-    safe = np.where(good, det, 1)
+    good = det > ROUND * (hxx + hyy) ** 2
+    safe = np.where(good, det, np.inf)
     xx, xy, yy = hyy / safe, -hxy / safe, hxx / safe
     both = xx * xx * qxx + 2 * xx * xy * qxy + xy * xy * qyy + xy * xy * qxx + 2 * xy * yy * qxy + yy * yy * qyy
     return np.where(good, 0.5 * np.maximum(0, both) / short**2, np.inf).astype(np.float32)

@@ -18,6 +18,7 @@ from porescale.piv.grid import Grid, nearest
 from porescale.piv.outliers import THRESHOLD, filled, residual
 from porescale.piv.passes import correlation_pass, paths
 from porescale.piv.prepare import Ready, ready
+from porescale.piv.rims import Rims, rims
 from porescale.piv.smooth import smoothed
 
 Array = NDArray[np.float64]
@@ -32,7 +33,8 @@ class Settings:
     displacement that the first pass looks for;  updates : Gauss-Newton updates after the last correlation, at most;
     stiffness : weight of second derivatives in them, over that of the pictures, in knots' distances;  noise, slack :
     residuals from which a pixel counts for less, over the pictures' noise, and in px of displacement;  curved : paths
-    bend as in a steady flow;  smooth : by cross-validation at the end;  least_correlation : below it, alone or in the
+    bend as in a steady flow;  smooth : by cross-validation at the end;  no_slip : the flow stands still at the rims of
+    solids that both pictures have at one place;  least_correlation : below it, alone or in the
     median around, a vector is invalid.
     """
 
@@ -45,6 +47,7 @@ class Settings:
     slack: float = 0.2
     curved: bool = True
     smooth: bool = True
+    no_slip: bool = False
     least_correlation: float = 0.3
 
     def check(self, size: tuple[int, int]) -> None:
@@ -123,7 +126,7 @@ def measure(
 
 
 def refuse(first: NDArray[Any], second: NDArray[Any], masks: Sequence[Flags | None], settings: Settings) -> None:
-    """Raise InputError for sizes that differ, masks that do not fit or leave nothing, and pictures without contrast."""
+    """Raise InputError for sizes that differ, masks that do not fit, and pictures that show nothing (``unseen``)."""
     if first.shape != second.shape or first.ndim != 2:
         sizes = " and ".join("x".join(str(side) for side in it.shape[1::-1]) for it in (first, second))
         raise InputError(Fault("pictures", sizes, "are not of one size"))
@@ -132,11 +135,36 @@ def refuse(first: NDArray[Any], second: NDArray[Any], masks: Sequence[Flags | No
         if mask is not None and mask.shape != picture.shape:
             sizes = " and ".join("x".join(str(side) for side in it.shape[::-1]) for it in (mask, picture))
             raise InputError(Fault("--mask", sizes, "the mask is not of the pictures' size"))
+    fault = unseen((first, second), masks)
+    if fault is not None:
+        raise InputError(fault)
+
+
+SATURATED = 0.5
+"""Share of the fluid's pixels at the top of their range from which a picture is overexposed."""
+
+
+def unseen(pictures: Sequence[NDArray[Any]], masks: Sequence[Flags | None]) -> Fault | None:
+    """Why pictures show no flow: a mask over all, no contrast, overexposed; None where they may show one."""
+    for picture, mask in zip(pictures, masks, strict=True):
         if mask is not None and mask.all():
-            raise InputError(Fault("--mask", None, "covers the whole picture", repair="solid is white, fluid black"))
+            return Fault("--mask", None, "covers the whole picture", repair="solid is white, fluid black")
         seen = picture if mask is None else picture[~mask]
         if float(seen.max()) - float(seen.min()) <= 0:
-            raise InputError(Fault("pictures", None, f"no tracers: every pixel of the fluid is {seen.flat[0]}"))
+            return Fault("pictures", None, f"no tracers: every pixel of the fluid is {seen.flat[0]}")
+        if seen.dtype.kind == "u":
+            share = float(np.mean(seen == np.iinfo(seen.dtype).max))
+            if share > SATURATED:
+                words = f"overexposed: {100 * share:.0f} % of the fluid's pixels are white"
+                return Fault("pictures", None, words, repair="less light, or a shorter exposure")
+    return None
+
+
+def nothing(size: tuple[int, int], masks: Sequence[Flags | None], settings: Settings) -> Vectors:
+    """Vectors of pictures that show no flow: none valid, none replaced."""
+    grid = Grid(size, settings.window, settings.step)
+    fluid, zero, none = _fluid(grid, masks), np.zeros(grid.shape), np.zeros(grid.shape, bool)
+    return Vectors(grid.x, grid.y, zero, zero, none, none, ~fluid, zero, zero, zero + np.inf)
 
 
 def measure_ready(
@@ -160,7 +188,8 @@ def measure_ready(
         good = fluid & (found.value > 0.5 * settings.least_correlation)
         lost = _outliers(u + found.u, v + found.v, found.u, found.v, good, THRESHOLD)
         u, v = filled(u + found.u, v + found.v, good & ~(lost & (found.ratio < CLEAR)))
-    fitted = _fitted(pairs, grid, grid.both(u, v), fluid, settings)
+    still = rims(grid, masks) if settings.no_slip else None
+    fitted = _fitted(pairs, grid, grid.both(u, v), fluid, settings, still)
     return _vectors(fitted, Grid(size, window, settings.step), masks, found.ratio, settings)
 
 
@@ -176,7 +205,12 @@ class Fitted(NamedTuple):
 
 
 def _fitted(
-    pairs: Iterable[tuple[Ready, Ready]], grid: Grid, c: NDArray[np.float32], fluid: Flags, settings: Settings
+    pairs: Iterable[tuple[Ready, Ready]],
+    grid: Grid,
+    c: NDArray[np.float32],
+    fluid: Flags,
+    settings: Settings,
+    still: Rims | None,
 ) -> Fitted:
     """Updates of all of the field at once, each validated and repaired."""
     start_u, start_v = (grid.values(it) for it in c)
@@ -186,7 +220,7 @@ def _fitted(
         along = paths(grid, c, curved=settings.curved, whole=not last)
         slack = settings.slack * (1.0 if last else EASED[min(number, len(EASED) - 1)])
         known = equations(pairs, along, settings.noise, slack, exact=last)
-        update = np.clip(solved(grid, c, known, settings.firm), -LARGEST, LARGEST)
+        update = np.clip(solved(grid, c, known, settings.firm, still), -LARGEST, LARGEST)
         c = c + update
         far = float(np.percentile(np.abs([grid.values(it) for it in update])[:, fluid], SHARE)) if fluid.any() else 0.0
         u, v = (grid.values(it) for it in c)

@@ -18,8 +18,8 @@ RIM = 1
 
 
 class Ready(NamedTuple):
-    """coefficients : of the spline, solids filled with the local mean;  fluid : 1 where fluid, the rim of solids left
-    out; contrast : less the local mean, 0 in solids;  half_* : the same at half the resolution;  solid : whether there
+    """contrast : grey values less their local mean, 0 in solids;  coefficients : of the spline through it;  fluid : 1
+    where fluid, the rim of solids left out;  half_* : the same at half the resolution;  solid : whether there
     is any.  Arrays float32, (rows, columns), the coefficients padded.
     """
 
@@ -38,7 +38,7 @@ def ready(picture: NDArray[Any], solid: Mask | None, reach: int) -> Ready:
     if solid is None or not solid.any():
         fluid = np.ones(grey.shape, np.float32)
         contrast = grey - cv2.blur(grey, side, borderType=cv2.BORDER_REFLECT_101)
-        return Ready(coefficients(grey), fluid, contrast, _halved(fluid), _halved(contrast), False)
+        return Ready(coefficients(contrast), fluid, contrast, _halved(fluid), _halved(contrast), False)
     grown = cv2.dilate(solid.astype(np.uint8), np.ones((2 * RIM + 1,) * 2, np.uint8))
     fluid = np.asarray(grown == 0, np.float32)
     share = cv2.blur(fluid, side, borderType=cv2.BORDER_REFLECT_101)
@@ -46,10 +46,9 @@ def ready(picture: NDArray[Any], solid: Mask | None, reach: int) -> Ready:
     mean = np.where(share > 1e-3, light / np.maximum(share, 1e-3), np.float32(0))
     whole = float((grey * fluid).sum() / max(1.0, float(fluid.sum())))
     mean[share <= 1e-3] = whole
-    filled = np.where(fluid > 0, grey, mean)
     contrast = (grey - mean) * fluid
     half = np.asarray(_halved(fluid) > 0.5, np.float32)
-    return Ready(coefficients(filled), fluid, contrast, half, _halved(contrast) * half, True)
+    return Ready(coefficients(contrast), fluid, contrast, half, _halved(contrast) * half, True)
 
 
 def _halved(image: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from porescale.ground.check import Fault, InputError
 from porescale.piv.film import Film, background
 from porescale.piv.masks import Mask, masks
-from porescale.piv.measure import Settings, Vectors, measure, measure_ready, refuse
+from porescale.piv.measure import Settings, Vectors, measure, measure_ready, nothing, refuse, unseen
 from porescale.piv.prepare import Ready, ready
 from porescale.runs.model import Grid
 
@@ -52,11 +52,20 @@ class Shots:
             last = shot
 
 
-def measured(shots: Shots, settings: Settings) -> Iterator[Vectors]:
-    """A field for each pair of frames, one pair in memory at a time.  InputError where a pair cannot be measured."""
+def measured(shots: Shots, settings: Settings, say: Callable[[str], object] | None = None) -> Iterator[Vectors]:
+    """A field for each pair of frames, one pair in memory at a time.  InputError where a pair cannot be measured.
+
+    say : told of pairs that show nothing, whose vectors are all invalid then; without it they are an error too.
+    """
     count = 0
     for (first, mask_a), (second, mask_b) in shots.pairs():
         count += 1
+        fault = None if say is None else unseen((first, second), (mask_a, mask_b))
+        if say is not None and fault is not None:
+            number = shots.film.start + (count - 1) * shots.film.step
+            say(f"frames {number} and {number + shots.film.step}: {InputError(fault)}; none of their vectors is valid")
+            yield nothing((first.shape[0], first.shape[1]), (mask_a, mask_b), settings)
+            continue
         empty = np.zeros(first.shape, bool)
         solid = None if mask_a is None and mask_b is None else (_or(mask_a, empty), _or(mask_b, empty))
         yield measure(first, second, solid, settings)
@@ -64,12 +73,13 @@ def measured(shots: Shots, settings: Settings) -> Iterator[Vectors]:
         raise InputError(Fault("film", None, "fewer than two frames chosen", repair="widen --start, --end, --step"))
 
 
-def averaged(shots: Shots, settings: Settings) -> Vectors:
+def averaged(shots: Shots, settings: Settings, tell: Callable[[], object] | None = None) -> Vectors:
     """One field from all pairs of a steady flow: their correlations and equations are summed, not their vectors.
 
-    Gone through once for every pass, one pair in memory at a time; solid is what is solid in every frame.
+    Gone through once for every pass, one pair in memory at a time; solid is what is solid in every frame.  tell :
+    called for every pair in every pass.
     """
-    pairs = _Prepared(shots, settings)
+    pairs = _Prepared(shots, settings, tell or (lambda: None))
     size, solid = None, None
     for (first, mask_a), (second, mask_b) in shots.pairs():
         refuse(first, second, (mask_a, mask_b), settings)
@@ -87,12 +97,14 @@ class _Prepared:
 
     shots: Shots
     settings: Settings
+    tell: Callable[[], object]
 
     def __iter__(self) -> Iterator[tuple[Ready, Ready]]:
         last = None
         for picture, mask in self.shots.frames():
             new = ready(picture, mask, 2 * max(16, self.settings.window))
             if last is not None:
+                self.tell()
                 yield last, new
             last = new
 

@@ -95,6 +95,7 @@ def test_what_cannot_be_measured_is_said_in_a_line(piv):
         (("measure", *one, "--region", "0,0,10"), "--region"),
         (("measure", *one, "--region", "0,0,65,10"), "leaves the picture"),
         (("measure", "a/a.png"), "single picture"),
+        (("measure", *one, "--no-slip"), "--no-slip: there are no solids"),
         (("measure", "a/exact.csv"), "cannot be read"),
         (("synth", "spiral"), "no such flow"),
         (("compare", "a/exact.csv", "white.png"), "field"),

@@ -12,6 +12,7 @@ from scipy.ndimage import map_coordinates, spline_filter
 from porescale.piv import fit, interpolate, lattice, outliers, spots
 from porescale.piv.correlate import Layout, block_products, correlation, peaks
 from porescale.piv.grid import Grid, expand, spline_matrix
+from porescale.piv.rims import rims
 from porescale.piv.smooth import smoothed
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -198,6 +199,24 @@ def test_bending_is_the_gradient_of_squared_second_differences():
     assert (found * way).sum() == pytest.approx((energy(c + 1e-3 * way) - energy(c - 1e-3 * way)) / 2e-3, abs=1e-9)
     lattice.bending(2.0 * x - y + 3, turned)
     assert np.abs(turned).max() < 1e-12
+
+
+def test_rims_lie_between_pixels_and_pull_as_they_look():
+    mask = np.zeros((48, 48), bool)
+    mask[20:28, 16:32] = True
+    grid = Grid((48, 48), 16, 8)
+    found = rims(grid, (mask, mask))
+    assert found.values.shape[0] == 2 * 8 + 2 * 16  # a point for every side of a pixel
+    down, across = grid.axes()
+    plane = np.add.outer(0 * down.at, across.at).astype(np.float32)
+    at = found.values @ plane.ravel()
+    # Sums of 16 float32 products of places up to 48 px.
+    np.testing.assert_allclose(np.unique(np.round(at, 2)), sorted([15.5, 31.5, *range(16, 32)]), atol=0.01)
+    np.testing.assert_allclose((found.pulled(plane) * plane).sum(), (at**2).sum(), rtol=100 * EPS32)
+    np.testing.assert_allclose(found.diagonal(plane.shape).sum(), found.values.power(2).sum(), rtol=100 * EPS32)
+    assert rims(grid, (mask, np.roll(mask, 4, (0, 1)))) is None  # it moved
+    assert rims(grid, (mask, None)) is None
+    assert rims(grid, (mask, ~np.ones_like(mask))) is None
 
 
 def deformed(shift: float, size: int = 48) -> tuple[np.ndarray, ...]:

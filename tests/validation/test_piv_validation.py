@@ -134,6 +134,11 @@ def test_splines_too_stiff_for_boundary_layers_miss_the_row_of_the_discs():
 
 
 @pytest.mark.slow
+def test_rims_that_are_not_told_miss_the_row_of_those_that_are():
+    assert lab.trial(*lab.TABLE["discs"], range(1)).near > tolerance("past_discs_without_slip")
+
+
+@pytest.mark.slow
 def test_half_the_uncertainty_is_not_what_errors_are(monkeypatch):
     whole = lab.measure
     monkeypatch.setattr(lab, "measure", lambda *those: _surer(whole(*those)))

@@ -1,0 +1,154 @@
+"""Films from the command line: long ones in bounded memory, moving masks, blank and overexposed frames, averages."""
+
+from __future__ import annotations
+
+import csv
+import json
+import tracemalloc
+
+import cv2
+import numpy as np
+import pytest
+
+from porescale.app import piv_measure
+from porescale.app.main import commands
+from porescale.ground.jit import set_threads, threads
+from porescale.piv import flows
+from porescale.piv.spots import add_spots, coverage
+from porescale.runs.film import write_film
+from porescale.workbench.application import main
+
+ROWS, COLUMNS = 96, 128
+SPEED, DISC = 1.5, 0.2
+"""px a frame: of the flow, and of the disc in it."""
+
+
+@pytest.fixture
+def piv(tmp_path, monkeypatch, capsys):
+    """Runs `porescale piv measure …` in an empty folder on one thread; gives exit code, stdout, stderr lines."""
+    before = threads()
+    monkeypatch.chdir(tmp_path)
+
+    def run(*tokens: str) -> tuple[int, str, list[str]]:
+        code = main(commands(), ["piv", "measure", *map(str, tokens), "--threads", "1"])
+        said = capsys.readouterr()
+        return code, said.out, said.err.splitlines()
+
+    yield run
+    set_threads(before)
+
+
+def shots(count):
+    """Frames of a uniform flow, tracers coming in on the left, past a disc that moves, and masks of it."""
+    random = np.random.default_rng(0)
+    wide = round(COLUMNS + SPEED * count + 40)
+    x, y = random.uniform(-20 - SPEED * count, COLUMNS + 20, wide * ROWS // 20), None
+    y = random.uniform(-5, ROWS + 5, x.size)
+    light = 200 * np.exp(-(random.uniform(-1, 1, x.size) ** 2))
+    for k in range(count):
+        image, share = np.full((ROWS, COLUMNS), 16.0), np.zeros((ROWS, COLUMNS))
+        near = np.abs(x + SPEED * k - COLUMNS / 2) < COLUMNS / 2 + 10
+        add_spots(x[near] + SPEED * k, y[near], light[near], 0.7, image)
+        coverage(flows.Discs(np.array([30 + DISC * k]), np.array([48.0]), np.array([12.0])), share)
+        image = image * (1 - share) + 180 * share + random.normal(0, 3, image.shape)
+        yield np.clip(image, 0, 255).astype(np.uint8), ((share > 0.5) * 255).astype(np.uint8)
+
+
+def filmed(count, folder, spoiled=None):
+    """Write film.mp4 and masks/ into a folder; ``spoiled`` : number of a frame -> grey level of all of it."""
+    (folder / "masks").mkdir()
+
+    def frames():
+        for k, (image, mask) in enumerate(shots(count)):
+            cv2.imwrite(str(folder / "masks" / f"{k:04d}.png"), mask)
+            shown = np.full_like(image, spoiled[k]) if spoiled and k in spoiled else image
+            yield np.repeat(shown[..., None], 3, 2)
+
+    write_film(folder / "film", frames(), 25)
+
+
+def table(path):
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+
+@pytest.mark.slow
+def test_300_frames_take_no_more_memory_than_30_and_say_how_far_they_are(piv, tmp_path, monkeypatch):
+    filmed(300, tmp_path)
+    monkeypatch.setattr(piv_measure, "PATIENCE", 0.0)
+    peaks = []
+    for count in (20, 30, 300):  # the first one fills caches
+        tracemalloc.start()
+        code, said, told = piv("film.mp4", "--mask", "masks", "--end", count, "--out", "m", "--json")
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+        assert code == 0
+        assert json.loads(said)["pairs"] == count - 1
+    # 270 more frames are 3.3 MB; a few more file names and times are kept.
+    assert peaks[2] - peaks[1] < 0.2 * 270 * ROWS * COLUMNS
+    assert "298 of 299 pairs" in told[-1]
+    last = table(tmp_path / "m" / "vectors_0298.csv")
+    # The mask moves with the disc: from 30 to 90 px, of which a grid of 8 px shows seven or eight steps.
+    middle = [table(tmp_path / "m" / f"vectors_{k:04d}.csv") for k in (0, 298)]
+    at = [it["x"][it["solid"] > 0].mean() for it in middle]
+    assert at[1] - at[0] == pytest.approx(298 * DISC, abs=8)
+    free = (last["solid"] == 0) & (np.hypot(last["x"] - 30 - DISC * 298, last["y"] - 48) > 28)
+    # H.264 takes off some of the faint tracers: a tenth of a pixel.
+    assert np.sqrt(np.mean((last["u"][free] - SPEED) ** 2)) < 0.1
+
+
+def test_a_blank_frame_spoils_its_own_pairs_only(piv, tmp_path):
+    filmed(5, tmp_path, {1: 255})
+    code, said, told = piv("film.mp4", "--mask", "masks", "--out", "m", "--json")
+    assert code == 0
+    assert json.loads(said)["pairs"] == 4
+    assert len(told) == 2
+    assert all("overexposed" in line or "no tracers" in line for line in told)
+    for k, good in enumerate((False, False, True, True)):
+        found = table(tmp_path / "m" / f"vectors_{k:04d}.csv")
+        assert np.isfinite(found["u"][found["solid"] == 0]).all()
+        assert (found["valid"].mean() > 0.8) == good
+        assert (found["valid"].sum() == 0) != good
+
+
+def test_a_film_that_shows_nothing_is_refused(piv, tmp_path):
+    filmed(4, tmp_path, dict.fromkeys(range(4), 90))
+    code, out, told = piv("film.mp4", "--out", "m")
+    assert (code, out) == (2, "")
+    assert "same tracers" in told[-1]
+    assert not (tmp_path / "m" / "piv.vtkhdf").exists()
+
+
+def test_an_overexposed_half_is_flagged_and_the_whole_refused(piv, tmp_path):
+    for k, (image, _) in enumerate(shots(2)):
+        half = image.copy()
+        half[:, : COLUMNS // 2 - 4] = 255
+        cv2.imwrite(f"half_{k}.png", half)
+        white = np.where(image < 30, 250, 255).astype(np.uint8)
+        white[::7] = 255
+        white[image < 14] = 254
+        white[image >= 14] = 255
+        cv2.imwrite(f"white_{k}.png", white)
+    code, _, _ = piv("half_0.png", "half_1.png", "--csv", "m.csv")
+    assert code == 0
+    found = table(tmp_path / "m.csv")
+    assert found["valid"][found["x"] < COLUMNS // 2 - 24].max() == 0
+    assert found["valid"][found["x"] > COLUMNS // 2 + 16].mean() > 0.9
+    code, out, told = piv("white_0.png", "white_1.png", "--csv", "w.csv")
+    assert (code, out) == (2, "")
+    assert "overexposed" in told[0]
+
+
+def test_pairs_of_a_film_are_averaged_over_steps_and_regions(piv, tmp_path, monkeypatch):
+    filmed(9, tmp_path)
+    monkeypatch.setattr(piv_measure, "PATIENCE", 0.0)
+    chosen = ("--start", 1, "--end", 8, "--step", 2, "--region", "8,0,128,96", "--average", "--csv", "m.csv")
+    code, _, told = piv("film.mp4", "--mask", "masks", *chosen)
+    assert code == 0
+    assert "pass 1: 1 of 3 pairs" in told[0]
+    found = table(tmp_path / "m.csv")
+    assert found["x"].min() == 16.0
+    far = (found["solid"] == 0) & (np.hypot(found["x"] - 31, found["y"] - 48) > 28)
+    # Two frames apart: twice the speed; three pairs of a film, a tenth of a pixel.
+    assert np.sqrt(np.mean((found["u"][far] - 2 * SPEED) ** 2)) < 0.1
