@@ -48,7 +48,7 @@ class SoilNumerics(Section):
     """
 
     gradient: Literal["corrected", "plain"] = "corrected"
-    damping: float = quantity("", 1.0, ge=0, le=4, help="alpha of the damping")
+    damping: float = quantity("", 0.2, ge=0, le=4, help="alpha of the damping")
     damping_of: Literal["zig-zags", "approach"] = "zig-zags"
     stress_diffusion: float = quantity("", 100.0, ge=0, le=1000, help="diffusion of stress per shear strain")
     restless_diffusion: float = quantity("", 0.0, ge=0, le=1, help="diffusion of stress by sound: soil creeps")

@@ -27,7 +27,7 @@ class SoilLaw:
     spacing: float
     materials: tuple[Material, ...]
     gravity: tuple[float, float]
-    damping: float = 1.0
+    damping: float = 0.2
     printed_damping: bool = False
     corrected: bool = True
     diffusion: float = 100.0
