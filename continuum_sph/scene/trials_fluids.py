@@ -9,9 +9,11 @@ from continuum_sph.eos import Tait
 from continuum_sph.fluids import Fluid
 from continuum_sph.law import Law
 from continuum_sph.layers import Layer
+from continuum_sph.scene.sections import Scene
 from continuum_sph.smoothing import Smoothing
 from continuum_sph.step import Flow
 from porescale.particles import PairList, square_lattice
+from porescale.workbench.sections import validate
 
 Floats = NDArray[np.float64]
 
@@ -49,6 +51,34 @@ def drop(
     flow = Flow(layer, law, pairs)
     flow.start()
     return flow
+
+
+def hysing(spacing: float) -> Scene:
+    """Test case 1 of Hysing et al., Int. J. Numer. Methods Fluids 60 (2009) 1259, a light thick bubble, as a scene."""
+    return validate(
+        Scene,
+        {
+            "gravity": 0.98,
+            "tank": {"width": 1.0, "height": 2.0, "walls": "floor and lid stick"},
+            "water": {
+                "density": 1000.0,
+                "viscosity": 10.0,
+                "sound_speed": 10.0,
+                "pressure": "released",
+                "column": [{"width": 1.0, "height": 2.0}],
+            },
+            "inclusion": {
+                "density": 100.0,
+                "viscosity": 1.0,
+                "law": "liquid",
+                "surface_tension": 24.5,
+                "disc": [{"x": 0.5, "y": 0.5, "radius": 0.25}],
+            },
+            "numerics": {"spacing": spacing, "artificial_viscosity": 0.0, "gradient": "corrected", "shifting": 2.0},
+            "time": {"end": 3.0},
+            "output": {"snapshot_interval": 3.0, "series_interval": 3.0},
+        },
+    )
 
 
 def pressure_jump(flow: Flow, radius: float) -> float:

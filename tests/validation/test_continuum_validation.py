@@ -128,6 +128,12 @@ def test_a_drop_of_less_tension_swings_slower():
     assert abs(found / exact - 1.0) > tolerance("continuum.drop_period")
 
 
+@pytest.mark.slow
+def test_a_bubble_of_five_particles_in_its_radius_rises_too_fast():
+    rise, _ = verify_fluids.rising(0.05, 0.9)
+    assert rise / verify_fluids.RISE - 1.0 > tolerance("continuum.rising_bubble")
+
+
 def test_coarse_waves_are_slower_than_the_tolerance():
     period, _ = verify.sound_period(8)
     assert abs(period / 0.1 - 1.0) > tolerance("continuum.sound_period")
