@@ -23,7 +23,7 @@ from porescale.scene.geometry import judge_places, placed
 from porescale.scene.grain_bodies import by_hand, judge_bodies, lightest
 from porescale.scene.lattice import is_whole
 from porescale.scene.packing import judge_compressed, radii_of
-from porescale.scene.polygons_in_fluid import longest_step, too_few_cells
+from porescale.scene.polygons_in_fluid import longest_step, too_few_cells, too_light
 from porescale.scene.regime import expected_speed, judge
 from porescale.scene.rock import rock_frames
 from porescale.scene.sections import Scene
@@ -90,7 +90,8 @@ def derive(scene: Scene) -> Derived:
     warnings += strays(scene, frames)
     variation = 0.0
     if scales:
-        warnings += filter(None, [too_few_cells(frames, scales.spacing)])
+        light = too_light(frames, scales.spacing, scales.density)
+        warnings += filter(None, [too_few_cells(frames, scales.spacing), light])
         variation = judge(scene, scales, speed, sizes, faults, warnings)
     _loads(scene, faults)
     judge_bodies(scene, grain_count(scene) - len(scene.disc), faults)

@@ -72,6 +72,13 @@ def test_a_plate_of_one_cell_is_warned_of():
     assert not any("cells across" in word for word in derive(wet(SQUARE)).warnings)
 
 
+def test_a_polygon_lighter_than_is_known_to_hold_is_warned_of():
+    said = derive(wet(SQUARE | {"density": 150.0})).warnings
+    assert any("polygon[0] has a density ratio of 0.15" in word and "from 0.2 on" in word for word in said)
+    assert not any("density ratio" in word for word in derive(wet(SQUARE | {"density": 150.0, "held": True})).warnings)
+    assert not any("known to hold from" in word for word in derive(wet(SQUARE | {"density": 250.0})).warnings)
+
+
 def test_no_polygon_goes_further_in_a_contact_step_than_its_thickness_bears():
     found = derive(wet(SQUARE))
     assert found.contact_step * found.speed <= 0.05 * 2e-5 < 2 * found.contact_step * found.speed
