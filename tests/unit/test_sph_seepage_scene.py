@@ -6,12 +6,15 @@ import numpy as np
 import pytest
 
 from continuum_sph.app import PACKAGE
+from continuum_sph.scene import seepage_build
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.seepage_model import DRY, WET, SeepageSimulation
 from continuum_sph.scene.seepage_report import seepage_report
+from continuum_sph.scene.trials_seepage import saturated_box
 from continuum_sph.soil.state import YY
 from porescale.ground.check import InputError
 from porescale.ground.constants import GRAVITY
+from porescale.ground.jit import set_threads
 from porescale.workbench.sections import validate
 
 OUTLINE = [[0, 0], [0.3, 0], [0.3, 0.2], [0, 0.2]]
@@ -75,10 +78,21 @@ def test_a_resumed_run_goes_on_bit_for_bit():
 
 
 @pytest.mark.slow
-def test_soil_that_forgets_its_buoyancy_swells(monkeypatch):  # the twin that must fail
-    import continuum_sph.scene.seepage_build as made
+def test_one_thread_and_many_give_the_same_bits():
+    ends = []
+    for threads in (1, 2):
+        set_threads(threads)
+        both = saturated_box(16, 3, speed=0.1)
+        for _ in range(20):
+            both.advance()
+        ends.append((both.water.layer.x.copy(), both.water.skeleton.v.copy(), both.water.heat.copy()))
+    set_threads(None)
+    assert all(np.array_equal(one, many) for one, many in zip(*ends, strict=True))
 
-    monkeypatch.setattr(made, "submerge", lambda *_: None)
+
+@pytest.mark.slow
+def test_soil_that_forgets_its_buoyancy_swells(monkeypatch):  # the twin that must fail
+    monkeypatch.setattr(seepage_build, "submerge", lambda *_: None)
     model = SeepageSimulation(scene())
     model.advance(300)
     assert model.series()["soil: stress upright over weight ()"] > 0.8
