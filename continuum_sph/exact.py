@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import jv, jvp
 
 Floats = NDArray[np.float64]
 
@@ -47,6 +48,21 @@ def poiseuille(y: Floats, time: float, gap: float, force: float, viscosity: floa
         k = (2 * n + 1) * np.pi / gap
         u = u - 4.0 * force / (viscosity * gap * k**3) * np.sin(k * y) * np.exp(-viscosity * k * k * time)
     return u
+
+
+def drop_period(radius: float, tension: float, inner: float, outer: float, sound: float) -> float:
+    """Period (s) of the swing n = 2 of a drop of ``radius`` (m) in the plane, both fluids without viscosity.
+
+    ω² {ρ_i J₂(x)/x J₂'(x) + ρ_e/2} = 3 σ/R³, x = ω R/c: Lamb, Hydrodynamics (6th ed., arts 273-275), with sound of
+    speed ``sound`` (m/s) in the drop, whose pressure goes as J₂;  σ ``tension`` N/m, ρ_i ``inner``, ρ_e ``outer``
+    kg/m³.  Infinite sound: J₂(x)/x J₂'(x) = 1/2.
+    """
+    frequency = (6.0 * tension / ((inner + outer) * radius**3)) ** 0.5
+    for _ in range(60):  # converges as (x²/6)^k
+        x = frequency * radius / sound
+        share = jv(2, x) / (x * jvp(2, x)) if x > 0.0 else 0.5
+        frequency = (3.0 * tension / radius**3 / (inner * share + 0.5 * outer)) ** 0.5
+    return float(2.0 * np.pi / frequency)
 
 
 def taylor_green_vortices(x: Floats) -> tuple[Floats, Floats]:

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import numpy as np
 
+from continuum_sph.exact import drop_period
 from continuum_sph.scene import trials_fluids
 from continuum_sph.scene.trials import run_until
-from continuum_sph.scene.trials_fluids import OUTER, TENSION
+from continuum_sph.scene.trials_fluids import OUTER, SOUND, TENSION
 from porescale.scene.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 RADIUS, AT_REST = 0.2, 0.25  # m
 VISCOSITY, OUTER_VISCOSITY = 0.01, 0.001  # Pa s
-PERIOD = 2.0 * math.pi * math.sqrt((1.0 + OUTER) * RADIUS**3 / (6.0 * TENSION))  # s
+PERIOD = drop_period(RADIUS, TENSION, 1.0, OUTER, SOUND)  # s
 DAMPING = 4.0 * VISCOSITY / RADIUS**2  # 1/s, n = 2, of the drop alone
 
 

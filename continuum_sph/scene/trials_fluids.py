@@ -19,6 +19,7 @@ Floats = NDArray[np.float64]
 
 TENSION = 1.0  # N/m
 OUTER = 0.1  # kg/m³; the drop has 1
+SOUND = 10.0  # m/s, of the drop
 
 
 def drop(
@@ -39,7 +40,7 @@ def drop(
     x = square_lattice((0.0, 0.0), (1.0, 1.0), spacing)
     place = (x - 0.5) * [1.0 / stretch, stretch]
     inside = np.hypot(place[:, 0], place[:, 1]) < radius
-    light, heavy = Tait(OUTER, 10.0 * OUTER**-0.5), Tait(1.0, 10.0)  # equally stiff
+    light, heavy = Tait(OUTER, SOUND * OUTER**-0.5), Tait(1.0, SOUND)  # equally stiff
     rho = np.where(inside, heavy.density_at(np.array(tension / radius)), OUTER)
     smoothing = Smoothing("wendland", 1.3 * spacing)
     law = Law(

@@ -7,7 +7,7 @@ import pytest
 
 from continuum_sph.artificial_viscosity import artificial
 from continuum_sph.eos import Tait, tait, tait_density
-from continuum_sph.exact import couette, poiseuille, released_pressure
+from continuum_sph.exact import couette, drop_period, poiseuille, released_pressure
 from continuum_sph.scene.verify import LATTICE
 from continuum_sph.smoothing import CUBIC, WENDLAND, Smoothing, kernel_slope, kernel_value
 from continuum_sph.viscosity import laminar
@@ -122,3 +122,12 @@ def test_exact_solutions_meet_their_walls_and_starts():
     # face: terms beyond n = 400 sum to 2H/(π² 400) = 1/1000 of H; top: exactly 0 but for cos(π/2) rounding
     assert abs(p[1]) < 1000.0 * 9.81 * 2.0 / 1000.0
     assert abs(p[2]) < 1e-8
+
+
+def test_a_drop_of_stiff_liquid_has_lambs_period_and_a_soft_one_is_slower():
+    lamb = 2.0 * np.pi * np.sqrt(1.1 * 0.2**3 / 6.0)
+    assert drop_period(0.2, 1.0, 1.0, 0.1, 1e5) == pytest.approx(lamb, rel=1e-8)
+    x2 = (2.0 * np.pi / lamb * 0.2 / 10.0) ** 2
+    # J₂/x J₂' = 1/2 (1 + x²/12 + …): the drop's part of the mass grows by that, the period by half
+    expected = 1.0 + x2 / 24.0 / 1.1
+    assert drop_period(0.2, 1.0, 1.0, 0.1, 10.0) / lamb == pytest.approx(expected, abs=x2**2 / 48.0)
