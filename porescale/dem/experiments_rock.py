@@ -4,7 +4,7 @@ Tutorial II-4: 304 discs of 4 cm mean diameter, k_n 1e7 N/m, k_s a quarter of it
 and cells of the same packing, whose sides overlap by 0.08 mm.  Friction (tan 27 degrees, as in its part I), the packing
 and the sample's shape it does not give; the case cases/rock says what each of them is worth.
 
-They stand 4 mm apart, where the tutorial has 1 mm: with that a corner goes through the opposite side at an overlap of
+Triangles stand 1 mm apart, as there; cells 4 mm, since at 1 mm a corner goes through the opposite side at an overlap of
 1.08 mm, 13.5 times what bonds bear, and cells bear more before they break.
 """
 
@@ -27,6 +27,8 @@ DENSITY = 2500.0  # kg/m^3
 STIFFNESS = 1e7  # N/m
 TENSION = 774.0  # N/m, mean back tension
 GAP, PRESSED = 4e-3, 8e-5  # m
+GAPS: dict[Kind, float] = {"discs": 0.0, "triangles": 1e-3, "cells": GAP}
+"""The tutorial's 1 mm, but for cells, see above."""
 PREPARED = 0.2
 """Friction while discs are packed: the tutorial's were thrown in at random and settled, neither dense nor loose."""
 SLENDER = 2.0
@@ -59,12 +61,13 @@ def packing(
 
 
 def sample(
-    kind: Kind, seed: int = 0, count: int = COUNT, friction: float = PREPARED, shape: float = 1.0, gap: float = GAP,
-    rule: str = "outline",
+    kind: Kind, seed: int = 0, count: int = COUNT, friction: float = PREPARED, shape: float = 1.0,
+    gap: float | None = None, rule: str = "outline",
 ) -> Rock:  # fmt: skip
-    """A bonded sample, see packing and rock."""
+    """A bonded sample, see packing and rock;  gap : m, default GAPS."""
     discs, size = packing(seed, count, friction, shape)
-    return rock(kind, discs, (0.0, 0.0), size, law(), DENSITY, gap=gap, pressed=PRESSED, rule=rule)
+    apart = GAPS[kind] if gap is None else gap
+    return rock(kind, discs, (0.0, 0.0), size, law(), DENSITY, gap=apart, pressed=PRESSED, rule=rule)
 
 
 def curves_of(kind: Kind, seed: int = 0, count: int = COUNT, rate: float = RATE) -> tuple[Rock, Curve, Curve]:

@@ -95,9 +95,7 @@ def ratio_of_polygons() -> Measured:
 
 @VALIDATIONS.row(
     "dem.rock_of_slender_cells_breaks",
-    source="Coulomb 1776: a plane of shear stands at 45 + phi/2 = 58 degrees, tan 58 = 1.6 heights long; "
-    + TUTORIAL
-    + ".2: more than triangles",
+    source="Coulomb 1776: planes of shear, 45 + phi/2 = 58 degrees to the plates, reach 1.6 heights along the load",
     because="what a sample twice as long as high still bears, pressed to 4 %, over its peak: less than half of it",
     tolerance=0.5,
     slow=True,
