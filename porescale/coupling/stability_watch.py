@@ -112,4 +112,8 @@ def _lightest(coupled: Coupled) -> tuple[float | None, float]:
         return None, 0.0
     inside = displaced(grains, discs.radius, coupled.scales.density).mass
     ratio = discs.mass[free] / inside[free]
-    return float(ratio.min()), 2 * float(coupled.hydraulic_radius[free].min()) / coupled.scales.spacing
+    round_ones = free & (coupled.hydraulic_radius > 0.0)  # corners of polygons are nothing to the fluid
+    across = 2 * float(coupled.hydraulic_radius.min(where=round_ones, initial=np.inf)) / coupled.scales.spacing
+    if coupled.polygons:
+        across = min(across, float(coupled.polygons.polygons.width.min()))
+    return float(ratio.min()), across

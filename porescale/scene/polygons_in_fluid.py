@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from porescale.coupling.shapes.polygon import convex
+from porescale.coupling.shapes.polygon import convex, least_width
 from porescale.ground.check import Fault, InputError
 
 if TYPE_CHECKING:
@@ -47,14 +47,8 @@ def judge_in_fluid(scene: Scene, frames: Sequence[str]) -> list[Fault]:
 
 
 def widths(placed: Sequence[Placed]) -> list[float]:
-    """Least width (m) of each polygon: the smallest distance of two parallels that it lies between."""
-    found = []
-    for it in placed:
-        at = np.array(it.frame.corners)
-        along = np.roll(at, -1, axis=0) - at
-        across = np.column_stack((-along[:, 1], along[:, 0])) / np.hypot(*along.T)[:, None]
-        found.append(float(np.ptp(at @ across.T, axis=0).min()))
-    return found
+    """Least width (m) of each polygon."""
+    return [least_width(np.array(it.frame.corners)) for it in placed]
 
 
 def too_few_cells(placed: Sequence[Placed], spacing: float) -> str:

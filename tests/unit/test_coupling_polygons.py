@@ -16,6 +16,7 @@ from porescale.coupling.coverage_rows import make_patches
 from porescale.coupling.saturated import Saturated
 from porescale.coupling.shapes import polygon as shapes
 from porescale.coupling.shapes.polygon import Polygons
+from porescale.coupling.stability_watch import _lightest
 from porescale.coupling.step import Coupled
 from porescale.dem.clumps import Body
 from porescale.dem.discs import make_discs
@@ -269,3 +270,15 @@ def test_fields_show_the_outline_without_its_tips():
     coupled.advance()
     shift = coupled.saturated.polygons.covered_area - coupled.saturated.polygons.area
     np.testing.assert_allclose(shift, 2 * math.pi * 1.5 * 3 / 16, rtol=1e-12)
+
+
+def test_the_least_width_of_polygons():
+    assert shapes.least_width(lab.plate(9.0, 0.3, 31.0)) == pytest.approx(0.3, rel=1e-12)
+    assert shapes.least_width(lab.regular(3, math.sqrt(3.0))) == pytest.approx(math.sqrt(3.0), rel=1e-12)  # side 2
+
+
+def test_a_run_that_went_wrong_knows_how_light_and_thin_its_polygons_are():
+    plate = turned(lab.plate(12.0, 3.0), 20.0, 20.0, 20.0)
+    ratio, across = _lightest(lab.immersed_polygons((40, 40), [plate], 0.4))
+    assert ratio == pytest.approx(0.4, rel=1e-12)
+    assert across == pytest.approx(3.0, rel=1e-12)

@@ -182,14 +182,21 @@ def convex(corners: ArrayLike, name: str = "polygon") -> Array:
     return at
 
 
+def least_width(corners: Array) -> float:
+    """The smallest distance of two parallels that a convex polygon (k, 2) lies between; one of them holds a side."""
+    along = np.roll(corners, -1, axis=0) - corners
+    across = np.column_stack((-along[:, 1], along[:, 0])) / np.hypot(*along.T)[:, None]
+    return float(np.ptp(corners @ across.T, axis=0).min())
+
+
 class Polygons:
     """Convex polygons as the fluid sees them, lattice units.
 
     corners : of each, (k, 2) cells from what it turns about, either way round.
 
-    centre (m, 2), angle (m,), velocity (m, 2), spin (m,): written by the owner between steps;  area (m,): of the
-    outlines given;  covered_area (m,): of those that the fluid sees, with the tips that ``fit`` gives them;  bare:
-    whether cells are covered by the outlines given instead, for output.
+    centre (m, 2), angle (m,), velocity (m, 2), spin (m,): written by the owner between steps;  area, width (m,): of the
+    outlines given, the width the least;  covered_area (m,): of those that the fluid sees, with the tips that ``fit``
+    gives them;  bare: whether cells are covered by the outlines given instead, for output.
     Raises InputError at one that is not convex.
     """
 
@@ -202,6 +209,7 @@ class Polygons:
         self.centre, self.velocity = np.zeros((m, 2)), np.zeros((m, 2))
         self.angle, self.spin = np.zeros(m), np.zeros(m)
         self.area = np.array([_area(each) for each in self._corners])
+        self.width = np.array([least_width(each) for each in self._corners])
         self.covered_area = self.area.copy()
         self._at, self._line = np.zeros_like(self.outline), np.zeros((m, 0))
         self._motion = np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0)
