@@ -8,7 +8,7 @@ from porescale.dem import experiments_rock as lab
 from porescale.dem.contact.linear import Linear
 from porescale.dem.network import stiffness
 from porescale.dem.rock import load
-from porescale.dem.verify_rock import VALIDATIONS
+from porescale.dem.verify_rock import FAST, SEEDS, VALIDATIONS
 
 ROWS = {row.name: row for row in VALIDATIONS}
 
@@ -45,4 +45,4 @@ def test_without_tangential_springs_a_packing_is_no_solid():  # the twin that mu
 @pytest.mark.slow
 def test_square_cells_do_not_break():  # the twin that must fail: every plane of shear ends on a plate
     row = ROWS["dem.rock_of_slender_cells_breaks"]
-    assert lab.left_when_pressed(1.0, 60, 0.1) > row.tolerance + 0.3
+    assert lab.left_when_pressed(1.0, SEEDS, FAST) > row.tolerance + 0.3
