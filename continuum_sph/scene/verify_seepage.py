@@ -226,8 +226,8 @@ def pile_row(share: float) -> None:
         f"continuum.sheet_pile_{100 * share:.0f}",
         source="conformal mapping: q/(kh) = K'(m)/2K(m), i_E = πh/(4KmT), m = sin(πs/2T) (Harr 1962)",
         because="the tip lies between wall and open particles, uncertain to half a spacing of 1/32 or 1/24 T, q by "
-        "1.9 % of itself; kernels 1.3 spacings wide round off the tip's root; the issue's 3 %, and 8 % for the gradient, "
-        "scaled to that",
+        "1.9 % of itself; kernels 1.3 spacings wide round off the tip's root; the issue's 3 %, and 8 % for the "
+        "gradient, scaled to that",
         tolerance=0.03,
         slow=True,
     )
