@@ -13,7 +13,7 @@ Zig-zags in stress push nothing and so live on too.  Stress diffuses, dσ_i/dt =
 at the pace of the shear strain rate γ' (mean of the pair), not of sound as in Feng, Fourtakas, Rogers & Lombardi,
 Comput. Geotech. 138 (2021) 104356 and its kin: what is smoothed at the pace of sound must be strained anew for ever to
 carry its weight, so soil at rest creeps.  In the same way particles nearer than a spacing are moved apart, by x_ij A γ'
-(1 - r²/spacing²), only while soil is sheared.  Both are opposite in a pair.
+(1 - r²/spacing²), only while soil is sheared, and away from walls.  Both are opposite in a pair of soil.
 """
 
 from __future__ import annotations
@@ -151,6 +151,9 @@ def accelerate(
             damp = 2.0 * braking * quick * approach * record[j, MASS] * slope / (distance2 + soft)
             ax += damp * dx - thrust * ((txx + record[j, TXX]) * dx + (txy + record[j, TXY]) * dy)
             ay += damp * dy - thrust * ((tyx + record[j, TYX]) * dx + (tyy + record[j, TYY]) * dy)
+            near = shearing * max(0.0, 1.0 - distance2 * inverse_spacing2)
+            ux += near * dx
+            uy += near * dy
         spread[i, XX] = sxx
         spread[i, YY] = syy
         spread[i, XY] = sxy
