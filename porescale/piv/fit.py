@@ -35,7 +35,7 @@ BLOCK = 4
 AROUND = 6.0
 """Standard deviation of the bell that local means, contrast and correlation are taken over, px."""
 FLAT = 1e-6
-"""Share of the largest variance of grey levels below which there is nothing to see."""
+"""Share of the largest variance of grey levels, or of their slopes, below which there is nothing to see."""
 ROUND = 0.01
 """Determinant of H over its squared trace, 1/4 for round spots and 0 for straight edges, from which both components are
 told.
@@ -196,7 +196,7 @@ def variances(known: Equations, freedom: float) -> Single:
     spots = blurred(trace) ** 2 / np.maximum(blurred(trace * trace), np.float32(1e-12)) / area
     short = np.maximum(LEAST_FREE, 1 - np.float32(freedom) / np.maximum(spots, np.float32(1e-12)))
     det = hxx * hyy - hxy * hxy
-    good = det > ROUND * (hxx + hyy) ** 2
+    good = (det > ROUND * (hxx + hyy) ** 2) & (hxx + hyy > FLAT * float((hxx + hyy).max()))
     safe = np.where(good, det, np.inf)
     xx, xy, yy = hyy / safe, -hxy / safe, hxx / safe
     both = xx * xx * qxx + 2 * xx * xy * qxy + xy * xy * qyy + xy * xy * qxx + 2 * xy * yy * qxy + yy * yy * qyy
