@@ -26,7 +26,7 @@ def tolerance(name):
 def test_drag_and_torque_of_squares_are_those_of_forces_along_their_sides(degrees):
     square = Turning(regular(4, 0.2, math.radians(45 + degrees)), levels=8, order=6)
     force, _ = square.loads([1.0, 0.0])
-    # Stress at a corner goes as the distance to the power -0.455, so what the last panel misses falls by 2^1.09 a level:
+    # Stress at a corner goes as the distance to the power -0.455: what the last panel misses falls by 2^1.09 a level,
     # 6e-5 of the drag and 1.2e-4 of the torque at six of them, a fifth of that at eight.
     assert force[0] == pytest.approx(verify_polygons.DENSER[degrees], rel=1e-4)
     # A square lattice of squares is as easy to flow through any way: nothing aside.
