@@ -240,5 +240,6 @@ def lightest_frame(placed: Sequence[Placed], every: list[Law], radius: float | N
 
 
 def sizes_of(placed: Sequence[Placed]) -> list[float]:
-    """Diameter (m) of the disc of equal area of every frame that forces move."""
-    return [2.0 * float(np.sqrt((it.frame.mass_properties().area or 0.0) / np.pi)) for it in placed if it.free]
+    """Diameter (m) of the disc of equal area of every frame that forces move; of the polygons, where they move none."""
+    meant = [it for it in placed if it.free] or [it for it in placed if it.frame.mass_properties().area]
+    return [2.0 * float(np.sqrt((it.frame.mass_properties().area or 0.0) / np.pi)) for it in meant]

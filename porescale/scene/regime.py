@@ -122,7 +122,7 @@ def fall(scene: Scene, sense: float, frames: Sequence[Placed] = ()) -> tuple[flo
         right, top = packing.left + packing.width, packing.bottom + packing.height
         starts += [(x, y) for x in (packing.left, right) for y in (packing.bottom, top)]
     last = sum(max(0.0, component * size) for component, size in zip(along, (d.width, d.height), strict=True))
-    return max(0.0, *(last - (along[0] * x + along[1] * y) for x, y in starts)), unending
+    return max([0.0, *(last - (along[0] * x + along[1] * y) for x, y in starts)]), unending
 
 
 def column_height(scene: Scene) -> float:

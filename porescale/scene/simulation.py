@@ -18,7 +18,7 @@ from porescale.runs.model import Cloud, Grid, Snapshot
 from porescale.scene import observe
 from porescale.scene.bonds import BONDS, Binder
 from porescale.scene.derive import Derived
-from porescale.scene.frame_build import Placed, disc_count
+from porescale.scene.frame_build import Placed, disc_count, free_rows
 from porescale.scene.frame_clouds import FRAMES, frame_cloud
 from porescale.scene.grain_bodies import control_row
 from porescale.scene.grain_cell import Strained
@@ -90,7 +90,8 @@ class Simulation:
         self.time = 0.0
         self.step_seconds = derived.model_step
         self._mass = fluid.mass_excess() if fluid else 0.0
-        self._watch = observe.Watch(scene, grains, frames) if grains and scene.grains else None
+        free = grains is not None and free_rows(grains, frames, len(scene.disc)).size > 0
+        self._watch = observe.Watch(scene, grains, frames) if grains and scene.grains and free else None
         self._grain_instruments = GrainInstruments(scene, grains, frames) if grains and scene.grains else None
         self._binder = Binder(scene, grains, self.frames) if grains and (scene.bonds or scene.rock) else None
         if self._binder:

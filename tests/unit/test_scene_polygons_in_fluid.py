@@ -56,6 +56,15 @@ def test_a_polygon_that_is_told_stays():
     np.testing.assert_array_equal(simulation.coupled.polygons.velocity, 0.0)
 
 
+@pytest.mark.usefixtures("one_thread")
+def test_a_held_polygon_alone_is_an_obstacle():
+    simulation = build(wet(SQUARE | {"held": True}, fluid__body_force=[10.0, 0.0]))
+    simulation.advance(5)
+    row = simulation.series()
+    assert row["largest fluid speed (m/s)"] > 0.0
+    assert not any("grain" in name for name in row)  # nothing moves of which that could be said
+
+
 def test_what_is_no_convex_polygon_is_dry():
     rod = {"chain": [[0.006, 0.002], [0.007, 0.002]], "thickness": 1e-4, "width": 1e-4}
     assert "segment is for dry grains" in faults(SQUARE, segment=[rod])
