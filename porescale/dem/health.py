@@ -77,9 +77,7 @@ class Health:
             raise _unstable(
                 grains, f"plate {grains.plate_names[nowhere]}", "place", float("nan"), "m", "a motion without numbers"
             )
-        bad, column = first_without_number(d.position, d.velocity, d.spin)
-        if bad < 0 and not np.isfinite(d.angle).all():
-            bad, column = int((~np.isfinite(d.angle)).argmax()), 3
+        bad, column = first_without_number(d.position, d.velocity, d.spin, d.angle)
         if bad >= 0:
             quantity, unit = (("position", "m"), ("velocity", "m/s"), ("spin", "rad/s"), ("angle", "rad"))[column]
             raise _unstable(

@@ -29,9 +29,9 @@ NEIGHBOURS = 6
 
 
 @kernel
-def first_without_number(position, velocity, spin):
-    """(disc, column) of the first disc with a position (column 0) that is not finite, or else a velocity (1), or a
-    spin (2); (-1, -1) if all are.  position, velocity (n, 2) m, m/s;  spin (n,) rad/s.
+def first_without_number(position, velocity, spin, angle):
+    """(disc, column) of the first disc with a position (column 0) that is not finite, or else a velocity (1), a spin
+    (2), or an angle (3); (-1, -1) if all are.  position, velocity (n, 2) m, m/s;  spin, angle (n,) rad/s, rad.
     """
     for i in range(spin.shape[0]):
         if not (np.isfinite(position[i, 0]) and np.isfinite(position[i, 1])):
@@ -42,6 +42,9 @@ def first_without_number(position, velocity, spin):
     for i in range(spin.shape[0]):
         if not np.isfinite(spin[i]):
             return i, 2
+    for i in range(angle.shape[0]):
+        if not np.isfinite(angle[i]):
+            return i, 3
     return -1, -1
 
 

@@ -224,8 +224,8 @@ def test_a_bed_lets_through_in_a_run_what_its_permeability_says(porescale, tmp_p
 
 def test_no_case_is_left_out():
     assert scenes_of(PORESCALE) == sorted(
-        ["column_collapse", "column_collapse_tank", "settling_disc", *FLOWS, *MOVED]
-    )  # each has a test of its own here
+        ["column_collapse", "column_collapse_tank", "settling_disc", "tipping_tray", *FLOWS, *MOVED]
+    )  # each has a test of its own, here or with the cases of bodies of segments
     assert sorted([*scenes_of(PORESCALE), *scenes_of(CONTINUUM)]) == [path.parent.name for path in FILES]
 
 

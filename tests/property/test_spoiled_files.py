@@ -93,7 +93,8 @@ def made(folder: Path, name: str) -> Path:
     elif part == "front.json":
         file.write_text('{"format": 1, "machine": {"processor": "p"}, "date": "d", "points": [{"label": "a",'
                         '"on_front": true,'
-                        '"error": 0.1, "scatter": 0, "core_seconds": 1, "seconds": 1, "time": 1, "pace": 1, "quality": null,'
+                        '"error": 0.1, "scatter": 0, "core_seconds": 1, "seconds": 1, "time": 1, "pace": 1,'
+                        '"quality": null,'
                         '"settings": ["a.b=1"]}]}')  # fmt: skip
     return file
 

@@ -112,13 +112,13 @@ def test_a_disc_may_pass_below_a_rising_plate():
 
 
 def test_the_first_disc_without_a_number_is_found_position_first():
-    position, velocity, spin = np.zeros((4, 2)), np.zeros((4, 2)), np.zeros(4)
+    position, velocity, spin, angle = np.zeros((4, 2)), np.zeros((4, 2)), np.zeros(4), np.zeros(4)
     for find in (integrate.first_without_number, integrate.first_without_number.py_func):
-        assert find(position, velocity, spin) == (-1, -1)
-    for at, column in (((spin, 1), 2), ((velocity, (2, 1)), 1), ((position, (3, 0)), 0)):
+        assert find(position, velocity, spin, angle) == (-1, -1)
+    for at, column in (((angle, 1), 3), ((spin, 1), 2), ((velocity, (2, 1)), 1), ((position, (3, 0)), 0)):
         at[0][at[1]] = np.inf if column else np.nan
         for find in (integrate.first_without_number, integrate.first_without_number.py_func):
-            assert find(position, velocity, spin) == (np.ravel(at[1])[0], column)
+            assert find(position, velocity, spin, angle) == (np.ravel(at[1])[0], column)
 
 
 def test_a_step_that_rebuilds_the_list_makes_no_array():

@@ -178,7 +178,8 @@ def test_a_reader_that_leaves_is_no_traceback(tmp_path: Path) -> None:
         "from porescale.workbench.sections import Section\n"
         "f = lambda *a, **k: 1 / 0\n"
         "show = lambda folder: (folder / str(i) for i in range(100000))\n"
-        "sys.exit(main(application(Package('toy', 's', '1', lambda: Section, f, f, f, f, show, f, f, f)), ['show', '.']))"
+        "toy = Package('toy', 's', '1', lambda: Section, f, f, f, f, show, f, f, f)\n"
+        "sys.exit(main(application(toy), ['show', '.']))"
     )
     read, write = os.pipe()
     os.close(read)
