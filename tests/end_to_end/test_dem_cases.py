@@ -43,7 +43,8 @@ def test_every_script_says_what_it_is_what_it_expects_and_shows_it(case):
     assert text.startswith("# ")
     assert "## Source" in text
     assert f"python cases/{case}/{case}.py" in text
-    assert len((CASES / case / "picture.png").read_bytes()) < 150_000
+    # A clone stays small: 150 kB for plots, twice that where a picture is of fields.
+    assert len((CASES / case / "picture.png").read_bytes()) < (300_000 if "piv" in case else 150_000)
     assert re.search(r"!\[.+\]\(picture\.png\)", text)
 
 
