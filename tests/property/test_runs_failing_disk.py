@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import errno
 import resource
-import shutil
 import signal
 from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
-from porescale import open_run
 from porescale.ground.check import PorescaleError
-from porescale.runs.checkpoint import read_checkpoint
-from tests.reference.failing_disk import Disk, failing
+from tests.reference.failing_disk import Disk, calls, failing, whole
 from tests.reference.same_run import differences
 from tests.reference.toy_model import run_toy
 
@@ -29,25 +26,6 @@ def untouched(tmp_path_factory) -> Path:
     return folder
 
 
-def calls(folder: Path) -> int:
-    """How many calls a whole run makes."""
-    with failing(Disk(folder)) as disk:
-        run_toy(folder, **SHORT)
-    shutil.rmtree(folder)
-    return len(disk.called)
-
-
-def whole(folder: Path) -> None:
-    """Every file that is there can be read; a checkpoint, if any, is good."""
-    if (folder / "card.json").exists():
-        run = open_run(folder)
-        for k in range(len(run)):
-            run.snapshot(k)
-        assert len(set(map(len, run.series.values()))) <= 1
-    if (folder / "checkpoint.h5").exists():
-        read_checkpoint(folder / "checkpoint.h5")
-
-
 def survives(folder: Path, disk: Disk, untouched: Path) -> None:
     """A run on ``disk`` ends well or with an error that is no bug; resumed on a good one it is the untouched run."""
     with failing(disk), suppress(OSError, PorescaleError):
@@ -60,7 +38,7 @@ def survives(folder: Path, disk: Disk, untouched: Path) -> None:
 @pytest.mark.parametrize("trouble", TROUBLES)
 @pytest.mark.parametrize("sticky", [False, True])
 def test_a_call_that_fails_loses_nothing(tmp_path, untouched, trouble, sticky):
-    total = calls(tmp_path / "count")
+    total = calls(tmp_path / "count", lambda folder: run_toy(folder, **SHORT))
     assert total > 200  # there is something to fail
     for nth in range(7 * TROUBLES.index(trouble) + 3 * sticky, total, 71):
         survives(tmp_path / f"run{nth}", Disk(tmp_path / f"run{nth}", nth, trouble, sticky), untouched)
@@ -69,7 +47,7 @@ def test_a_call_that_fails_loses_nothing(tmp_path, untouched, trouble, sticky):
 @pytest.mark.slow
 @pytest.mark.parametrize("trouble", TROUBLES)
 def test_no_call_that_fails_loses_anything(tmp_path, untouched, trouble):
-    for nth in range(calls(tmp_path / "count")):
+    for nth in range(calls(tmp_path / "count", lambda folder: run_toy(folder, **SHORT))):
         survives(tmp_path / f"run{nth}", Disk(tmp_path / f"run{nth}", nth, trouble, nth % 2 == 0), untouched)
 
 

@@ -10,9 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from porescale import open_run
-from porescale.runs.checkpoint import read_checkpoint
-from tests.reference.failing_disk import Disk, failing
+from tests.reference.failing_disk import Disk, calls, failing, whole
 from tests.reference.same_run import differences
 from tests.reference.toy_model import Toy, run_toy
 
@@ -26,13 +24,6 @@ def untouched(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("killed") / "untouched"
     run_toy(folder, **SHORT)
     return folder
-
-
-def calls(folder: Path) -> int:
-    """How many calls to the disk a whole run makes."""
-    with failing(Disk(folder)) as disk:
-        run_toy(folder, **SHORT)
-    return len(disk.called)
 
 
 def child(folder: Path, disk: Disk, pause: float = 0.0) -> int:
@@ -52,17 +43,6 @@ def ended_by_kill(process: int) -> bool:
     return os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]) == -signal.SIGKILL
 
 
-def whole(folder: Path) -> None:
-    """Every file that is there can be read."""
-    if (folder / "card.json").exists():
-        run = open_run(folder)
-        for k in range(len(run)):
-            run.snapshot(k)
-        assert len(set(map(len, run.series.values()))) <= 1
-    if (folder / "checkpoint.h5").exists():
-        read_checkpoint(folder / "checkpoint.h5")
-
-
 def resumes_as(folder: Path, untouched: Path) -> None:
     run_toy(folder, **SHORT, resume=(folder / "card.json").exists())
     assert differences(folder, untouched) == []
@@ -77,14 +57,14 @@ def killed_at(nth: int, when: str, folder: Path, untouched: Path) -> None:
 
 @pytest.mark.parametrize("when", ["before", "after"])
 def test_a_kill_at_a_call_to_the_disk_loses_nothing(tmp_path, untouched, when):
-    for nth in range(5, calls(tmp_path / "count"), 61):
+    for nth in range(5, calls(tmp_path / "count", lambda folder: run_toy(folder, **SHORT)), 61):
         killed_at(nth, when, tmp_path / f"run{nth}", untouched)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("when", ["before", "after"])
 def test_a_kill_at_no_call_to_the_disk_loses_anything(tmp_path, untouched, when):
-    total = calls(tmp_path / "count")
+    total = calls(tmp_path / "count", lambda folder: run_toy(folder, **SHORT))
     assert total > 200
     for nth in range(total):
         killed_at(nth, when, tmp_path / f"run{nth}", untouched)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import shutil
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -30,8 +29,6 @@ from tests.reference.spoiled import spoiled
 from tests.reference.toy_model import run_toy
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
-LONGEST = 20.0
-"""Seconds that reading a small file may take on a busy machine before it counts as hanging."""
 TIMES = int(os.environ.get("PORESCALE_SPOILED", "25"))
 """How often each file is spoilt in the quick test; forty times as often in the slow one."""
 
@@ -139,14 +136,13 @@ def faults_of(read: Callable[[], object]) -> list[Fault]:
 def judged(file: Path, read: Read, content: bytes, seed: int) -> bool:
     """Whether a spoilt file is read; else it is refused, in lines of one line each."""
     file.write_bytes(spoiled(content, seed))
-    before, start = everything(file.parent), time.perf_counter()
+    before = everything(file.parent)
     faults = faults_of(lambda: read(file))
     for fault in faults:
         said = fault.line()
         assert said.strip()
         assert len(said.splitlines()) == 1, said
         assert len(said) < 2000, said
-    assert time.perf_counter() - start < LONGEST
     assert everything(file.parent) == before
     return not faults
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import builtins
 import io
 import os
+import shutil
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -14,6 +15,9 @@ from typing import Any
 from unittest.mock import patch
 
 import h5py
+
+from porescale import open_run
+from porescale.runs.checkpoint import read_checkpoint
 
 CALLS = ("replace", "open", "fsync", "mkdir", "unlink", "rmdir", "write", "ftruncate")
 """Functions of os that touch the disk; besides these, opening a file by Python and by HDF5."""
@@ -79,3 +83,22 @@ def failing(disk: Disk) -> Iterator[Disk]:
     finally:
         for each in reversed(patches):
             each.stop()
+
+
+def calls(folder: Path, run: Callable[[Path], object]) -> int:
+    """How many calls to the disk ``run`` makes in ``folder``, which is gone afterwards."""
+    with failing(Disk(folder)) as disk:
+        run(folder)
+    shutil.rmtree(folder)
+    return len(disk.called)
+
+
+def whole(folder: Path) -> None:
+    """Every file that is there can be read."""
+    if (folder / "card.json").exists():
+        run = open_run(folder)
+        for k in range(len(run)):
+            run.snapshot(k)
+        assert len(set(map(len, run.series.values()))) <= 1
+    if (folder / "checkpoint.h5").exists():
+        read_checkpoint(folder / "checkpoint.h5")
