@@ -2,41 +2,15 @@
 
 from __future__ import annotations
 
-import tomllib
-from pathlib import Path
+from functools import partial
 
-import numpy as np
 import pytest
 
 from continuum_sph.scene.model import Simulation
-from continuum_sph.scene.sections import Scene
-from porescale.workbench.sections import load
+from tests.reference import continuum_cases
+from tests.reference.continuum_cases import missed
 
-CASES = Path(__file__).resolve().parents[2] / "cases"
-
-
-def series(case, *settings):
-    """Columns of a case's series, a row every 20 steps and at the end."""
-    scene = load(CASES / case, Scene, overrides=settings)
-    model = Simulation(scene)
-    rows = [model.series()]
-    while model.time < scene.time.end:
-        model.advance(20)
-        model.check()
-        rows.append(model.series())
-    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
-
-
-def missed(case, columns):
-    """Names of the expectations of ``case`` that ``columns`` do not meet."""
-    names = []
-    for row in tomllib.loads((CASES / case / "expected.toml").read_text(encoding="utf-8"))["expected"]:
-        values, at = columns[row["column"]], row["at"]
-        value = {"end": values[-1], "max": values.max()}.get(at) if isinstance(at, str) else None
-        value = np.interp(at, columns["time (s)"], values) if value is None else value
-        if not abs(value - row["value"]) <= row["tolerance"]:
-            names.append(row["name"])
-    return names
+series = partial(continuum_cases.series, Simulation, 20)
 
 
 def test_water_at_rest_stays():

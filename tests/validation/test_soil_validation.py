@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import importlib.util
-import tomllib
+from functools import partial
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from continuum_sph.scene import verify_soil
-from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil_model import SoilSimulation
 from continuum_sph.scene.validations import VALIDATIONS
-from porescale.workbench.sections import load
+from tests.reference import continuum_cases
+from tests.reference.continuum_cases import missed
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
+series = partial(continuum_cases.series, SoilSimulation, 200)
 STEEP = "soil.body=[{outline=[[0,0],[3.6,0],[3.6,0.2],[2.04,0.2],[0.5,1.2],[0,1.2]]}]"  # 33 degrees
 
 
@@ -76,29 +76,6 @@ def test_a_slope_beyond_its_limit_fails():
 @pytest.mark.slow
 def test_stress_diffused_by_sound_lets_a_slope_creep():
     assert verify_soil.slope(22.0, 1.0, 0.1) > 5.0 * tolerance("continuum.soil_slope_below_its_limit_stays")
-
-
-def series(case, *settings):
-    """Columns of a case's series, a row every 200 steps and at the end."""
-    scene = load(CASES / case, Scene, overrides=settings)
-    model = SoilSimulation(scene)
-    rows = [model.series()]
-    while model.time < scene.time.end:
-        model.advance(200)
-        model.check()
-        rows.append(model.series())
-    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
-
-
-def missed(case, columns):
-    """Names of the expectations of ``case`` that ``columns`` do not meet."""
-    names = []
-    for row in tomllib.loads((CASES / case / "expected.toml").read_text(encoding="utf-8"))["expected"]:
-        values = columns[row["column"]]
-        value = {"end": values[-1], "max": values.max()}[row["at"]]
-        if not abs(value - row["value"]) <= row["tolerance"]:
-            names.append(row["name"])
-    return names
 
 
 @pytest.mark.slow
