@@ -13,7 +13,7 @@ from porescale.ground.jit import parallel_kernel, prange
 @parallel_kernel
 def brake(
     fluid, near, other, weight, record, pores, mass, v, acceleration, resisting, soil_mass, soil_v, soil_acceleration,
-    law, factor, gravity, seconds, slip, push, heat,
+    law, factor, gravity, thick, seconds, slip, push, heat,
 ):  # fmt: skip
     """Takes the drag of ``seconds`` from the water's ``v`` (fluid…, 2) m/s; what it takes goes to `take`.
 
@@ -23,7 +23,8 @@ def brake(
 
     near, other, weight: the overlap, water rows first;  record: true densities of water;  pores: of `blend`;  mass,
     soil_mass kg/m (infinite: soil is held);  accelerations m/s², of both, without drag;  resisting (s,) m s, grains/k;
-    law, factor, gravity: of `Resistance`.
+    law, factor, gravity: of `Resistance`;  thick (fluid,) N/m³, what stands for ρ g in the drag on particles of several
+    fluids, ρ_w g μ/μ_w; empty for one.
     """
     for i in prange(fluid):
         sum_of = 0.0
@@ -49,7 +50,8 @@ def brake(
             porosity = pores[i, POROSITY]
             rho = record[i, RHO]
             volume = mass[i] / (porosity * rho)
-            beta = drag(law, porosity, sum_of / pores[i, ROOM], rho * gravity, factor)
+            unit = thick[i] if thick.shape[0] > 0 else rho * gravity
+            beta = drag(law, porosity, sum_of / pores[i, ROOM], unit, factor)
             wx = v[i, 0] - ux / sum_of
             wy = v[i, 1] - uy / sum_of
             ax = acceleration[i, 0] - bx / sum_of

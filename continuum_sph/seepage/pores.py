@@ -23,15 +23,16 @@ Floats = NDArray[np.float64]
 class PoreFlow(Flow):
     """Water of a law among the grains of a skeleton.
 
-    resistance : law of drag;  drains : faces of given pressure;  pores (fluid, 3) porosity, room before walls and
-    grains at water particles;  slip (fluid, 2) m/s, of water over soil, and borne (soil, 2) N/m, drag on the soil, of
-    the last half step;  heat (fluid + soil,) J/m, work that drag
-    took from both layers.
+    resistance : law of drag;  thick (fluid,) N/m³, of several fluids, see `brake`, or empty;  drains : faces of given
+    pressure;  pores (fluid, 3) porosity, room before walls and grains at water particles;  slip (fluid, 2) m/s, of
+    water over soil, and borne (soil, 2) N/m, drag on the soil, of the last half step;  heat (fluid + soil,) J/m, work
+    that drag took from both layers.
     """
 
     skeleton: Skeleton = field(kw_only=True)
     overlap: Overlap = field(kw_only=True)
     resistance: Resistance = field(kw_only=True)
+    thick: Floats = field(default_factory=lambda: np.zeros(0), kw_only=True)
     drains: list[Drain] = field(default_factory=list, kw_only=True)
 
     def __post_init__(self) -> None:
@@ -85,7 +86,7 @@ class PoreFlow(Flow):
         brake(
             layer.fluid, *self.overlap.rows, layer.record, self.pores, layer.mass, layer.v, layer.acceleration,
             soil.resisting, soil.mass, soil.v, soil.acceleration, law.number, law.factor, law.gravity,
-            seconds, self.slip, self.push, self.heat,
+            self.thick, seconds, self.slip, self.push, self.heat,
         )  # fmt: skip
         take(
             layer.fluid, *self.overlap.rows, self.push, soil.resisting, soil.mass, soil.v, seconds, self.borne,
