@@ -48,8 +48,8 @@ def build(scene: Scene) -> Model:
 
 
 def dry(scene: Scene) -> bool:
-    """Whether there is soil and no water."""
-    return scene.soil is not None and not scene.water.column
+    """Whether there is soil and no water, now or later."""
+    return scene.soil is not None and not (scene.water.column or scene.reservoir)
 
 
 def drive(
@@ -116,7 +116,7 @@ def show(folder: Path) -> list[Path]:
         dot=0.5 * scene["numerics"]["spacing"],
         view=(-margin, width + margin, -margin, height + margin),
     )
-    if scene["soil"] and not scene["water"]["column"]:
+    if scene["soil"] and not (scene["water"]["column"] or scene.get("reservoir")):
         look = replace(look, colour="displacement")
         more = [paint_last(folder, name, replace(look, colour=name)) for name in SOIL]
         return [*pictures(folder, look), *more, film(folder, look)]

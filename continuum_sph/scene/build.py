@@ -75,7 +75,7 @@ def wall_layers(law: Law, spacing: float) -> int:
 def fluid_of(scene: Scene, law: Law) -> tuple[Floats, Floats, Floats]:
     """Positions (n, 2) m, velocities (n, 2) m/s and densities (n,) kg/m³ of the water at the start."""
     water, spacing, tait = scene.water, scene.numerics.spacing, water_of(scene)
-    positions, velocities, densities = [], [], []
+    positions, velocities, densities = [np.zeros((0, 2))], [np.zeros((0, 2))], [np.zeros(0)]
     for column in water.column:
         corner = (column.left, column.bottom)
         x = square_lattice(corner, (column.left + column.width, column.bottom + column.height), spacing)

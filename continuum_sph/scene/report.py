@@ -31,8 +31,9 @@ def report(scene: Scene) -> Report:
     out.heading("resolution")
     out.row("water particles", water)
     out.row("wall particles", walls, "", f"{layers} layers")
-    least = min(min(c.width, c.height) for c in scene.water.column)
-    out.row("particles across the narrowest water", least / spacing)
+    least = min((min(c.width, c.height) for c in scene.water.column), default=0.0)
+    if least:
+        out.row("particles across the narrowest water", least / spacing)
     out.row("smoothing length", h, "m", law.smoothing.name)
     out.row("partners of a particle", math.pi * (SUPPORT * h / spacing) ** 2, "", "inside the water")
     out.heading("sound")

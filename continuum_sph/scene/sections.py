@@ -7,6 +7,7 @@ from typing import Literal
 import pydantic
 
 from continuum_sph.scene.instruments import Level, Probe
+from continuum_sph.scene.reservoir_sections import Pool
 from continuum_sph.scene.soil_sections import Ground
 from porescale.ground.check import Fault
 from porescale.ground.constants import GRAVITY
@@ -144,6 +145,7 @@ class Scene(Section):
     water: Water = Water()
     soil: Ground | None = None
     inclusion: Inclusion | None = None
+    reservoir: tuple[Pool, ...] = ()
     probe: tuple[Probe, ...] = ()
     level: tuple[Level, ...] = ()
     numerics: Numerics
@@ -153,7 +155,8 @@ class Scene(Section):
     @property
     def head(self) -> float:
         """Height of the highest water above the floor, m."""
-        return max((column.bottom + column.height for column in self.water.column), default=0.0)
+        tops = [column.bottom + column.height for column in self.water.column]
+        return max([*tops, *(pool.highest for pool in self.reservoir)], default=0.0)
 
     @property
     def fall_speed(self) -> float:
@@ -180,6 +183,10 @@ class Scene(Section):
             faults += self.soil.faults(tank.width, tank.height, WHOLE * spacing)
         elif not self.water.column:
             faults.append(Fault("water.column", None, "is missing", repair="give at least one rectangle of water"))
+        for index, pool in enumerate(self.reservoir):
+            faults += pool.faults(f"reservoir[{index}]", *self.inner, spacing)
+        if self.reservoir and self.soil is None:
+            faults.append(Fault("reservoir", "given", "needs soil beside it", repair="add [soil]"))
         for index, column in enumerate(self.water.column):
             key = f"water.column[{index}]"
             slack = WHOLE * spacing
@@ -209,7 +216,7 @@ class Scene(Section):
         faults += self._misplaced()
         if 0.0 < self.gravity < WEAKEST:
             faults.append(Fault("gravity", self.gravity, "is too weak to move water", "m/s^2", f"0 or >= {WEAKEST:g}"))
-        if self.gravity == 0.0 and columns and self.water.sound_speed is None:
+        if self.gravity == 0.0 and (columns or self.reservoir) and self.water.sound_speed is None:
             faults.append(Fault("water.sound_speed", None, "is needed when there is no gravity to take it from"))
         if faults:
             raise Refused(*faults)

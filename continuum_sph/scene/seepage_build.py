@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -12,9 +13,11 @@ from continuum_sph.density import LINEAR
 from continuum_sph.law import Law
 from continuum_sph.layers import Layer
 from continuum_sph.scene.build import fluid_of, law_of, wall_layers
+from continuum_sph.scene.reservoir_sections import Pool
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil_build import ground_of, soil_flow
-from continuum_sph.seepage import PoreFlow, Resistance, Seepage, skeleton_of
+from continuum_sph.seepage import PoreFlow, Reservoir, Resistance, Seepage, Supply, skeleton_of
+from continuum_sph.seepage.level import BERTH, berths
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.soil import SoilFlow
 from porescale.particles import PairList
@@ -67,23 +70,51 @@ def seepage_of(scene: Scene) -> Seepage:
     skeleton = skeleton_of(ground, section.density / (1.0 - section.porosity), section.permeability)
     x, v, rho = fluid_of(scene, law)
     layers, (width, height), area = wall_layers(law, spacing), scene.inner, spacing * spacing
+    margin, skin = layers * spacing, scene.numerics.skin * law.smoothing.length
+    present, top = len(x), height + margin
+    waiting = spare(scene, present)
+    berth = berths(present + waiting, width, top, BERTH * law.smoothing.support)
+    if waiting:
+        x, v = np.concatenate((x, berth[present:])), np.concatenate((v, np.zeros((waiting, 2))))
+        rho = np.concatenate((rho, np.full(waiting, law.state.density)))
+        top = float(berth[-1, 1]) + BERTH * law.smoothing.support
     walls = tank_walls(width, height, spacing, layers, lid=scene.tank.lid)
     mass = np.concatenate((rho * area, np.full(len(walls), law.state.density * area)))
+    mass[present : len(x)] = 0.0
     layer = Layer(len(x), np.concatenate((x, walls)), np.concatenate((v, np.zeros_like(walls))), mass, rho)
-    margin, skin = layers * spacing, scene.numerics.skin * law.smoothing.length
-    box = (-margin, -margin), (width + margin, height + margin)
+    box = (-margin, -margin), (width + margin, top)
     overlap = Overlap(len(x), skeleton.count, law.smoothing.length, skin, *box)
     flow = PoreFlow(
         layer, law, PairList(layer.count, skin, *box, full=True), skeleton=skeleton, overlap=overlap,
         resistance=Resistance(section.porosity, section.permeability_law),
     )  # fmt: skip
     flow.lower[:] = 0.0
-    flow.upper[:] = width, height if scene.tank.lid else np.inf
+    flow.upper[:] = width, height if scene.tank.lid and not waiting else np.inf
     both = Seepage(flow, ground, stiffest(scene), section.porosity * scene.water.density + section.density)
     both.start()
-    layer.mass[: len(x)] = flow.porosity * rho * area
+    layer.mass[:present] = (flow.porosity * rho * area)[:present]
+    if waiting:
+        stiff = law.state.density * law.state.sound_speed**2
+        pools = [reservoir(pool, str(number), width) for number, pool in enumerate(scene.reservoir)]
+        both.supply = Supply(layer, pools, berth, spacing, law.state.density, stiff, scene.gravity)
+        both.supply.keep(0.0)
     both.start()
     return both
+
+
+def spare(scene: Scene, present: int) -> int:
+    """Particles of water that wait: what the tank holds up to its highest level, less those ``present``."""
+    if not scene.reservoir:
+        return 0
+    rows = math.ceil(scene.head / scene.numerics.spacing) + 1
+    return max(round(scene.inner[0] / scene.numerics.spacing) * rows - present, 0) + 1
+
+
+def reservoir(pool: Pool, number: str, width: float) -> Reservoir:
+    """The reservoir of a section in a tank of a ``width``, m;  number: its name if it has none."""
+    times, levels = (np.array(column, np.float64) for column in zip(*pool.table, strict=True))
+    walls = pool.left <= 0.0, pool.right >= width * (1.0 - 1e-9)
+    return Reservoir(pool.name or f"reservoir {number}", pool.left, pool.right, pool.bottom, times, levels, walls)
 
 
 def stiffest(scene: Scene) -> float:

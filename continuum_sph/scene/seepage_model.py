@@ -69,6 +69,10 @@ class SeepageSimulation:
         slip, inside = np.hypot(flow.slip[:, 0], flow.slip[:, 1]), flow.porosity < 1.0
         row["fastest seepage (m/s)"] = float((flow.porosity * slip)[inside].max(initial=0.0))
         row["heat of drag (J/m)"] = float(flow.heat.sum())
+        for pool in self.both.supply.reservoirs if self.both.supply else ():
+            row[f"{pool.name} level (m)"] = pool.level
+            row[f"{pool.name} let in (kg/m)"] = pool.let_in
+            row[f"{pool.name} let out (kg/m)"] = pool.let_out
         row["water in pores (kg/m)"] = float(flow.layer.mass[: flow.layer.fluid][inside].sum())
         return row
 
@@ -78,9 +82,13 @@ class SeepageSimulation:
         if not (scene.probe or scene.level):
             return {}
         layer, n = flow.layer, flow.layer.fluid
+        there = layer.mass[:n] > 0.0
         volume = layer.mass[:n] / (flow.porosity * layer.density)
         length, spacing = flow.law.smoothing.length, scene.numerics.spacing
-        cloud = Cloud(layer.x[:n], volume, layer.pressure[:n], layer.v[:n], length, spacing, scene.inner[0])
+        cloud = Cloud(
+            layer.x[:n][there], volume[there], layer.pressure[:n][there], layer.v[:n][there], length, spacing,
+            scene.inner[0],
+        )  # fmt: skip
         return tables(self.time, scene.probe, scene.level, cloud)
 
     def snapshot(self) -> Snapshot:
@@ -89,6 +97,8 @@ class SeepageSimulation:
         water = self.water.snapshot().clouds["particles"]
         soil = self.soil.snapshot().clouds["particles"]
         water.data["porosity"] = self.both.water.porosity.copy()
+        there = self.both.water.layer.mass[: self.both.water.layer.fluid] > 0.0
+        water = Points(water.position[there], {k: v[there] for k, v in water.data.items()}, water.units)
         soil.data["saturation"] = self.both.water.saturation()
         kind = np.where(soil.data["saturation"] < 0.5, DRY, WET)
         parts = (
@@ -104,11 +114,17 @@ class SeepageSimulation:
 
     def state(self) -> dict[str, Any]:
         """Everything that later steps depend on."""
-        return {"water": self.water.state(), "soil": self.soil.state(), "next_step": self.both.next_step}
+        supply = self.both.supply
+        booked = {"supply": supply.state()} if supply else {}
+        return {
+            "water": self.water.state(), "soil": self.soil.state(), "next_step": self.both.next_step, **booked
+        }  # fmt: skip
 
     def restore(self, state: dict[str, Any]) -> None:
         """Go on bit for bit from a state of a model of the same scene."""
         self.soil.restore(state["soil"])
         self.water.restore(state["water"])
         self.both.next_step = float(state["next_step"])
+        if self.both.supply:
+            self.both.supply.restore(state["supply"])
         self.refresh()

@@ -41,13 +41,15 @@ Eq. 46 of Maeda & Sakai 2004 as printed, drag n ρ_f g/k on a water layer of ful
 (ψ = 0), has the conductivity k/n: such layers consolidate 1/n times too fast, and water feels no step of porosity.
 
 Parts: `Skeleton`, what water sees of soil (`skeleton`);  `Overlap`, who lies near whom (`overlap`);  `PoreFlow`, a
-`Flow` of water in it (`pores`);  `Drain`, faces of given pressure (`drain`);  `Seepage`, both layers moving (`step`).
+`Flow` of water in it (`pores`);  `Drain`, faces of given pressure (`drain`);  `Supply`, water kept at levels (`level`);
+`Seepage`, both layers moving (`step`).
 """
 
 from continuum_sph.seepage.drain import Drain
+from continuum_sph.seepage.level import Reservoir, Supply
 from continuum_sph.seepage.pores import PoreFlow
 from continuum_sph.seepage.resistance import Resistance
 from continuum_sph.seepage.skeleton import Frame, Skeleton, skeleton_of
 from continuum_sph.seepage.step import Seepage
 
-__all__ = ["Drain", "Frame", "PoreFlow", "Resistance", "Seepage", "Skeleton", "skeleton_of"]
+__all__ = ["Drain", "Frame", "PoreFlow", "Reservoir", "Resistance", "Seepage", "Skeleton", "Supply", "skeleton_of"]

@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from continuum_sph.seepage.level import Supply
 from continuum_sph.seepage.pores import PoreFlow
 
 SHARE = 0.25
@@ -42,7 +43,8 @@ class Seepage:
     """Water and the ground it is in.
 
     modulus : largest M of the soil (Pa) and weight : least whole density (kg/m³), for the step that sound allows when
-    both layers move together;  next_step s;  load (soil, 2) N/m: dead load on the soil, or None.
+    both layers move together;  next_step s;  load (soil, 2) N/m: dead load on the soil, or None;  supply : water that
+    is kept at levels, or None.
     """
 
     water: PoreFlow
@@ -51,6 +53,7 @@ class Seepage:
     weight: float = np.inf
     next_step: float = 0.0
     load: NDArray[np.float64] | None = None
+    supply: Supply | None = None
 
     def __post_init__(self) -> None:
         self.wet = np.zeros_like(self.water.borne)
@@ -84,6 +87,8 @@ class Seepage:
         water.brake(0.5 * step)
         ground.begin(step)
         ratio = water.begin(step)
+        if self.supply is not None:
+            self.supply.keep(water.time + step)
         ground.strain(step)
         water.evaluate(step, ratio)
         self.take_up()
