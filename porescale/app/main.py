@@ -5,7 +5,7 @@ from __future__ import annotations
 from cyclopts import App
 
 import porescale
-from porescale.app import bench, check, demseg, new, piv, run, show, study, verify
+from porescale.app import bench, check, demseg, homogenise, new, piv, run, show, study, verify
 from porescale.workbench import application
 from porescale.workbench.package import Package
 
@@ -29,10 +29,11 @@ PACKAGE = Package(
 
 
 def commands() -> App:
-    """All commands: those that every package has, `piv` and `demseg`."""
+    """All commands: those that every package has, `piv`, `demseg` and `homogenise`."""
     app = application.application(PACKAGE)
     app.command(piv.command())
     app.command(demseg.command())
+    app.command(homogenise.homogenise)
     return app
 
 

@@ -20,7 +20,7 @@ from porescale.scene.grain_bodies import Clump, Controlled, by_hand
 from porescale.scene.grain_cell import Cell, judge_cell
 from porescale.scene.grain_walls import Wall, judge_walls
 from porescale.scene.lattice import disagreements
-from porescale.scene.measures import FieldName, Flux, Line, Loads, Permeability, Probe
+from porescale.scene.measures import FieldName, Flux, Homogenise, Line, Loads, Permeability, Probe
 from porescale.scene.packing import Circles, judged_grading, with_circles, with_consequences
 from porescale.scene.rectangles import Rectangle
 from porescale.scene.regions import CoarseGraining, Region
@@ -178,6 +178,7 @@ class Scene(Section):
     permeability: Permeability | None = None
     region: tuple[Region, ...] = ()
     coarse_graining: CoarseGraining | None = None
+    homogenise: Homogenise | None = None
     lubrication: Lubrication | None = None
 
     @pydantic.field_validator("bonds", mode="before")
