@@ -1,4 +1,4 @@
-"""Friction between two fluids is the divergence of a stress; the outline of one in the other is what it is drawn from."""
+"""Friction between two fluids is the divergence of a stress; the outline of a fluid is that of its particles."""
 
 from __future__ import annotations
 
