@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 import pydantic
 
 from continuum_sph.scene.instruments import Level, Probe
+from continuum_sph.scene.material_file import with_material
 from continuum_sph.scene.reservoir_sections import Pool
 from continuum_sph.scene.soil_sections import Ground
 from porescale.ground.check import Fault
@@ -151,6 +152,11 @@ class Scene(Section):
     numerics: Numerics
     time: Time
     output: Output
+
+    @pydantic.model_validator(mode="before")
+    @classmethod
+    def _measured(cls, table: Any, info: pydantic.ValidationInfo) -> Any:
+        return with_material(table, (info.context or {}).get("folder"))
 
     @property
     def head(self) -> float:

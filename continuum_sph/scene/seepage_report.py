@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from continuum_sph.scene.build import water_of
+from continuum_sph.scene.material_file import tell_origin
 from continuum_sph.scene.report import report as water_report
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.seepage_build import pore_law, stiffest
@@ -45,6 +46,7 @@ def seepage_report(scene: Scene) -> Report:
     step = SHARE * law.smoothing.length / ((modulus + stiff / porosity) / whole) ** 0.5
     out.row("longest step for sound in both together", step, "s")
     out.row("expected time", scene.time.end / step * (len(soil) + len(soil)) / RATE, "s", "of both layers, about")
+    tell_origin(out, section.origin)
     if ratio < STIFF:
         speed = (STIFF * porosity * modulus / density) ** 0.5
         out.warn(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from continuum_sph.scene.material_file import tell_origin
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil_build import ground_of, soil_law, soil_particles
 from continuum_sph.soil.law import RULES
@@ -52,6 +53,7 @@ def soil_report(scene: Scene) -> Report:
     out.row("steps", round(steps))
     out.row("memory", BYTES * count / 2**20, "MiB")
     out.row("expected time", steps * count / RATE, "s", f"at {RATE:.2g} particle-steps/s, one thread")
+    tell_origin(out, ground.origin)
     if strain > 10.0 * SOFTEST:
         out.warn(f"the soil's weight strains it by {100.0 * strain:.2g} %: raise soil.stiffness")
     return out

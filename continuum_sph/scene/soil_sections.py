@@ -9,6 +9,7 @@ import numpy as np
 import pydantic
 from numpy.typing import NDArray
 
+from continuum_sph.scene.material_file import Origin
 from continuum_sph.soil.material import Material
 from porescale.ground.check import Fault
 from porescale.workbench.sections import Section, quantity
@@ -59,12 +60,17 @@ class SoilNumerics(Section):
 class Ground(Section):
     """Soil: hypo-elastic, E = stiffness (p/reference)^exponent, with Mohr-Coulomb strength in plane strain.
 
+    A key material names a file of `porescale homogenise`, see material_file.py, whose numbers hold where the scene has
+    none of its own;  strength : which of its angles;  origin : where they come from, for the card of a run.
+
     friction_angle : φ; the paper's tan φ = 0.5 is sin φ = 0.5, 30 degrees;  modulus : "printed" is eq. 43, of plane
     stress;  stress : at the start, "geostatic" below its surface with K0 = rest (left out: as it would settle), or
     "none";  permeability_law : how k follows the porosity;  floor, sides : of the tank, "hold" the soil or let it
     "slip".
     """
 
+    strength: Literal["critical", "peak"] = "critical"
+    origin: Origin | None = None
     density: float = quantity("kg/m^3", 1590.0, ge=1, le=1e5, help="of grains per whole volume: (1 - n) times theirs")
     porosity: float = quantity("", 0.4, ge=0, le=0.99, help="porosity at the start")
     stiffness: float = quantity("Pa", 2e6, ge=1, le=1e12, help="Young's modulus at the reference stress")

@@ -1,0 +1,155 @@
+"""[soil] material = "material.toml": numbers of a soil as its grains have them, from the file that measures them.
+
+What the scene says itself wins.  k is not that of the water that somebody measured with: it follows from K of the file
+and the scene's own water, k = K ρ g/μ.  The card keeps where the numbers come from, and how far they are known.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pydantic
+
+from porescale.ground.check import Fault, InputError
+from porescale.ground.constants import GRAVITY
+from porescale.ground.units import to_si
+from porescale.workbench import scene_file
+from porescale.workbench.report import Report
+from porescale.workbench.sections import Refused, Section, quantity, validate
+
+FORMAT = 1
+"""Of the files that are read here."""
+DENSITY, VISCOSITY = 1000.0, 1.002e-3
+"""Of the water of a scene that does not say its own, kg/m³ and Pa s: the defaults of [water]."""
+
+
+class Known(Section):
+    """A measured number;  standard_error : of the mean, deviation : of one packing;  values : one for each packing."""
+
+    mean: float
+    standard_error: float = quantity("", ge=0)
+    deviation: float = quantity("", ge=0)
+    values: tuple[float, ...] = pydantic.Field(min_length=2)
+    unit: str = ""
+
+
+class Taken(Section):
+    """[soil] of the file: what goes into [soil] of a scene, whose ranges hold."""
+
+    density: float = quantity("kg/m^3", gt=0)
+    porosity: float = quantity("", ge=0, lt=1)
+    stiffness: float | None = quantity("Pa", None, gt=0)
+    reference: float | None = quantity("Pa", None, gt=0)
+    poisson: float | None = quantity("", None, ge=0, lt=0.5)
+
+
+class Strength(Section):
+    """Angles of one state."""
+
+    friction_angle: float = quantity("rad", ge=0)
+    dilatancy_angle: float = quantity("rad", ge=0)
+
+
+class Strengths(Section):
+    """critical : after large strains;  peak : at failure."""
+
+    critical: Strength
+    peak: Strength
+
+
+class Pores(Section):
+    """permeability : K of the soil as it was packed."""
+
+    permeability: float = quantity("m^2", gt=0)
+
+
+class MaterialFile(Section):
+    """A material file."""
+
+    format: int
+    soil: Taken
+    strength: Strengths
+    pores: Pores | None = None
+    measured: dict[str, Known] = pydantic.Field(default_factory=dict)
+    made: dict[str, Any] = pydantic.Field(default_factory=dict)
+
+
+class Origin(Section):
+    """Where numbers of the soil come from: file and its SHA-256, what it says of itself, means and standard errors."""
+
+    file: str
+    sha256: str
+    intrinsic_permeability: float | None = quantity("m^2", None, gt=0)
+    measured: dict[str, tuple[float, float]] = pydantic.Field(default_factory=dict)
+    made: dict[str, Any] = pydantic.Field(default_factory=dict)
+
+
+def read_material(path: Path) -> tuple[MaterialFile, str]:
+    """A material file and its SHA-256; InputError, naming the file, where it is none."""
+    problem, repair = "is no file", "name one that `porescale homogenise` has written, beside the scene"
+    try:
+        if not path.is_file():
+            raise InputError(Fault("soil.material", str(path), problem, repair=repair))
+        digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    except (OSError, ValueError) as error:  # a name too long, or with a null in it; no right to read
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(Fault("soil.material", str(path), f"cannot be read ({reason})", repair=repair)) from None
+    table = scene_file.read(path)
+    number = table.get("format")
+    if number != FORMAT or isinstance(number, bool):
+        newer = isinstance(number, int) and not isinstance(number, bool) and number > FORMAT
+        repair = "read it with a newer version, or measure again" if newer else repair
+        raise InputError(Fault("format", number, "is not that of a material file", "", str(FORMAT), repair, str(path)))
+    return validate(MaterialFile, table, file=str(path)), digest
+
+
+def with_material(table: Any, folder: Path | None) -> Any:
+    """The tables of a scene with the numbers of the material file that its [soil] names, below its own."""
+    soil = table.get("soil") if isinstance(table, Mapping) else None
+    if not isinstance(soil, Mapping) or soil.get("material") is None:
+        return table
+    name = soil["material"]
+    if not isinstance(name, str) or not name:
+        raise Refused(Fault("soil.material", name, "is not the name of a file", repair="write it as a text"))
+    file, digest = read_material((folder or Path()) / name)
+    taken = file.soil.model_dump(exclude_none=True)
+    state = file.strength.peak if soil.get("strength") == "peak" else file.strength.critical
+    taken |= state.model_dump()
+    origin: dict[str, Any] = {"file": name, "sha256": digest, "made": file.made}
+    origin["measured"] = {key: (it.mean, it.standard_error) for key, it in file.measured.items()}
+    if file.pores is not None:
+        origin["intrinsic_permeability"] = file.pores.permeability
+        taken["permeability"] = speed(file.pores.permeability, table.get("water"))
+    own = {key: value for key, value in soil.items() if key != "material"}
+    return {**table, "soil": {**taken, **own, "origin": origin}}
+
+
+def speed(intrinsic: float, water: Any) -> float:
+    """k (m/s) of K (m²) for the water of the table [water], which others judge."""
+    given = water if isinstance(water, Mapping) else {}
+
+    def number(key: str, unit: str, usual: float) -> float:
+        try:
+            found = to_si(given.get(key, usual), unit)
+        except (TypeError, ValueError):
+            return usual
+        return found if found > 0.0 else usual
+
+    density, viscosity = number("density", "kg/m^3", DENSITY), number("viscosity", "Pa s", VISCOSITY)
+    return intrinsic * density * GRAVITY / viscosity
+
+
+def tell_origin(out: Report, origin: Origin | None) -> None:
+    """Add to a report what a scene's soil was measured with, and how well."""
+    if origin is None:
+        return
+    out.heading("measured on grains")
+    out.row("file", origin.file, "", f"SHA-256 {origin.sha256[:12]}")
+    for name, (mean, error) in origin.measured.items():
+        out.row(name.replace("_", " "), mean, "", f"± {error:.2g} (standard error)")
+    for key in ("command", "version", "lambda", "cells", "pressure"):
+        if isinstance(value := origin.made.get(key), str | int | float):
+            out.row(key, value)
