@@ -129,7 +129,7 @@ def show(folder: Path) -> list[Path]:
 
 SEEPAGE = ("pressure", "velocity", "porosity")
 """What is shown of soil and water at the end, besides where they are."""
-LAYERS = {0: ("water", "#5b8fd0"), 1: ("dry soil", "#d9bd82"), 2: ("wet soil", "#8a6d3b")}
+LAYERS = {0: ("water", "#5b8fd0"), 1: ("dry soil", "#d9bd82"), 2: ("wet soil", "#8a6d3b"), 3: ("air", "#f2f2f2")}
 """Names and colours of water and soil."""
 SOIL = ("mean_stress", "plastic_strain", "velocity")
 """What is shown of soil at the end, besides how far it has come."""

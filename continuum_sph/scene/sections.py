@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 import pydantic
 
+from continuum_sph.scene.air_sections import Air
 from continuum_sph.scene.instruments import Level, Probe
 from continuum_sph.scene.material_file import with_material
 from continuum_sph.scene.reservoir_sections import Pool
@@ -145,6 +146,7 @@ class Scene(Section):
     tank: Tank
     water: Water = Water()
     soil: Ground | None = None
+    air: Air | None = None
     inclusion: Inclusion | None = None
     reservoir: tuple[Pool, ...] = ()
     probe: tuple[Probe, ...] = ()
@@ -193,6 +195,10 @@ class Scene(Section):
             faults += pool.faults(f"reservoir[{index}]", *self.inner, spacing)
         if self.reservoir and self.soil is None:
             faults.append(Fault("reservoir", "given", "needs soil beside it", repair="add [soil]"))
+        if self.air is not None and (self.soil is None or not self.water.column):
+            faults.append(Fault("air", "given", "needs soil and water", repair="add [soil] and [[water.column]]"))
+        if self.air is not None and self.reservoir:
+            faults.append(Fault("air", "given", "cannot be with reservoirs", repair="take out [[reservoir]]"))
         for index, column in enumerate(self.water.column):
             key = f"water.column[{index}]"
             slack = WHOLE * spacing

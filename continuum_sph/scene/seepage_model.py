@@ -5,7 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from continuum_sph.scene.air_build import AIR as GAS
+from continuum_sph.scene.air_build import air_rows
 from continuum_sph.scene.instruments import Cloud, tables
 from continuum_sph.scene.model import Simulation
 from continuum_sph.scene.sections import Scene
@@ -17,8 +20,13 @@ from porescale.ground.check import Unstable
 from porescale.runs.model import Cloud as Points
 from porescale.runs.model import Snapshot
 
-WATER, DRY, WET = range(3)
-"""Values of "layer" in a snapshot's particles: water, soil whose pores are less than half full, other soil."""
+WATER, DRY, WET, AIR = range(4)
+"""Values of "layer" in a snapshot's particles: water, soil whose pores are less than half full, other soil, air."""
+
+
+def chosen(cloud: Points, rows: NDArray[np.bool_]) -> Points:
+    """The points of a cloud in ``rows`` (n,)."""
+    return Points(cloud.position[rows], {key: values[rows] for key, values in cloud.data.items()}, cloud.units)
 
 
 class SeepageSimulation:
@@ -73,8 +81,9 @@ class SeepageSimulation:
             row[f"{pool.name} level (m)"] = pool.level
             row[f"{pool.name} let in (kg/m)"] = pool.let_in
             row[f"{pool.name} let out (kg/m)"] = pool.let_out
+        inside &= flow.layer.material[: flow.layer.fluid] == 0
         row["water in pores (kg/m)"] = float(flow.layer.mass[: flow.layer.fluid][inside].sum())
-        return row
+        return row | (air_rows(flow) if self.scene.air else {})
 
     def tables(self) -> dict[str, dict[str, float]]:
         """A row of probes.csv and of levels.csv, where the scene asks for them."""
@@ -92,25 +101,26 @@ class SeepageSimulation:
         return tables(self.time, scene.probe, scene.level, cloud)
 
     def snapshot(self) -> Snapshot:
-        """Water and soil as a cloud each, and both as one to look at, soil over water: layer, velocity, pressure (of
-        soil mean effective stress), porosity."""
+        """Water, air and soil as a cloud each, and all as one to look at, soil over the others: layer, velocity,
+        pressure (of soil mean effective stress), porosity."""
         water = self.water.snapshot().clouds["particles"]
         soil = self.soil.snapshot().clouds["particles"]
         water.data["porosity"] = self.both.water.porosity.copy()
-        there = self.both.water.layer.mass[: self.both.water.layer.fluid] > 0.0
-        water = Points(water.position[there], {k: v[there] for k, v in water.data.items()}, water.units)
+        layer = self.both.water.layer
+        there, gas = layer.mass[: layer.fluid] > 0.0, layer.material[: layer.fluid] == GAS
+        air, water = chosen(water, there & gas), chosen(water, there & ~gas)
         soil.data["saturation"] = self.both.water.saturation()
         kind = np.where(soil.data["saturation"] < 0.5, DRY, WET)
         parts = (
-            ("layer", np.full(len(water.position), WATER), kind),
-            ("velocity", water.data["velocity"], soil.data["velocity"]),
-            ("pressure", water.data["pressure"], soil.data["mean_stress"]),
-            ("porosity", water.data["porosity"], soil.data["porosity"]),
+            ("layer", np.full(len(water.position), WATER), np.full(len(air.position), AIR), kind),
+            *((key, water.data[key], air.data[key], soil.data[key]) for key in ("velocity", "porosity")),
+            ("pressure", water.data["pressure"], air.data["pressure"], soil.data["mean_stress"]),
         )
-        data = {name: np.concatenate((first, second)) for name, first, second in parts}
+        data = {name: np.concatenate(values) for name, *values in parts}
         units = {"velocity": "m/s", "pressure": "Pa"}
-        whole = Points(np.concatenate((water.position, soil.position)), data, units)
-        return Snapshot(self.time, self.step, clouds={"particles": whole, "water": water, "soil": soil})
+        whole = Points(np.concatenate((water.position, air.position, soil.position)), data, units)
+        clouds = {"particles": whole, "water": water, "soil": soil} | ({"air": air} if self.scene.air else {})
+        return Snapshot(self.time, self.step, clouds=clouds)
 
     def state(self) -> dict[str, Any]:
         """Everything that later steps depend on."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from continuum_sph.scene.air_build import air_report, dry_pores
 from continuum_sph.scene.build import water_of
 from continuum_sph.scene.material_file import tell_origin
 from continuum_sph.scene.report import report as water_report
@@ -43,6 +44,8 @@ def seepage_report(scene: Scene) -> Report:
         spread = section.permeability * modulus / (density * gravity)
         out.row("consolidation coefficient", spread, "m2/s")
         out.row("time to consolidate", section.height**2 / spread, "s", "of the soil's height, drained at one face")
+    if scene.air:
+        air_report(out, scene, law, len(dry_pores(scene, soil)))
     step = SHARE * law.smoothing.length / ((modulus + stiff / porosity) / whole) ** 0.5
     out.row("longest step for sound in both together", step, "s")
     out.row("expected time", scene.time.end / step * (len(soil) + len(soil)) / RATE, "s", "of both layers, about")

@@ -109,6 +109,7 @@ class PoreFlow(Flow):
         start, partner, weight = self.overlap.rows
         n, count = self.layer.fluid, self.skeleton.count
         volume = self.layer.mass[:n] / (self.porosity * self.layer.density * self.room)
+        volume[self.layer.material[:n] != 0] = 0.0  # air
         first, last = int(start[n]), int(start[n + count])
         row = np.repeat(np.arange(count), np.diff(start[n : n + count + 1]))
         full = np.bincount(row, weight[first:last] * volume[partner[first:last]], count)
