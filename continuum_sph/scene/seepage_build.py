@@ -12,7 +12,6 @@ from continuum_sph.boundary import tank_walls
 from continuum_sph.density import LINEAR
 from continuum_sph.law import Law
 from continuum_sph.layers import Layer
-from continuum_sph.pile import PartedList
 from continuum_sph.scene.air_build import AIR, dry_pores, gas, thickness, with_air
 from continuum_sph.scene.build import fluid_of, law_of, wall_layers
 from continuum_sph.scene.reservoir_sections import Pool
@@ -72,9 +71,6 @@ def seepage_of(scene: Scene) -> Seepage:
     submerge(scene, ground)
     skeleton = skeleton_of(ground, section.density / (1.0 - section.porosity), section.permeability)
     x, v, rho = fluid_of(scene, law)
-    pile = scene.pile.wall(spacing) if scene.pile else None
-    if pile:
-        x, v, rho = (values[~pile.holds(x)] for values in (x, v, rho))
     layers, (width, height), area = wall_layers(law, spacing), scene.inner, spacing * spacing
     margin, skin = layers * spacing, scene.numerics.skin * law.smoothing.length
     wet = len(x)
@@ -89,21 +85,15 @@ def seepage_of(scene: Scene) -> Seepage:
         x, v = np.concatenate((x, berth[present:])), np.concatenate((v, np.zeros((waiting, 2))))
         rho = np.concatenate((rho, np.full(waiting, law.state.density)))
         top = float(berth[-1, 1]) + BERTH * law.smoothing.support
-    walls, side = tank_walls(width, height, spacing, layers, lid=scene.tank.lid), np.zeros(0, np.int64)
-    if pile:
-        piled, _, side = pile.particles(layers, height)
-        walls = np.concatenate((walls, piled))
+    walls = tank_walls(width, height, spacing, layers, lid=scene.tank.lid)
     mass = np.concatenate((rho * area, np.full(len(walls), law.state.density * area)))
     mass[present : len(x)] = 0.0
     layer = Layer(len(x), np.concatenate((x, walls)), np.concatenate((v, np.zeros_like(walls))), mass, rho)
     layer.material[wet:present] = AIR if scene.air else 0
     box = (-margin, -margin), (width + margin, top)
     overlap = Overlap(len(x), skeleton.count, law.smoothing.length, skin, *box)
-    pairs = PairList(layer.count, skin, *box, full=True)
-    if pile:
-        pairs, overlap.pairs = PartedList(pairs, pile, len(x), side, layer.v), PartedList(overlap.pairs, pile)
     flow = PoreFlow(
-        layer, law, pairs, skeleton=skeleton, overlap=overlap,
+        layer, law, PairList(layer.count, skin, *box, full=True), skeleton=skeleton, overlap=overlap,
         resistance=Resistance(section.porosity, section.permeability_law),
     )  # fmt: skip
     if scene.air:
