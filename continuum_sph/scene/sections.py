@@ -9,6 +9,7 @@ import pydantic
 from continuum_sph.scene.air_sections import Air
 from continuum_sph.scene.instruments import Level, Probe
 from continuum_sph.scene.material_file import with_material
+from continuum_sph.scene.pile_sections import Sheet
 from continuum_sph.scene.reservoir_sections import Pool
 from continuum_sph.scene.soil_sections import Ground
 from porescale.ground.check import Fault
@@ -148,6 +149,7 @@ class Scene(Section):
     soil: Ground | None = None
     air: Air | None = None
     inclusion: Inclusion | None = None
+    pile: Sheet | None = None
     reservoir: tuple[Pool, ...] = ()
     probe: tuple[Probe, ...] = ()
     level: tuple[Level, ...] = ()
@@ -193,6 +195,10 @@ class Scene(Section):
             faults.append(Fault("water.column", None, "is missing", repair="give at least one rectangle of water"))
         for index, pool in enumerate(self.reservoir):
             faults += pool.faults(f"reservoir[{index}]", *self.inner, spacing)
+        if self.pile is not None:
+            faults += self.pile.faults(*self.inner, spacing)
+            if self.soil is None:
+                faults.append(Fault("pile", "given", "needs soil beside it", repair="add [soil]"))
         if self.reservoir and self.soil is None:
             faults.append(Fault("reservoir", "given", "needs soil beside it", repair="add [soil]"))
         if self.air is not None and (self.soil is None or not self.water.column):

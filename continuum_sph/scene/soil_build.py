@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from continuum_sph.boundary import tank_walls
 from continuum_sph.boundary_paper import facing
+from continuum_sph.pile import PartedList, Pile
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil_sections import Ground
 from continuum_sph.smoothing import Smoothing
@@ -18,6 +19,7 @@ from porescale.ground.constants import GRAVITY
 from porescale.particles import PairList, square_lattice
 
 Floats = NDArray[np.float64]
+NO_PILE = np.zeros((0, 2)), np.zeros((0, 4)), np.zeros(0, np.int64)
 
 
 def geostatic(depth: Floats, material: Material, gravity: float = GRAVITY, rest: float | None = None) -> Floats:
@@ -37,16 +39,19 @@ def placed(
     floor: str = "hold",
     sides: str = "slip",
     skin: float,
+    pile: Pile | None = None,
 ) -> SoilFlow:
     """Soil at ``x`` (n, 2) m with ``stress`` (n, 4) Pa in a tank (width, height), m, lower left corner at the origin.
 
     floor, sides : "hold" the soil or let it "slip", sides "none": endless soil, periodic across;  skin : of the pair
-    list, over the smoothing length.
+    list, over the smoothing length;  pile : in the soil of a closed tank.
     """
     (width, height), spacing, material = tank, law.spacing, law.materials[0]
     layers = math.ceil(law.smoothing.support / spacing - 0.5 - 1e-9)
     closed = sides != "none"
-    walls = tank_walls(width, height, spacing, layers, sides=closed)
+    tank_sides = tank_walls(width, height, spacing, layers, sides=closed)
+    piled, behind, side = pile.particles(layers, height) if pile else NO_PILE
+    walls = np.concatenate((tank_sides, piled))
     n, count = len(x), len(x) + len(walls)
     number = np.zeros(count, np.int64)
     beside = (walls[:, 0] < 0.0) | (walls[:, 0] > width)
@@ -55,6 +60,8 @@ def placed(
     slips = {"hold": HOLDING, "slip": SLIPPING}
     kinds = np.where(beside, slips.get(sides, HOLDING), slips[floor])
     number[n:] = np.where(beside & below, HOLDING, kinds)
+    if pile:
+        number[count - len(piled) :] = HOLDING if pile.rough else SLIPPING
     soil = Soil(
         n,
         np.concatenate((x, walls)),
@@ -66,9 +73,11 @@ def placed(
     )
     margin = layers * spacing
     lower, upper = (0.0, 0.0) if closed else (-math.inf, 0.0), (width, math.inf) if closed else (math.inf, math.inf)
-    soil.facing[n:] = facing(walls, lower, upper)
+    soil.facing[n:] = np.concatenate((facing(tank_sides, lower, upper), behind))
     box = ((-margin, -margin), (width + margin, height + margin)) if closed else ((0.0, -margin), (width, height))
     pairs = PairList(count, skin * law.smoothing.length, *box, (not closed, False), full=True)
+    if pile:
+        pairs = PartedList(pairs, pile, n, side, soil.v)
     flow = SoilFlow(soil, law, pairs)
     flow.lower[:], flow.upper[:] = lower, upper
     flow.start()
@@ -114,6 +123,8 @@ def soil_particles(scene: Scene) -> tuple[Floats, Floats]:
     for body in ground.body:
         inside |= body.holds(lattice)
         top = np.maximum(top, body.top(lattice[:, 0]))
+    if scene.pile:
+        inside &= ~scene.pile.wall(scene.numerics.spacing).holds(lattice)
     x = lattice[inside]
     if ground.stress == "none":
         return x, np.zeros((len(x), 4))
@@ -124,5 +135,5 @@ def soil_flow(scene: Scene) -> SoilFlow:
     """The soil of a scene, ready for its first step."""
     ground, numerics = ground_of(scene), scene.numerics
     x, stress = soil_particles(scene)
-    law = soil_law(scene)
-    return placed(x, stress, scene.inner, law, floor=ground.floor, sides=ground.sides, skin=numerics.skin)
+    law, pile = soil_law(scene), scene.pile.wall(numerics.spacing) if scene.pile else None
+    return placed(x, stress, scene.inner, law, floor=ground.floor, sides=ground.sides, skin=numerics.skin, pile=pile)

@@ -1,0 +1,36 @@
+"""The section of a sheet pile."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from continuum_sph.pile import Pile
+from porescale.ground.check import Fault
+from porescale.workbench.sections import Section, quantity
+
+
+class Sheet(Section):
+    """A rigid, impermeable sheet that stands in soil and water, from its tip to the top of the tank.
+
+    faces : whether they "hold" the soil or let it "slip".  One column of particles stands for it, which ends a spacing
+    above the tip: in flow around it, its thickness makes up for that (`continuum_sph.pile`).
+    """
+
+    x: float = quantity("m", ge=0, le=1e5, help="where it stands; its column is the one that holds x")
+    tip: float = quantity("m", ge=0, le=1e5, help="height of its lower end, to the nearest row")
+    faces: Literal["slip", "hold"] = "slip"
+
+    def wall(self, spacing: float) -> Pile:
+        """The same as particles of a ``spacing`` (m) have it."""
+        return Pile.instead_of(self.x, self.tip, spacing, self.faces == "hold")
+
+    def faults(self, width: float, height: float, spacing: float) -> list[Fault]:
+        """What is wrong with it in a tank of ``width`` by ``height``, m, with particles of a ``spacing``, m."""
+        found, wall = [], self.wall(spacing)
+        if not 4.0 * spacing < wall.x < width - 4.0 * spacing:
+            found.append(Fault("pile.x", self.x, "leaves fewer than 4 particles beside it", "m",
+                               f"{4.5 * spacing:g} to {width - 4.5 * spacing:g}"))  # fmt: skip
+        if wall.bottom > height - 4.0 * spacing:
+            found.append(Fault("pile.tip", self.tip, "leaves nothing of it in the tank", "m",
+                               f"<= {height - 5.0 * spacing:g}"))  # fmt: skip
+        return found
