@@ -14,9 +14,10 @@ def validations() -> Validations:
     from porescale.dem.verify import VALIDATIONS as DEM
     from porescale.lbm.verify import VALIDATIONS as LBM
     from porescale.piv.verify import VALIDATIONS as PIV
+    from porescale.scene.verify import VALIDATIONS as SCENE
     from porescale.workbench.validations import Validations
 
     rows = Validations()
-    for room in (LBM, DEM, COUPLING, PIV):
+    for room in (LBM, DEM, COUPLING, SCENE, PIV):
         rows.include(room)
     return rows

@@ -12,6 +12,7 @@ import math
 from typing import Any
 
 from porescale.dem.contact.linear import Linear
+from porescale.dem.packing import DEEPEST
 from porescale.ground.check import Fault, InputError
 from porescale.scene.contact import density_of, laws
 from porescale.scene.measures import Homogenise
@@ -77,6 +78,11 @@ def judge(scene: Scene) -> None:
     if not faults and not pressure_of(scene) > 0.0:
         problem, repair = "is needed where weight presses nothing", "give the stress that the soil is asked about"
         faults.append(Fault("homogenise.pressure", None, problem, "Pa", "> 0", repair))
+    if not faults and stiffness_over_pressure(scene) < 1.0 / DEEPEST:
+        problem = f"would press grains into each other by {1.0 / stiffness_over_pressure(scene):.2g} of a diameter"
+        repair = "raise contact.stiffness or lower it"
+        most = f"<= {DEEPEST * stiffness_over_pressure(scene) * pressure_of(scene):.3g}"
+        faults.append(Fault("homogenise.pressure", pressure_of(scene), problem, "Pa", most, repair))
     if faults:
         raise InputError(faults)
 
