@@ -13,6 +13,7 @@ from continuum_sph.eos import Tait
 from continuum_sph.fluids import Fluid
 from continuum_sph.law import Law
 from continuum_sph.layers import Layer
+from continuum_sph.scene.instruments import Cloud, Level, surface
 from continuum_sph.scene.trials_soil import SKIN
 from continuum_sph.seepage import Frame, PoreFlow, Reservoir, Resistance, Seepage, Supply
 from continuum_sph.seepage.level import BERTH, berths
@@ -25,7 +26,11 @@ Floats = NDArray[np.float64]
 
 WATER = 1000.0  # kg/m³
 POROSITY = 0.4
-WALLS = 3  # layers
+
+STATIONS = (0.25, 0.5, 0.75)  # of the length
+SURFACE = {1.0: (0.918, 0.797, 0.634), 2.0: (0.886, 0.735, 0.540)}
+"""Heights of the free surface over H1 there, by L/H1, for H2 = 0: the free-boundary problem solved by a variational
+inequality, three digits."""
 
 
 def held_between(
@@ -38,7 +43,7 @@ def held_between(
     layers = int(np.ceil(smoothing.support / spacing - 0.5 - 1e-9))
     walls, state = tank_walls(width, height, spacing, layers), Tait(WATER, sound_speed)
     frame = Frame(soil, spacing**2, POROSITY, permeability)
-    law = {"alpha": 0.1, "diffusion": 0.02, "noise": LINEAR, "cut": True, "corrected": True, "shifting": 1.0} | options
+    law = {"alpha": 0.1, "diffusion": 0.02, "noise": LINEAR, "cut": True, "corrected": True, "shifting": 0.0} | options
     rules = Law(smoothing, spacing, (Fluid(state),), (0.0, -GRAVITY), **law)  # type: ignore[arg-type]
     margin, skin, present = layers * spacing, SKIN * smoothing.length, len(water)
     berth = berths(most, width, height + margin, BERTH * smoothing.support)
@@ -70,8 +75,8 @@ class Dam:
     """Ground between x = basin and basin + L.
 
     rows : particles over the upstream level H1;  upstream, downstream, length : H1, H2, L, m;  basin : width of the
-    water on either side, m;  permeability m/s;  sound_speed m/s;  ratio : of smoothing length to spacing;  full :
-    begins with water below a straight line, else dry.
+    water on either side, m;  permeability m/s;  sound_speed m/s;  ratio : of smoothing length to spacing, 2: in
+    pores water's particles lie 1/√n further apart;  full : begins with water below a parabola, else dry.
     """
 
     rows: int = 20
@@ -81,7 +86,7 @@ class Dam:
     basin: float = 0.5
     permeability: float = 0.1
     sound_speed: float = 30.0
-    ratio: float = 1.3
+    ratio: float = 2.0
     full: bool = True
 
     @property
@@ -99,7 +104,10 @@ class Dam:
         top = np.where(x[:, 0] < face, self.upstream, 0.0)
         if self.full:
             part = np.clip((x[:, 0] - face) / self.length, 0.0, 1.0)
-            top = np.where(x[:, 0] < end, self.upstream * (1.0 - 0.5 * part), self.downstream)
+            # Dupuit's parabola down to about where water comes out: nearly what it ends as
+            exit2 = max(self.downstream, 0.37 * (self.upstream**2 - self.downstream**2) / self.length) ** 2
+            parabola = np.sqrt(self.upstream**2 - (self.upstream**2 - exit2) * part)
+            top = np.where(x[:, 0] < end, parabola, self.downstream)
         wet = x[:, 1] < top
         pressure = WATER * GRAVITY * (top - x[:, 1])[wet]
         zero = np.zeros(1)
@@ -113,3 +121,37 @@ class Dam:
             size, spacing, soil, x[wet], pressure, pools, self.permeability, self.sound_speed, self.ratio, most,
             **options,
         )  # fmt: skip
+
+    def heights(self, both: Seepage) -> Floats:
+        """Heights (m) of the free surface at `STATIONS`, each over a tenth of the length."""
+        layer = both.water.layer
+        n = layer.fluid
+        there = layer.mass[:n] > 0.0
+        volume = (layer.mass[:n] / (both.water.porosity * layer.density))[there]
+        cloud = Cloud(
+            layer.x[:n][there], volume, layer.pressure[:n][there], layer.v[:n][there],
+            both.water.law.smoothing.length, self.upstream / self.rows, 2.0 * self.basin + self.length,
+        )  # fmt: skip
+        places = [self.basin + part * self.length for part in STATIONS]
+        return np.array([surface(Level(name="", x=x, breadth=0.1 * self.length), cloud) for x in places])
+
+    def course(self, both: Seepage, end: float, every: float) -> Floats:
+        """Rows (k, 6) at multiples of ``every`` (s) up to ``end`` (s): time s, water let in upstream and out downstream
+        so far m², heights at `STATIONS` m."""
+        assert both.supply is not None
+        above, below = both.supply.reservoirs
+        rows: list[tuple[float, ...]] = []
+        while len(rows) * every <= end:
+            while both.time < len(rows) * every:
+                both.advance()
+            let_in, let_out = above.let_in - above.let_out, below.let_out - below.let_in
+            rows.append((both.time, let_in / WATER, let_out / WATER, *self.heights(both)))
+        return np.array(rows)
+
+
+def steady(rows: Floats, begin: float) -> tuple[float, float, Floats]:
+    """Mean discharge (m²/s) into and out of a dam and heights (3,) m from ``begin`` (s) on, of the rows of a course."""
+    late = rows[rows[:, 0] >= begin]
+    into, out = (late[-1, 1:3] - late[0, 1:3]) / (late[-1, 0] - late[0, 0])
+    heights: Floats = late[:, 3:].mean(axis=0)
+    return float(into), float(out), heights

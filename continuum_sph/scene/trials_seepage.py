@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -16,7 +17,7 @@ from continuum_sph.layers import VY, Layer
 from continuum_sph.scene.trials_soil import RATIO, in_tank
 from continuum_sph.seepage import Drain, Frame, PoreFlow, Resistance, Seepage, skeleton_of
 from continuum_sph.seepage.overlap import Overlap
-from continuum_sph.smoothing import Smoothing
+from continuum_sph.smoothing import SUPPORT, Smoothing
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
 from porescale.ground.constants import GRAVITY
 from porescale.particles import PairList, square_lattice
@@ -67,9 +68,9 @@ class Consolidation:
         return result
 
 
-def sides(width: float, height: float, spacing: float) -> Floats:
-    """Wall particles under and over a periodic column, (n, 2) m."""
-    return tank_walls(width, height, spacing, 3, sides=False, lid=True)
+def sides(width: float, height: float, spacing: float, ratio: float = RATIO) -> Floats:
+    """Wall particles under and over a periodic column, (n, 2) m, as deep as kernels of ``ratio`` spacings reach."""
+    return tank_walls(width, height, spacing, math.ceil(SUPPORT * ratio - 0.5 - 1e-9), sides=False, lid=True)
 
 
 def water_in(
@@ -88,20 +89,23 @@ def water_in(
     modulus: float = 0.0,
     load: Floats | None = None,
     v: Floats | None = None,
+    ratio: float = RATIO,
     **law: float | bool,
 ) -> Seepage:
     """Water at ``x`` (n, 2) m under ``pressure`` (n,) Pa in a periodic column (width, height) m, among the soil there.
 
     load (soil, 2) N/m: on the soil;  v (n, 2) m/s: of the water, none if absent;  drained : pressure (Pa) of faces that
-    water passes, "floor" or "lid".  Each particle takes up a square of the spacing, grains and all.
+    water passes, "floor" or "lid";  ratio : of the smoothing length to the spacing.  Each particle takes up a square of
+    the spacing, grains and all.
     """
     width, height = size
-    smoothing, state, n = Smoothing("wendland", RATIO * spacing), Tait(WATER, sound_speed), len(x)
-    walls = sides(width, height, spacing)
+    smoothing, state, n = Smoothing("wendland", ratio * spacing), Tait(WATER, sound_speed), len(x)
+    walls = sides(width, height, spacing, ratio)
     options = {"diffusion": 0.0, "cut": False, "alpha": 0.0, "corrected": True} | law
     rules = Law(smoothing, spacing, (Fluid(state),), (0.0, -gravity), **options)  # type: ignore[arg-type]
     skeleton = ground.skeleton if isinstance(ground, Frame) else skeleton_of(ground, grains, permeability)
-    box = (0.0, -3 * spacing), (width, height + 3 * spacing), (True, False)
+    deep = math.ceil(-float(walls[:, 1].min()) / spacing) * spacing
+    box = (0.0, -deep), (width, height + deep), (True, False)
     skin = SKIN * smoothing.length
     overlap = Overlap(n, skeleton.count, smoothing.length, skin, *box)
     overlap.update(x, skeleton.x)

@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
-from continuum_sph.scene import verify, verify_air, verify_flows, verify_fluids, verify_seepage, verify_soil
+from continuum_sph.scene import (
+    verify,
+    verify_air,
+    verify_flows,
+    verify_fluids,
+    verify_levels,
+    verify_seepage,
+    verify_soil,
+)
 from porescale.workbench.validations import Validations
 
 VALIDATIONS = Validations()
-for room in (verify, verify_flows, verify_fluids, verify_seepage, verify_soil, verify_air):
+for room in (verify, verify_flows, verify_fluids, verify_seepage, verify_levels, verify_soil, verify_air):
     VALIDATIONS.include(room.VALIDATIONS)

@@ -1,0 +1,58 @@
+"""Beside each row on levels and wetting a twin that must fail, and the table that the dam is held to."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from continuum_sph.scene import verify_levels
+from continuum_sph.scene.trials_dam import STATIONS, SURFACE, Dam
+from continuum_sph.scene.validations import VALIDATIONS
+from continuum_sph.scene.verify_levels import DAM, DRAWN
+from continuum_sph.seepage import Resistance
+from tests.reference.dam import surface
+
+PRINTED = DRAWN.porosity / (1.0 - DRAWN.porosity)
+"""Factor of the drag n ρ_f g/k of eq. 46 per volume of water: n² ρ_f g/k of the whole, and 1/n of that."""
+
+
+def tolerance(name):
+    return VALIDATIONS[name].tolerance
+
+
+@pytest.mark.parametrize("length", sorted(SURFACE))
+def test_the_surface_in_a_dam_solves_the_free_boundary_problem(length):
+    # 50 cells over H1: the surface falls on the line between nodes to 0.02 of a cell; and the table's half digit
+    x, heights = surface(1.0, 0.0, length, 50, 1500)
+    np.testing.assert_allclose(
+        np.interp(np.array(STATIONS) * length, x, heights), SURFACE[length], atol=0.02 / 50 + 6e-4
+    )
+
+
+def test_the_discharge_of_a_dam_is_that_of_its_pressures():
+    # ∫ (H1 - y) dy over the one side less that over the other: q L/k, whatever the surface between
+    given = Dam(upstream=0.8, downstream=0.3, length=2.0, permeability=0.01)
+    assert given.discharge == pytest.approx(0.01 / 2.0 * (0.5 * 0.8**2 - 0.5 * 0.3**2))
+
+
+@pytest.mark.slow
+def test_water_passes_a_dam_too_fast_under_the_printed_drag(monkeypatch):
+    monkeypatch.setattr(Resistance, "factor", PRINTED)
+    into, out, _ = verify_levels.dam.__wrapped__(replace(DAM, rows=12), (0.5, 1.0))
+    assert abs(0.5 * (into + out) - 1.0) > tolerance("continuum.dam")
+
+
+@pytest.mark.slow
+def test_water_enters_soil_too_fast_under_the_printed_drag(monkeypatch):
+    monkeypatch.setattr(Resistance, "factor", PRINTED)
+    (found,) = verify_levels.fronts(replace(DRAWN, rows=20), (0.3,))
+    assert abs(found - 1.0) > 3.0 * tolerance("continuum.imbibition")
+
+
+@pytest.mark.slow
+def test_kernels_that_miss_the_next_row_in_pores_hold_the_front_back():
+    # Rows of water 1/n spacings apart and kernels that end at 2.6 spacings
+    (found,) = verify_levels.fronts(replace(DRAWN, rows=20, ratio=1.3), (0.3,))
+    assert abs(found - 1.0) > tolerance("continuum.imbibition")
