@@ -203,6 +203,8 @@ class Scene(Section):
             faults.append(Fault("reservoir", "given", "needs soil beside it", repair="add [soil]"))
         if self.air is not None and (self.soil is None or not self.water.column):
             faults.append(Fault("air", "given", "needs soil and water", repair="add [soil] and [[water.column]]"))
+        if self.air is not None and self.soil is not None and self.soil.saturated:
+            faults.append(Fault("air", "given", "has no room in full pores", repair="take out soil.saturated"))
         if self.air is not None and self.reservoir:
             faults.append(Fault("air", "given", "cannot be with reservoirs", repair="take out [[reservoir]]"))
         for index, column in enumerate(self.water.column):

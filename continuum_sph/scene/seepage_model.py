@@ -61,6 +61,7 @@ class SeepageSimulation:
                     str(error), "position", float("nan"), "m", self.step, self.time,
                     "lower numerics.courant, or raise numerics.artificial_viscosity or water.sound_speed",
                 ) from error  # fmt: skip
+            self.soil.count()
             self.refresh()
 
     def check(self) -> None:

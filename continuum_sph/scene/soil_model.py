@@ -47,10 +47,14 @@ class SoilSimulation:
                     str(error), "position", float("nan"), "m", self.step, self.time,
                     "lower numerics.courant, or raise soil.numerics.damping or soil.stiffness",
                 ) from error  # fmt: skip
-            if not self.counted and self.flow.time >= self.flow.law.settle:
-                self.first[:] = self.flow.soil.x[: len(self.first)]
-                self.counted = True
+            self.count()
             self.refresh()
+
+    def count(self) -> None:
+        """Displacements count from now if the soil has just settled."""
+        if not self.counted and self.flow.time >= self.flow.law.settle:
+            self.first[:] = self.flow.soil.x[: len(self.first)]
+            self.counted = True
 
     def check(self) -> None:
         """Raise Unstable when soil is faster than its own sound or denser than its grains."""

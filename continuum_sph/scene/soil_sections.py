@@ -86,6 +86,7 @@ class Ground(Section):
     elastic: bool = pydantic.Field(False, description="never yields")
     permeability: float = quantity("m/s", 1e-3, ge=1e-12, le=10, help="k at the porosity of the start")
     permeability_law: Literal["constant", "kozeny-carman"] = "constant"
+    saturated: bool = pydantic.Field(False, description="pores are full at the start, up to the surface of the ground")
     stress: Literal["geostatic", "none"] = "geostatic"
     rest: float | None = quantity("", None, ge=0, le=5, help="K0 at the start")
     floor: Literal["hold", "slip"] = "hold"
