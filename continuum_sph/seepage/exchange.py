@@ -8,12 +8,13 @@ from continuum_sph.layers import RHO
 from continuum_sph.seepage.mixture import POROSITY, ROOM
 from continuum_sph.seepage.resistance import drag
 from porescale.ground.jit import parallel_kernel, prange
+from porescale.ground.lanes import LANES, nothing, take_line, take_rows, take_two, total
 
 
 @parallel_kernel
 def brake(
-    fluid, near, other, weight, record, pores, mass, v, acceleration, resisting, soil_mass, soil_v, soil_acceleration,
-    law, factor, gravity, thick, seconds, slip, push, heat,
+    fluid, near, other, weight, record, pores, mass, v, acceleration, burden, law, factor, gravity, thick, seconds,
+    slip, push, heat,
 ):  # fmt: skip
     """Takes the drag of ``seconds`` from the water's ``v`` (fluid…, 2) m/s; what it takes goes to `take`.
 
@@ -21,27 +22,36 @@ def brake(
     impulse over the weight by which soil particles share it; adds to ``heat`` (fluid…,) J/m the work that it takes
     from both layers.
 
-    near, other, weight: the overlap, water rows first;  record: true densities of water;  pores: of `blend`;  mass,
-    soil_mass kg/m (infinite: soil is held);  accelerations m/s², of both, without drag;  resisting (s,) m s, grains/k;
+    near, other, weight: the overlap, water rows first;  record: true densities of water;  pores: of `blend`;  mass
+    kg/m;  acceleration (fluid, 2) m/s², without drag;  burden: see Skeleton, soil's accelerations without drag;
     law, factor, gravity: of `Resistance`;  thick (fluid,) N/m³, what stands for ρ g in the drag on particles of several
     fluids, ρ_w g μ/μ_w; empty for one.
     """
     for i in prange(fluid):
-        sum_of = 0.0
-        partial = 0.0
-        ux = 0.0
-        uy = 0.0
-        bx = 0.0
-        by = 0.0
-        for k in range(np.uint64(near[i]), np.uint64(near[i + 1])):
-            s = np.uint64(other[k]) - np.uint64(fluid)
-            share = resisting[s] * weight[k]
-            sum_of += share
-            partial += soil_mass[s] * weight[k] if weight[k] > 0.0 else 0.0
-            ux += share * soil_v[s, 0]
-            uy += share * soil_v[s, 1]
-            bx += share * soil_acceleration[s, 0]
-            by += share * soil_acceleration[s, 1]
+        resisting = nothing()
+        masses = nothing()
+        flow_x = nothing()
+        flow_y = nothing()
+        gain_x = nothing()
+        gain_y = nothing()
+        k = near[i]
+        while k < near[i + 1]:  # any soil stands for the missing end of a row, with no weight
+            _, resistance, inertia, vx, vy, fx, fy, _ = take_rows(burden, other, k, near[i + 1], 0, 0, fluid)
+            near_by = take_line(weight, k, near[i + 1])
+            k += LANES
+            share = resistance * near_by
+            resisting += share
+            masses += inertia * near_by
+            flow_x += share * vx
+            flow_y += share * vy
+            gain_x += share * fx
+            gain_y += share * fy
+        sum_of = total(resisting)
+        partial = total(masses)
+        ux = total(flow_x)
+        uy = total(flow_y)
+        bx = total(gain_x)
+        by = total(gain_y)
         push[i, 0] = 0.0
         push[i, 1] = 0.0
         slip[i, 0] = 0.0
@@ -79,12 +89,17 @@ def take(fluid, near, other, weight, push, resisting, soil_mass, soil_v, seconds
     """Gives ``push`` (fluid, 2), of `brake`, to the soil: adds to ``soil_v`` (s, 2) m/s; overwrites ``borne`` (s, 2)
     N/m, the mean force over ``seconds``; takes from ``heat`` (fluid + s,) J/m what they do in excess of `brake`'s."""
     for s in prange(resisting.shape[0]):
-        jx = 0.0
-        jy = 0.0
-        for k in range(np.uint64(near[fluid + s]), np.uint64(near[fluid + s + 1])):
-            water = np.uint64(other[k])
-            jx += weight[k] * push[water, 0]
-            jy += weight[k] * push[water, 1]
+        sum_x = nothing()
+        sum_y = nothing()
+        k = near[fluid + s]
+        while k < near[fluid + s + 1]:
+            px, py = take_two(push, other, k, near[fluid + s + 1], 0)
+            share = take_line(weight, k, near[fluid + s + 1])
+            k += LANES
+            sum_x += share * px
+            sum_y += share * py
+        jx = total(sum_x)
+        jy = total(sum_y)
         soil_v[s, 0] += resisting[s] / soil_mass[s] * jx
         soil_v[s, 1] += resisting[s] / soil_mass[s] * jy
         borne[s, 0] = resisting[s] / seconds * jx

@@ -10,6 +10,7 @@ import numpy as np
 from continuum_sph.layers import VOLUME, VX, VY, X, Y
 from continuum_sph.smoothing import CUBIC, kernel_value
 from porescale.ground.jit import parallel_kernel, prange
+from porescale.ground.lanes import LANES, nothing, take_line, take_rows, take_two, total
 from porescale.particles.cells import minimum_image
 
 POROSITY, ROOM, GRAINS = range(3)
@@ -20,14 +21,13 @@ LEAST_POROSITY = 0.05  # grains that crowd beyond this leave the water no more v
 
 @parallel_kernel
 def blend(
-    fluid, start, split, partner, record, home, near, soil, weight, grains, soil_v, pores, h,
-    period_x, period_y,
+    fluid, start, split, partner, record, home, near, soil, weight, burden, pores, h, period_x, period_y
 ):  # fmt: skip
     """Overwrites ``pores`` (fluid, 3), and in ``record`` the velocity by q and the volume by m/(n ρ_f), of water.
 
     start, split, partner: the water's full list, walls from ``split[i]`` on, which have the volume that ``record``
-    gives them and stand at ``home`` (n, 2) m;  near, soil, weight: rows of the overlap;  grains (s,) m²;  soil_v (s, 2)
-    m/s;  h: smoothing length;  periods, m or 0.
+    gives them and stand at ``home`` (n, 2) m;  near, soil, weight: rows of the overlap;  burden: see Skeleton;  h:
+    smoothing length;  periods, m or 0.
     """
     for i in prange(fluid):
         room = 1.0
@@ -37,15 +37,20 @@ def blend(
             dy = minimum_image(record[i, Y] - home[j, 1], period_y)
             room -= record[j, VOLUME] * kernel_value(CUBIC, np.sqrt(dx * dx + dy * dy) / h, h)
         room = max(LEAST_ROOM, room)
-        solid = 0.0
-        ux = 0.0
-        uy = 0.0
-        for k in range(np.uint64(near[i]), np.uint64(near[i + 1])):
-            s = np.uint64(soil[k]) - np.uint64(fluid)
-            share = grains[s] * weight[k]
-            solid += share
-            ux += share * soil_v[s, 0]
-            uy += share * soil_v[s, 1]
+        grains = nothing()
+        flux_x = nothing()
+        flux_y = nothing()
+        n = near[i]
+        while n < near[i + 1]:  # any soil stands for the missing end of a row, with no weight
+            volume, _, _, vx, vy, _, _, _ = take_rows(burden, soil, n, near[i + 1], 0, 0, fluid)
+            share = volume * take_line(weight, n, near[i + 1])
+            n += LANES
+            grains += share
+            flux_x += share * vx
+            flux_y += share * vy
+        solid = total(grains)
+        ux = total(flux_x)
+        uy = total(flux_y)
         pores[i, ROOM] = room
         porosity = 1.0
         if solid > 0.0:
@@ -82,11 +87,14 @@ def part_forces(
             thrust[i, 0] = whole * (acceleration[i, 0] - gx)
             thrust[i, 1] = whole * (acceleration[i, 1] - gy)
     for s in prange(grains.shape[0]):
-        fx = 0.0
-        fy = 0.0
-        for k in range(np.uint64(near[fluid + s]), np.uint64(near[fluid + s + 1])):
-            water = np.uint64(other[k])
-            fx += weight[k] * thrust[water, 0]
-            fy += weight[k] * thrust[water, 1]
-        force[s, 0] = grains[s] * fx
-        force[s, 1] = grains[s] * fy
+        fx = nothing()
+        fy = nothing()
+        k = near[fluid + s]
+        while k < near[fluid + s + 1]:
+            tx, ty = take_two(thrust, other, k, near[fluid + s + 1], 0)
+            share = take_line(weight, k, near[fluid + s + 1])
+            k += LANES
+            fx += share * tx
+            fy += share * ty
+        force[s, 0] = grains[s] * total(fx)
+        force[s, 1] = grains[s] * total(fy)

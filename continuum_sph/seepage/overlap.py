@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from continuum_sph.smoothing import CUBIC, kernel_value
 from porescale.ground.jit import parallel_kernel, prange
+from porescale.ground.lanes import LANES, nearest, put_line, root, take_two
 from porescale.particles import PairList
-from porescale.particles.cells import minimum_image
 
 Floats = NDArray[np.float64]
 
@@ -21,19 +21,26 @@ Floats = NDArray[np.float64]
 def overlap_weights(start, partner, x, weight, h, period_x, period_y):
     """Overwrites ``weight`` (m,) 1/m², W of every entry of a full list;  x (n, 2) m;  h: smoothing length;  periods, m
     or 0."""
+    turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
+    turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
     for i in prange(x.shape[0]):
-        for k in range(np.uint64(start[i]), np.uint64(start[i + 1])):
-            j = np.uint64(partner[k])
-            dx = minimum_image(x[i, 0] - x[j, 0], period_x)
-            dy = minimum_image(x[i, 1] - x[j, 1], period_y)
-            weight[k] = kernel_value(CUBIC, np.sqrt(dx * dx + dy * dy) / h, h)
+        k = start[i]
+        while k < start[i + 1]:
+            xj, yj = take_two(x, partner, k, start[i + 1], i)
+            dx = x[i, 0] - xj
+            dy = x[i, 1] - yj
+            dx -= period_x * nearest(dx * turns_x)
+            dy -= period_y * nearest(dy * turns_y)
+            put_line(weight, k, start[i + 1], kernel_value(CUBIC, root(dx * dx + dy * dy) * (1.0 / h), h))
+            k += LANES
 
 
 class Overlap:
     """Rows of water particles first, with their soil partners, then rows of soil particles, with their water's.
 
     Partners of both are numbered as in ``x`` (water + soil, 2) m: soil from ``water`` on.  start, partner: the list;
-    weight : (m,) 1/m², W of each entry.  Pairs within a layer are not listed.
+    weight : (m + spare,) 1/m², W of each entry, and room for a whole vector at the last.  Pairs within a layer are not
+    listed.
     """
 
     def __init__(
@@ -58,8 +65,8 @@ class Overlap:
         self.x[: self.water], self.x[self.water :] = water, soil
         pairs = self.pairs
         pairs.update(self.x, self.reach)
-        if len(self.weight) < len(pairs.partner):
-            self.weight = np.zeros(len(pairs.partner) * 3 // 2)
+        if len(self.weight) < len(pairs.partner) + LANES:
+            self.weight = np.zeros(len(pairs.partner) * 3 // 2 + LANES)
         overlap_weights(pairs.start, pairs.partner, self.x, self.weight, self.length, *pairs.period)
 
     @property

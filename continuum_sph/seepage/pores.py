@@ -70,9 +70,10 @@ class PoreFlow(Flow):
         super().show_walls(step, ratio)
         layer, pairs, smoothing = self.layer, self.pairs, self.law.smoothing
         how = (smoothing.kind, smoothing.length, *pairs.period)
+        self.skeleton.show()
         blend(
             layer.fluid, pairs.start, self.split, pairs.partner, layer.record, self.home, *self.overlap.rows,
-            self.skeleton.grains, self.skeleton.v, self.pores, *how[1:],
+            self.skeleton.burden, self.pores, *how[1:],
         )  # fmt: skip
         for face in self.drains:
             drain_walls(
@@ -83,10 +84,10 @@ class PoreFlow(Flow):
     def brake(self, seconds: float) -> None:
         """Drag of ``seconds`` between water and soil, with the accelerations that both have now."""
         layer, soil, law = self.layer, self.skeleton, self.resistance
+        soil.show()
         brake(
             layer.fluid, *self.overlap.rows, layer.record, self.pores, layer.mass, layer.v, layer.acceleration,
-            soil.resisting, soil.mass, soil.v, soil.acceleration, law.number, law.factor, law.gravity,
-            self.thick, seconds, self.slip, self.push, self.heat,
+            soil.burden, law.number, law.factor, law.gravity, self.thick, seconds, self.slip, self.push, self.heat,
         )  # fmt: skip
         take(
             layer.fluid, *self.overlap.rows, self.push, soil.resisting, soil.mass, soil.v, seconds, self.borne,

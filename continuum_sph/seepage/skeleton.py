@@ -8,8 +8,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.soil import SoilFlow
+from porescale.ground.jit import parallel_kernel, prange
 
 Floats = NDArray[np.float64]
+
+HEAVIEST = 1e300  # kg/m: stands for the infinite mass of soil that is held, as nothing times it is nothing
+
+
+@parallel_kernel
+def show_soil(v, acceleration, mass, grains, resisting, burden):
+    """Overwrites ``burden`` (s, 8), all that water reads of a soil particle, in one cache line: grains m², resisting
+    m s, mass kg/m, velocity m/s and acceleration m/s²."""
+    for s in prange(mass.shape[0]):
+        burden[s, 0] = grains[s]
+        burden[s, 1] = resisting[s]
+        burden[s, 2] = min(HEAVIEST, mass[s])
+        burden[s, 3] = v[s, 0]
+        burden[s, 4] = v[s, 1]
+        burden[s, 5] = acceleration[s, 0]
+        burden[s, 6] = acceleration[s, 1]
 
 
 @dataclass
@@ -29,6 +46,7 @@ class Skeleton:
     permeability: Floats
     resisting: Floats = field(init=False)  # grains/k, m s
     held: bool = field(init=False)  # whether it cannot move, whatever acts on it
+    burden: Floats = field(init=False)  # (soil, 8) what a water particle reads of its partners
 
     def __post_init__(self) -> None:
         count = len(self.x)
@@ -38,6 +56,11 @@ class Skeleton:
             assert getattr(self, name).shape == (count,), name
         self.resisting = self.grains / self.permeability
         self.held = bool(np.isinf(self.mass).any())
+        self.burden = np.zeros((count, 8))
+
+    def show(self) -> None:
+        """Take velocities and accelerations of now into ``burden``."""
+        show_soil(self.v, self.acceleration, self.mass, self.grains, self.resisting, self.burden)
 
     @property
     def count(self) -> int:

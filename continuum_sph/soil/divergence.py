@@ -45,6 +45,7 @@ from continuum_sph.soil.state import (
     Y,
 )
 from porescale.ground.jit import parallel_kernel, prange
+from porescale.ground.lanes import LANES, greater, lesser, nearest, nothing, root, take_four, take_rows, total
 from porescale.particles.cells import minimum_image
 
 SOFTENING = 0.01  # of h²: keeps the quotient finite when two centres meet
@@ -68,7 +69,10 @@ def accelerate(
     smooth = -h * h * diffusion
     restless = -h * h * pace
     inverse_spacing2 = 1.0 / (spacing * spacing)
-    wraps = period_x > 0.0 or period_y > 0.0
+    turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
+    turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
+    linear = 0.0 if printed else 0.5  # of both gradients: the part of velocities that is not damped
+    most = 0.0 if printed else np.inf  # of the closing that is damped
     for i in prange(soil):
         xi = record[i, X]
         yi = record[i, Y]
@@ -89,64 +93,62 @@ def accelerate(
         yy = stress[i, YY]
         xy = stress[i, XY]
         zz = stress[i, ZZ]
-        ax = 0.0
-        ay = 0.0
-        sxx = 0.0
-        syy = 0.0
-        sxy = 0.0
-        szz = 0.0
-        ux = 0.0
-        uy = 0.0
-        for k in range(np.uint64(start[i]), np.uint64(split[i])):
-            j = np.uint64(partner[k])
-            dx = xi - record[j, X]
-            dy = yi - record[j, Y]
-            if wraps:
-                dx = minimum_image(dx, period_x)
-                dy = minimum_image(dy, period_y)
+        bx = nothing()
+        by = nothing()
+        rxx = nothing()
+        ryy = nothing()
+        rxy = nothing()
+        rzz = nothing()
+        wx = nothing()
+        wy = nothing()
+        k = start[i]
+        while k < split[i]:  # a particle stands for the missing end of its row: it does nothing to itself
+            xj, yj, vxj, vyj, volume, mass, quick_j, shearing_j = take_rows(record, partner, k, split[i], i)
+            txx_j, txy_j, tyx_j, tyy_j, gxx_j, gxy_j, gyx_j, gyy_j = take_rows(record, partner, k, split[i], i, TXX)
+            xx_j, yy_j, xy_j, zz_j = take_four(stress, partner, k, split[i], i)
+            k += LANES
+            dx = xi - xj
+            dy = yi - yj
+            dx -= period_x * nearest(dx * turns_x)
+            dy -= period_y * nearest(dy * turns_y)
             distance2 = dx * dx + dy * dy
-            slope = scale * slope_shape(kind, np.sqrt(distance2) * inverse_h)
-            vx = vxi - record[j, VX]
-            vy = vyi - record[j, VY]
-            if not printed:
-                vx -= 0.5 * ((gxx + record[j, GXX]) * dx + (gxy + record[j, GXY]) * dy)
-                vy -= 0.5 * ((gyx + record[j, GYX]) * dx + (gyy + record[j, GYY]) * dy)
-            approach = vx * dx + vy * dy
-            if printed:
-                approach = min(0.0, approach)
-            swept = record[j, VOLUME] * slope
+            slope = scale * slope_shape(kind, root(distance2) * inverse_h)
+            vx = vxi - vxj - linear * ((gxx + gxx_j) * dx + (gxy + gxy_j) * dy)
+            vy = vyi - vyj - linear * ((gyx + gyx_j) * dx + (gyy + gyy_j) * dy)
+            approach = lesser(vx * dx + vy * dy, most)
+            swept = volume * slope
+            damp = (quick + quick_j) * approach * mass * slope / (distance2 + soft)
             thrust = own * swept
-            damp = braking * (quick + record[j, QUICK]) * approach * record[j, MASS] * slope / (distance2 + soft)
-            ax += damp * dx - thrust * ((txx + record[j, TXX]) * dx + (txy + record[j, TXY]) * dy)
-            ay += damp * dy - thrust * ((tyx + record[j, TYX]) * dx + (tyy + record[j, TYY]) * dy)
-            rate = 0.5 * (shearing + record[j, SHEARING])
+            bx += braking * damp * dx - thrust * ((txx + txx_j) * dx + (txy + txy_j) * dy)
+            by += braking * damp * dy - thrust * ((tyx + tyx_j) * dx + (tyy + tyy_j) * dy)
+            rate = 0.5 * (shearing + shearing_j)
             part = (smooth * rate + restless) * swept
-            sxx += part * (stress[j, XX] - xx)
-            syy += part * (stress[j, YY] - yy)
-            sxy += part * (stress[j, XY] - xy)
-            szz += part * (stress[j, ZZ] - zz)
-            near = rate * max(0.0, 1.0 - distance2 * inverse_spacing2)
-            ux += near * dx
-            uy += near * dy
-        for k in range(np.uint64(split[i]), np.uint64(start[i + 1])):
-            j = np.uint64(partner[k])
+            rxx += part * (xx_j - xx)
+            ryy += part * (yy_j - yy)
+            rxy += part * (xy_j - xy)
+            rzz += part * (zz_j - zz)
+            near = rate * greater(1.0 - distance2 * inverse_spacing2, 0.0)
+            wx += near * dx
+            wy += near * dy
+        ax = total(bx)
+        ay = total(by)
+        ux = total(wx)
+        uy = total(wy)
+        for w in range(np.uint64(split[i]), np.uint64(start[i + 1])):
+            j = np.uint64(partner[w])
             dx = xi - record[j, X]
             dy = yi - record[j, Y]
-            if wraps:
-                dx = minimum_image(dx, period_x)
-                dy = minimum_image(dy, period_y)
+            dx = minimum_image(dx, period_x)
+            dy = minimum_image(dy, period_y)
             if not before(facing, j, record[j, X] + dx, record[j, Y] + dy):
                 continue
             distance2 = dx * dx + dy * dy
             slope = scale * slope_shape(kind, np.sqrt(distance2) * inverse_h)
             vx = vxi - record[j, VX]
             vy = vyi - record[j, VY]
-            if not printed:  # a wall's gradient and sound are those of the soil before it
-                vx -= gxx * dx + gxy * dy
-                vy -= gyx * dx + gyy * dy
-            approach = vx * dx + vy * dy
-            if printed:
-                approach = min(0.0, approach)
+            vx -= 2.0 * linear * (gxx * dx + gxy * dy)  # a wall's gradient and sound are those of the soil before it
+            vy -= 2.0 * linear * (gyx * dx + gyy * dy)
+            approach = min(most, vx * dx + vy * dy)
             thrust = own * record[j, VOLUME] * slope
             damp = 2.0 * braking * quick * approach * record[j, MASS] * slope / (distance2 + soft)
             ax += damp * dx - thrust * ((txx + record[j, TXX]) * dx + (txy + record[j, TXY]) * dy)
@@ -154,10 +156,10 @@ def accelerate(
             near = shearing * max(0.0, 1.0 - distance2 * inverse_spacing2)
             ux += near * dx
             uy += near * dy
-        spread[i, XX] = sxx
-        spread[i, YY] = syy
-        spread[i, XY] = sxy
-        spread[i, ZZ] = szz
+        spread[i, XX] = total(rxx)
+        spread[i, YY] = total(ryy)
+        spread[i, XY] = total(rxy)
+        spread[i, ZZ] = total(rzz)
         drift[i, 0] = apart * ux
         drift[i, 1] = apart * uy
         acceleration[i, 0] = ax + gx + force[i, 0] / record[i, MASS]

@@ -20,6 +20,7 @@ import numpy as np
 from continuum_sph.smoothing import slope_scale, slope_shape
 from continuum_sph.soil.state import GXX, GXY, GYX, GYY, VOLUME, VX, VY, X, Y
 from porescale.ground.jit import inline, parallel_kernel, prange
+from porescale.ground.lanes import LANES, nearest, nothing, root, take_rows, total
 from porescale.particles.cells import minimum_image
 
 NONE, FULL = 0.25, 0.45
@@ -56,28 +57,52 @@ def velocity_gradients(
     """
     scale = slope_scale(kind, h)
     inverse_h = 1.0 / h
-    wraps = period_x > 0.0 or period_y > 0.0
+    turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
+    turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
     for i in prange(soil):
         xi = record[i, X]
         yi = record[i, Y]
         vxi = record[i, VX]
         vyi = record[i, VY]
-        mxx = 0.0
-        mxy = 0.0
-        myy = 0.0
-        gxx = 0.0
-        gxy = 0.0
-        gyx = 0.0
-        gyy = 0.0
-        walls = np.uint64(split[i])
-        for k in range(np.uint64(start[i]), np.uint64(start[i + 1])):
-            j = np.uint64(partner[k])
-            dx = xi - record[j, X]
-            dy = yi - record[j, Y]
-            if wraps:
-                dx = minimum_image(dx, period_x)
-                dy = minimum_image(dy, period_y)
-            if k >= walls and not before(facing, j, record[j, X] + dx, record[j, Y] + dy):
+        lxx = nothing()
+        lxy = nothing()
+        lyy = nothing()
+        hxx = nothing()
+        hxy = nothing()
+        hyx = nothing()
+        hyy = nothing()
+        k = start[i]
+        while k < split[i]:  # a particle stands for the missing end of its row: it lies and moves as itself
+            xj, yj, vxj, vyj, volume, _, _, _ = take_rows(record, partner, k, split[i], i)
+            k += LANES
+            dx = xi - xj
+            dy = yi - yj
+            dx -= period_x * nearest(dx * turns_x)
+            dy -= period_y * nearest(dy * turns_y)
+            part = volume * scale * slope_shape(kind, root(dx * dx + dy * dy) * inverse_h)
+            px = part * dx
+            py = part * dy
+            vx = vxj - vxi
+            vy = vyj - vyi
+            lxx += px * dx
+            lxy += px * dy
+            lyy += py * dy
+            hxx += vx * px
+            hxy += vx * py
+            hyx += vy * px
+            hyy += vy * py
+        mxx = -total(lxx)
+        mxy = -total(lxy)
+        myy = -total(lyy)
+        gxx = total(hxx)
+        gxy = total(hxy)
+        gyx = total(hyx)
+        gyy = total(hyy)
+        for w in range(np.uint64(split[i]), np.uint64(start[i + 1])):
+            j = np.uint64(partner[w])
+            dx = minimum_image(xi - record[j, X], period_x)
+            dy = minimum_image(yi - record[j, Y], period_y)
+            if not before(facing, j, record[j, X] + dx, record[j, Y] + dy):
                 continue
             part = record[j, VOLUME] * scale * slope_shape(kind, np.sqrt(dx * dx + dy * dy) * inverse_h)
             px = part * dx

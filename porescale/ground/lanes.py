@@ -24,7 +24,7 @@ from numba.core.typing.templates import AbstractTemplate, infer_global, signatur
 from numba.extending import intrinsic, models, overload, register_model
 
 LANES = 4  # twice as many are 2 % faster where vectors are that wide (measured), and half as many registers elsewhere
-COLUMNS = 8  # of the records that `take_rows` reads
+COLUMNS = 8  # that `take_rows` reads of a record
 
 NUMBER, COUNT, SHORT = ir.DoubleType(), ir.IntType(64), ir.IntType(32)
 VECTOR, TWO = ir.VectorType(NUMBER, LANES), ir.VectorType(NUMBER, 2)
@@ -166,12 +166,13 @@ def total(a: Any) -> Any:
     return a[0]
 
 
-def take_rows(record: Any, row: Any, first: Any, end: Any, other: Any) -> Any:
-    """The columns of LANES rows of ``record`` (n, COLUMNS), each as a vector: rows ``row[first]``, ``row[first + 1]`` …
-    and, from ``row[end]`` on, row ``other``.  ``row`` int32.  Not checked: that the rows are there.
+def take_line(line: Any, first: Any, end: Any) -> Any:
+    """Entries ``line[first]``, ``line[first + 1]`` … of a float64 array, 0 from ``line[end]`` on.
+
+    Not checked: that ``line`` has LANES entries from ``first`` on, also where the last ones are not taken.
     """
-    chosen = [row[k] if k < end else other for k in range(first, first + LANES)]
-    return tuple(record[chosen].T)
+    inside = np.arange(first, first + LANES) < end
+    return np.where(inside, line[first : first + LANES], 0.0)
 
 
 def _zero(typing: Any) -> Any:
@@ -194,31 +195,47 @@ def _sum(typing: Any, a: Any) -> Any:
     return types.float64(lanes), code
 
 
-def _take(typing: Any, record: Any, row: Any, first: Any, end: Any, other: Any) -> Any:
-    """``take_rows`` in kernels: rows come two columns at a time and are put side by side in registers."""
-    found = types.UniTuple(lanes, COLUMNS)
+def put_line(line: Any, first: Any, end: Any, values: Any) -> None:
+    """Write LANES values to ``line[first]``, ``line[first + 1]`` … of a float64 array, none from ``line[end]`` on."""
+    count = min(LANES, end - first)
+    line[first : first + count] = values[:count]
+
+
+def _put_line(typing: Any, line: Any, first: Any, end: Any, values: Any) -> Any:
+    """``put_line`` in kernels."""
+
+    def code(context: Any, builder: Any, _: Any, taken: Any) -> Any:
+        data = context.make_array(line)(context, builder, taken[0]).data
+        at = builder.gep(data, [taken[1]])
+        whole = builder.icmp_signed("<=", builder.add(taken[1], COUNT(LANES)), taken[2])
+        with builder.if_else(whole) as (vector, single):
+            with vector:
+                builder.store(taken[3], builder.bitcast(at, VECTOR.as_pointer()), align=8)
+            with single:
+                for lane in range(LANES - 1):
+                    inside = builder.icmp_signed("<", builder.add(taken[1], COUNT(lane)), taken[2])
+                    with builder.if_then(inside):
+                        one = builder.extract_element(taken[3], SHORT(lane))
+                        builder.store(one, builder.gep(at, [COUNT(lane)]))
+        return context.get_dummy_value()
+
+    return types.none(line, types.int64, types.int64, lanes), code
+
+
+def _take_line(typing: Any, line: Any, first: Any, end: Any) -> Any:
+    """``take_line`` in kernels."""
 
     def code(context: Any, builder: Any, _: Any, values: Any) -> Any:
-        data = context.make_array(record)(context, builder, values[0]).data
-        listed = context.make_array(row)(context, builder, values[1]).data
-        rows = []
+        data = context.make_array(line)(context, builder, values[0]).data
+        at = builder.bitcast(builder.gep(data, [values[1]]), VECTOR.as_pointer())
+        known = builder.load(at, align=8)
+        inside = ir.Constant(ir.VectorType(ir.IntType(1), LANES), ir.Undefined)
         for lane in range(LANES):
-            at = builder.add(values[2], COUNT(lane))
-            inside = builder.icmp_signed("<", at, values[3])
-            known = builder.load(builder.gep(listed, [builder.select(inside, at, values[2])]))
-            number = builder.select(inside, builder.sext(known, COUNT), values[4])
-            rows.append(builder.gep(data, [builder.mul(number, COUNT(COLUMNS))]))
-        columns = []
-        for column in range(0, COLUMNS, 2):
-            where = [builder.bitcast(builder.gep(at, [COUNT(column)]), TWO.as_pointer()) for at in rows]
-            pairs = [builder.load(at, align=8) for at in where]
-            even, odd = (_joined(builder, pairs[half::2]) for half in (0, 1))
-            for half in (0, 1):
-                places = [place + half for lane in range(0, LANES, 2) for place in (lane, lane + LANES)]
-                columns.append(_shuffled(builder, even, odd, places))
-        return context.make_tuple(builder, found, columns)
+            taken = builder.icmp_signed("<", builder.add(values[1], COUNT(lane)), values[2])
+            inside = builder.insert_element(inside, taken, SHORT(lane))
+        return builder.select(inside, known, ir.Constant(VECTOR, [0.0] * LANES))
 
-    return found(record, row, types.int64, types.int64, types.int64), code
+    return lanes(line, types.int64, types.int64), code
 
 
 def _joined(builder: Any, parts: list[Any]) -> Any:
@@ -231,7 +248,8 @@ def _joined(builder: Any, parts: list[Any]) -> Any:
 
 _nothing: Any = intrinsic(_zero)
 _total: Any = intrinsic(_sum)
-_rows: Any = intrinsic(_take)
+_line: Any = intrinsic(_take_line)
+_put: Any = intrinsic(_put_line)
 
 
 @overload(nothing, strict=False, jit_options=INLINED)
@@ -244,6 +262,66 @@ def _choose_total(a: Any) -> Any:
     return lambda a: _total(a)
 
 
-@overload(take_rows, strict=False, jit_options=INLINED)
-def _choose_rows(record: Any, row: Any, first: Any, end: Any, other: Any) -> Any:
-    return lambda record, row, first, end, other: _rows(record, row, first, end, other)
+@overload(take_line, strict=False, jit_options=INLINED)
+def _choose_line(line: Any, first: Any, end: Any) -> Any:
+    return lambda line, first, end: _line(line, first, end)
+
+
+@overload(put_line, strict=False, jit_options=INLINED)
+def _choose_put(line: Any, first: Any, end: Any, values: Any) -> Any:
+    return lambda line, first, end, values: _put(line, first, end, values)
+
+
+def rows_of(columns: int) -> Any:
+    """Make the function that takes that many columns, an even number, of rows."""
+
+    def take(record: Any, row: Any, first: Any, end: Any, other: Any, column: Any = 0, before: Any = 0) -> Any:
+        """Columns of LANES rows of ``record`` (n, m), each as a vector, from ``column`` on: rows ``row[first]``,
+        ``row[first + 1]`` … less ``before`` and, from ``row[end]`` on, row ``other``.
+
+        ``row`` int32.  Not checked: that the rows and columns are there.
+        """
+        chosen = [row[k] - before if k < end else other for k in range(first, first + LANES)]
+        return tuple(record[chosen, column : column + columns].T)
+
+    def vectors(typing: Any, record: Any, row: Any, first: Any, end: Any, other: Any, column: Any, before: Any) -> Any:
+        """``take`` in kernels: rows come two columns at a time and are put side by side in registers."""
+        found = types.UniTuple(lanes, columns)
+
+        def code(context: Any, builder: Any, _: Any, values: Any) -> Any:
+            table = context.make_array(record)(context, builder, values[0])
+            width = builder.extract_value(table.shape, 1)
+            listed = context.make_array(row)(context, builder, values[1]).data
+            rows = []
+            for lane in range(LANES):
+                at = builder.add(values[2], COUNT(lane))
+                inside = builder.icmp_signed("<", at, values[3])
+                known = builder.load(builder.gep(listed, [builder.select(inside, at, values[2])]))
+                number = builder.select(inside, builder.sub(builder.sext(known, COUNT), values[6]), values[4])
+                rows.append(builder.gep(table.data, [builder.add(builder.mul(number, width), values[5])]))
+            side_by_side = []
+            for pair in range(0, columns, 2):
+                where = [builder.bitcast(builder.gep(at, [COUNT(pair)]), TWO.as_pointer()) for at in rows]
+                pairs = [builder.load(at, align=8) for at in where]
+                even, odd = (_joined(builder, pairs[half::2]) for half in (0, 1))
+                for half in (0, 1):
+                    places = [place + half for lane in range(0, LANES, 2) for place in (lane, lane + LANES)]
+                    side_by_side.append(_shuffled(builder, even, odd, places))
+            return context.make_tuple(builder, found, side_by_side)
+
+        return found(record, row, *[types.int64] * 5), code
+
+    taken: Any = intrinsic(vectors)
+
+    def choose(record: Any, row: Any, first: Any, end: Any, other: Any, column: Any = 0, before: Any = 0) -> Any:
+        return lambda record, row, first, end, other, column=0, before=0: taken(
+            record, row, first, end, other, column, before
+        )
+
+    overload(take, strict=False, jit_options=INLINED)(choose)
+    return take
+
+
+take_rows = rows_of(COLUMNS)
+take_four = rows_of(4)
+take_two = rows_of(2)

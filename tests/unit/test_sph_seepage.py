@@ -8,12 +8,15 @@ from reference import seepage as slow
 
 from continuum_sph.layers import RHO, VOLUME, VX, VY, P, X, Y
 from continuum_sph.seepage import Frame, Resistance
+from continuum_sph.seepage import overlap as overlaps
 from continuum_sph.seepage.drain import drain_walls
 from continuum_sph.seepage.exchange import brake, take
 from continuum_sph.seepage.mixture import POROSITY, blend, part_forces
 from continuum_sph.seepage.overlap import Overlap, overlap_weights
 from continuum_sph.seepage.resistance import drag
-from continuum_sph.smoothing import WENDLAND
+from continuum_sph.seepage.skeleton import show_soil
+from continuum_sph.smoothing import WENDLAND, kernel_value
+from porescale.ground.lanes import LANES
 
 eps = np.finfo(float).eps
 H, GRAVITY, POROUS = 0.13, 9.81, 0.4
@@ -31,8 +34,10 @@ def place():
     overlap = Overlap(n, n, H, 0.02, (0.0, 0.0), (1.0, 1.0), (True, True))
     overlap.pairs.update(np.concatenate((x, soil_x)), overlap.reach)
     pairs = overlap.pairs
-    weight = np.zeros(len(pairs.partner))
-    overlap_weights.py_func(pairs.start, pairs.partner, np.concatenate((x, soil_x)), weight, H, 1.0, 1.0)
+    weight = np.zeros(len(pairs.partner) + LANES)
+    with pytest.MonkeyPatch.context() as patch:  # compiled functions take vectors only from kernels
+        patch.setattr(overlaps, "kernel_value", kernel_value.py_func)
+        overlap_weights.py_func(pairs.start, pairs.partner, np.concatenate((x, soil_x)), weight, H, 1.0, 1.0)
     values = {name: rng.normal(size=(n, 2)) for name in ("v", "soil_v", "a", "soil_a")}
     rho = 1000.0 + rng.normal(size=n)
     rest = {"mass": np.full(n, 4.0), "soil_mass": np.full(n, 15.9), "grains": np.full(n, 6e-3), "rho": rho}
@@ -43,6 +48,13 @@ def place():
     )
 
 
+def burden(place, resisting):
+    """What water reads of the soil."""
+    shown = np.zeros((len(place["soil_x"]), 8))
+    show_soil.py_func(place["soil_v"], place["soil_a"], place["soil_mass"], place["grains"], resisting, shown)
+    return shown
+
+
 def blended(place):
     """Record and pores after `blend`."""
     n = len(place["x"])
@@ -51,8 +63,8 @@ def blended(place):
     record[:, RHO], record[:, P], record[:, VOLUME] = place["rho"], place["p"], place["mass"] / place["rho"]
     pores, none = np.ones((n, 3)), np.zeros(n + 1, np.int64)
     blend.py_func(
-        n, none, none[:n], np.zeros(0, np.int32), record, place["x"], *place["rows"], place["grains"],
-        place["soil_v"], pores, H, 1.0, 1.0,
+        n, none, none[:n], np.zeros(0, np.int32), record, place["x"], *place["rows"],
+        burden(place, np.zeros(n)), pores, H, 1.0, 1.0,
     )  # fmt: skip
     return record, pores
 
@@ -94,8 +106,8 @@ def braked(place, seconds, record, pores):
     v, soil_v, push, borne = place["v"].copy(), place["soil_v"].copy(), np.zeros((n, 2)), np.zeros((n, 2))
     heat, law, resisting = np.zeros(2 * n), Resistance(POROUS), place["grains"] / k
     brake.py_func(
-        n, *place["rows"], record, pores, place["mass"], v, place["a"], resisting, place["soil_mass"], soil_v,
-        place["soil_a"], law.number, law.factor, law.gravity, seconds, np.zeros((n, 2)), push, heat,
+        n, *place["rows"], record, pores, place["mass"], v, place["a"], burden(place, resisting),
+        law.number, law.factor, law.gravity, np.zeros(0), seconds, np.zeros((n, 2)), push, heat,
     )  # fmt: skip
     take.py_func(n, *place["rows"], push, resisting, place["soil_mass"], soil_v, seconds, borne, heat)
     return v, soil_v, heat.sum(), borne
