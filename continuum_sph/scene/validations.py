@@ -10,9 +10,19 @@ from continuum_sph.scene import (
     verify_levels,
     verify_seepage,
     verify_soil,
+    verify_soil_wet,
 )
 from porescale.workbench.validations import Validations
 
 VALIDATIONS = Validations()
-for room in (verify, verify_flows, verify_fluids, verify_seepage, verify_levels, verify_soil, verify_air):
+for room in (
+    verify,
+    verify_flows,
+    verify_fluids,
+    verify_seepage,
+    verify_levels,
+    verify_soil,
+    verify_soil_wet,
+    verify_air,
+):
     VALIDATIONS.include(room.VALIDATIONS)

@@ -89,8 +89,8 @@ def test_a_scene_with_air_books_both_fluids_and_shows_them():
     model.advance(300)
     model.check()
     row, shot = model.series(), model.snapshot()
-    # 10 by 10 pores of n = 0.4, lattice sums of grains exact to 2 %
-    assert first["air: mass (kg/m)"] == pytest.approx(10.0 * 0.4 * 0.04, rel=0.02)
+    # 10 by 10 pores of n = 0.4; kernels see fewer grains at the surface, one row in ten of 0.6 less by up to a half
+    assert first["air: mass (kg/m)"] == pytest.approx(10.0 * 0.4 * 0.04, rel=0.5 * 0.6 / 0.4 / 10)
     assert row["water: mass (kg/m)"] == first["water: mass (kg/m)"]
     assert row["air: mass (kg/m)"] == first["air: mass (kg/m)"]
     assert row["air: mean pressure (Pa)"] > first["air: mean pressure (Pa)"]

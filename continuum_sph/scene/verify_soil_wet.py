@@ -1,0 +1,69 @@
+"""Validations of slopes under water; each measuring function takes what its failing twin changes."""
+
+from __future__ import annotations
+
+import functools
+import math
+
+from continuum_sph.scene.trials_soil_wet import WetSlope
+from porescale.ground.constants import GRAVITY
+from porescale.workbench.validations import Measured, Validations
+
+VALIDATIONS = Validations()
+
+STILL, SEEPING = WetSlope(28.0, False), WetSlope(16.0, True)
+RESTING = (WetSlope(25.0, False), WetSlope(12.0, True))
+
+
+@functools.cache
+def slides(given: WetSlope) -> tuple[float, float]:
+    """(acceleration, m/s², and speed, m/s) of a wet layer on a slope."""
+    return given.slides()
+
+
+def off(given: WetSlope, seeping: bool | None = None) -> tuple[float, float, float]:
+    """(exact, found acceleration, m/s², their difference over what drives);  seeping: as if it were so."""
+    exact, found = given.acceleration(seeping), slides(given)[0]
+    part = given.whole if given.seeping else given.buoyant
+    return exact, found, abs(found - exact) / (GRAVITY * math.sin(math.radians(given.degrees)) * part / given.whole)
+
+
+@VALIDATIONS.row(
+    "continuum.soil_slides_under_water",
+    source="exact: buoyancy takes the same share of what drives and of what holds: limit atan(sin φ) = 26.6° as in "
+    "air; slope of 28°: γ'/γ_sat g (sin β - sin φ cos β)",
+    because="half of the row at the floor, of 20, is held by it: 0.5/20 of what drives",
+    tolerance=0.5 / 20,
+    slow=True,
+)
+def still_row() -> Measured:
+    """Acceleration of an endless layer on a slope in still water, m/s²; error over what drives."""
+    exact, found, error = off(STILL)
+    return Measured(exact, found, error)
+
+
+@VALIDATIONS.row(
+    "continuum.soil_slides_with_seepage",
+    source="exact: water that flows along a slope bears none of its weight: limit tan β = γ'/γ_sat sin φ, 14.0°; slope "
+    "of 16°: g (sin β - γ'/γ_sat sin φ cos β)",
+    because="half of the row at the floor, of 20, is held by it: 0.5/20 of what drives",
+    tolerance=0.5 / 20,
+    slow=True,
+)
+def seeping_row() -> Measured:
+    """Acceleration of an endless layer with water flowing along it, m/s²; error over what drives."""
+    exact, found, error = off(SEEPING)
+    return Measured(exact, found, error)
+
+
+@VALIDATIONS.row(
+    "continuum.soil_rests_below_its_wet_limits",
+    source="exact: 25° in still water and 12° with seepage lie below 26.6° and 14.0°",
+    because="speed of what slides for 0.6 s at a fortieth of g sin 12°: half of the row at the floor is soft",
+    tolerance=0.6 * GRAVITY * math.sin(math.radians(12.0)) / 40,
+    slow=True,
+)
+def resting_row() -> Measured:
+    """Speed of two layers below their limits after 0.6 s, m/s."""
+    found = [abs(slides(given)[1]) for given in RESTING]
+    return Measured(0.0, found, max(found))

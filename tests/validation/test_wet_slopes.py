@@ -1,0 +1,40 @@
+"""Beside each row on slopes under water a twin that must fail."""
+
+from __future__ import annotations
+
+import pytest
+
+from continuum_sph.scene import verify_soil_wet
+from continuum_sph.scene.trials_soil_wet import WetSlope
+from continuum_sph.scene.validations import VALIDATIONS
+from continuum_sph.scene.verify_soil_wet import SEEPING, STILL
+
+
+def tolerance(name):
+    return VALIDATIONS[name].tolerance
+
+
+def test_limits_of_wet_slopes_are_those_of_the_textbook():
+    # γ' = 990, γ_sat = 1990 kg/m³: half of sin φ with water that seeps along the slope
+    assert WetSlope(20.0, False).limit() == pytest.approx(26.565, abs=5e-4)
+    assert WetSlope(20.0, True).limit() == pytest.approx(13.968, abs=5e-4)
+    for seeping in (False, True):
+        limit = WetSlope(20.0, seeping).limit()
+        assert WetSlope(limit, seeping).acceleration() == pytest.approx(0.0, abs=1e-14)
+
+
+@pytest.mark.slow
+def test_a_slope_in_still_water_does_not_slide_as_with_seepage():
+    assert verify_soil_wet.off(STILL, True)[2] > 3.0 * tolerance("continuum.soil_slides_under_water")
+
+
+@pytest.mark.slow
+def test_a_slope_with_seepage_does_not_rest_as_in_still_water():
+    exact, found, error = verify_soil_wet.off(SEEPING, False)
+    assert exact < 0.0 < found
+    assert error > 3.0 * tolerance("continuum.soil_slides_with_seepage")
+
+
+@pytest.mark.slow
+def test_a_slope_beyond_its_wet_limit_does_not_rest():
+    assert verify_soil_wet.slides(SEEPING)[1] > 3.0 * tolerance("continuum.soil_rests_below_its_wet_limits")
