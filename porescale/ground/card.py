@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import operator
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,8 @@ from porescale.ground.check import Fault, InputError
 
 NAME = "card.json"
 """Every run folder has one from its first moment on."""
+FORMAT = 1
+"""Of run folders.  Cards that do not say theirs have this one."""
 
 
 def read_card(folder: Path, package: object = None) -> dict[str, Any]:
@@ -30,10 +33,25 @@ def read_card(folder: Path, package: object = None) -> dict[str, Any]:
         raise _fault(folder, f"{NAME} is damaged", repair) from None
     if not isinstance(card, dict) or not isinstance(card.get("scene"), dict):
         raise _fault(folder, f"{NAME} is damaged or not that of a run (it holds no scene)", repair)
+    refuse_format(folder, NAME, card.get("format", FORMAT), FORMAT)
     whose = card.get("package")
     if package is not None and whose is not None and whose != package:
         raise _fault(folder, f"holds a run of {whose}, not of {package}", f"use {whose}, or name another folder")
     return card
+
+
+def refuse_format(place: Path, what: str, found: object, reads: int) -> None:
+    """InputError unless the format that ``what`` in ``place`` says it has, ``found``, is the one that is read here."""
+    if hasattr(found, "__index__") and not isinstance(found, bool):
+        if operator.index(found) == reads:
+            return
+        if operator.index(found) > reads:
+            problem, repair = f"{what} was written by a newer version", "read it with that version"
+            raise InputError(
+                Fault("run folder", str(place), f"{problem} (format {found})", "", f"format {reads}", repair)
+            )
+    problem = f"{what} is damaged or of no known format ({str(found)[:40]!r})"
+    raise InputError(Fault("run folder", str(place), problem, "", f"format {reads}", "take it from a backup"))
 
 
 def _fault(folder: Path, problem: str, repair: str) -> InputError:

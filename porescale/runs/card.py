@@ -17,6 +17,7 @@ import numpy as np
 
 import porescale
 from porescale.ground import jit
+from porescale.ground.card import FORMAT
 from porescale.ground.card import NAME as NAME
 from porescale.ground.card import read_card as read_card
 from porescale.ground.machine import machine as machine
@@ -41,6 +42,7 @@ DECIDING = ("numpy", "numba", "llvmlite")
 def new_card(given: dict[str, Any]) -> dict[str, Any]:
     """A card for a run that starts now: ``given`` ("scene", "seeds", ...) and the circumstances."""
     return {
+        "format": FORMAT,
         **plain(given),
         **circumstances(),
         "command": list(sys.argv),

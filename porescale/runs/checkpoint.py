@@ -16,6 +16,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from porescale.ground.card import refuse_format
 from porescale.ground.check import Fault, InputError
 from porescale.runs.hdf5 import writing
 from porescale.runs.model import Array
@@ -70,8 +71,8 @@ def read_header(path: Path, skip: str = "state") -> dict[str, Any]:
 
 def _tree(file: h5py.File) -> Any:
     tree = json.loads(file["tree"][...].tobytes())
-    if tree["format"] != FORMAT:
-        raise ValueError(f"format {tree['format']}, this version reads {FORMAT}")
+    path = Path(file.filename)
+    refuse_format(path.parent, path.name, tree["format"], FORMAT)
     return tree["content"]
 
 

@@ -16,7 +16,7 @@ from porescale.runs.atomic import clean, owned, refuse_shared
 from porescale.runs.checkpoint import read_header
 from porescale.runs.model import Model, variable_step
 from porescale.runs.progress import Watch
-from porescale.runs.record import CHECKPOINT, Record, refuse_changes
+from porescale.runs.record import CHECKPOINT, Gone, Record, refuse_changes
 from porescale.runs.schedule import SLACK, Schedule, positive
 from porescale.runs.stop import Interrupted, StopRequest, polite_stop
 
@@ -75,7 +75,7 @@ def drive(
 
     Raises InputError (wrong numbers, folder in use, changed scene, damaged checkpoint), Interrupted (after
     SIGINT or SIGTERM, checkpoint written), Unstable (from the model; the last good checkpoint stays and is
-    named).
+    named), Gone (the folder vanished).
     """
     folder = Path(folder)
     positive("duration", duration)
@@ -159,7 +159,7 @@ def _watched(run: _Run, record: Record, watch: Watch, after: Callable[[Path], ob
         record.close(model, cards.UNSTABLE, str(error))
         raise
     except BaseException as error:
-        with suppress(OSError):
+        with suppress(OSError, Gone):
             record.close_series()
             stopped = isinstance(error, KeyboardInterrupt)
             outcome = cards.INTERRUPTED if stopped else cards.FAILED

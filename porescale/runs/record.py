@@ -14,11 +14,12 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
-from porescale.ground.check import Fault, InputError
+from porescale.ground.check import Fault, InputError, PorescaleError
+from porescale.ground.machine import peak_bytes
 from porescale.runs import card as cards
 from porescale.runs import snapshots
 from porescale.runs.checkpoint import read_checkpoint, read_header, write_checkpoint
-from porescale.runs.cost import Cost, peak_bytes
+from porescale.runs.cost import Cost
 from porescale.runs.model import Model, tables_of
 from porescale.runs.schedule import Schedule
 from porescale.runs.series import NAME as SERIES
@@ -40,6 +41,10 @@ WORTH_KEEPING = 60.0
 """An unfinished run that cost more than this many seconds is not overwritten without being asked."""
 
 
+class Gone(PorescaleError):
+    """The run folder was moved or removed while the run was writing there: nothing is written in its place."""
+
+
 class Record:
     """Open files of a run.  Made by :meth:`fresh` or :meth:`resumed`."""
 
@@ -47,6 +52,7 @@ class Record:
         self, folder: Path, card: dict[str, Any], keep: int = 0, tables: Mapping[str, int] | None = None
     ) -> None:
         self.folder, self.card = folder, card
+        self._place = _identity(folder)
         self.series = Series(folder / SERIES, keep)
         self.scheduled_bytes = keep
         self.table_bytes = dict(tables or {})
@@ -122,6 +128,14 @@ class Record:
         """Wall-clock time spent on this run so far, all sessions together."""
         return self.before + clock.perf_counter() - self.began
 
+    def refuse_gone(self) -> None:
+        """Gone unless the folder is the one that the run began to write."""
+        if _identity(self.folder) != self._place:
+            raise Gone(
+                f"{self.folder}: the run folder was moved or removed while the run was writing; the run ends, and what "
+                "was saved of it lies where the folder was moved to"
+            )
+
     def row(self, model: Model, *, scheduled: bool) -> None:
         """Append a row of the series and of every table."""
         self.series.append(model.series())
@@ -147,6 +161,7 @@ class Record:
 
     def snapshot(self, model: Model, *, scheduled: bool) -> None:
         """Put a snapshot on disk."""
+        self.refuse_gone()
         snapshots.write_part(self.folder, model.snapshot())
         self.snapshot_step = model.step
         self.snapshots += 1
@@ -155,6 +170,7 @@ class Record:
 
     def save(self, model: Model, schedules: dict[str, Schedule]) -> None:
         """Write the checkpoint."""
+        self.refuse_gone()
         start = clock.perf_counter()
         for series in (self.series, *self.tables.values()):
             series.sync()
@@ -189,11 +205,13 @@ class Record:
     def close(self, model: Model, outcome: str, problem: str = "") -> None:
         """Join the parts and say in the card how the run ended."""
         self.close_series()
+        self.refuse_gone()
         snapshots.assemble(self.folder)
         self.conclude(model, outcome, problem)
 
     def conclude(self, model: Model, outcome: str, problem: str = "") -> None:
         """Say in the card how the run ended."""
+        self.refuse_gone()
         self.card.update(outcome=outcome, ended=cards.now(), seconds=self.seconds(), step=model.step, time=model.time)
         self.card["core_seconds"] = self.cost.of(model.step)
         self.card["peak_bytes"] = max(peak_bytes(), int(self.card.get("peak_bytes") or 0))
@@ -211,6 +229,15 @@ def refuse_changes(folder: Path, given: dict[str, Any], free: Collection[str]) -
         faults.append(Fault(key or "scene", now if now is not None else "absent", f"was {was!r}", repair=repair))
     if faults:
         raise InputError(faults)
+
+
+def _identity(folder: Path) -> tuple[int, int] | None:
+    """What the system knows ``folder`` by, whatever its name; None where there is none."""
+    try:
+        found = folder.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    return found.st_dev, found.st_ino
 
 
 def _table(folder: Path, name: str) -> Path:

@@ -21,10 +21,13 @@ from typing import Any
 import h5py
 import numpy as np
 
+from porescale.ground.card import refuse_format
 from porescale.runs.hdf5 import writing
 from porescale.runs.model import Array, Cloud, Grid, with_depth
 from porescale.runs.vtkhdf_cells import NO_CELLS, TOPOLOGIES, Cells, cells_of, read_cells, with_cells
 
+FORMAT = 1
+"""Of these files."""
 ROWS = 65536
 """Rows of points in a chunk."""
 FILTERS: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle": True, "fletcher32": True}
@@ -184,7 +187,7 @@ def _root(file: h5py.File, kind: str, ours: str, name: str, steps: Sequence[int]
     series.attrs["NSteps"] = len(steps)
     _dataset(series, "Values", np.array(times, float), "s")
     own = file.create_group("porescale")
-    own.attrs.update({"format": 1, "kind": ours, "name": name})
+    own.attrs.update({"format": FORMAT, "kind": ours, "name": name})
     _dataset(own, "step", np.array(steps, np.int64))
     return root
 
@@ -275,6 +278,8 @@ def _cells(frame: Frame) -> Cells:
 
 
 def _kind(file: h5py.File) -> str:
+    path = Path(file.filename)
+    refuse_format(path.parent, path.name, file["porescale"].attrs["format"], FORMAT)
     return str(file["porescale"].attrs["kind"])
 
 
