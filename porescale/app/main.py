@@ -23,6 +23,7 @@ PACKAGE = Package(
     validations=verify.validations,
     benchmarks=bench.benchmarks,
     stability=study.stability,
+    endurance=study.endurance,
     also={demseg.PACKAGE: demseg.show},
     features=study.features,
 )

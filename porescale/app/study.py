@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from porescale.runs.model import Array
+    from porescale.workbench.endurance import Endurances
     from porescale.workbench.study import Stability
 
 
@@ -21,6 +22,13 @@ def stability() -> Stability:
     for room in (LBM, COUPLING):
         flows.include(room)
     return flows
+
+
+def endurance() -> Endurances:
+    """What runs for a million steps."""
+    from porescale.coupling.endurance import ENDURANCES
+
+    return ENDURANCES
 
 
 def features() -> Mapping[str, Callable[[Path, float | None], Array]]:

@@ -38,6 +38,7 @@ def state_of(grains: Grains) -> dict[str, Any]:
         **({} if grains._steering is None else {"steering": grains._steering.state()}),
         **({} if grains.segments is None else {"segments": grains.segments.state()}),
         **({} if grains.bonds is None else {"bonds": grains.bonds.state()}),
+        **({} if grains.sleep is None else {"sleep": grains.sleep.state()}),
         "steps": grains.steps,
         "time": grains._time,
         "steps_of_dt": grains._steps_of_dt,
@@ -71,6 +72,8 @@ def restore(grains: Grains, state: dict[str, Any]) -> None:
     if grains.segments is not None:
         grains.segments.restore(state["segments"])
     grains.bonds = BondList.restored(state["bonds"]) if "bonds" in state else None
+    if grains.sleep is not None:
+        grains.sleep.restore(state["sleep"])
     grains._sweeps.forget()
     grains.steps, grains._time = int(state["steps"]), float(state["time"])
     grains._steps_of_dt = int(state["steps_of_dt"])

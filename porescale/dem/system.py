@@ -30,6 +30,7 @@ from porescale.ground.check import Fault, InputError
 from porescale.particles.pairs import PairList
 
 if TYPE_CHECKING:
+    from porescale.dem.asleep import Sleep
     from porescale.dem.segment_list import SegmentList
 
 Array = NDArray[np.float64]
@@ -99,6 +100,7 @@ class Grains:
         self._health = Health(len(self.plates), count)
         self.segments: SegmentList | None = None  # see frames.framed
         self.bonds: BondList | None = None  # see bonds.bond
+        self.sleep: Sleep | None = None  # see asleep.py
         self._still = Still(*box.period)
         self.last_count = 0  # steps of the last call
         self._stale = True  # the pair list must be looked at before the next step
@@ -266,7 +268,7 @@ class Grains:
             self.external_torque[:] = 0.0
         elif external_torque is not self.external_torque:
             self.external_torque[:] = external_torque
-        d, limit, left = self.discs, (0.5 * self.pairs.skin) ** 2, count
+        d, limit = self.discs, (0.5 * self.pairs.skin) ** 2
         if dt != self.last_dt:
             self._time, self._steps_of_dt, self.last_dt = self.time, 0, dt
         if self.book is not None and self.book_start is None:
@@ -282,6 +284,7 @@ class Grains:
             motion, cell = self._steering.arrays, self._steering.now()
         strained = cell is not self._still
         self.last_count = count
+        left = count if self.sleep is None else self.sleep.step(self, dt, drag, count)
         while left > 0:
             pairs = self.current_pairs()
             done, self._stale = contact_steps(

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from porescale.dem import experiments as lab
-from porescale.dem import verify_bodies, verify_contact, verify_measures, verify_rock, verify_segments
+from porescale.dem import verify_bodies, verify_contact, verify_measures, verify_rock, verify_segments, verify_sleep
 from porescale.ground.constants import GRAVITY
 from porescale.workbench.validations import Measured, Validations
 
@@ -210,3 +210,4 @@ VALIDATIONS.include(verify_contact.VALIDATIONS)
 VALIDATIONS.include(verify_bodies.VALIDATIONS)
 VALIDATIONS.include(verify_segments.VALIDATIONS)
 VALIDATIONS.include(verify_rock.VALIDATIONS)
+VALIDATIONS.include(verify_sleep.VALIDATIONS)

@@ -8,8 +8,6 @@ and the first block is a step long), so that they are left out and the rest stan
 
 from __future__ import annotations
 
-import resource
-import sys
 from dataclasses import dataclass
 from typing import Any
 
@@ -44,8 +42,3 @@ class Cost:
     def restored(cls, state: dict[str, Any]) -> Cost:
         """What a checkpoint kept; nothing counted where it is of a version that did not."""
         return cls(int(state.get("steps", 0)), float(state.get("core_seconds", 0.0)))
-
-
-def peak_bytes() -> int:
-    """Memory that this process had at most, so far."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)

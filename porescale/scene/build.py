@@ -22,6 +22,7 @@ from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
 from porescale.lbm.sides import Sides
 from porescale.particles.placement import place
+from porescale.scene.asleep import let_sleep
 from porescale.scene.contact import density_of
 from porescale.scene.cost import refuse_too_large
 from porescale.scene.derive import Derived, derive, grain_count
@@ -65,6 +66,8 @@ def build(scene: Scene) -> Simulation:
     coupled = _coupled(scene, derived, fluid, grains, solids) if fluid and grains else None
     movers = Movers(scene, solids, derived.scales, grains) if scene.rectangle else None
     weight = buoyant_weight(grains, 0.0, scene.gravity) if grains and not fluid else None
+    if grains and scene.sleep:
+        let_sleep(scene, grains, coupled.weight if coupled else buoyant_weight(grains, 0.0, scene.gravity))
     gate = None
     if scene.gate:
         plate = fluid.add_plate(derived.gate_column or 0) if fluid else None

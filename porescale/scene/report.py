@@ -47,8 +47,8 @@ def _parts(scene: Scene, out: Report) -> None:
     out.heading("Parts")
     parts = (
         "fluid", "grains", "contact", "material", "clump", "segment", "polygon", "container", "bonds", "rock",
-        "control", "wall", "cell", "gate", "disc", "rectangle", "lubrication", "probe", "line", "flux", "loads",
-        "permeability",
+        "control", "wall", "cell", "gate", "disc", "rectangle", "lubrication", "sleep", "probe", "line", "flux",
+        "loads", "permeability",
     )  # fmt: skip
     out.row("built", ", ".join(name for name in parts if getattr(scene, name)))
     out.row("absent, not built", ", ".join(name for name in parts if not getattr(scene, name)) or "none")

@@ -10,6 +10,7 @@ import pydantic
 from porescale.ground.check import Fault
 from porescale.ground.constants import GRAVITY
 from porescale.lbm.scales import NAMES
+from porescale.scene.asleep import Sleep, judge_sleep
 from porescale.scene.bodies import Disc, Lubrication
 from porescale.scene.bonds import Bonds, judge_bonds
 from porescale.scene.contact import Contact, Material, judge_contact
@@ -180,6 +181,7 @@ class Scene(Section):
     coarse_graining: CoarseGraining | None = None
     homogenise: Homogenise | None = None
     lubrication: Lubrication | None = None
+    sleep: Sleep | None = None
 
     @pydantic.field_validator("bonds", mode="before")
     @classmethod
@@ -246,6 +248,7 @@ class Scene(Section):
         if self.grains and self.contact:
             faults += judge_contact(self)
         faults += [*judge_walls(self), *judge_cell(self), *judge_sections(self), *judge_bonds(self), *judge_rock(self)]
+        faults += judge_sleep(self)
         if self.lubrication and not (self.fluid and (self.grains or self.disc)):
             faults.append(Fault("lubrication", None, "there are no grains in fluid", repair="leave it out"))
         if self.permeability and self.fluid and self.grains is None:

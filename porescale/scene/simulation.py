@@ -16,6 +16,7 @@ from porescale.lbm.fluid import Fluid
 from porescale.lbm.plate import Plate
 from porescale.runs.model import Cloud, Grid, Snapshot
 from porescale.scene import observe
+from porescale.scene.asleep import sleep_row
 from porescale.scene.bonds import BONDS, Binder
 from porescale.scene.derive import Derived
 from porescale.scene.frame_build import Placed, disc_count, free_rows
@@ -174,7 +175,7 @@ class Simulation:
         """One row: time, and what the parts present have to say."""
         row = {"time (s)": self.time}
         if self.grains and self._watch:
-            row |= self._watch.row(self.grains)
+            row |= self._watch.row(self.grains) | sleep_row(self.grains)
         if self.fluid:
             excess, ux, uy, solid = self.fields()
             row |= observe.fluid_row(excess, ux, uy, solid, self.derived.scales)

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from porescale.workbench.benchmarks import Benchmarks
+    from porescale.workbench.endurance import Endurances
     from porescale.workbench.extremes import Extremes
     from porescale.workbench.report import Report
     from porescale.workbench.sections import Section
@@ -80,8 +81,8 @@ class Package:
     table : columns of a table of a run folder by its name, "series" for series.csv;
     also : the same as show for runs of other commands, by what their cards call them;
     validations, benchmarks : give the registers;  stability : that of the flows of a stability map, extremes : what
-    `study extremes` tries, None if there is none;  features : what trade studies make of a run folder at a time (None:
-    its last snapshot), by name, None if there is nothing.
+    `study extremes` tries, endurance : what `study endurance` runs, None if there is none;  features : what trade
+    studies make of a run folder at a time (None: its last snapshot), by name, None if there is nothing.
     """
 
     name: str
@@ -98,5 +99,6 @@ class Package:
     benchmarks: Callable[[], Benchmarks]
     stability: Callable[[], Stability] | None = None
     extremes: Callable[[], Extremes] | None = None
+    endurance: Callable[[], Endurances] | None = None
     also: Mapping[str, Callable[[Path], Iterable[Path]]] = field(default_factory=dict)
     features: Callable[[], Mapping[str, Callable[[Path, float | None], NDArray[Any]]]] | None = None

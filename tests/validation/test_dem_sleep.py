@@ -1,0 +1,31 @@
+"""The validations of sleep hold, and would not if sleepers were deaf or fell asleep too early."""
+
+from __future__ import annotations
+
+import pytest
+
+from porescale.dem import experiments_sleep as lab
+from porescale.dem import verify_sleep
+from porescale.dem.verify import VALIDATIONS as ALL
+from porescale.dem.verify_sleep import VALIDATIONS
+
+
+@pytest.mark.parametrize(
+    "validation",
+    [pytest.param(row, marks=[pytest.mark.slow] if row.slow else []) for row in VALIDATIONS],
+    ids=lambda row: row.name,
+)
+def test_the_validation_holds(validation):
+    row = validation.run()
+    assert row.passed, row
+    assert validation.name in [it.name for it in ALL]
+
+
+def test_sleepers_that_do_not_wake_are_out_of_balance():
+    assert lab.struck(deaf=True).imbalance > 10 * VALIDATIONS["dem.sleepers_are_in_balance"].tolerance
+
+
+@pytest.mark.slow
+def test_sleep_at_half_the_weight_leaves_a_column_standing():
+    # Out of balance by half of its weight a grain is on its way down a slope of 30 degrees.
+    assert verify_sleep.off(0.5).error > VALIDATIONS["dem.sleep_leaves_the_run_out"].tolerance
