@@ -14,7 +14,7 @@ from continuum_sph.law import Law
 from continuum_sph.layers import Layer
 from continuum_sph.pile import PartedList
 from continuum_sph.scene.air_build import AIR, dry_pores, gas, thickness, with_air
-from continuum_sph.scene.build import fluid_of, law_of, wall_layers
+from continuum_sph.scene.build import fluid_of, law_of, wall_layers, water_of
 from continuum_sph.scene.reservoir_sections import Pool
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil_build import ground_of, soil_flow
@@ -71,7 +71,7 @@ def saturate(scene: Scene, law: Law, soil: Floats, x: Floats, v: Floats, rho: Fl
     at rest, under the surface of the ground."""
     pores = dry_pores(scene, soil)
     top = np.max([body.top(pores[:, 0]) for body in ground_of(scene).body], axis=0)
-    more = law.state.settled_density(top - pores[:, 1], scene.gravity)
+    more = water_of(scene).settled_density(top - pores[:, 1], scene.gravity)
     return np.concatenate((x, pores)), np.concatenate((v, np.zeros_like(pores))), np.concatenate((rho, more))
 
 

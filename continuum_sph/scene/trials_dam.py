@@ -28,8 +28,12 @@ WATER = 1000.0  # kg/m³
 POROSITY = 0.4
 
 STATIONS = (0.25, 0.5, 0.75)  # of the length
-SURFACE = {1.0: (0.918, 0.797, 0.634), 2.0: (0.886, 0.735, 0.540)}
-"""Heights of the free surface over H1 there, by L/H1, for H2 = 0: the free-boundary problem solved by a variational
+SURFACE = {
+    (1.0, 0.0): (0.918, 0.797, 0.634),
+    (2.0, 0.0): (0.886, 0.735, 0.540),
+    (1.0, 0.3): (0.922, 0.810, 0.663),
+}
+"""Heights of the free surface over H1 there, by (L, H2) over H1: the free-boundary problem solved by a variational
 inequality, three digits."""
 
 
@@ -93,6 +97,12 @@ class Dam:
     def discharge(self) -> float:
         """k (H1² - H2²)/2L, m²/s, whatever the surface (Charny 1951)."""
         return self.permeability * (self.upstream**2 - self.downstream**2) / (2.0 * self.length)
+
+    @property
+    def surface(self) -> Floats:
+        """Exact heights (m) of the free surface at `STATIONS`; of a shape that `SURFACE` has."""
+        shape = round(self.length / self.upstream, 9), round(self.downstream / self.upstream, 9)
+        return self.upstream * np.array(SURFACE[shape])
 
     def build(self, **options: float | bool) -> Seepage:
         """At rest, reservoirs full."""
