@@ -8,6 +8,7 @@ from porescale.coupling import (
     exact,
     verify_arrays,
     verify_clumps,
+    verify_endurance,
     verify_fast,
     verify_moving,
     verify_polygons,
@@ -125,5 +126,6 @@ for _more in (
     verify_rings.VALIDATIONS,
     verify_clumps.VALIDATIONS,
     verify_polygons.VALIDATIONS,
+    verify_endurance.VALIDATIONS,
 ):
     VALIDATIONS.include(_more)

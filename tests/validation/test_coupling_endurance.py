@@ -1,0 +1,58 @@
+"""Long runs hold mass, momentum, places and memory, and would be found out if they did not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from porescale.coupling import endurance, verify_endurance
+from porescale.coupling.experiments import handful
+from porescale.coupling.verify import VALIDATIONS as ALL
+from porescale.coupling.verify_endurance import VALIDATIONS
+from porescale.workbench.endurance import MARKS, Endurance, Held, endure, markdown, picture
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("validation", list(VALIDATIONS), ids=lambda row: row.name)
+def test_the_validation_holds(validation):
+    row = validation.run()
+    assert row.passed, row
+    assert validation.name in [it.name for it in ALL]
+
+
+def test_a_weight_of_a_millionth_of_what_makes_a_heap_is_found():
+    it = endurance.ENDURANCES["flying grains"]
+    leaky = replace(it, start=lambda: endurance.Watched(handful(acceleration=(2e-10, 0.0)), periodic=True))
+    lines = {line.quantity: line for line in endure(leaky, 200)}
+    assert not lines["momentum x over Σ mv at the start ()"].holds
+
+
+def test_a_heap_that_is_not_yet_down_is_not_settled():
+    assert verify_endurance.share(endure(endurance.ENDURANCES["settled heap"], 400)).error > 1.0
+
+
+class Counter:
+    """Counts steps."""
+
+    def __init__(self) -> None:
+        self.steps = 0
+
+    def advance(self, steps: int) -> None:
+        """More."""
+        self.steps += steps
+
+    def read(self) -> dict[str, float]:
+        """How many."""
+        return {"steps ()": float(self.steps)}
+
+
+def test_marks_lie_apart_evenly_and_count_from_where_it_has_settled():
+    held = (Held("steps ()", lambda steps: 0.5 * steps, "because"),)
+    found, memory = endure(Endurance("counter", "counts", Counter, held, settles=10), 1000)
+    assert found.at == [1000 * k // MARKS for k in range(MARKS + 1)]
+    assert found.off == 500.0
+    assert found.holds
+    assert memory.holds
+    assert "| counter | 1000 | steps () | 50, 1000 | 500 | 500 | because |" in markdown("x", [found])
+    assert picture([found, memory])[:4] == b"\x89PNG"
