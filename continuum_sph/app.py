@@ -121,7 +121,7 @@ def show(folder: Path) -> list[Path]:
         more = [paint_last(folder, name, replace(look, colour=name)) for name in SOIL]
         return [*pictures(folder, look), *more, film(folder, look)]
     if scene["soil"]:
-        look = replace(look, colour="layer", kinds=LAYERS)
+        look = replace(look, colour="layer", kinds=LAYERS | (AIR if scene.get("air") else {}))
         more = [paint_last(folder, name, replace(look, colour=name, kinds={})) for name in SEEPAGE]
         return [*pictures(folder, look), *more, film(folder, look)]
     return [*pictures(folder, look), film(folder, look)]
@@ -129,8 +129,10 @@ def show(folder: Path) -> list[Path]:
 
 SEEPAGE = ("pressure", "velocity", "porosity")
 """What is shown of soil and water at the end, besides where they are."""
-LAYERS = {0: ("water", "#5b8fd0"), 1: ("dry soil", "#d9bd82"), 2: ("wet soil", "#8a6d3b"), 3: ("air", "#f2f2f2")}
+LAYERS = {0: ("water", "#5b8fd0"), 1: ("dry soil", "#d9bd82"), 2: ("wet soil", "#8a6d3b")}
 """Names and colours of water and soil."""
+AIR = {3: ("air", "#e2e2e2")}
+"""And of air in it."""
 SOIL = ("mean_stress", "plastic_strain", "velocity")
 """What is shown of soil at the end, besides how far it has come."""
 TWO = {0: ("water", "#5b8fd0"), 1: ("second fluid", "#e8a33d")}
