@@ -8,6 +8,7 @@ import pytest
 from continuum_sph.layers import Layer
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.seepage_model import SeepageSimulation
+from continuum_sph.scene.seepage_report import seepage_report
 from continuum_sph.seepage import Reservoir, Supply
 from continuum_sph.seepage.level import berths, moor, sound_out
 from porescale.ground.check import InputError
@@ -129,6 +130,14 @@ def test_reservoirs_that_cannot_be_are_refused():
             scene(reservoir=[good | wrong])
     with pytest.raises(InputError, match="soil"):
         scene(reservoir=[good], soil=None)
+
+
+def test_kernels_too_short_for_pores_and_shifting_are_warned_of():
+    first, second, *_ = seepage_report(scene()).warnings
+    assert "smoothing_ratio" in first
+    assert "shifting" in second
+    numerics = {"spacing": 0.02, "smoothing_ratio": 2.0}
+    assert not any("shifting" in text or "reach" in text for text in seepage_report(scene(numerics=numerics)).warnings)
 
 
 @pytest.mark.slow
