@@ -12,12 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.ground.check import Fault, InputError
+from porescale.ground.jit import most_threads, threads
 from porescale.particles import search
 from porescale.particles.cells import grid_shape, sort_into_cells
 
 Floats = NDArray[np.float64]
 
 SERIAL_BELOW = 20_000  # points; fewer cost less in one thread than a barrier costs (measured)
+ROW = 256  # entries for a row that is being made, to begin with
 CELLS_PER_CUTOFF = 2  # half-cutoff cells: a window of 6.25 instead of 9 squared cutoffs to look through
 
 
@@ -74,6 +76,7 @@ class PairList:
         self._order = np.empty(count, np.int32)
         self._cell_start = np.zeros(2, np.int64)
         self._sorted = np.empty((3, count))  # x, y, reach in cell order
+        self._row = np.empty(ROW * most_threads(), np.int32)  # partners of one point before they are put in order
         self._publish(0)
 
     def _publish(self, total: int) -> None:
@@ -89,6 +92,12 @@ class PairList:
             size = max(total, have + have // 2, 4 * self.count)
             self._partners[which] = np.empty(size, np.int32)
             self._carrieds[which] = np.zeros((size, self._carrieds[which].shape[1]))
+
+    def _lengthen(self, longest: int) -> int:
+        """Scratch of ``longest`` entries for each thread, at least as much as there is; returns how many each has."""
+        if self._row.shape[0] < longest * most_threads():
+            self._row = np.empty(longest * most_threads() * 3 // 2, np.int32)
+        return self._row.shape[0] // most_threads()
 
     def set_cell(self, width: float, height: float, tilt: float) -> None:
         """Another size of a box that is periodic both ways, from the same lower corner, and how far right (m) the image
@@ -130,15 +139,17 @@ class PairList:
         where: tuple[Any, ...] = (x, reach, *self._sorted, self._order, self._cell_start, *self.lower, *shape)
         where += (*self.period, self.tilt, float(reach.max(initial=0.0)), self.skin, self.full)
         start = self._starts[new]
-        if self.count < SERIAL_BELOW:
-            total = search.fill_serial(start, self._partners[new], *where)
-            if total > self._partners[new].shape[0]:
+        if self.count < SERIAL_BELOW or threads() == 1:
+            total, longest = search.fill_serial(start, self._partners[new], self._row, *where)
+            if total > self._partners[new].shape[0] or longest > self._row.shape[0]:
                 self._reserve(new, total)
-                search.fill_serial(start, self._partners[new], *where)
+                self._lengthen(longest)
+                search.fill_serial(start, self._partners[new], self._row, *where)
         else:
-            total = search.count_parallel(start, self._partners[new], *where)
+            total, longest = search.count_parallel(start, self._partners[new], self._row, *where)
             self._reserve(new, total)
-            search.fill_parallel(start, self._partners[new], *where)
+            length = self._lengthen(longest)
+            search.fill_parallel(start, self._partners[new], self._row, length, *where)
         if self.group is not None:
             total = search.leave_out(self.group, start, self._partners[new])
         self._current = new

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from porescale.ground.jit import inline, kernel, parallel_kernel, prange
+from porescale.ground.jit import inline, kernel, parallel_kernel, part, prange, thread
+from porescale.ground.lanes import WORDS, put_ascending
 from porescale.particles.cells import cell_of, minimum_image, tilted_image, untilted, wrapped
 
 
@@ -60,11 +61,21 @@ def window(at, range_, lower, inverse_size, number, period):
 
 
 @inline
-def count_stretch(i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, period_x, period_y, tilt, full):
+def count_stretch(
+    i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, wraps, period_x, period_y, tilt, full
+):  # fmt: skip
     """Number of partners of point i among slots k0 … k1-1 of the cell order.  Without writing, so it vectorises."""
     found = 0
-    for k in range(np.uint64(k0), np.uint64(k1)):  # unsigned: no wraparound of negative indices
-        dx, dy = tilted_image(xi - sx[k], yi - sy[k], period_x, period_y, tilt)
+    if wraps:
+        for k in range(np.uint64(k0), np.uint64(k1)):  # unsigned: no wraparound of negative indices
+            dx, dy = tilted_image(xi - sx[k], yi - sy[k], period_x, period_y, tilt)
+            reached = reach_i + sreach[k] + skin
+            j = order[k]
+            found += (dx * dx + dy * dy < reached * reached) & ((j > i) | (full & (j != i)))
+        return found
+    for k in range(np.uint64(k0), np.uint64(k1)):
+        dx = xi - sx[k]
+        dy = yi - sy[k]
         reached = reach_i + sreach[k] + skin
         j = order[k]
         found += (dx * dx + dy * dy < reached * reached) & ((j > i) | (full & (j != i)))
@@ -72,136 +83,159 @@ def count_stretch(i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, perio
 
 
 @inline
-def fill_stretch(
-    i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, period_x, period_y, tilt, full, partner, slot, end
+def note_stretch(
+    i, k0, k1, xi, yi, reach_i, skin, sx, sy, sreach, order, wraps, period_x, period_y, tilt, full, row, slot
 ):  # fmt: skip
-    """As count_stretch, writing partners from ``partner[slot]`` on, never at ``end`` or beyond; returns their number.
+    """As count_stretch, writing partners to ``row[slot]`` and on, which must have room for all of k0 … k1.
 
     Every candidate is written and only a partner moves on to the next slot: half the candidates are partners,
     and a branch on that would be guessed wrong every other time.
     """
-    begin = slot
-    for k in range(np.uint64(k0), np.uint64(k1)):  # unsigned: no wraparound of negative indices
-        dx, dy = tilted_image(xi - sx[k], yi - sy[k], period_x, period_y, tilt)
+    at = np.uint64(slot)
+    if wraps:
+        for k in range(np.uint64(k0), np.uint64(k1)):
+            dx, dy = tilted_image(xi - sx[k], yi - sy[k], period_x, period_y, tilt)
+            reached = reach_i + sreach[k] + skin
+            j = order[k]
+            row[at] = j
+            at += np.uint64((dx * dx + dy * dy < reached * reached) & ((j > i) | (full & (j != i))))
+        return np.int64(at) - slot
+    for k in range(np.uint64(k0), np.uint64(k1)):
+        dx = xi - sx[k]
+        dy = yi - sy[k]
         reached = reach_i + sreach[k] + skin
         j = order[k]
-        if slot < end:
-            partner[np.uint64(slot)] = j
-        slot += (dx * dx + dy * dy < reached * reached) & ((j > i) | (full & (j != i)))
-    return slot - begin
+        row[at] = j
+        at += np.uint64((dx * dx + dy * dy < reached * reached) & ((j > i) | (full & (j != i))))
+    return np.int64(at) - slot
 
 
 @inline
 def search_row(
     write, i, x, reach, sx, sy, sreach, order, cell_start,
     lower_x, lower_y, inverse_x, inverse_y, columns, rows,
-    period_x, period_y, tilt, largest, skin, full, partner, begin, end,
+    period_x, period_y, tilt, largest, skin, full, row,
 ):  # fmt: skip
-    """Number of partners of point i; if ``write``, they are put ascending into ``partner[begin:end]``.
+    """Number of partners of point i, and how long ``row`` must be to note them (WORDS entries spare).
 
-    sx, sy, sreach (n,): positions and reaches in cell order;  order, cell_start: see sort_into_cells;
+    If ``write``, they are noted in ``row``, cell by cell; where that is too short the number is right but partners are
+    missing.  sx, sy, sreach (n,): positions and reaches in cell order;  order, cell_start: see sort_into_cells;
     largest: largest reach, m.  A pair counts when its squared distance is below (reach_i + reach_j + skin)².
-    Where the row is longer than end - begin the rest is lost, and the number tells.
     """
     xi = x[i, 0]
     yi = x[i, 1]
     range_ = reach[i] + largest + skin
+    wraps = period_x > 0.0 or period_y > 0.0
     at_x = untilted(xi, yi, lower_y, period_y, tilt)
     first_column, width = window(wrapped(at_x, lower_x, period_x), range_, lower_x, inverse_x, columns, period_x)
     first_row, height = window(wrapped(yi, lower_y, period_y), range_, lower_y, inverse_y, rows, period_y)
-    first_column %= columns  # like Python's, the modulo of a negative index counts from the end
+    if first_column < 0:
+        first_column += columns
+    elif first_column >= columns:
+        first_column -= columns
     # Cells of one row follow each other in the sorted order, so a row of the window is one stretch, or two
     # where it runs over a periodic end.
     inside = min(width, columns - first_column)
     found = 0
+    needed = 0
     if tilt != 0.0 and height == rows:  # a row may hold both images of a point: all of it
         first_column, width = 0, columns
         inside = width
     for step in range(height):
-        base = (first_row + step) % rows * columns
+        place = first_row + step
+        if place < 0:
+            place += rows
+        elif place >= rows:
+            place -= rows
+        base = place * columns
         if tilt != 0.0 and height < rows:  # a row beyond the end is that of an image, seen from ``tilt`` aside
             turns = np.floor((first_row + step) / rows)
             seen_x = wrapped(at_x - turns * tilt, lower_x, period_x)
             first_column, width = window(seen_x, range_, lower_x, inverse_x, columns, period_x)
             first_column %= columns
             inside = min(width, columns - first_column)
-        for part in range(1 + (width > inside)):
-            k0 = cell_start[base + first_column] if part == 0 else cell_start[base]
-            k1 = cell_start[base + first_column + inside] if part == 0 else cell_start[base + width - inside]
-            if write:
-                found += fill_stretch(
-                    i, k0, k1, xi, yi, reach[i], skin, sx, sy, sreach, order, period_x, period_y, tilt, full,
-                    partner, begin + found, end,
+        for piece in range(1 + (width > inside)):
+            k0 = cell_start[base + first_column] if piece == 0 else cell_start[base]
+            k1 = cell_start[base + first_column + inside] if piece == 0 else cell_start[base + width - inside]
+            needed = max(needed, found + k1 - k0 + WORDS)
+            if write and found + k1 - k0 + WORDS <= row.shape[0]:
+                found += note_stretch(
+                    i, k0, k1, xi, yi, reach[i], skin, sx, sy, sreach, order, wraps, period_x, period_y, tilt, full,
+                    row, found,
                 )  # fmt: skip
             else:
                 found += count_stretch(
-                    i, k0, k1, xi, yi, reach[i], skin, sx, sy, sreach, order, period_x, period_y, tilt, full
+                    i, k0, k1, xi, yi, reach[i], skin, sx, sy, sreach, order, wraps, period_x, period_y, tilt, full
                 )  # fmt: skip
-    if write:
-        for slot in range(begin + 1, min(begin + found, end)):  # insertion sort: rows come out nearly ascending
-            j = partner[slot]
-            while slot > begin and partner[slot - 1] > j:
-                partner[slot] = partner[slot - 1]
-                slot -= 1
-            partner[slot] = j
-    return found
+    return found, needed
 
 
 @kernel
 def fill_serial(
-    start, partner, x, reach, sx, sy, sreach, order, cell_start,
+    start, partner, row, x, reach, sx, sy, sreach, order, cell_start,
     lower_x, lower_y, inverse_x, inverse_y, columns, rows,
     period_x, period_y, tilt, largest, skin, full,
 ):  # fmt: skip
-    """All rows in one thread: overwrites ``start`` (n + 1,) and ``partner``; returns the number of pairs.
+    """All rows in one thread: overwrites ``start`` (n + 1,), ``partner`` and the scratch ``row``; returns the number of
+    pairs and how long ``row`` must be.
 
-    If that exceeds ``partner``'s length the rows are incomplete: give more room and call again.
+    If one exceeds its array's length rows are missing: give more room and call again.
     """
     start[0] = 0
+    longest = 0
     for i in range(x.shape[0]):
         begin = start[i]
-        found = search_row(
+        found, needed = search_row(
             True, i, x, reach, sx, sy, sreach, order, cell_start,
             lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y, tilt,
-            largest, skin, full, partner, begin, partner.shape[0],
+            largest, skin, full, row,
         )  # fmt: skip
+        longest = max(longest, needed)
+        if needed <= row.shape[0] and begin + found <= partner.shape[0]:
+            put_ascending(row, found, partner, begin)
         start[i + 1] = begin + found
-    return start[x.shape[0]]
+    return start[x.shape[0]], longest
 
 
 @parallel_kernel
 def count_parallel(
-    start, partner, x, reach, sx, sy, sreach, order, cell_start,
+    start, partner, row, x, reach, sx, sy, sreach, order, cell_start,
     lower_x, lower_y, inverse_x, inverse_y, columns, rows,
     period_x, period_y, tilt, largest, skin, full,
 ):  # fmt: skip
-    """Row lengths over threads, summed in order: overwrites ``start`` (n + 1,); returns the number of pairs."""
+    """Row lengths over threads, summed in order: overwrites ``start`` (n + 1,); returns what `fill_serial` does."""
     n = x.shape[0]
+    longest = 0
     for i in prange(n):
-        start[i + 1] = search_row(
+        found, needed = search_row(
             False, i, x, reach, sx, sy, sreach, order, cell_start,
             lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y, tilt,
-            largest, skin, full, partner, 0, 0,
+            largest, skin, full, row,
         )  # fmt: skip
+        longest = max(longest, needed)
+        start[i + 1] = found
     start[0] = 0
     for i in range(n):
         start[i + 1] += start[i]
-    return start[n]
+    return start[n], longest
 
 
 @parallel_kernel
 def fill_parallel(
-    start, partner, x, reach, sx, sy, sreach, order, cell_start,
+    start, partner, scratch, length, x, reach, sx, sy, sreach, order, cell_start,
     lower_x, lower_y, inverse_x, inverse_y, columns, rows,
     period_x, period_y, tilt, largest, skin, full,
 ):  # fmt: skip
-    """Rows over threads into the places that ``start`` (n + 1,) names: overwrites ``partner``."""
+    """Rows over threads into the places that ``start`` (n + 1,) names: overwrites ``partner`` and ``scratch``, of which
+    each thread has ``length`` entries, as many as `count_parallel` says."""
     for i in prange(x.shape[0]):
-        search_row(
+        row = part(scratch, thread() * length, length)
+        found, _ = search_row(
             True, i, x, reach, sx, sy, sreach, order, cell_start,
             lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y, tilt,
-            largest, skin, full, partner, start[i], start[i + 1],
+            largest, skin, full, row,
         )  # fmt: skip
+        put_ascending(row, found, partner, start[i])
 
 
 @kernel

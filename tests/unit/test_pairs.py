@@ -198,12 +198,13 @@ def test_kernels_as_plain_python():
     listed.build(x, reach)
     shape = listed._sort(x, reach, 2.0 * reach.max() + 0.1)
     start, partner = np.zeros(26, np.int64), np.empty(len(listed.partner), np.int32)
-    total = search.fill_serial.py_func(
-        start, partner, x, reach, *listed._sorted, listed._order, listed._cell_start,
+    total, longest = search.fill_serial.py_func(
+        start, partner, np.empty(100, np.int32), x, reach, *listed._sorted, listed._order, listed._cell_start,
         *LOWER, *shape, *listed.period, 0.0,
         reach.max(), 0.1, True,
     )  # fmt: skip
     assert total == listed.start[-1]
+    assert longest <= 100
     assert np.array_equal(start, listed.start)
     assert np.array_equal(partner, listed.partner)
     carried = np.empty((total, 1))
