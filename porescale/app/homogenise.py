@@ -54,6 +54,8 @@ def homogenise(
     opened = open_scene(scene, SceneType, quality=quality, overrides=settings or ())
     test = specimen(opened.scene)
     asked = asked_of(opened.scene)
+    if jobs < 1:
+        raise InputError(Fault("--jobs", jobs, "is none", "", ">= 1"))
     folder = chosen_folder(out, f"{opened.name}_soil")
     file = _specimen_file(folder, toml(test))
     first = test["grains"]["packing"]["seed"]
@@ -68,7 +70,7 @@ def homogenise(
         say(f"no material file: finish these first, by the same command in {folder}")
         return code
     use_threads(threads)
-    rows = [_numbers(opened.scene, ended, asked.cells) for ended in ends]
+    rows = _numbers(opened.scene, ends, asked.cells)
     words = ["porescale", "homogenise", str(scene), *laid_over(quality, settings)]
     print(write(folder, opened.scene, shlex.join(words), campaign, ends, rows))
     return 0
@@ -91,14 +93,16 @@ def _specimen_file(folder: Path, text: str) -> Path:
     return file
 
 
-def _numbers(scene: Tables, ended: Ended, cells: int) -> dict[str, float]:
-    """All numbers of a finished specimen: those of its test, and of the flow through it where lambda is stated."""
+def _numbers(scene: Tables, ends: Sequence[Ended], cells: int) -> list[dict[str, float]]:
+    """All numbers of the finished specimens: of their tests, and of the flow through them where lambda is stated."""
     from porescale.runs.series import read_series
     from porescale.scene.biaxial import numbers
 
-    made = numbers(read_series(ended.folder / "series.csv"))
+    made = numbers([read_series(ended.folder / "series.csv") for ended in ends])
     ratio = scene.grains.hydraulic_radius_ratio if scene.grains else None
-    return made if ratio is None else made | _pores(ended.folder, ratio, cells)
+    if ratio is None:
+        return made
+    return [row | _pores(ended.folder, ratio, cells) for row, ended in zip(made, ends, strict=True)]
 
 
 def _pores(folder: Path, ratio: float, cells: int) -> dict[str, float]:

@@ -4,7 +4,9 @@ Axial strain a = -ε_yy and volume strain v = ε_xx + ε_yy, logarithmic, dilati
 
     sin φ = (σ_yy - σ_xx)/(σ_yy + σ_xx)      mobilised friction angle, means over 1 % of strain
     sin ψ = D/(2 + D),  D = dv/da            dilatancy angle, by straight lines over 1 %
-    peak: the largest of them;  critical: the mean of the last third of the test.
+
+Peak: where the mean over all tests is largest, what each test has there; the largest of each test alone would be the
+largest of its swings, which loose soil has, too.  Critical: the mean of the last third of a test.
 
 Stiffness is that of the first loading to half of the largest deviator q = σ_yy - σ_xx, under constant σ_xx in plane
 strain: q = a E/(1 - ν²) and ε_xx = a ν/(1 - ν), both slopes by least squares through the origin (E50 of practice).
@@ -13,7 +15,7 @@ strain: q = a E/(1 - ν²) and ε_xx = a ν/(1 - ν), both slopes by least squar
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,24 +58,47 @@ def curves(series: Mapping[str, Array]) -> dict[str, Array]:
     }  # fmt: skip
 
 
-def numbers(series: Mapping[str, Array]) -> dict[str, float]:
-    """The numbers of one test, angles in rad, from the columns of its series.csv.
+def numbers(tests: Sequence[Mapping[str, Array]]) -> list[dict[str, float]]:
+    """The numbers of each of several tests of one soil, angles in rad, from the columns of their series.csv.
 
     Raises InputError for a test without strength: one that ended before it began to shear.
     """
-    it = curves(series)
-    strain = it["strain"]
-    if len(strain) < 10 * LEAST or not strain[-1] > 3.0 * WINDOW:
+    every = [curves(series) for series in tests]
+    if any(len(it["strain"]) < 10 * LEAST or not it["strain"][-1] > 3.0 * WINDOW for it in every):
         raise InputError(Fault("series.csv", None, "holds no test", repair="remove that run folder"))
-    sine, _ = running(strain, it["sine"])
-    _, opening = running(strain, it["volume"])
-    late = strain > LATE * strain[-1]
+    sines, openings = peaks(every)
+    return [
+        {
+            "porosity": 1.0 - float(series["solid fraction ()"][0]),
+            "peak friction angle": math.asin(sine),
+            "peak dilatancy angle": math.asin(opening / (2.0 + opening)),
+            **_alone(it),
+        }
+        for series, it, sine, opening in zip(tests, every, sines.tolist(), openings.tolist(), strict=True)
+    ]
+
+
+def peaks(every: Sequence[Mapping[str, Array]]) -> tuple[Array, Array]:
+    """Sine of the friction angle and dilatancy dv/da of each test, (n,), where their means over tests are largest."""
+    end = min(float(it["strain"][-1]) for it in every)
+    at = np.arange(WINDOW, end - 0.5 * WINDOW, 0.1 * WINDOW)  # before WINDOW contacts close, or a test begins
+    found = []
+    for name, which in (("sine", 0), ("volume", 1)):
+        rows = []
+        for it in every:
+            values = running(it["strain"], it[name])[which]
+            sound = np.isfinite(values)
+            rows.append(np.interp(at, it["strain"][sound], values[sound]))
+        table = np.array(rows)
+        found.append(table[:, int(table.mean(axis=0).argmax())])
+    return found[0], found[1]
+
+
+def _alone(it: Mapping[str, Array]) -> dict[str, float]:
+    """Numbers of one test that need no other."""
+    late = it["strain"] > LATE * it["strain"][-1]
     stiffness, poisson = first_loading(it)
-    dilatancy = float(np.nanmax(opening))
     return {
-        "porosity": 1.0 - float(series["solid fraction ()"][0]),
-        "peak friction angle": math.asin(float(np.nanmax(sine))),
-        "peak dilatancy angle": math.asin(dilatancy / (2.0 + dilatancy)),
         "critical friction angle": math.asin(float(it["sine"][late].mean())),
         "critical porosity": 1.0 - float(it["fraction"][late].mean()),
         "stiffness": stiffness,

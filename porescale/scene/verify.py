@@ -45,7 +45,7 @@ def known_test(strain: float = 0.24, poisson: float = POISSON) -> dict[str, NDAr
 
 def known_numbers(series: dict[str, NDArray[np.float64]]) -> list[float]:
     """What a test says of E, ν, φ, ψ, over what they are."""
-    found = biaxial.numbers(series)
+    (found,) = biaxial.numbers([series])
     return [
         found["stiffness"] / STIFFNESS, found["Poisson's ratio"] / POISSON, found["peak friction angle"] / FRICTION,
         found["critical friction angle"] / FRICTION, found["peak dilatancy angle"] / DILATANCY,
@@ -76,7 +76,7 @@ def critical_angle(friction: float, seed: int, grains: int = 300) -> float:
         rows.append(simulation.series())
         simulation.advance(each)
     series: dict[str, Array] = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    return math.degrees(biaxial.numbers(series)["critical friction angle"])
+    return math.degrees(biaxial.numbers([series])[0]["critical friction angle"])
 
 
 @VALIDATIONS.row(

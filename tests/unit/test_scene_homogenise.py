@@ -44,16 +44,33 @@ def test_a_peak_is_told_from_the_critical_state():
     a = -series["strain yy ()"]
     bump = 0.3 * np.exp(-(((a - 0.03) / 0.02) ** 2))
     series["stress yy (Pa)"] = 1e4 + (series["stress yy (Pa)"] - 1e4) * (1.0 + bump)
-    found = numbers(series)
+    (found,) = numbers([series])
     assert found["critical friction angle"] == pytest.approx(verify.FRICTION, rel=1e-9)
     assert found["peak friction angle"] > 1.1 * verify.FRICTION
     assert found["porosity"] == pytest.approx(0.19, rel=1e-12)
 
 
+def test_a_peak_is_that_of_the_mean_not_the_largest_swing_of_each():
+    # Two tests that swing against each other about one strength: the mean has no peak, each of them has.
+    tests = []
+    for sign in (1.0, -1.0):
+        series = verify.known_test()
+        swing = 1.0 + sign * 0.1 * np.sin(40.0 * np.pi * -series["strain yy ()"])
+        q = series["stress yy (Pa)"] - 1e4
+        series["stress yy (Pa)"] = 1e4 + np.where(-series["strain yy ()"] > 0.02, q * swing, q)
+        tests.append(series)
+    both = numbers(tests)
+    mean = sum(math.sin(it["peak friction angle"]) for it in both) / 2.0
+    # sin φ = q/(q + 2p) is concave in q: swings of ± 10 % take at most 0.1² q p/(q + 2p)² off or on, below 0.001
+    assert mean == pytest.approx(math.sin(verify.FRICTION), abs=1e-3)
+    alone = math.sin(numbers(tests[:1])[0]["peak friction angle"])
+    assert alone > math.sin(verify.FRICTION) + 0.015
+
+
 def test_a_run_that_never_sheared_is_no_test():
     series = {name: values[:20] for name, values in verify.known_test().items()}
     with pytest.raises(InputError, match="holds no test"):
-        numbers(series)
+        numbers([series])
 
 
 def test_flow_through_a_square_array_is_what_its_drag_says():
