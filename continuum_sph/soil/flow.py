@@ -98,7 +98,7 @@ class SoilFlow:
         )  # fmt: skip
         quickest = deform(
             soil.density, soil.stress, soil.material, self.table, soil.matrix, soil.spread, soil.opening, soil.plastic,
-            soil.record, step, -1.0 if law.printed_spin else 1.0,
+            soil.record, step, -1.0 if law.printed_spin else 1.0, law.most,
         )  # fmt: skip
         self.pace = float(quickest) ** 0.5 / law.smoothing.length
 

@@ -38,6 +38,15 @@ class SoilLaw:
     printed_spin: bool = False
     courant: float = 0.25
 
+    @property
+    def most(self) -> float:
+        """Shear strain of one step that diffusion follows.
+
+        A zig-zag from particle to particle falls by up to 2 · 2π W(0) h² χ = 7 χ times that (W(0) = 7/4πh² of Wendland
+        C2), and would swing ever wider beyond 2: σ_zz does, which no strength bounds.  It may vanish in a step.
+        """
+        return 1.0 / (7.0 * self.diffusion) if self.diffusion > 0.0 else float("inf")
+
     def limits(self, acceleration: float, pace: float, others: float) -> tuple[float, float, float]:
         """Steps allowed by sound, acceleration (m/s²) and other layers (s), s: eq. 49.
 

@@ -34,12 +34,13 @@ from porescale.ground.jit import parallel_kernel, prange
 
 
 @parallel_kernel
-def deform(density, stress, material, table, matrix, spread, opening, plastic, record, step, spin):
+def deform(density, stress, material, table, matrix, spread, opening, plastic, record, step, spin, most):
     """Overwrites, of soil, ``density`` (soil,) kg/m³, ``stress`` (n, 4) Pa, ``opening``, ``plastic`` (soil,) and in
     ``record`` (n, 16) c/ρ, shear strain rate and σ·K.
 
     material, table, matrix: see Soil;  spread (soil, 4) Pa/s: stress diffusion of `accelerate`;  step, s;  spin:
-    1, or -1 to turn stress as eq. 38 is printed.  Returns the largest c², m²/s²; a maximum is exact in any order.
+    1, or -1 to turn stress as eq. 38 is printed;  most: shear strain of a step that `accelerate` sees.  Returns the
+    largest c², m²/s²; a maximum is exact in any order.
     """
     quickest = 0.0
     for i in prange(density.shape[0]):
@@ -74,7 +75,8 @@ def deform(density, stress, material, table, matrix, spread, opening, plastic, r
         kxy = matrix[i, 1]
         kyy = matrix[i, 2]
         record[i, QUICK] = np.sqrt(speed2) / density[i]
-        record[i, SHEARING] = np.sqrt((gxx - gyy) * (gxx - gyy) + (gxy + gyx) * (gxy + gyx))
+        shearing = np.sqrt((gxx - gyy) * (gxx - gyy) + (gxy + gyx) * (gxy + gyx))
+        record[i, SHEARING] = shearing if shearing * step <= most else most / step
         turn = (xx - yy) * matrix[i, 3] - xy * matrix[i, 4]
         record[i, TXX] = xx * kxx + xy * kxy
         record[i, TXY] = xx * kxy + xy * kyy - turn
