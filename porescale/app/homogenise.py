@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from porescale.ground.check import Fault, InputError
-from porescale.workbench.commands.options import Quality, Scene, Settings, Threads, use_threads
+from porescale.workbench.commands.options import Quality, Scene, Settings, Threads, refuse_no_scene, use_threads
 from porescale.workbench.commands.sweep import Again, Jobs, Scheduler, chosen_folder, conclude, enlist, laid_over, say
 
 if TYPE_CHECKING:
@@ -44,6 +44,7 @@ def homogenise(
     of the scene says.  material.toml is what `[soil] material = "material.toml"` of a continuum-sph scene reads;
     homogenise.csv and .png show what it stands on.  What was stopped goes on when called again.
     """
+    refuse_no_scene(scene)
     from porescale.decks.convert import toml
     from porescale.scene.homogenise import asked_of, specimen
     from porescale.scene.sections import Scene as SceneType

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from porescale.ground.check import Fault, InputError
 from porescale.runs import card as cards
 from porescale.runs import snapshots
 from porescale.runs.atomic import owned
@@ -17,9 +16,6 @@ from porescale.runs.model import Array, Snapshot
 from porescale.runs.series import NAME as SERIES
 from porescale.runs.series import read_series
 from porescale.runs.vtkhdf import Frame
-
-DAMAGE = (OSError, KeyError, ValueError, RuntimeError, TypeError, AttributeError, IndexError)
-"""What HDF5 and what reads it may raise on a file that is damaged."""
 
 
 class Run:
@@ -74,8 +70,8 @@ class Run:
         step, entry = self._frames[k]
         try:
             return snapshots.load(entry, step, cells)
-        except DAMAGE as error:
-            raise _damaged(self.folder, error) from error
+        except snapshots.DAMAGE as error:
+            raise snapshots.damaged(self.folder, error) from error
 
     def nearest(self, time: float) -> Snapshot:
         """The snapshot nearest to ``time``, s."""
@@ -97,8 +93,8 @@ def open_run(folder: Path | str) -> Run:
         if snapshots.parts(folder):
             _join(folder)
         return Run(folder, card, snapshots.catalogue(folder))
-    except DAMAGE as error:
-        raise _damaged(folder, error) from error
+    except snapshots.DAMAGE as error:
+        raise snapshots.damaged(folder, error) from error
 
 
 def _join(folder: Path) -> None:
@@ -109,9 +105,3 @@ def _join(folder: Path) -> None:
                 snapshots.assemble(folder)
     except PermissionError:
         return
-
-
-def _damaged(folder: Path, error: Exception) -> InputError:
-    reason = " ".join(str(error).split())[:120]
-    repair = "run it again, or take the file from a backup"
-    return InputError(Fault("run folder", str(folder), f"a snapshot file is damaged ({reason})", repair=repair))

@@ -10,14 +10,36 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
+from porescale.ground.check import Fault, InputError
 from porescale.runs import atomic, vtkhdf
 from porescale.runs.model import Cloud, Grid, Snapshot
 from porescale.runs.vtkhdf import Frame
 
 PARTS = "parts"
+DAMAGE = (OSError, KeyError, ValueError, RuntimeError, TypeError, AttributeError, IndexError)
+"""What reading a damaged file raises."""
+
+
+def damaged(folder: Path, error: BaseException) -> InputError:
+    """What to say of a snapshot file in ``folder`` that ``error`` came from."""
+    reason = " ".join(str(error).split())[:120]
+    repair = "run it again, or take the file from a backup"
+    return InputError(Fault("run folder", str(folder), f"a snapshot file is damaged ({reason})", repair=repair))
+
+
+@contextmanager
+def damage_told(folder: Path) -> Iterator[None]:
+    """What reading a damaged file raises as InputError; what the system says of the disk as it is."""
+    try:
+        yield
+    except DAMAGE as error:
+        if isinstance(error, OSError) and error.errno is not None:
+            raise
+        raise damaged(folder, error) from error
 
 
 def write_part(folder: Path, snapshot: Snapshot) -> Path:
@@ -51,14 +73,16 @@ def joined(folder: Path) -> dict[str, list[Frame]]:
 def catalogue(folder: Path) -> dict[int, dict[str, Frame]]:
     """Every snapshot of a run, joined or not: step -> name -> frame, ascending in time.
 
-    A snapshot that lacks one of the names (a kill while files were rewritten) is none.
+    A snapshot that lacks one of the names (a kill while files were rewritten) is none.  InputError where a file is
+    damaged.
     """
     found: dict[int, dict[str, Frame]] = {}
-    for step, part in parts(folder).items():
-        found[step] = {name: frames[0] for name, frames in joined(part).items()}
-    for name, frames in joined(folder).items():
-        for frame in frames:
-            found.setdefault(frame.step, {})[name] = frame
+    with damage_told(folder):
+        for step, part in parts(folder).items():
+            found[step] = {name: frames[0] for name, frames in joined(part).items()}
+        for name, frames in joined(folder).items():
+            for frame in frames:
+                found.setdefault(frame.step, {})[name] = frame
     names = {name for entry in found.values() for name in entry}
     return {step: entry for step, entry in sorted(found.items()) if entry.keys() == names}
 
@@ -88,7 +112,8 @@ def trim(folder: Path, last: int) -> None:
     for step, part in parts(folder).items():
         if step > last:
             shutil.rmtree(part)
-    frames = joined(folder)
+    with damage_told(folder):
+        frames = joined(folder)
     if any(frame.step > last for many in frames.values() for frame in many):
         kept = {step: entry for step, entry in catalogue(folder).items() if step <= last}
         if kept:
@@ -101,8 +126,9 @@ def trim(folder: Path, last: int) -> None:
 def _rewrite(folder: Path, entries: dict[int, dict[str, Frame]]) -> None:
     """Write each joined file anew from the catalogue's ``entries``."""
     names = {name for entry in entries.values() for name in entry}
-    for name in sorted(names):
-        vtkhdf.join(Path(folder) / f"{name}.vtkhdf", [entry[name] for entry in entries.values() if name in entry])
+    with damage_told(folder):
+        for name in sorted(names):
+            vtkhdf.join(Path(folder) / f"{name}.vtkhdf", [entry[name] for entry in entries.values() if name in entry])
 
 
 def clear(folder: Path) -> None:

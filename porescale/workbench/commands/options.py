@@ -25,3 +25,11 @@ def use_threads(count: int | None) -> int:
     from porescale.ground.jit import set_threads
 
     return set_threads(count)
+
+
+def refuse_no_scene(path: Path) -> None:
+    """InputError unless ``path`` leads to a TOML file: said at once, before the sections of a scene and the compiler
+    that their rooms bring along are imported."""
+    from porescale.workbench import scene_file
+
+    scene_file.read(scene_file.find(path))

@@ -14,7 +14,7 @@ from porescale.ground.card import NAME as CARD
 from porescale.ground.card import read_card
 from porescale.ground.check import Fault, InputError
 from porescale.workbench.commands import pick
-from porescale.workbench.commands.options import Quality, Scene, Settings, Threads, use_threads
+from porescale.workbench.commands.options import Quality, Scene, Settings, Threads, refuse_no_scene, use_threads
 from porescale.workbench.folders import refuse_unwritable, unusable
 from porescale.workbench.package import Outcome, Package
 
@@ -41,6 +41,7 @@ def command(package: Package) -> Callable[..., int]:
         """Run a scene and write its run folder."""
         from porescale.workbench.sections import open_scene, scene_as_dict
 
+        refuse_no_scene(scene)
         use_threads(threads)
         chosen = None
         if error is not None or budget is not None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from porescale.ground.check import Fault, InputError
-from porescale.workbench.commands.options import Quality, Scene, Settings, Threads
+from porescale.workbench.commands.options import Quality, Scene, Settings, Threads, refuse_no_scene
 from porescale.workbench.folders import refuse_unwritable
 from porescale.workbench.package import Package
 
@@ -54,6 +54,7 @@ def command(package: Package) -> Callable[..., int]:
         from porescale.workbench import sweep_files
         from porescale.workbench.campaign import Campaign
 
+        refuse_no_scene(scene)
         points = chosen_points(table, vary or ())
         file, name = refuse_wrong_points(package, scene, points, quality, settings or ())
         folder = chosen_folder(out, f"{name}_sweep")
