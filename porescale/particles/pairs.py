@@ -1,4 +1,4 @@
-"""Verlet list: pairs of points within reach of each other, kept until something has moved half a skin.
+"""Verlet list: pairs of points within reach of each other, kept until some may have come nearer by a skin.
 
 Source of the list and its skin: Verlet, Phys. Rev. 159 (1967) 98; of the cells: Hockney & Eastwood, Computer
 Simulation Using Particles (1981), section 8.4.
@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 
 from porescale.ground.check import Fault, InputError
 from porescale.ground.jit import most_threads, threads
-from porescale.particles import search
+from porescale.particles import drift, search
 from porescale.particles.cells import grid_shape, sort_into_cells
 
 Floats = NDArray[np.float64]
 
 SERIAL_BELOW = 20_000  # points; fewer cost less in one thread than a barrier costs (measured)
 ROW = 256  # entries for a row that is being made, to begin with
+BLOCK = 2.0  # cutoffs: smaller blocks move more alike, but what is not beside them must stay away
 CELLS_PER_CUTOFF = 2  # half-cutoff cells: a window of 6.25 instead of 9 squared cutoffs to look through
 
 
@@ -76,6 +77,9 @@ class PairList:
         self._order = np.empty(count, np.int32)
         self._cell_start = np.zeros(2, np.int64)
         self._sorted = np.empty((3, count))  # x, y, reach in cell order
+        self._block = np.empty(count, np.int32)  # that each anchor lies in, for the list of build ``_blocked``
+        self._blocked = -1
+        self._bounds = np.empty((0, drift.BOUNDS))
         self._row = np.empty(ROW * most_threads(), np.int32)  # partners of one point before they are put in order
         self._publish(0)
 
@@ -108,17 +112,37 @@ class PairList:
         self.period, self.tilt = (width, height), tilt
 
     def update(self, x: Floats, reach: Floats) -> bool:
-        """Build if some point of ``x`` (n, 2) m moved, or its reach (n,) m grew, by skin/2 since the last build.
+        """Build if two points of ``x`` (n, 2) m may have come nearer, growth of reach (n,) m included, by the skin
+        since the last build: see `drift`.
 
-        Two points that stay within skin/2 of their anchors cannot have come within reach unlisted.
-        True if built; the arrays are then new.  Raises ValueError at a position or reach that is no number.
+        Those that have not cannot have come within reach unlisted.  True if built; the arrays are then new.  Raises
+        ValueError at a position or reach that is no number.
         """
-        if self.builds and not search.strayed(
-            x, self.anchor, reach, self._anchor_reach, 0.5 * self.skin, self.period[0], self.period[1]
-        ):
+        if self.builds and self._holds(x, reach):
             return False
         self.build(x, reach)
         return True
+
+    def _holds(self, x: Floats, reach: Floats) -> bool:
+        """Whether no pair can be missing from the list."""
+        since = (x, self.anchor, reach, self._anchor_reach)
+        if not drift.strayed(*since, 0.5 * self.skin, *self.period):
+            return True
+        if self.tilt != 0.0:  # images aside: blocks have other neighbours
+            return False
+        largest = 2.0 * float(self._anchor_reach.max(initial=0.0))
+        size = BLOCK * (largest + self.skin)
+        columns, rows = grid_shape(self.lower, self.upper, size, limit=4 * self.count + 64)
+        width, height = (self.upper[axis] - self.lower[axis] for axis in (0, 1))
+        if self._blocked != self.builds:
+            self._blocked = self.builds
+            if self._bounds.shape[0] <= columns * rows:
+                self._bounds = np.empty((columns * rows + 1, drift.BOUNDS))
+            drift.into_blocks(
+                self.anchor, *self.lower, columns / width, rows / height, columns, rows, *self.period, self._block
+            )
+        gap = min(width / columns, height / rows) - largest
+        return not drift.drifted(*since, self._block, self._bounds, columns, rows, self.skin, gap, *self.period)
 
     def build(self, x: Floats, reach: Floats) -> None:
         """List the pairs of ``x`` (n, 2) m with ``reach`` (n,) m now; data of pairs listed before is kept.
@@ -211,3 +235,4 @@ class PairList:
         self.anchor[:] = state["anchor"]
         self._anchor_reach[:] = state["anchor_reach"]
         self.builds = int(state["builds"])
+        self._blocked = -1

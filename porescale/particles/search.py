@@ -6,7 +6,7 @@ import numpy as np
 
 from porescale.ground.jit import inline, kernel, parallel_kernel, part, prange, thread
 from porescale.ground.lanes import WORDS, put_ascending
-from porescale.particles.cells import cell_of, minimum_image, tilted_image, untilted, wrapped
+from porescale.particles.cells import cell_of, tilted_image, untilted, wrapped
 
 
 @kernel
@@ -16,22 +16,6 @@ def first_unusable(x, reach):
         if not (np.isfinite(x[i, 0]) and np.isfinite(x[i, 1]) and np.isfinite(reach[i]) and reach[i] >= 0.0):
             return i
     return -1
-
-
-@kernel
-def strayed(x, anchor, reach, anchor_reach, half_skin, period_x, period_y):
-    """True if some point left its ``anchor`` (n, 2) m by more than ``half_skin`` less the growth of its reach.
-
-    Positions that are no numbers count as strayed.  No early exit, so that the loop vectorises.
-    """
-    far = 0
-    for i in range(x.shape[0]):
-        dx = minimum_image(x[i, 0] - anchor[i, 0], period_x)
-        dy = minimum_image(x[i, 1] - anchor[i, 1], period_y)
-        room = half_skin - max(0.0, reach[i] - anchor_reach[i])
-        # not <= instead of >: true for nan
-        far += (not (dx * dx + dy * dy <= room * room)) | (not (room >= 0.0))
-    return far > 0
 
 
 @kernel

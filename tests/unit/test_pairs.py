@@ -7,7 +7,7 @@ import pytest
 
 from porescale.ground.check import InputError
 from porescale.ground.jit import set_threads
-from porescale.particles import PairList, pairs, search
+from porescale.particles import PairList, drift, pairs, search
 from tests.reference.pairs import neighbours, rows_of
 
 LOWER, UPPER = (0.0, -1.0), (10.0, 7.0)
@@ -63,28 +63,75 @@ def test_few_points(n):
     assert rows_of(listed) == neighbours(x, reach, 0.0, LOWER, UPPER)
 
 
-def test_rebuilds_when_half_the_skin_is_used_up_and_not_before():
+def test_rebuilds_when_two_points_may_have_come_nearer_by_the_skin_and_not_before():
     x, reach = cloud(50)
+    x[7], x[8] = [5.0, 3.0], [5.0, 3.3]
     listed = PairList(50, 0.2, LOWER, UPPER)
     assert listed.update(x, reach)
-    x[7] += [0.099, 0.0]
+    x[7] += [0.0, 0.09]
+    x[8] -= [0.0, 0.105]
     assert not listed.update(x, reach)
-    x[7] += [0.002, 0.0]
+    x[7] += [0.0, 0.006]
     assert listed.update(x, reach)
     assert not listed.update(x, reach)
 
 
 def test_growing_reach_uses_up_the_skin_too():
     x, reach = cloud(50)
+    x[4] = x[3] + [0.0, 0.5]
     listed = PairList(50, 0.2, LOWER, UPPER)
     listed.update(x, reach)
     reach[3] += 0.06
-    x[3] += [0.0, 0.03]
+    x[3] += [0.0, 0.13]
     assert not listed.update(x, reach)
     x[3] += [0.0, 0.02]
     assert listed.update(x, reach)
     reach[3] += 0.11
     assert listed.update(x, reach)
+
+
+def test_points_that_move_together_keep_their_list():
+    x, reach = cloud(400, seed=7)
+    listed = PairList(400, 0.2, LOWER, UPPER, (True, False), full=True)
+    listed.update(x, reach)
+    x += [3.0, 0.2]
+    assert not listed.update(x, reach)
+    x += 1e-3 * (x - x.mean(axis=0))  # and apart, a little: by 5 mm in 5 m, across blocks of 0.8 m by less than 2 mm
+    assert not listed.update(x, reach)
+
+
+def test_two_crowds_that_meet_from_afar_do_not(monkeypatch):
+    # Each moves as one, so no two neighbours come nearer: the twin that must fail is a list that asks no more.
+    def meet():
+        x = np.concatenate((np.tile([1.0, 0.0], (3, 1)), np.tile([8.0, 0.0], (3, 1))))
+        x[:, 1] = np.tile([0.0, 0.3, 0.6], 2)
+        listed = PairList(6, 0.2, LOWER, UPPER)
+        listed.update(x, np.full(6, 0.1))
+        x[3:, 0] -= 6.9
+        built = listed.update(x, np.full(6, 0.1))
+        return built, rows_of(listed) == neighbours(x, np.full(6, 0.1), 0.2, LOWER, UPPER)
+
+    assert meet() == (True, True)
+    ask = drift.drifted
+    monkeypatch.setattr(drift, "drifted", lambda *a: ask(*a[:9], np.inf, *a[10:]))
+    assert meet() == (False, False)
+
+
+@pytest.mark.parametrize("periodic", [(False, False), (True, True)])
+def test_no_pair_is_missing_in_a_stream_that_shears(periodic):
+    x, reach = cloud(300, seed=8)
+    rng = np.random.default_rng(9)
+    listed = PairList(300, 0.15, LOWER, UPPER, periodic, full=True)
+    quiet = strayed = 0
+    for _ in range(40):
+        quiet += not listed.update(x, reach)
+        strayed += bool(drift.strayed(x, listed.anchor, reach, reach, 0.075, *listed.period))
+        within = neighbours(x, reach, 0.0, LOWER, UPPER, periodic, True)
+        for row, must in zip(rows_of(listed), within, strict=True):
+            assert set(must) <= set(row)
+        x[:, 0] += 0.04 * np.cos(0.25 * np.pi * x[:, 1]) + rng.normal(0.0, 0.002, len(x))
+    assert 10 < quiet < 39
+    assert strayed > 10  # where the ways of single points say nothing any more
 
 
 def test_no_pair_within_reach_is_ever_missing_between_builds():
@@ -210,7 +257,13 @@ def test_kernels_as_plain_python():
     carried = np.empty((total, 1))
     search.carry.py_func(start, partner, np.ones((total, 1)), start, partner, carried)
     assert np.all(carried == 1.0)
-    assert not search.strayed.py_func(x, listed.anchor, reach, reach, 0.05, 10.0, 0.0)
+    assert not drift.strayed.py_func(x, listed.anchor, reach, reach, 0.05, 10.0, 0.0)
+    block, bounds = np.empty(25, np.int32), np.empty((5, drift.BOUNDS))
+    drift.into_blocks.py_func(x, *LOWER, 0.2, 0.25, 2, 2, 10.0, 0.0, block)
+    for far, built in ((0.0, False), (0.2, True)):
+        moved = x + far * (np.arange(25)[:, None] == 3)
+        how = (listed.anchor, reach, reach, block, bounds, 2, 2, 0.1, 1.0, 10.0, 0.0)
+        assert drift.drifted.py_func(moved, *how) == drift.drifted(moved, *how) == built
     assert search.first_unusable.py_func(x, reach) == -1
 
 
