@@ -108,6 +108,7 @@ def soil_law(scene: Scene) -> SoilLaw:
         diffusion=choice.stress_diffusion,
         restless=choice.restless_diffusion,
         apart=choice.parting,
+        repulsion=choice.repulsion,
         drag=slowest,
         settle=choice.settle,
         courant=numerics.courant,

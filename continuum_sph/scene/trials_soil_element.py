@@ -66,3 +66,11 @@ def confined(material: Material, strain: float = 0.01, steps: int = 100) -> Elem
     for _ in range(steps):
         element.take(0.0, strain / steps)
     return element
+
+
+def squeezed(material: Material, pressure: float, strain: float, steps: int) -> float:
+    """Mean stress (Pa) of an element under ``pressure`` (Pa) from all sides, pressed by ``strain`` both ways."""
+    element = Element(material, (pressure, pressure, 0.0, 2.0 * material.poisson * pressure))
+    for _ in range(steps):
+        element.take(strain / steps, strain / steps)
+    return 0.5 * (element.stress[0] + element.stress[1])

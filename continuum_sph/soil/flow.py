@@ -18,10 +18,11 @@ from continuum_sph.rates import split_rows
 from continuum_sph.soil.divergence import accelerate
 from continuum_sph.soil.gradient import velocity_gradients
 from continuum_sph.soil.law import RULES, SoilLaw
-from continuum_sph.soil.material import table
+from continuum_sph.soil.material import TENSION, table
 from continuum_sph.soil.motion import kick, kick_drift
 from continuum_sph.soil.state import Soil
 from continuum_sph.soil.stress import deform
+from continuum_sph.soil.tension import hold_apart
 from continuum_sph.soil.walls import place_walls, show_walls
 from porescale.particles import PairList
 
@@ -54,6 +55,7 @@ class SoilFlow:
         soil = self.soil
         soil.length[:] = self.law.smoothing.length
         self.table = table(self.law.materials)
+        self.pulling = self.law.repulsion > 0.0 and bool((self.table[:, TENSION] > 0.0).any())
         self.split = np.zeros(soil.count, np.int64)
         self.lower, self.upper = np.full(2, -np.inf), np.full(2, np.inf)
         # Walls do not meet each other.
@@ -114,6 +116,11 @@ class SoilFlow:
             law.damping, law.printed_damping, law.diffusion, law.restless * self.pace, law.apart,
             law.spacing, *pairs.period,
         )  # fmt: skip
+        if self.pulling:
+            hold_apart(
+                soil.soil, pairs.start, self.split, pairs.partner, soil.record, soil.stress, soil.acceleration,
+                law.smoothing.kind, law.smoothing.length, law.spacing, law.repulsion, *pairs.period,
+            )  # fmt: skip
 
     def end(self, step: float) -> None:
         """Second half kick of a ``step`` (s), and length of the next from the largest |a| and c/h."""

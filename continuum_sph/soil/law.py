@@ -19,8 +19,9 @@ class SoilLaw:
     ``printed_damping`` of all of it between particles that approach (eq. 36);  corrected : gradients exact for linear
     fields;  diffusion : χ of stress, per shear strain, see `divergence`;  restless : the same per passage of sound
     through h, which never rests (for comparison);  apart : A, how fast particles nearer than a spacing part, per shear
-    strain;  drag : 1/s, of all motion until ``settle`` (s), so that a start finds its equilibrium;  printed_spin : turn
-    stress as eq. 38 has it, the wrong way;  courant : the 0.25 of eq. 49.
+    strain;  repulsion : A of `tension`, where soil bears tension;  drag : 1/s, of all motion until ``settle`` (s), so
+    that a start finds its equilibrium;  printed_spin : turn stress as eq. 38 has it, the wrong way;  courant : the 0.25
+    of eq. 49.
     """
 
     smoothing: Smoothing
@@ -33,6 +34,7 @@ class SoilLaw:
     diffusion: float = 100.0
     restless: float = 0.0
     apart: float = 4.0
+    repulsion: float = 10.0
     drag: float = 0.0
     settle: float = 0.0
     printed_spin: bool = False

@@ -24,6 +24,7 @@ from continuum_sph.soil.material import (
     AREA,
     COHESION,
     DILATANCY,
+    EXPONENT,
     SHEAR,
     SLOPE,
     TENSION,
@@ -83,6 +84,8 @@ def new_stress(xx, yy, xy, zz, gxx, gxy, gyx, gyy, step, opening, row):
     closed = min(opening, max(0.0, closing))
     opening -= closed
     soft = softening(p, row)
+    if row[EXPONENT] > 0.0:  # stiffness of half the way: the second order in a step
+        soft = softening(p + 0.5 * row[AREA] * soft * (closing - closed), row)
     area = row[AREA] * soft
     shear = row[SHEAR] * soft
     new_p = p + area * (closing - closed)

@@ -19,8 +19,9 @@ from continuum_sph.soil import Material, divergence, gradient, porosity
 from continuum_sph.soil.divergence import accelerate
 from continuum_sph.soil.gradient import inverse, velocity_gradients
 from continuum_sph.soil.plasticity import returned
-from continuum_sph.soil.state import XX, YY
+from continuum_sph.soil.state import MASS, VOLUME, XX, YY, X
 from continuum_sph.soil.stress import deform
+from continuum_sph.soil.tension import hold_apart
 from porescale.ground.check import InputError, Unstable
 from porescale.ground.jit import set_threads
 from porescale.particles import square_lattice
@@ -149,9 +150,9 @@ def test_stiffness_grows_with_the_power_of_pressure():
     steps, strain = 2000, 0.004
     for _ in range(steps):
         element.take(strain / steps, strain / steps)
-    # dp = B0 (p/p0)^0.5 2 dε: √p grows evenly; a step at the old stiffness misses half a step's growth of it
+    # dp = B0 (p/p0)^0.5 2 dε: √p grows evenly; midpoints miss the third order of a step
     exact = (math.sqrt(1e5) + 0.5 * material.area_modulus * 1e7 / math.sqrt(1e5) * 2.0 * strain) ** 2
-    assert element.stress[XX] == pytest.approx(exact, rel=1.0 / steps)
+    assert element.stress[XX] == pytest.approx(exact, rel=1.0 / steps**2)
     even = 1e5 + material.area_modulus * 1e7 * 2.0 * strain
     assert abs(even / exact - 1.0) > 10.0 / steps  # the twin that must fail: constant stiffness
 
@@ -313,3 +314,29 @@ def test_stress_diffusion_calms_stress_however_fast_soil_is_sheared():
 
 def test_diffusion_that_follows_any_shear_swings_ever_wider():  # the twin that must fail
     assert swing_of_stress(float("inf")) > 10.0
+
+
+def pair(apart, pull):
+    """Acceleration of two particles, ``apart`` of a spacing from each other, of soil under a tension ``pull``, Pa."""
+    record = np.zeros((2, 16))
+    record[:, X], record[:, VOLUME], record[:, MASS] = [0.0, 0.1 * apart], 0.01, 16.0
+    stress = np.tile([0.0, -pull, 0.0, 0.0], (2, 1))
+    acceleration = np.zeros((2, 2))
+    start, split, partner = np.array([0, 1, 2]), np.array([1, 2]), np.array([1, 0])
+    hold_apart.py_func(2, start, split, partner, record, stress, acceleration, 1, 0.13, 0.1, 10.0, 0.0, 0.0)
+    return acceleration
+
+
+def test_soil_under_tension_pushes_apart_what_comes_near_and_nothing_else():
+    near = pair(0.9, 100.0)
+    assert near[0, 0] < 0.0
+    assert near[0].tolist() == (-near[1]).tolist()
+    assert not pair(1.0, 100.0).any()
+    assert not pair(0.9, -100.0).any()
+    assert pair(0.8, 100.0)[0, 0] < near[0, 0]
+
+
+def test_soil_without_cohesion_has_no_tension_to_hold():
+    assert not in_tank(np.array([[0.05, 0.05]]), np.zeros((1, 4)), (0.2, 0.2), 0.1, SAND).pulling
+    clay = Material(1e6, 1600.0, cohesion=1e3, tension=500.0)
+    assert in_tank(np.array([[0.05, 0.05]]), np.zeros((1, 4)), (0.2, 0.2), 0.1, clay).pulling

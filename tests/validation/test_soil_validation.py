@@ -120,3 +120,19 @@ def test_a_steep_slope_does_not_rest():  # the twin that must fail
 def test_soil_of_little_friction_runs_too_far():  # the twin that must fail
     columns = series("soil_column_collapse", "soil.friction_angle=8 degree", "numerics.spacing=0.01", "time.end=0.5")
     assert "where the front stops" in missed("soil_column_collapse", columns)
+
+
+def test_soil_of_constant_stiffness_does_not_stiffen():
+    exact, even = verify_soil.stiffened(verify_soil.Material(1e7, verify_soil.DENSITY, yields=False))
+    assert abs(even / exact - 1.0) > 1e3 * tolerance("continuum.soil_stiffens_with_pressure")
+
+
+@pytest.mark.slow
+def test_energy_without_what_parting_lifts_does_not_add_up():
+    assert abs(verify_soil.collapse(seconds=0.2).missing(without="parting")) > tolerance("continuum.soil_energy")
+
+
+@pytest.mark.slow
+def test_soil_under_tension_without_repulsion_flies_to_pieces():
+    found = verify_soil.spun(1.5, verify_soil.PULL, repulsion=0.0)
+    assert found > 3.0
