@@ -94,6 +94,15 @@ def surface(level: Level, cloud: Cloud) -> float:
     return float(heights[top] + (heights[top + 1] - heights[top]) * full[top] / (full[top] - full[top + 1]))
 
 
+def discharge(level: Level, cloud: Cloud, share: Floats) -> float:
+    """Flow of water to the right (m²/s) through a section: Σ V_i s_i u_i/breadth over the strip of ``level``;
+    ``share`` (n,): s, of each particle's volume that is water."""
+    half = 0.5 * (level.breadth if level.breadth is not None else 4.0 * cloud.spacing)
+    left, right = max(0.0, level.x - half), min(cloud.width, level.x + half)
+    inside = (cloud.x[:, 0] >= left) & (cloud.x[:, 0] <= right)
+    return float((cloud.volume * share * cloud.v[:, 0])[inside].sum()) / (right - left) if right > left else 0.0
+
+
 def tables(
     time: float, probes: tuple[Probe, ...], levels: tuple[Level, ...], cloud: Cloud
 ) -> dict[str, dict[str, float]]:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from continuum_sph.scene.air_build import AIR as GAS
 from continuum_sph.scene.air_build import air_rows
-from continuum_sph.scene.instruments import Cloud, tables
+from continuum_sph.scene.instruments import Cloud, discharge, tables
 from continuum_sph.scene.model import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.seepage_build import seepage_of
@@ -87,19 +87,24 @@ class SeepageSimulation:
         return row | (air_rows(flow) if self.scene.air else {})
 
     def tables(self) -> dict[str, dict[str, float]]:
-        """A row of probes.csv and of levels.csv, where the scene asks for them."""
+        """A row of probes.csv and of levels.csv, where the scene asks for them: of the water, its surface in soil too,
+        and its flow to the right through each strip."""
         scene, flow = self.scene, self.both.water
         if not (scene.probe or scene.level):
             return {}
         layer, n = flow.layer, flow.layer.fluid
-        there = layer.mass[:n] > 0.0
+        there = (layer.mass[:n] > 0.0) & (layer.material[:n] != GAS)
         volume = layer.mass[:n] / (flow.porosity * layer.density)
         length, spacing = flow.law.smoothing.length, scene.numerics.spacing
         cloud = Cloud(
             layer.x[:n][there], volume[there], layer.pressure[:n][there], layer.v[:n][there], length, spacing,
             scene.inner[0],
         )  # fmt: skip
-        return tables(self.time, scene.probe, scene.level, cloud)
+        found = tables(self.time, scene.probe, scene.level, cloud)
+        for number, level in enumerate(scene.level):
+            through = discharge(level, cloud, flow.porosity[there])
+            found["levels"][f"{level.name or f'level {number}'} discharge (m2/s)"] = through
+        return found
 
     def snapshot(self) -> Snapshot:
         """Water, air and soil as a cloud each, and all as one to look at, soil over the others: layer, velocity,

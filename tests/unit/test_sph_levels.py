@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from continuum_sph.layers import Layer
+from continuum_sph.scene.instruments import Cloud, Level, discharge
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.seepage_model import SeepageSimulation
 from continuum_sph.scene.seepage_report import seepage_report
@@ -115,6 +116,14 @@ def scene(**changes):
         "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
     }  # fmt: skip
     return validate(Scene, given | changes)
+
+
+def test_the_discharge_through_a_section_is_what_flows_in_pores():
+    x = square_lattice((0.0, 0.0), (1.0, 0.5), SPACING)
+    v = np.tile([0.3, 0.1], (len(x), 1))
+    cloud = Cloud(x, np.full(len(x), SPACING**2), np.zeros(len(x)), v, 1.3 * SPACING, SPACING, 1.0)
+    through = discharge(Level(x=0.5), cloud, np.full(len(x), 0.4))
+    assert through == pytest.approx(0.4 * 0.3 * 0.5, rel=1e-12)  # n v H; a sum of 20 equal parts
 
 
 def test_reservoirs_that_cannot_be_are_refused():
