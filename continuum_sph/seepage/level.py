@@ -28,7 +28,7 @@ from porescale.ground.jit import kernel
 Floats = NDArray[np.float64]
 
 RAMP = 3.0  # spacings: of a lattice that passes, w takes in the same mass to a thousandth
-BERTH = 3.0  # cutoffs between berths
+BERTH = 1.5  # cutoffs between berths
 
 
 @kernel
