@@ -24,6 +24,7 @@ PACKAGE = Package(
     benchmarks=bench.benchmarks,
     stability=study.stability,
     endurance=study.endurance,
+    parts=study.parts,
     also={demseg.PACKAGE: demseg.show},
     features=study.features,
 )

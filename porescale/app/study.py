@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from porescale.runs.model import Array
     from porescale.workbench.endurance import Endurances
+    from porescale.workbench.parts import Kinds
     from porescale.workbench.study import Stability
 
 
@@ -29,6 +30,13 @@ def endurance() -> Endurances:
     from porescale.coupling.endurance import ENDURANCES
 
     return ENDURANCES
+
+
+def parts() -> Kinds:
+    """Kinds of scenes, and what each is held against."""
+    from porescale.scene.parts import KINDS
+
+    return KINDS
 
 
 def features() -> Mapping[str, Callable[[Path, float | None], Array]]:

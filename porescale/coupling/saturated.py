@@ -107,6 +107,7 @@ class Saturated:
             choose_solid(solid_operator, fluid.relaxation_time, third_order, dtype, soft=soft_rim),
         )  # fmt: skip
         self.pairs = np.zeros((0, 2), np.int64)
+        self._placed = np.full((discs, 2), np.nan)  # centres for which the patches are filled
         self._covered: Array | None = None
         self._shape = ny, nx
         self._load, self._inside = np.zeros((count, 3)), np.zeros((count, 2))
@@ -172,7 +173,14 @@ class Saturated:
         return self.bodies.make_good(fluid, self._patches) if self.bodies else 0.0
 
     def _place(self, centre: Array, velocity: Array, spin: Array) -> tuple[Array, Array, Array]:
-        """Fill the bodies' patches, and list what lies in which row; centre, velocity and spin of them all."""
+        """Fill the bodies' patches, and list what lies in which row; centre, velocity and spin of them all.
+
+        Where there are discs only and none has moved since, all of that is there already.
+        """
+        others = self.rim or self.polygons or self.bodies
+        if not others and np.array_equal(centre, self._placed):
+            return centre, velocity, spin
+        self._placed[:] = centre
         if self.rim:
             self.rim.soften(self.covering_radius)
         cover(centre, self.covering_radius, self._patches, self._lines)
@@ -192,7 +200,9 @@ class Saturated:
 
     def cover(self, centre: Array, velocity: Array, spin: Array) -> None:
         """Fill the solid fields for discs at centre (n, 2), cells, with velocity and spin in lattice units."""
+        self._placed[:] = np.nan  # the owner may have lent other radii
         motion = self._place(centre, velocity, spin)
+        self._placed[:] = np.nan
         lay_out(
             self._rows, self._patches, *motion, self._shift, self._theta, self.periodic_x, self._ramp, self._scratch,
             self.covered,

@@ -18,6 +18,14 @@ WEEK = 7 * 86400.0
 """s."""
 
 
+PARTS = (
+    "fluid", "grains", "contact", "material", "clump", "segment", "polygon", "container", "bonds", "rock",
+    "control", "wall", "cell", "gate", "disc", "rectangle", "lubrication", "sleep", "probe", "line", "flux",
+    "loads", "permeability",
+)  # fmt: skip
+"""Sections that build something, in the order in which they are told."""
+
+
 def report(scene: Scene) -> Report:
     """All of the above; raises InputError with every refusal."""
     derived = derive(scene)
@@ -45,13 +53,8 @@ def report(scene: Scene) -> Report:
 
 def _parts(scene: Scene, out: Report) -> None:
     out.heading("Parts")
-    parts = (
-        "fluid", "grains", "contact", "material", "clump", "segment", "polygon", "container", "bonds", "rock",
-        "control", "wall", "cell", "gate", "disc", "rectangle", "lubrication", "sleep", "probe", "line", "flux",
-        "loads", "permeability",
-    )  # fmt: skip
-    out.row("built", ", ".join(name for name in parts if getattr(scene, name)))
-    out.row("absent, not built", ", ".join(name for name in parts if not getattr(scene, name)) or "none")
+    out.row("built", ", ".join(name for name in PARTS if getattr(scene, name)))
+    out.row("absent, not built", ", ".join(name for name in PARTS if not getattr(scene, name)) or "none")
     out.row("sides", ", ".join(f"{name} {side.text()}" for name, side in scene.domain.sides.items()))
 
 

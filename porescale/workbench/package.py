@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from porescale.workbench.benchmarks import Benchmarks
     from porescale.workbench.endurance import Endurances
     from porescale.workbench.extremes import Extremes
+    from porescale.workbench.parts import Kinds
     from porescale.workbench.report import Report
     from porescale.workbench.sections import Section
     from porescale.workbench.study import Stability
@@ -81,8 +82,9 @@ class Package:
     table : columns of a table of a run folder by its name, "series" for series.csv;
     also : the same as show for runs of other commands, by what their cards call them;
     validations, benchmarks : give the registers;  stability : that of the flows of a stability map, extremes : what
-    `study extremes` tries, endurance : what `study endurance` runs, None if there is none;  features : what trade
-    studies make of a run folder at a time (None: its last snapshot), by name, None if there is nothing.
+    `study extremes` tries, endurance : what `study endurance` runs, parts : what `study parts` measures, None if there
+    is none;  features : what trade studies make of a run folder at a time (None: its last snapshot), by name, None if
+    there is nothing.
     """
 
     name: str
@@ -100,5 +102,6 @@ class Package:
     stability: Callable[[], Stability] | None = None
     extremes: Callable[[], Extremes] | None = None
     endurance: Callable[[], Endurances] | None = None
+    parts: Callable[[], Kinds] | None = None
     also: Mapping[str, Callable[[Path], Iterable[Path]]] = field(default_factory=dict)
     features: Callable[[], Mapping[str, Callable[[Path, float | None], NDArray[Any]]]] | None = None

@@ -13,7 +13,7 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from porescale.ground.check import Fault, InputError
-from porescale.workbench.commands import endurance, trade
+from porescale.workbench.commands import endurance, parts, trade
 from porescale.workbench.commands.options import Json, Threads, use_threads
 from porescale.workbench.folders import refuse_unwritable
 from porescale.workbench.package import Package
@@ -29,6 +29,8 @@ def command(package: Package) -> App:
         app.command(_extremes(package))
     if package.endurance is not None:
         app.command(endurance.command(package))
+    if package.parts is not None:
+        app.command(parts.command(package))
     return app
 
 

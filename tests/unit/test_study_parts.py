@@ -1,0 +1,80 @@
+"""What scenes are held against does the same job, and a scene's arrays are counted once."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from porescale.dem.bench_plain import PlainDiscs
+from porescale.dem.contact.linear import Linear
+from porescale.dem.experiments_sleep import heap
+from porescale.lbm.bench_plain import PlainWater
+from porescale.lbm.fluid import Fluid
+from porescale.workbench.parts import SMALLEST, Built, Kind, Kinds, bytes_of, markdown, measure
+
+ROUGH = Linear(5e5, 2.0, 1.25e5, 1.0, 0.5)
+SMOOTH = Linear(5e5, 2.0)
+
+
+def test_the_smallest_lattice_does_what_the_fluid_does():
+    fluid = Fluid(12, 9, 0.8)
+    rng = np.random.default_rng(3)
+    fluid.set_flow(*(0.05 * rng.normal(size=(2, 9, 12))), density=1 + 0.01 * rng.normal(size=(9, 12)))
+    plain_water = PlainWater(fluid.populations, 0.8)
+    steps = 20
+    for _ in range(steps):
+        fluid.advance()
+    plain_water.advance(steps)
+    # Two ways to write one sum: some ten roundings of populations below 0.1 a step.
+    assert np.abs(plain_water.populations - fluid.populations)[:, 1:-1, 1:-1].max() < steps * 10 * 2.2e-16 * 0.1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("law", [ROUGH, SMOOTH], ids=["friction", "none"])
+def test_the_smallest_discs_do_what_grains_do(law):
+    grains, weights = heap()
+    grains.set_law(law)
+    grains.discs.velocity[:] = 0.02 * np.random.default_rng(1).normal(size=grains.discs.velocity.shape)
+    dt, steps = 1e-5, 60
+    twin = PlainDiscs(grains, weights, dt)
+    start = grains.discs.position.copy()
+    twin.advance(steps)
+    grains.step(dt, weights, count=steps)
+    assert np.abs(grains.discs.position - start).max() > 1e-6
+    # Forces are sums of terms k x that cancel: eps k x/m dt² a step, 2e-16 5e5 1e-2/8e-3 1e-10, and twice summed.
+    allowed = 2.2e-16 * 5e5 * 1e-2 / grains.discs.mass.min() * dt**2 * steps**2
+    assert np.abs(twin.discs["position"] - grains.discs.position).max() < allowed
+
+
+def test_arrays_are_counted_once_however_they_are_named():
+    class Model:
+        """Of no package of ours."""
+
+    Model.__module__ = "porescale.test"
+    model = Model()
+    model.own = np.zeros(10)
+    model.view = model.own[3:]
+    model.more = {"a": [np.zeros(5)], "b": (model.own,)}
+    model.me = model
+    assert bytes_of(model) == 15 * 8
+
+
+def test_a_kind_is_timed_beside_its_other_and_told_in_its_table():
+    done = {"steps": 0, "other": 0}
+
+    def count(name):
+        def steps(number):
+            done[name] += number
+
+        return steps
+
+    built = Built([np.zeros(4)], ("fluid",), 4, count("steps"), count("other"))
+    kinds = Kinds(
+        [Kind("thing", "cell", SMALLEST, lambda: built, steps=5), Kind("more", "cell", "thing", lambda: built)]
+    )
+    rows = [measure(kind, rounds=3) for kind in kinds.chosen()]
+    assert rows[0].bytes == 8.0
+    assert done["steps"] == done["other"] == 4 * 5 + 4 * 50
+    told = markdown({"command": "x"}, rows)
+    assert "| thing (4 cells) | fluid | 8 a cell |" in told
+    assert "| thing | " in told.split("What a part adds")[1]
