@@ -1,10 +1,11 @@
-"""Validations of slopes under water; each measuring function takes what its failing twin changes."""
+"""Validations of slopes under water and of permeability; each measuring function takes what its failing twin changes."""
 
 from __future__ import annotations
 
 import functools
 import math
 
+from continuum_sph.scene.trials_seepage import discharge, permeated
 from continuum_sph.scene.trials_soil_wet import WetSlope
 from porescale.ground.constants import GRAVITY
 from porescale.workbench.validations import Measured, Validations
@@ -67,3 +68,31 @@ def resting_row() -> Measured:
     """Speed of two layers below their limits after 0.6 s, m/s."""
     found = [abs(slides(given)[1]) for given in RESTING]
     return Measured(0.0, found, max(found))
+
+
+GIVEN, CHANGED = 0.4, (0.3, 0.5)  # porosities: at which k is given, and of the soil
+K, GRADIENT = 1e-3, 0.5  # m/s
+
+
+@functools.cache
+def passed(law: str, porosity: float) -> float:
+    """Flux through soil of a ``porosity`` by a ``law`` of `Resistance`, over k given at another porosity and i."""
+    both = permeated(K, GRADIENT, law=law, porosity=porosity)
+    for _ in range(100):  # 600 of the times in which drag stops water
+        both.advance()
+    return discharge(both) / (K * GRADIENT)
+
+
+@VALIDATIONS.row(
+    "continuum.permeability_follows_porosity",
+    source="Kozeny 1927, Carman 1937: k(n)/k(n0) = n³ (1 - n0)²/{n0³ (1 - n)²}, n 0.3 and 0.5, n0 0.4",
+    because="grains are summed over a lattice to 0.0011 of themselves, n so to 0.0011 (1 - n), and k to 3/n + "
+    "2/(1 - n) times that",
+    tolerance=0.0011 * 0.7 * (3.0 / 0.3 + 2.0 / 0.7),
+    slow=True,
+)
+def kozeny_carman_row() -> Measured:
+    """Flux over that of the porosity at which k is given; error over the exact one."""
+    exact = [n**3 * (1.0 - GIVEN) ** 2 / (GIVEN**3 * (1.0 - n) ** 2) for n in CHANGED]
+    found = [passed("kozeny-carman", n) for n in CHANGED]
+    return Measured(exact, found, max(abs(a / b - 1.0) for a, b in zip(found, exact, strict=True)))

@@ -38,3 +38,11 @@ def test_a_slope_with_seepage_does_not_rest_as_in_still_water():
 @pytest.mark.slow
 def test_a_slope_beyond_its_wet_limit_does_not_rest():
     assert verify_soil_wet.slides(SEEPING)[1] > 3.0 * tolerance("continuum.soil_rests_below_its_wet_limits")
+
+
+@pytest.mark.slow
+def test_permeability_that_does_not_follow_porosity_is_told_apart():
+    exact = VALIDATIONS["continuum.permeability_follows_porosity"].run().reference
+    for porosity, wanted in zip(verify_soil_wet.CHANGED, exact, strict=True):
+        found = verify_soil_wet.passed("constant", porosity)
+        assert abs(found / wanted - 1.0) > 10.0 * tolerance("continuum.permeability_follows_porosity")
