@@ -1,4 +1,4 @@
-"""Validations of slopes under water and of permeability; each measuring function takes what its failing twin changes."""
+"""Validations of slopes under water and of permeability; each function takes what its failing twin changes."""
 
 from __future__ import annotations
 
