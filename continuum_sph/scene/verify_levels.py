@@ -25,7 +25,7 @@ def dam(given: Dam = DAM, span: tuple[float, float] = SPAN) -> tuple[float, floa
 @VALIDATIONS.row(
     "continuum.dam",
     source="q = k (H1² - H2²)/2L (Charny 1951); free surface by Baiocchi's inequality, H1 = L = 1, H2 = 0",
-    because="the issue's 3 %; water is booked in particles of H1²/400, what q lets through in 0.05 s, at both ends of "
+    because="held to 3 %; water is booked in particles of H1²/400, what q lets through in 0.05 s, at both ends of "
     "3.5 s: 1.4 % of either discharge, 1 % of their mean; the surface is a row of particles, in pores 1/(20 √n) = 0.08 "
     "apart, whose place is known to a fifth of that, 2.5 % of the least height",
     tolerance=0.03,
@@ -55,7 +55,7 @@ def fronts(given: Imbibition = DRAWN, times: tuple[float, ...] = WATCHED) -> lis
 @VALIDATIONS.row(
     "continuum.imbibition",
     source="Green & Ampt 1911 without capillarity and gravity: x_f = √(2 k h0 t/n)",
-    because="the issue's 3 %; water starts at rest and is late by 0.01 s, 1.7 % of the way at 0.3 s, 0.6 % at 0.9 s; "
+    because="held to 3 %; water starts at rest and is late by 0.01 s, 1.7 % of the way at 0.3 s, 0.6 % at 0.9 s; "
     "a row in pores is 2.5 spacings high and its place known to a tenth of that: 0.25 of 12 to 20 spacings",
     tolerance=0.03,
     slow=True,

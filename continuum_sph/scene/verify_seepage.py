@@ -146,7 +146,7 @@ def darcy(permeability: float, gradient: float = 0.5, steps: int = 1600) -> floa
 @VALIDATIONS.row(
     "continuum.permeameter",
     source="Darcy 1856: q = k i, upwards through 20 rows of soil under water, between faces of given pressure",
-    because="the issue's 1 %; grains and drag are summed over a lattice that is 1 to 0.0011; rows that come in through "
+    because="held to 1 %; grains and drag are summed over a lattice that is 1 to 0.0011; rows that come in through "
     "the base or out of the soil have moved by 0.05 spacings with k 1e-2 and are pushed back by as much head at each "
     "end, 2 · 0.05/(20 · 0.5)",
     tolerance=0.01,
@@ -196,7 +196,7 @@ def boiling(column: Permeameter = BOILING) -> tuple[float, float, float]:
 @VALIDATIONS.row(
     "continuum.boiling_gradient",
     source="Terzaghi 1922: i_c = (G_s - 1)(1 - n)",
-    because="the issue's 5 %; pore pressure follows the rise of 1.4 i_c a second H²/2c_v = 0.01 s late, and the base "
+    because="held to 5 %; pore pressure follows the rise of 1.4 i_c a second H²/2c_v = 0.01 s late, and the base "
     "loses some 1 % of its head to the 0.2 spacings that water has come in by",
     tolerance=0.05,
     slow=True,
@@ -226,7 +226,7 @@ def pile_row(share: float) -> None:
         f"continuum.sheet_pile_{100 * share:.0f}",
         source="conformal mapping: q/(kh) = K'(m)/2K(m), i_E = πh/(4KmT), m = sin(πs/2T) (Harr 1962)",
         because="the tip lies between wall and open particles, uncertain to half a spacing of 1/32 or 1/24 T, q by "
-        "1.9 % of itself; kernels 1.3 spacings wide round off the tip's root; the issue's 3 %, and 8 % for the "
+        "1.9 % of itself; kernels 1.3 spacings wide round off the tip's root; held to 3 %, and 8 % for the "
         "gradient, scaled to that",
         tolerance=0.03,
         slow=True,
@@ -258,7 +258,7 @@ def way_of_the_front(given: Infiltration = SINKING) -> float:
 @VALIDATIONS.row(
     "continuum.infiltration",
     source="Green & Ampt 1911 without capillarity, level sinking: t = (n/k) {z/a - (h0/a²) ln(1 + a z/h0)}, a = 1 - n",
-    because="the issue's 3 %; a front is a row of particles, 2.5 spacings apart in pores, whose place is known to a "
+    because="held to 3 %; a front is a row of particles, 2.5 spacings apart in pores, whose place is known to a "
     "tenth of that, 0.25 of a way of 6.8 spacings, at two times: 0.25/6.8/√2",
     tolerance=0.03,
     slow=True,
