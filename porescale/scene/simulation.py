@@ -127,7 +127,7 @@ class Simulation:
         return Unstable(e.where, e.quantity, e.value, e.unit, self.step, self.time, e.cause)
 
     def _alone(self) -> Grains | None:
-        """The grains, where nothing is done between their steps, and nobody bears a mean over a call: all are then one."""
+        """The grains, where nothing is done between their steps and no load is a mean over a call: all go in one."""
         grains, others = self.grains, (self.fluid, self.movers, self._binder, self._strained)
         gate = self.gate is not None and not (self.gate.open and self.gate.lift_speed is None)
         if grains is None or gate or any(others) or grains.sleep or grains.steered or len(grains.held):
