@@ -130,7 +130,7 @@ def test_a_drop_of_less_tension_swings_slower():
 
 @pytest.mark.slow
 def test_a_bubble_of_five_particles_in_its_radius_rises_too_fast():
-    rise, _ = verify_fluids.rising(0.05, 0.9)
+    rise, *_ = verify_fluids.rising(0.05, 0.9)
     assert rise / verify_fluids.RISE - 1.0 > tolerance("continuum.rising_bubble")
 
 
