@@ -90,6 +90,15 @@ def ground_of(scene: Scene) -> Ground:
     return scene.soil
 
 
+def damping_of(scene: Scene) -> float:
+    """α of the damping: as given, or what makes α c h the given viscosity, c sound in a column at E0."""
+    ground, numerics = ground_of(scene), scene.numerics
+    if ground.numerics.damping_viscosity is None:
+        return ground.numerics.damping
+    sound = math.sqrt(ground.material.column_modulus / ground.density)
+    return ground.numerics.damping_viscosity / (sound * numerics.smoothing_ratio * numerics.spacing)
+
+
 def soil_law(scene: Scene) -> SoilLaw:
     """What the soil of a scene obeys."""
     ground, numerics = ground_of(scene), scene.numerics
@@ -102,7 +111,7 @@ def soil_law(scene: Scene) -> SoilLaw:
         numerics.spacing,
         (material,),
         (0.0, -scene.gravity),
-        damping=choice.damping,
+        damping=damping_of(scene),
         printed_damping=choice.damping_of == "approach",
         corrected=choice.gradient == "corrected",
         diffusion=choice.stress_diffusion,

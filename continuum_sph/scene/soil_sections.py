@@ -46,11 +46,14 @@ class SoilNumerics(Section):
     """What keeps particles of soil calm and evenly spread; see `continuum_sph.soil.divergence`.
 
     The paper: gradient "plain", damping_of "approach" with 0.001, neither diffusion nor parting.
+    damping_viscosity : what damping takes goes as alpha, the speed of sound c and h; told as their product it stays
+    the same whatever the stiffness and the spacing are, and with it how far a tongue of soil slides.
     """
 
     gradient: Literal["corrected", "plain"] = "corrected"
     damping: float = quantity("", 0.2, ge=0, le=4, help="alpha of the damping")
     damping_of: Literal["zig-zags", "approach"] = "zig-zags"
+    damping_viscosity: float | None = quantity("m^2/s", None, ge=0, le=1e6, help="alpha c h, in place of damping")
     stress_diffusion: float = quantity("", 100.0, ge=0, le=1000, help="diffusion of stress per shear strain")
     restless_diffusion: float = quantity("", 0.0, ge=0, le=1, help="diffusion of stress by sound: soil creeps")
     parting: float = quantity("", 4.0, ge=0, le=20, help="how fast particles too near part, per shear strain")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from continuum_sph.scene.sections import Scene
-from continuum_sph.scene.soil_build import geostatic
+from continuum_sph.scene.soil_build import geostatic, soil_law
 from continuum_sph.scene.soil_model import SoilSimulation
 from continuum_sph.scene.soil_report import soil_report
 from continuum_sph.scene.soil_sections import Body
@@ -340,3 +340,12 @@ def test_soil_without_cohesion_has_no_tension_to_hold():
     assert not in_tank(np.array([[0.05, 0.05]]), np.zeros((1, 4)), (0.2, 0.2), 0.1, SAND).pulling
     clay = Material(1e6, 1600.0, cohesion=1e3, tension=500.0)
     assert in_tank(np.array([[0.05, 0.05]]), np.zeros((1, 4)), (0.2, 0.2), 0.1, clay).pulling
+
+
+def test_damping_told_as_a_viscosity_is_the_same_at_any_stiffness_and_spacing():
+    told = {"damping_viscosity": 0.05}
+    for stiffness in (1e6, 4e6):
+        law = soil_law(scene(stiffness=stiffness, numerics=told))
+        sound = math.sqrt(law.materials[0].column_modulus / law.materials[0].density)
+        assert law.damping * sound * law.smoothing.length == pytest.approx(0.05, rel=1e-14)
+    assert soil_law(scene()).damping == 0.2
