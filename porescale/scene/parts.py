@@ -134,7 +134,7 @@ KINDS = Kinds([
          because="the law's numbers are read at every contact, by material, and the box may be periodic"),
     Kind("dry grains without friction or rotation", "grain", SMALLEST,
          lambda: built(dry({"stiffness": 5e5, "restitution": 0.97, "friction": 0.0}), "grain", discs),
-         because="grains without friction still turn and their contacts keep a spring, which stays zero: one more kind of "
+         because="grains without friction still turn and their contacts keep a spring at zero: one more kind of "
                  "contact would be compiled for them alone"),
     Kind("fixed grains in water", "cell", SMALLEST, lambda: built(fixed(), "cell", nothing_moves), steps=20),
     added("rolling friction", "grain", "dry grains", dry, contact=CONTACT | ROLLING),
