@@ -6,8 +6,9 @@ What stands in a strip is measured by its weight,
 
 so that the head on what lies below is exact, however the particles are packed.  w is 1 but for cosine ramps at the ends
 that lie in the water: a column of particles that crosses an end would else change the level by its whole share.  While
-more than half a particle is missing one is put on the lowest place of the surface, at rest; while more than half a
-particle is over the highest of the strip is taken out.  A level at the bottom takes out whatever comes.
+more than half a particle is missing one is put on the lowest place of the surface, at rest, unless that stands far over
+the level already; while more than half a particle is over the highest of the strip is taken out.  A level at the bottom
+takes out whatever comes.
 
 Arrays keep their lengths: particles that are not in the tank have no mass and wait at berths of their own over it, so
 far from each other and from all else that they meet nobody.  Rows without mass are the only memory of who waits.
@@ -29,6 +30,9 @@ Floats = NDArray[np.float64]
 
 RAMP = 3.0  # spacings: of a lattice that passes, w takes in the same mass to a thousandth
 BERTH = 1.5  # cutoffs between berths
+HEAP = 0.1
+"""Of the depth: how much higher than its level a surface may stand to make up for what its particles leave empty; a
+column of water that falls is not topped up beyond."""
 
 
 @kernel
@@ -162,17 +166,21 @@ class Supply:
             if highest >= 0 and (over > 0.5 * layer.mass[highest] or target <= pool.bottom):
                 pool.let_out += float(layer.mass[highest])
                 layer.mass[highest] = 0.0
-            elif over < -0.5 * self.whole:
-                self._fill(pool, target, round(-over / self.whole))
-            else:
+            elif over > -0.5 * self.whole or not self._fill(pool, target, round(-over / self.whole)):
                 return
 
-    def _fill(self, pool: Reservoir, target: float, count: int) -> None:
-        """Put ``count`` particles, at most a row, on the lowest places of the surface of ``pool``."""
+    def _fill(self, pool: Reservoir, target: float, count: int) -> bool:
+        """Put ``count`` particles, at most a row, on the lowest places of the surface of ``pool``, unless these are as
+        high as they may be; whether one was put."""
         layer, columns = self.layer, len(pool.tops)
+        most = target + HEAP * (target - pool.bottom)
+        if float(pool.tops.min()) + 0.5 * self.spacing > most:
+            return False
         free = np.flatnonzero(layer.mass[: layer.fluid] == 0.0)
         for i in free[: min(count, columns)]:
             c = int(np.argmin(pool.tops))
+            if pool.tops[c] + 0.5 * self.spacing > most:
+                break
             height = pool.tops[c] = pool.tops[c] + self.spacing
             layer.x[i] = pool.left + (c + 0.5) * (pool.right - pool.left) / columns, height
             layer.v[i] = layer.smoothed[i] = layer.drift[i] = 0.0
@@ -185,6 +193,7 @@ class Supply:
             pool.let_in += self.whole
         if not len(free):
             raise ValueError(f"reservoir {pool.name}: no particles left to bring it to {target} m")
+        return True
 
     def state(self) -> dict[str, Any]:
         """What was booked; who waits is known by its mass."""

@@ -80,6 +80,18 @@ def test_new_water_lies_on_the_lowest_place_under_its_depth():
     np.testing.assert_allclose(layer.density[new], 1000.0 * (1.0 + 1000.0 * 9.81 * depth / 1e6), rtol=1e-12)
 
 
+def test_a_surface_that_stands_over_its_level_is_not_heaped_up():
+    given = supply(pool(0.4))
+    layer = given.layer
+    there = layer.mass > 0.0
+    lowest = np.flatnonzero(there & (layer.x[:, 1] < SPACING))
+    layer.x[there, 1] += 0.5 * SPACING
+    layer.mass[lowest[::2]] = 0.0
+    given.keep(0.0)
+    assert given.reservoirs[0].let_in == 0.0
+    assert given.reservoirs[0].level < 0.36
+
+
 def test_water_that_waits_stays_where_it_is():
     given = supply(pool(0.4))
     layer = given.layer
