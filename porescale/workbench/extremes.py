@@ -1,7 +1,8 @@
 """Extremes: what a simulator may be asked for, from mild to absurd, and how each ends, as a table and a picture.
 
-Rooms register what they try; `study extremes` runs it.  A try is stable, refused before the start (InputError), or
-stopped with the place, the criterion and the reason (Unstable).  Any other end is a fault of ours and is not caught.
+Rooms register what they try; `study extremes` runs it.  A try is refused before the start (InputError), stopped with
+the place, the criterion and the reason (Unstable), or stable: it came to its end in sense.  Where a number is known it
+is judged as well, and right when that holds.  Any other end is a fault of ours and is not caught.
 """
 
 from __future__ import annotations
@@ -18,8 +19,16 @@ from porescale.workbench.folders import write_whole
 from porescale.workbench.names import choose
 
 NAME = "extremes"
-STABLE, REFUSED, STOPPED = "stable", "refused", "stopped"
-COLOURS = {STABLE: "#2c7fb8", REFUSED: "#bdbdbd", STOPPED: "#a50f15"}
+RIGHT, STABLE, REFUSED, STOPPED = "right", "stable", "refused", "stopped"
+COLOURS = {RIGHT: "#1b7837", STABLE: "#2c7fb8", REFUSED: "#bdbdbd", STOPPED: "#a50f15"}
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What there is to say of a try whose result is known: text, and whether it is right."""
+
+    said: str
+    right: bool
 
 
 @dataclass(frozen=True)
@@ -29,13 +38,14 @@ class Extreme:
 
     axis: str
     value: str
-    run: Callable[[], str]
+    run: Callable[[], str | Judged]
 
     def tried(self) -> Row:
         """How it ended."""
         start = time.perf_counter()
         try:
-            end, said = STABLE, self.run()
+            came = self.run()
+            end, said = (STABLE, came) if isinstance(came, str) else (RIGHT if came.right else STABLE, came.said)
         except InputError as refusal:
             end, said = REFUSED, str(refusal)
         except Unstable as stop:
@@ -81,7 +91,12 @@ def write(folder: Path, command: str, rows: Sequence[Row]) -> None:
 
 def markdown(command: str, rows: Sequence[Row]) -> str:
     """The table."""
-    lines = [f"Written by `{command}`.", "", "| what | how far | end | said |", "|---|---|---|---|"]
+    lines = [
+        f"Written by `{command}`.  *Stable*: it came to its end in sense;  *right*: and a known number holds.",
+        "",
+        "| what | how far | end | said |",
+        "|---|---|---|---|",
+    ]
     lines += [f"| {row.axis} | {row.value} | **{row.end}** | {row.said} |" for row in rows]
     return "\n".join(lines) + "\n"
 
@@ -107,7 +122,7 @@ def picture(rows: Sequence[Row]) -> bytes:
     plot.invert_yaxis()
     plot.spines[:].set_visible(False)
     marks = [Patch(color=colour, label=end) for end, colour in COLOURS.items()]
-    figure.legend(handles=marks, ncols=3, loc="outside upper center", frameon=False)
+    figure.legend(handles=marks, ncols=len(marks), loc="outside upper center", frameon=False)
     written = io.BytesIO()
     figure.savefig(written, format="png", dpi=130)
     return written.getvalue()

@@ -7,7 +7,7 @@ import json
 import pytest
 
 from porescale.ground.check import Fault, InputError, Unstable
-from porescale.workbench.extremes import REFUSED, STABLE, STOPPED, Extreme, Extremes, write
+from porescale.workbench.extremes import REFUSED, RIGHT, STABLE, STOPPED, Extreme, Extremes, Judged, write
 
 
 def refused():
@@ -37,6 +37,12 @@ def test_each_end_is_told_with_its_reason(tmp_path):
     assert [row["end"] for row in json.loads((tmp_path / "made/extremes.json").read_text())] == [r.end for r in rows]
     assert "| depth | absurd | **refused** |" in (tmp_path / "made/extremes.md").read_text()
     assert (tmp_path / "made/extremes.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_what_is_judged_is_right_or_no_more_than_stable():
+    for right, end in ((True, RIGHT), (False, STABLE)):
+        row = Extreme("depth", "known", lambda right=right: Judged("2 % off", right)).tried()
+        assert (row.end, row.said) == (end, "2 % off")
 
 
 def test_tries_are_chosen_by_what_is_varied():
