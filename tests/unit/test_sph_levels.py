@@ -13,6 +13,7 @@ from continuum_sph.scene.seepage_report import seepage_report
 from continuum_sph.seepage import Reservoir, Supply
 from continuum_sph.seepage.level import berths, moor, sound_out
 from porescale.ground.check import InputError
+from porescale.ground.jit import set_threads
 from porescale.particles import square_lattice
 from porescale.workbench.sections import validate
 
@@ -179,3 +180,16 @@ def test_a_dam_between_levels_is_resumed_bit_for_bit_and_books_its_water():
     cloud = whole.snapshot().clouds["water"]
     layer = whole.both.water.layer
     assert len(cloud.position) == (layer.mass[: layer.fluid] > 0.0).sum()
+
+
+@pytest.mark.slow
+def test_one_thread_and_many_keep_the_same_levels_in_the_same_bits():
+    ends = []
+    for threads in (1, 2):
+        set_threads(threads)
+        model = SeepageSimulation(scene())
+        model.advance(60)
+        ends.append((model.both.water.layer.x.copy(), model.series()))
+    set_threads(None)
+    assert np.array_equal(ends[0][0], ends[1][0])
+    assert ends[0][1] == ends[1][1]

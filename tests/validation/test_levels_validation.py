@@ -11,7 +11,7 @@ from continuum_sph.scene import verify_levels
 from continuum_sph.scene.trials_dam import STATIONS, SURFACE, Dam
 from continuum_sph.scene.validations import VALIDATIONS
 from continuum_sph.scene.verify_levels import DAM, DRAWN
-from continuum_sph.seepage import Resistance
+from continuum_sph.seepage import Resistance, Supply
 from tests.reference.dam import surface
 
 PRINTED = DRAWN.porosity / (1.0 - DRAWN.porosity)
@@ -57,3 +57,17 @@ def test_kernels_that_miss_the_next_row_in_pores_hold_the_front_back():
     # Rows of water 1/n spacings apart and kernels that end at 2.6 spacings
     (found,) = verify_levels.fronts(replace(DRAWN, rows=20, ratio=1.3), (0.3,))
     assert abs(found - 1.0) > tolerance("continuum.imbibition")
+
+
+@pytest.mark.slow
+def test_a_reservoir_that_books_half_of_what_it_lets_in_loses_mass(monkeypatch):
+    keep = Supply.keep
+
+    def careless(supply, time):
+        before = [pool.let_in for pool in supply.reservoirs]
+        keep(supply, time)
+        for pool, was in zip(supply.reservoirs, before, strict=True):
+            pool.let_in = 0.5 * (was + pool.let_in)
+
+    monkeypatch.setattr(Supply, "keep", careless)
+    assert verify_levels.unbooked(400) > 1e6 * tolerance("continuum.mass_between_levels")
