@@ -70,7 +70,7 @@ def levels(scene: Scene, out: Report) -> None:
         breadth = (pool.right - pool.left) / numerics.spacing
         out.row(pool.name or f"reservoir {number}", pool.table[-1][1], "m", f"{breadth:.3g} spacings broad, in the end")
     reach = numerics.smoothing_ratio * porosity**0.5
-    out.row("smoothing length over the distance of water's particles in pores", reach, "", f"at least {REACH:g}")
+    out.row("smoothing length over distances in pores", reach, "", f"at least {REACH:g}")
     if reach < REACH:
         out.warn(
             f"particles of water part by 1/sqrt(n) where they enter soil: kernels reach {reach:.2g} of their distance, "
