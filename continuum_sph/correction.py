@@ -12,11 +12,14 @@ from __future__ import annotations
 import numpy as np
 
 from continuum_sph.layers import RHO, VOLUME, X, Y
-from continuum_sph.smoothing import kernel_slope, kernel_value
+from continuum_sph.smoothing import kernel_slope, kernel_value, slope_scale, slope_shape
 from porescale.ground.jit import inline, parallel_kernel, prange
+from porescale.ground.lanes import LANES, nearest, nothing, root, take_rows, total
 from porescale.particles.cells import minimum_image
 
 NONE, FULL = 0.5, 0.8  # a level surface has 0.49 in its first row and 0.90 in its second
+TRACE = 3
+"""Column of a layer's matrix with the trace of M."""
 CLUMP = 0.2
 """R of the shifting sum Σ {1 + R (W/W(spacing))⁴} V ∇W: Monaghan, J. Comput. Phys. 159 (2000) 290."""
 
@@ -36,31 +39,69 @@ def inverse(xx, xy, yy):
 
 @parallel_kernel
 def surroundings(
-    fluid, start, partner, record, material, matrix, openness, crowd, slant, kind, h, spacing, period_x, period_y
+    fluid, start, split, partner, record, material, mixed, matrix, crowd, slant, kind, h, spacing, period_x, period_y
 ):  # fmt: skip
-    """Overwrites, of fluid particles, ``matrix`` (n, 3), L;  ``openness`` (n,), the trace of M;  ``crowd`` (n, 2) 1/m,
+    """Overwrites, of fluid particles, ``matrix`` (n, 4), L and the trace of M;  ``crowd`` (n, 2) 1/m,
     Σ {1 + R (W/W(spacing))⁴} V ∇W, which points away from where particles crowd;  ``slant`` (n, 2) kg/m⁴, gradient of
     density within the material, exact for linear fields.
 
-    start, partner: full list;  record: see Layer;  kind, h: smoothing;  spacing of the particles, m;  periods, m or 0.
+    start, split, partner: full list, walls from ``split[i]`` on;  record: see Layer;  mixed: whether ``material`` (n,)
+    tells two fluids apart;  kind, h: smoothing;  spacing of the particles, m;  periods, m or 0.
     """
     inverse_h = 1.0 / h
+    scale = slope_scale(kind, h)
     whole = 1.0 / kernel_value(kind, spacing * inverse_h, h)
+    turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
+    turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
     for i in prange(fluid):
-        xx = 0.0
-        xy = 0.0
-        yy = 0.0
-        oxx = 0.0
-        oxy = 0.0
-        oyy = 0.0
-        cx = 0.0
-        cy = 0.0
-        rx = 0.0
-        ry = 0.0
-        for k in range(np.uint64(start[i]), np.uint64(start[i + 1])):
+        xi = record[i, X]
+        yi = record[i, Y]
+        rho = record[i, RHO]
+        mxx = nothing()
+        mxy = nothing()
+        myy = nothing()
+        ax = nothing()
+        ay = nothing()
+        bx = nothing()
+        by = nothing()
+        first = start[i]
+        if not mixed:
+            while first < split[i]:  # a particle stands for the missing end of its row, at no distance from itself
+                xj, yj, _, _, rho_j, _, volume, _ = take_rows(record, partner, first, split[i], i)
+                first += LANES
+                dx = xi - xj
+                dy = yi - yj
+                dx -= period_x * nearest(dx * turns_x)
+                dy -= period_y * nearest(dy * turns_y)
+                q = root(dx * dx + dy * dy) * inverse_h
+                part = volume * scale * slope_shape(kind, q)
+                px = part * dx
+                py = part * dy
+                mxx += px * dx
+                mxy += px * dy
+                myy += py * dy
+                ratio = kernel_value(kind, q, h) * whole
+                ratio *= ratio
+                weight = 1.0 + CLUMP * ratio * ratio
+                ax += weight * px
+                ay += weight * py
+                bx += (rho_j - rho) * px
+                by += (rho_j - rho) * py
+            first = split[i]
+        xx = -total(mxx)
+        xy = -total(mxy)
+        yy = -total(myy)
+        oxx = xx
+        oxy = xy
+        oyy = yy
+        cx = total(ax)
+        cy = total(ay)
+        rx = total(bx)
+        ry = total(by)
+        for k in range(np.uint64(first), np.uint64(start[i + 1])):
             j = np.uint64(partner[k])
-            dx = minimum_image(record[i, X] - record[j, X], period_x)
-            dy = minimum_image(record[i, Y] - record[j, Y], period_y)
+            dx = minimum_image(xi - record[j, X], period_x)
+            dy = minimum_image(yi - record[j, Y], period_y)
             q = np.sqrt(dx * dx + dy * dy) * inverse_h
             part = record[j, VOLUME] * kernel_slope(kind, q, h)
             px = part * dx
@@ -77,14 +118,14 @@ def surroundings(
                 oxx -= px * dx
                 oxy -= px * dy
                 oyy -= py * dy
-                step = record[j, RHO] - record[i, RHO]
+                step = record[j, RHO] - rho
                 rx += step * px
                 ry += step * py
         lxx, lxy, lyy = inverse(xx, xy, yy)
         matrix[i, 0] = lxx
         matrix[i, 1] = lxy
         matrix[i, 2] = lyy
-        openness[i] = xx + yy
+        matrix[i, TRACE] = xx + yy
         crowd[i, 0] = cx
         crowd[i, 1] = cy
         lxx, lxy, lyy = inverse(oxx, oxy, oyy)

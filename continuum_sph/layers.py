@@ -42,7 +42,7 @@ class Layer:
     drift: Floats = field(init=False)  # (fluid, 2) m/s, what shifting adds
     ghost: Floats = field(init=False)  # (n, 2) m/s, velocity that makes fluid at a wall stick (rows of walls)
     length: Floats = field(init=False)  # (n,) m, smoothing lengths, set by the flow
-    matrix: Floats = field(init=False)  # (n, 3) xx, xy, yy of the gradient correction
+    matrix: Floats = field(init=False)  # (n, 4) xx, xy, yy of the gradient correction, and how closed in: `correction`
     facing: Floats = field(init=False)  # (n, 4) of walls: nearest point of the surface, normal into the fluid
     power: Floats = field(init=False)  # (fluid, 6) W/m, see VISCOUS, …, STOPPED
     energy: Floats = field(init=False)  # (fluid, 6) J/m, the same summed over time
@@ -61,7 +61,7 @@ class Layer:
         self.predicted, self.pressure = np.zeros(self.fluid), np.zeros(n)
         self.record, self.ghost = np.zeros((n, 8)), np.zeros((n, 2))
         self.length, self.facing = np.zeros(n), np.zeros((n, 4))
-        self.matrix = np.tile([1.0, 0.0, 1.0], (n, 1))
+        self.matrix = np.tile([1.0, 0.0, 1.0, 2.0], (n, 1))
         self.power, self.energy = np.zeros((self.fluid, 6)), np.zeros((self.fluid, 6))
 
     @property

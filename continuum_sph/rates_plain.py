@@ -1,6 +1,6 @@
-"""The pass over pairs of one fluid with plain gradients between walls that take pressures: that of `rates`, faster.
+"""The pass over pairs of one fluid between walls that take pressures: that of `rates`, faster.
 
-The equations are those of `rates`, its slow twin; nothing is chosen here but the kernel and whether walls hold.  A row
+The equations are those of `rates`, its slow twin; there is no second fluid here, no XSPH and no change of h.  A row
 of partners is taken several at a time (`porescale.ground.lanes`); a particle stands for the missing end of its own row
 and adds nothing, being at no distance from itself and moving as it does.  Factors that all partners share multiply the
 sums.
@@ -9,32 +9,39 @@ sums.
 from __future__ import annotations
 
 from continuum_sph.artificial_viscosity import artificial
+from continuum_sph.density import HYDROSTATIC, LINEAR
 from continuum_sph.fluids import SOUND, VISCOSITY
-from continuum_sph.layers import BY_WALLS, DIFFUSIVE, RHO, STIFF, VISCOUS, VX, VY, P, X, Y
+from continuum_sph.layers import BY_SHIFTING, BY_WALLS, DIFFUSIVE, RHO, STIFF, VISCOUS, VX, VY, P, X, Y
+from continuum_sph.rates import CORRECTED, NOISE, SHIFTED
 from continuum_sph.rates_walls import walls_push
 from continuum_sph.smoothing import slope_scale, slope_shape
 from continuum_sph.viscosity import laminar
 from porescale.ground.jit import parallel_kernel, prange
-from porescale.ground.lanes import LANES, nearest, nothing, root, take_rows, total
+from porescale.ground.lanes import LANES, nearest, nothing, root, take_four, take_rows, take_two, total
 
 
 @parallel_kernel
 def plain_rates(
-    fluid, start, split, partner, record, ghost, material, mass, table,
+    fluid, start, split, partner, record, ghost, material, matrix, slant, drift, mass, table, choices,
     acceleration, rate, power,
     kind, h, gx, gy, alpha, beta, softening, delta, sticky, period_x, period_y, half,
 ):  # fmt: skip
-    """Overwrites ``acceleration``, ``rate`` and the first three columns of ``power`` (fluid, 6) as `rates.rates` does.
+    """Overwrites ``acceleration``, ``rate`` and columns of ``power`` (fluid, 6) as `rates.rates` does.
 
-    Arguments: those of the same names there;  ``table`` (1, 9) has one fluid, without cohesion, and XSPH is off.
+    Arguments: those of the same names there;  ``table`` (1, 9) has one fluid, without cohesion, and of ``choices``
+    NOISE, SHIFTED and CORRECTED count.
     """
+    linear = choices[NOISE] == LINEAR
+    shifted = choices[SHIFTED] > 0
+    corrected = choices[CORRECTED] > 0
     viscosity = table[0, VISCOSITY]
     sound = table[0, SOUND]
     strength = delta * sound
     scale = slope_scale(kind, h)
     inverse = 1.0 / h
-    lift_x = 0.5 * gx
-    lift_y = 0.5 * gy
+    level = 0.5 if choices[NOISE] == HYDROSTATIC else 0.0
+    lift_x = level * gx
+    lift_y = level * gy
     wraps = period_x > 0.0 or period_y > 0.0
     turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
     turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
@@ -48,6 +55,13 @@ def plain_rates(
         stiff = record[i, STIFF]
         specific = 1.0 / rho
         friction = laminar(viscosity, 1.0, specific, 1.0)
+        lxx = 1.0
+        lxy = 0.0
+        lyy = 1.0
+        if corrected:
+            lxx = matrix[i, 0]
+            lxy = matrix[i, 1]
+            lyy = matrix[i, 2]
         ax = nothing()
         ay = nothing()
         bx = nothing()
@@ -57,7 +71,6 @@ def plain_rates(
         k = start[i]
         while k < split[i]:
             xj, yj, vxj, vyj, rho_j, pressure_j, volume, stiff_j = take_rows(record, partner, k, split[i], i)
-            k += LANES
             dx = xi - xj
             dy = yi - yj
             if wraps:
@@ -69,26 +82,45 @@ def plain_rates(
             q = root(distance2) * inverse
             part = volume * scale * slope_shape(kind, q)
             approach = vx * dx + vy * dy
-            change += approach * part
             spread += (rho - rho_j - (stiff + stiff_j) * (lift_x * dx + lift_y * dy)) * part
+            if linear:
+                sx, sy = take_two(slant, partner, k, split[i], i)
+                spread -= 0.5 * ((slant[i, 0] + sx) * dx + (slant[i, 1] + sy) * dy) * part
             thrust = (own + pressure_j) * specific * part
             both = rho + rho_j
             damp = artificial(alpha, beta, sound, h, softening, approach, distance2, both) * rho_j * part
             brake = friction * part
-            ax -= thrust * dx
-            ay -= thrust * dy
+            tx = dx
+            ty = dy
+            if corrected:
+                mxx, mxy, myy, _ = take_four(matrix, partner, k, split[i], i)
+                mxx = 0.5 * (lxx + mxx)
+                mxy = 0.5 * (lxy + mxy)
+                myy = 0.5 * (lyy + myy)
+                tx = mxx * dx + mxy * dy
+                ty = mxy * dx + myy * dy
+                brake *= 0.5 * (mxx + myy)
+            k += LANES
+            change += (vx * tx + vy * ty) * part
+            ax -= thrust * tx
+            ay -= thrust * ty
             bx += brake * vx - damp * dx
             by += brake * vy - damp * dy
         pushed_x, pushed_y, held_x, held_y, swept = walls_push(
             split[i], start[i + 1], partner, record, ghost, material, xi, yi, vxi, vyi, rho, own, viscosity,
-            kind, h, sticky, period_x, period_y,
+            lxx, lxy, lyy, kind, h, sticky, period_x, period_y,
         )  # fmt: skip
+        moved = 0.0
+        lifted = 0.0
+        if shifted:
+            moved = drift[i, 0] * slant[i, 0] + drift[i, 1] * slant[i, 1]
+            lifted = gx * drift[i, 0] + gy * drift[i, 1]
         rubbed_x = total(bx) + held_x
         rubbed_y = total(by) + held_y
         diffused = strength * total(spread)
         acceleration[i, 0] = total(ax) + pushed_x + rubbed_x + gx
         acceleration[i, 1] = total(ay) + pushed_y + rubbed_y + gy
-        rate[i] = rho * total(change) + swept + diffused
+        rate[i] = rho * total(change) + swept + moved + diffused
         # What these do to speeds they do at the step's end, and what they do to densities at its middle.
         vxi += half * acceleration[i, 0]
         vyi += half * acceleration[i, 1]
@@ -96,3 +128,4 @@ def plain_rates(
         power[i, VISCOUS] = -mass[i] * (rubbed_x * vxi + rubbed_y * vyi)
         power[i, DIFFUSIVE] = -work * diffused
         power[i, BY_WALLS] = work * swept + mass[i] * (pushed_x * vxi + pushed_y * vyi)
+        power[i, BY_SHIFTING] = work * moved - mass[i] * lifted

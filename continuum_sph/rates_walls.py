@@ -14,12 +14,13 @@ from porescale.particles.cells import minimum_image
 @inline
 def walls_push(
     begin, end, partner, record, ghost, material, x, y, vx, vy, rho, pressure, viscosity,
-    kind, h, sticky, period_x, period_y,
+    lxx, lxy, lyy, kind, h, sticky, period_x, period_y,
 ):  # fmt: skip
     """Of wall partners ``partner[begin:end]`` on a particle at (x, y) m, (vx, vy) m/s, ``rho`` kg/m³, ``pressure`` Pa:
     (acceleration by pressure, m/s², 2;  by friction, 2;  rate of density, kg/(m³ s)).
 
-    record, ghost, material: see Layer;  viscosity μ, Pa s;  the rest: as `rates.rates`.
+    record, ghost, material: see Layer;  viscosity μ, Pa s;  lxx, lxy, lyy: gradient correction;  the rest: as
+    `rates.rates`.
     """
     ax = 0.0
     ay = 0.0
@@ -33,10 +34,11 @@ def walls_push(
         dy = minimum_image(y - record[j, Y], period_y)
         slope = kernel_slope(kind, np.sqrt(dx * dx + dy * dy) / h, h)
         volume = record[j, VOLUME]
+        brake = laminar(viscosity, volume, specific, 0.5 * (lxx + lyy) * slope) if sticky and material[j] == 0 else 0.0
+        dx, dy = lxx * dx + lxy * dy, lxy * dx + lyy * dy
         swept = volume * ((vx - record[j, VX]) * dx + (vy - record[j, VY]) * dy) * slope
         change += rho * swept
         thrust = (pressure + record[j, P]) * specific * volume * slope
-        brake = laminar(viscosity, volume, specific, slope) if sticky and material[j] == 0 else 0.0
         ax -= thrust * dx
         ay -= thrust * dy
         bx += brake * (vx - ghost[j, 0])

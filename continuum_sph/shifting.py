@@ -22,11 +22,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from continuum_sph.correction import TRACE
 from continuum_sph.fluids import LIQUID
-from continuum_sph.layers import VOLUME, X, Y
-from continuum_sph.smoothing import kernel_slope
+from continuum_sph.layers import X, Y
+from continuum_sph.smoothing import slope_scale, slope_shape
 from porescale.ground.jit import parallel_kernel, prange
-from porescale.particles.cells import minimum_image
+from porescale.ground.lanes import LANES, greater, nearest, nothing, root, take_four, take_rows, total
 
 OPEN = 1.5  # trace of M: 1.95 on a lattice, 1.2 in the outermost row of a level surface, 0.9 in a corner
 MOST = 0.25  # of U
@@ -35,36 +36,46 @@ QUIET = 1.0 / 500.0  # of the speed of sound: a settling lattice stays below it,
 
 @parallel_kernel
 def shift(
-    fluid, start, split, partner, record, material, table, openness, crowd, drift, kind, h, strength, most,
+    fluid, start, split, partner, record, material, table, matrix, crowd, drift, kind, h, strength, most,
     period_x, period_y,
 ):  # fmt: skip
     """Overwrites ``drift`` (fluid, 2) m/s, the shifting velocity.
 
-    start, split, partner: full list, walls from ``split[i]`` on;  material, table: the particles' fluids;  openness,
+    start, split, partner: full list, walls from ``split[i]`` on;  material, table: the particles' fluids;  matrix,
     crowd: of `surroundings`;  strength 2 h s U, m²/s;  most: longest shifting velocity, m/s;  kind, h: smoothing;
     periods, m or 0.
     """
+    steep = slope_scale(kind, h)
+    inverse_h = 1.0 / h
+    turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
+    turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
     for i in prange(fluid):
         drift[i, 0] = 0.0
         drift[i, 1] = 0.0
-        if openness[i] < OPEN or table[material[i], LIQUID] == 0.0:
+        closed = matrix[i, TRACE]
+        if closed < OPEN or table[material[i], LIQUID] == 0.0:
             continue
         ux = -strength * crowd[i, 0]
         uy = -strength * crowd[i, 1]
-        near = False
-        nx = 0.0
-        ny = 0.0
-        for k in range(np.uint64(start[i]), np.uint64(split[i])):
-            j = np.uint64(partner[k])
-            dx = minimum_image(record[i, X] - record[j, X], period_x)
-            dy = minimum_image(record[i, Y] - record[j, Y], period_y)
-            q = np.sqrt(dx * dx + dy * dy) / h
-            if q >= 2.0:
-                continue
-            part = record[j, VOLUME] * kernel_slope(kind, q, h) * (openness[j] - openness[i])
-            nx += part * dx
-            ny += part * dy
-            near = near or openness[j] < OPEN
+        falls_x = nothing()
+        falls_y = nothing()
+        open_by = nothing()
+        k = start[i]
+        while k < split[i]:  # a particle stands for the missing end of its row: it is not open
+            xj, yj, _, _, _, _, volume, _ = take_rows(record, partner, k, split[i], i)
+            _, _, _, trace = take_four(matrix, partner, k, split[i], i)
+            k += LANES
+            dx = record[i, X] - xj
+            dy = record[i, Y] - yj
+            dx -= period_x * nearest(dx * turns_x)
+            dy -= period_y * nearest(dy * turns_y)
+            part = volume * steep * slope_shape(kind, root(dx * dx + dy * dy) * inverse_h)
+            falls_x += part * (trace - closed) * dx
+            falls_y += part * (trace - closed) * dy
+            open_by -= part * greater(OPEN - trace, 0.0)  # more than nothing where some neighbour is open
+        nx = total(falls_x)
+        ny = total(falls_y)
+        near = total(open_by) > 0.0
         length = nx * nx + ny * ny
         if near and length > 0.0:
             along = (ux * nx + uy * ny) / length

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from continuum_sph.boundary import load_walls
 from continuum_sph.boundary_paper import facing, show_walls, wall_rates
 from continuum_sph.correction import surroundings
-from continuum_sph.density import HYDROSTATIC, LINEAR
+from continuum_sph.density import LINEAR
 from continuum_sph.density_filter import filtered
 from continuum_sph.fluids import table
 from continuum_sph.law import RULES, Law
@@ -75,17 +75,20 @@ class Flow:
         self.wall_density = np.full(walls, self.law.state.density)
         self.wall_rate, self.wall_rate_before = np.zeros(walls), np.zeros(walls)
         # What `correction` finds, read by others only where a choice needs it.
-        self.openness, self.crowd, self.slant = np.full(count, 2.0), np.zeros((count, 2)), np.zeros((count, 2))
+        self.crowd, self.slant = np.zeros((count, 2)), np.zeros((count, 2))
         self.normalised = np.zeros(layer.fluid)
         self.colour, self.normal = np.zeros(layer.fluid), np.zeros((layer.fluid, 3))
         self.stress = np.zeros((layer.fluid, 4))  # Pa, μ ∇vᵀ
 
-    def choose(self) -> NDArray[np.int64] | None:
-        """What of `rates` goes beyond `plain_rates`; None for nothing."""
+    def choose(self) -> NDArray[np.int64]:
+        """The choices of `rates`."""
         law = self.law
-        chosen = (law.images, law.shifting > 0.0, law.corrected, law.varied)
-        plain = len(law.fluids) == 1 and law.fluids[0].cohesion == 0.0 and law.noise == HYDROSTATIC and law.xsph == 0.0
-        return None if plain and not any(chosen) else np.array([law.noise, *chosen], np.int64)
+        return np.array([law.noise, law.images, law.shifting > 0.0, law.corrected, law.varied], np.int64)
+
+    def simple(self) -> bool:
+        """Whether `plain_rates` knows all of the law."""
+        law = self.law
+        return len(law.fluids) == 1 and law.fluids[0].cohesion == law.xsph == 0.0 and not (law.images or law.varied)
 
     @property
     def surveyed(self) -> bool:
@@ -96,7 +99,7 @@ class Flow:
     def start(self) -> None:
         """Rates of the initial state, from which the first step goes on."""
         layer = self.layer
-        self.table, self.choices = table(self.law.fluids), self.choose()
+        self.table, self.choices, self.plain = table(self.law.fluids), self.choose(), self.simple()
         if self.law.images:
             walls = layer.x[layer.fluid :]
             layer.facing[layer.fluid :] = facing(walls, tuple(self.lower), tuple(self.upper))
@@ -154,8 +157,8 @@ class Flow:
         self.show_walls(step, ratio)
         if self.surveyed:
             surroundings(
-                fluid, pairs.start, pairs.partner, layer.record, layer.material, layer.matrix, self.openness,
-                self.crowd, self.slant, kind, h, law.spacing, *pairs.period,
+                fluid, pairs.start, self.split, pairs.partner, layer.record, layer.material, len(law.fluids) > 1,
+                layer.matrix, self.crowd, self.slant, kind, h, law.spacing, *pairs.period,
             )  # fmt: skip
         self.sum_pairs(0.5 * step)
         if len({fluid.viscosity for fluid in law.fluids}) > 1:
@@ -172,7 +175,7 @@ class Flow:
             quiet = QUIET * law.state.sound_speed if len(law.fluids) == 1 else 0.0
             urge = max(0.0, self.swiftest - quiet)
             shift(
-                fluid, pairs.start, self.split, pairs.partner, layer.record, layer.material, self.table, self.openness,
+                fluid, pairs.start, self.split, pairs.partner, layer.record, layer.material, self.table, layer.matrix,
                 self.crowd, layer.drift, kind, h, 2.0 * h * law.shifting * urge, MOST * urge, *pairs.period,
             )  # fmt: skip
 
@@ -184,10 +187,10 @@ class Flow:
             law.smoothing.kind, law.smoothing.length, *law.gravity, law.alpha, law.beta, law.softening,
             2.0 * law.diffusion * law.smoothing.length, law.sticky,
         )  # fmt: skip
-        if self.choices is None:
+        if self.plain:
             plain_rates(
-                *where, layer.material, layer.mass, self.table, layer.acceleration, layer.rate, layer.power, *how,
-                *pairs.period, half,
+                *where, layer.material, layer.matrix, self.slant, layer.drift, layer.mass, self.table, self.choices,
+                layer.acceleration, layer.rate, layer.power, *how, *pairs.period, half,
             )  # fmt: skip
         else:
             rates(

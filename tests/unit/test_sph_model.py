@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph import step
+from continuum_sph import correction, shifting, step
 from continuum_sph.boundary import tank_walls
 from continuum_sph.scene import trials
 from continuum_sph.scene.model import Simulation
@@ -230,6 +230,10 @@ def test_pass_over_pairs_as_plain_python(monkeypatch):
     compiled, plain = made(), made()
     for name in ("kick_drift", "pressurise", "kick", "load_walls", "rates", "split_rows", "surroundings", "shift"):
         monkeypatch.setattr(step, name, getattr(step, name).py_func)
+    for module, name in ((correction, "slope_shape"), (correction, "kernel_value"), (shifting, "slope_shape")):
+        monkeypatch.setattr(
+            module, name, getattr(module, name).py_func
+        )  # compiled, they take vectors from kernels only
     plain.advance(2)
     monkeypatch.undo()
     compiled.advance(2)

@@ -25,20 +25,22 @@ def both(flow, fast):
         acceleration, rate = np.zeros((layer.fluid, 2)), np.zeros(layer.fluid)
         power, smoothed = np.zeros((layer.fluid, 6)), np.zeros((layer.fluid, 2))
         if name == "fast":
-            fast(*where, layer.material, layer.mass, flow.table, acceleration, rate, power, *how, *pairs.period, 1e-3)
+            fast(
+                *where, layer.material, layer.matrix, flow.slant, layer.drift, layer.mass, flow.table, flow.choices,
+                acceleration, rate, power, *how, *pairs.period, 1e-3,
+            )  # fmt: skip
         else:
-            choices = np.array([law.noise, 0, 0, 0, 0], np.int64)
             rates(
                 *where, layer.facing, layer.material, layer.length, layer.matrix, flow.slant, layer.drift, layer.mass,
-                flow.table, choices, acceleration, rate, smoothed, power, *how, law.xsph, *pairs.period, 1e-3,
+                flow.table, flow.choices, acceleration, rate, smoothed, power, *how, law.xsph, *pairs.period, 1e-3,
             )  # fmt: skip
         found.append((acceleration, rate, power))
     return found
 
 
-def walled(walls):
+def walled(walls, **numerics):
     """Water on its way down, all kinds of walls about it."""
-    scene = column_scene(0.125, tank=(1.5, 1.5), column=(1.0, 1.0), pressure="released", viscosity=5.0)
+    scene = column_scene(0.125, tank=(1.5, 1.5), column=(1.0, 1.0), pressure="released", viscosity=5.0, **numerics)
     flow = flow_of(scene.model_copy(update={"tank": scene.tank.model_copy(update={"walls": walls})}))
     for _ in range(20):
         flow.advance()
@@ -46,7 +48,16 @@ def walled(walls):
 
 
 @pytest.mark.parametrize("compiled", [True, False])
-@pytest.mark.parametrize("flow", [walled("slip"), walled("floor and lid stick"), open_box(12, seed=1)])
+@pytest.mark.parametrize(
+    "flow",
+    [
+        walled("slip"),
+        walled("floor and lid stick"),
+        walled("floor and lid stick", gradient="corrected", diffusion_of="linear", shifting=2.0),
+        walled("slip", diffusion_of="plain"),
+        open_box(12, seed=1),
+    ],
+)
 def test_fast_sums_are_the_slow_ones(flow, compiled, monkeypatch):
     fast = plain_rates if compiled else plain_rates.py_func
     if not compiled:  # what it calls as plain Python too: compiled functions take vectors only from kernels
