@@ -18,7 +18,7 @@ from porescale.workbench.application import application, main
 from tests.reference.command_lines import Line, made
 
 ROOT = Path(__file__).resolve().parents[2]
-LINES = int(os.environ.get("PORESCALE_LINES", "120"))
+LINES = int(os.environ.get("PORESCALE_LINES", "40"))
 """How many lines the quick test tries; ten times as many in the slow one, and a share of them as processes."""
 PATIENCE = 120
 """Seconds after which a line counts as hung; none takes more than a few."""
@@ -114,7 +114,7 @@ def test_many_lines_end_well_or_in_clear_words(tmp_path, capfd):
 
 @pytest.mark.slow
 def test_processes_end_well_or_in_clear_words(tmp_path):
-    codes = [tried(seed, tmp_path / str(seed), as_process) for seed in range(5000, 5000 + LINES // 10)]
+    codes = [tried(seed, tmp_path / str(seed), as_process) for seed in range(5000, 5000 + LINES // 4)]
     assert 2 in codes
 
 
