@@ -9,12 +9,13 @@ What is left is that of the steps in time: (ω Δt)²/8 of what moves, ω up to 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.scene.soil_build import geostatic
-from continuum_sph.scene.trials_soil import in_tank
+from continuum_sph.scene.trials_soil import RATIO, in_tank, run_until
 from continuum_sph.soil import Material, SoilFlow
 from continuum_sph.soil.divergence import accelerate
 from continuum_sph.soil.state import GXX, GXY, GYX, GYY, VOLUME, XX, XY, YY
@@ -83,12 +84,25 @@ class Book:
         return (found - lost) / lost
 
 
-def collapse(rows: int = 10, seconds: float = 0.3, stiffness: float = 1e6) -> Book:
-    """The book of a column of soil, 0.2 m by 0.1 m, that has collapsed for ``seconds``."""
+def column(rows: int = 10, stiffness: float = 1e6, viscosity: float | None = None) -> SoilFlow:
+    """A column of soil, 0.2 m by 0.1 m, that is let go;  viscosity : α c h of its damping, m²/s, or α as usual."""
     spacing = 0.1 / rows
     x = square_lattice((0.0, 0.0), (0.2, 0.1), spacing)
     material = Material(stiffness, 2040.0, friction=math.sin(math.radians(21.9)))
-    book = Book(in_tank(x, geostatic(0.1 - x[:, 1], material), (0.5, 0.15), spacing, material))
+    sound = math.sqrt(material.column_modulus / material.density)
+    law: dict[str, Any] = {} if viscosity is None else {"damping": viscosity / (sound * RATIO * spacing)}
+    return in_tank(x, geostatic(0.1 - x[:, 1], material), (0.5, 0.15), spacing, material, **law)
+
+
+def run_out(stiffness: float, viscosity: float | None, rows: int = 10, seconds: float = 0.6) -> float:
+    """Where the front of the column is after ``seconds``, m."""
+    flow = run_until(column(rows, stiffness, viscosity), seconds)
+    return float(flow.soil.x[: flow.soil.soil, 0].max()) + 0.5 * flow.law.spacing
+
+
+def collapse(seconds: float = 0.3) -> Book:
+    """The book of the column, collapsing for ``seconds``."""
+    book = Book(column())
     while book.flow.time < seconds:
         book.advance()
     return book

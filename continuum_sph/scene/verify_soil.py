@@ -11,7 +11,7 @@ import numpy as np
 from continuum_sph.scene.soil_build import geostatic
 from continuum_sph.scene.trials_soil import body, in_tank, run_until, spun, turn
 from continuum_sph.scene.trials_soil_element import biaxial, confined, squeezed
-from continuum_sph.scene.trials_soil_energy import collapse
+from continuum_sph.scene.trials_soil_energy import collapse, run_out
 from continuum_sph.soil import Material, SoilFlow
 from continuum_sph.soil.state import XX, YY
 from porescale.particles import square_lattice
@@ -326,3 +326,25 @@ def spinning_row() -> Measured:
     """Elongation of a cohesive bar over a turn and a half, over the exact one; tension 0.45 % of the stiffness."""
     found = spun(1.5, PULL, rows=30)
     return Measured(1.0, found, abs(found - 1.0))
+
+
+SOFT, STIFF = 1e6, 5.84e6  # Pa
+THICK = 0.08  # m²/s, α c h of the damping: what cases/soil_column_collapse has
+
+
+def run_outs(viscosity: float | None = THICK) -> tuple[float, float]:
+    """Fronts (m) of a column of soft and of stiff soil, once collapsed, 10 rows."""
+    return run_out(SOFT, viscosity), run_out(STIFF, viscosity)
+
+
+@VALIDATIONS.row(
+    "continuum.soil_runs_out_alike_at_any_stiffness",
+    source="derived: strains of 1e-3 change no run-out; what damping takes is the same where α c h is",
+    because="a front is a particle of 0.01 m: half of it",
+    tolerance=0.005,
+    slow=True,
+)
+def run_out_row() -> Measured:
+    """Front of a column of soil of 1 MPa against that of 5.84 MPa, m."""
+    soft, stiff = run_outs()
+    return Measured(stiff, soft, abs(soft - stiff))

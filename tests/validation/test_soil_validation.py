@@ -136,3 +136,9 @@ def test_energy_without_what_parting_lifts_does_not_add_up():
 def test_soil_under_tension_without_repulsion_flies_to_pieces():
     found = verify_soil.spun(1.5, verify_soil.PULL, repulsion=0.0)
     assert found > 3.0
+
+
+@pytest.mark.slow
+def test_damping_that_goes_with_sound_makes_run_out_depend_on_stiffness():
+    soft, stiff = verify_soil.run_outs(None)
+    assert soft - stiff > 3.0 * tolerance("continuum.soil_runs_out_alike_at_any_stiffness")
