@@ -45,9 +45,7 @@ def rate(call: Callable[[], object], updates_per_call: float, min_seconds: float
     return Timing(updates_per_call / median, median, len(spent))
 
 
-def interleaved(
-    a: Callable[[], object], b: Callable[[], object], rounds: int = 7, clock: Callable[[], float] = time.perf_counter
-) -> Comparison:
+def interleaved(a: Callable[[], object], b: Callable[[], object], rounds: int = 7) -> Comparison:
     """Time ``a`` and ``b`` in turns (each goes first every other round), after one call each to warm up.
 
     Drifts of the machine then touch both alike; the ratio is formed round by round.
@@ -58,11 +56,11 @@ def interleaved(
     pairs: list[tuple[float, float]] = []
     for turn in range(rounds):
         if turn % 2:
-            second = seconds_of(b, clock)
-            pairs.append((seconds_of(a, clock), second))
+            second = seconds_of(b)
+            pairs.append((seconds_of(a), second))
         else:
-            first = seconds_of(a, clock)
-            pairs.append((first, seconds_of(b, clock)))
+            first = seconds_of(a)
+            pairs.append((first, seconds_of(b)))
     return Comparison(
         statistics.median(first for first, _ in pairs),
         statistics.median(second for _, second in pairs),
