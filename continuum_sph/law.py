@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from continuum_sph.eos import Gas, Tait
 from continuum_sph.fluids import Fluid
 from continuum_sph.smoothing import Smoothing
+from continuum_sph.viscosity import STIFFER
 
 RULES = ("sound", "acceleration", "viscosity", "capillarity")
 
@@ -77,12 +78,14 @@ class Law:
     def limits(self, acceleration: float, pace: float) -> tuple[float, float, float, float]:
         """Steps allowed by sound, acceleration (m/s²), viscosity and capillary waves, s: eq. 49, h²/ν in the third.
 
-        0.25/max(c/h), 0.25 √(h/|a|), 0.125 h²/ν, 0.25 √(ρ h³/2πσ) (Brackbill, Kothe & Zemach 1992);  ``pace``: the
-        largest c/h, 1/s.
+        0.25/max(c/h), 0.25 √(h/|a|), 0.125 h²/ν (of two fluids less, `viscosity.STIFFER`), 0.25 √(ρ h³/2πσ) (Brackbill,
+        Kothe & Zemach 1992);  ``pace``: the largest c/h, 1/s.
         """
         h, infinite = self.smoothing.length, float("inf")
         pace = max(pace, self.interface_speed / h)
         thickest = max(fluid.viscosity / fluid.state.density for fluid in self.fluids)
+        if len(self.fluids) > 1:
+            thickest *= STIFFER
         lightest = min(fluid.state.density for fluid in self.fluids)
         return (
             self.courant / pace if pace > 0.0 else infinite,

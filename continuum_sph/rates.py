@@ -21,7 +21,7 @@ from continuum_sph.density import HYDROSTATIC, LINEAR, continuity, diffusion
 from continuum_sph.fluids import COHESION, SOUND, VISCOSITY
 from continuum_sph.layers import BY_SHIFTING, BY_WALLS, DIFFUSIVE, RHO, STIFF, VISCOUS, VOLUME, VX, VY, P, X, Y
 from continuum_sph.smoothing import kernel_value, slope_scale, slope_shape
-from continuum_sph.viscosity import between, laminar
+from continuum_sph.viscosity import between, central, laminar
 from porescale.ground.jit import parallel_kernel, prange
 from porescale.particles.cells import minimum_image
 
@@ -53,7 +53,8 @@ def rates(
     choices: what is NOISE, IMAGED, SHIFTED, CORRECTED, VARIED;  kind, h: smoothing;  gx, gy gravity,
     m/s²;  alpha, beta, softening: artificial viscosity;  delta 2 δ h of the density diffusion, m;  sticky: walls hold
     the fluid, else they let it slip;  smoothing: XSPH's ε, for Σ (m_j/ρ̄)(v_j - v_i) W (eq. 53 with the sign that
-    smooths);  periods, m or 0;  half: of the step that ends here, s.
+    smooths);  periods, m or 0;  half: of the step that ends here, s.  Two fluids rub along the line of centres, one as
+    eq. 34 has it (`viscosity`).
 
     NOISE: what density diffusion takes for noise;  IMAGED: walls of the paper;  SHIFTED: density is that of the place
     that a particle's ``drift`` takes it to;  CORRECTED: gradients by ``matrix``;  VARIED: h by ``length`` (eq. 7).
@@ -146,6 +147,9 @@ def rates(
             ay -= thrust * ty
             damp = artificial(alpha, beta, sound, hij, softening, approach, distance2, both) * partner_mass * slope
             brake = laminar(viscosity, volume, specific, braking)
+            if mixed:
+                damp -= central(brake, approach, distance2)
+                brake = 0.0
             bx += brake * vx - damp * dx
             by += brake * vy - damp * dy
             if smoothing > 0.0:
@@ -166,7 +170,8 @@ def rates(
                 hij = 0.5 * (length[i] + length[j])
                 inverse = 1.0 / hij
                 scale = slope_scale(kind, hij)
-            slope = scale * slope_shape(kind, np.sqrt(dx * dx + dy * dy) * inverse)
+            distance2 = dx * dx + dy * dy
+            slope = scale * slope_shape(kind, np.sqrt(distance2) * inverse)
             volume = record[j, VOLUME]
             vx = vxi - record[j, VX]
             vy = vyi - record[j, VY]
@@ -190,6 +195,11 @@ def rates(
             brake = laminar(own_viscosity, volume, specific, braking) if sticky and material[j] == 0 else 0.0
             pushed_x -= thrust * tx
             pushed_y -= thrust * ty
+            if mixed:
+                along = central(brake, ux * dx + uy * dy, distance2)
+                ux = along * dx
+                uy = along * dy
+                brake = 1.0
             bx += brake * ux
             by += brake * uy
         moved = 0.0

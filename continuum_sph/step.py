@@ -37,7 +37,6 @@ from continuum_sph.rates import rates, split_rows
 from continuum_sph.rates_plain import plain_rates
 from continuum_sph.shifting import MOST, QUIET, shift
 from continuum_sph.surface_tension import colours, normals, pull_interface
-from continuum_sph.transposed import rub_transposed, transposed_stress
 from porescale.particles import PairList
 
 Floats = NDArray[np.float64]
@@ -78,7 +77,6 @@ class Flow:
         self.crowd, self.slant = np.zeros((count, 2)), np.zeros((count, 2))
         self.normalised = np.zeros(layer.fluid)
         self.colour, self.normal = np.zeros(layer.fluid), np.zeros((layer.fluid, 3))
-        self.stress = np.zeros((layer.fluid, 4))  # Pa, μ ∇vᵀ
 
     def choose(self) -> NDArray[np.int64]:
         """The choices of `rates`."""
@@ -161,8 +159,6 @@ class Flow:
                 layer.matrix, self.crowd, self.slant, kind, h, law.spacing, *pairs.period,
             )  # fmt: skip
         self.sum_pairs(0.5 * step)
-        if len({fluid.viscosity for fluid in law.fluids}) > 1:
-            self.rub()
         if law.tension > 0.0:
             self.pull()
         if law.images:
@@ -198,14 +194,6 @@ class Flow:
                 self.table, self.choices, layer.acceleration, layer.rate, layer.smoothed, layer.power, *how, law.xsph,
                 *pairs.period, half,
             )  # fmt: skip
-
-    def rub(self) -> None:
-        """What eq. 34 lacks of friction between two fluids of different viscosity."""
-        layer, law, pairs = self.layer, self.law, self.pairs
-        where = (layer.fluid, pairs.start, self.split, pairs.partner, layer.record)
-        how = (law.smoothing.kind, law.smoothing.length, *pairs.period)
-        transposed_stress(*where, layer.material, self.table, self.stress, *how)
-        rub_transposed(*where, self.stress, layer.acceleration, layer.mass, layer.v, layer.power, *how)
 
     def pull(self) -> None:
         """Surface tension between two fluids."""
