@@ -49,10 +49,10 @@ def sight(where: tuple[Axes, Axes], model: SeepageSimulation, given: Heave, titl
     size = 3600.0 / given.rows**2
     left, right = where
     left.scatter(*water.T, s=0.3 * size, c="#a9c8ea", lw=0)
-    colours = left.scatter(*soil.x.T, s=size, c=moved, cmap="copper_r", vmin=0.0, vmax=0.4, lw=0)
+    colours = left.scatter(*soil.x.T, s=size, c=moved, cmap="Wistia", vmin=0.0, vmax=0.4, lw=0)
     left.figure.colorbar(colours, ax=left, label="displacement / s")
     fastest = max(float(np.hypot(*soil.v.T).max()), 1e-9)
-    left.quiver(*soil.x.T, *(soil.v / fastest).T, scale=25.0, width=0.0025, color="#1d5fb4")
+    left.quiver(*soil.x.T, *(soil.v / fastest).T, scale=18.0, width=0.003)
     head = given.head(model.time)
     left.set_title(f"{title}: h = {head:.2f} i_c s, fastest soil {fastest * 100:.2g} cm/s", fontsize=9)
     shown = right.scatter(*water.T, s=1.6 * size, c=excess, cmap="viridis", vmin=0.0, vmax=head, lw=0)
