@@ -156,8 +156,13 @@ def validations() -> Validations:
 def benchmarks() -> Benchmarks:
     """All rows of ``bench``."""
     from continuum_sph.scene.bench import BENCHMARKS
+    from porescale.workbench.benchmarks import Benchmarks
+    from porescale.workbench.promise import benchmark
 
-    return BENCHMARKS
+    rows = Benchmarks()
+    rows.include(BENCHMARKS)
+    rows.include(benchmark(PACKAGE, Path(__file__).resolve().parents[1] / "cases" / "collapsing_water_column"))
+    return rows
 
 
 def extremes() -> Extremes:

@@ -36,7 +36,8 @@ class Work:
 
     call : does it once;  updates : cells, discs, particles or image pairs that a call updates;
     unit : "cells/s" and so on;  size : as in the row;  bytes : what one update must move between memory and
-    processor (0: not bound by memory);  variant : added to the row's name when a benchmark times several.
+    processor (0: not bound by memory);  variant : added to the row's name when a benchmark times several;  remark :
+    what else is to be said, found once.
     """
 
     call: Callable[[], object]
@@ -45,6 +46,7 @@ class Work:
     size: int
     bytes: float = 0.0
     variant: str = ""
+    remark: Callable[[], str] | None = None
 
 
 PLAIN = "plain"
@@ -139,6 +141,8 @@ class Benchmarks:
             titles = [f"{name}.{work.variant}" if work.variant else name for work in works]
             for title, work in zip(titles, works, strict=True):
                 yield _measured(title, work, count, dtype, min_seconds)
+                if work.remark is not None:
+                    self.remarks.append(f"{title}: {work.remark()}")
             for title, work in zip(titles[:-1], works, strict=False) if works[-1].variant == PLAIN else ():
                 self.remarks.append(f"{title}: {_part_of(works[-1], work):.2f} of the rate of {name}.{PLAIN}, in turns")
 

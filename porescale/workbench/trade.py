@@ -91,6 +91,14 @@ class Judge:
             values = np.interp(at, places, values)
         return distance(values, truth, asked.scale)
 
+    def told(self) -> list[dict[str, list[float]]]:
+        """What the references say to each quantity that is a number, so that a run can be held against them later."""
+        numbers = [asked for asked in self.plan.quantity if not (asked.is_curve or asked.feature)]
+        return [
+            {asked.name: self.answer(ended, asked)[1].tolist() for asked in numbers if asked.exact is None}
+            for ended in self.references
+        ]
+
     def packings(self) -> dict[str, float]:
         """How far the references are off their mean, for each quantity that is not exact; {} for a single one."""
         if len(self.references) < 2:

@@ -85,6 +85,7 @@ def command(package: Package) -> Callable[..., int]:
         words = [package.name, "study", "trade", str(scene), *(["--plan", str(plan)] if plan else [])]
         about = circumstances(package, shlex.join([*words, *laid_over(None, settings)]), threads or 1)
         about["quantities"] = [one.model_dump(mode="json", exclude_none=True) for one in asked.quantity]
+        about["references"] = judge.told()
         trade_files.write(
             folder, about, traded, judge.packings(), paces(package, scene, traded, groups, settings or [])
         )

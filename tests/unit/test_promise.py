@@ -1,0 +1,66 @@
+"""What a front promises is held against a run: its time, and its error beside the answers that the front keeps."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from porescale.workbench.front import Choice, FrontPoint, read_front
+from porescale.workbench.promise import Promise, benchmark, error_of, judged, settings
+
+POINT = FrontPoint("10", None, ("numerics.spacing=0.1",), 0.05, 0.01, 1.0, 2.0, 0.8, 1e-3)
+
+
+def front_beside(folder: Path, **more):
+    point = {"label": "10", "quality": None, "settings": ["numerics.spacing=0.1"], "on_front": True, "error": 0.05,
+             "scatter": 0.01, "core_seconds": 1.0, "seconds": 2.0, "time": 0.8, "pace": 1e-3}  # fmt: skip
+    quantity = {"name": "front", "column": "front (m)", "at": 0.5, "scale": 2.0}
+    table = {"format": 1, "machine": {"processor": "x"}, "date": "d", "quantities": [quantity], "points": [point]}
+    (folder / "front.json").write_text(json.dumps(table | more))
+    return read_front(folder / "scene.toml")
+
+
+class Package:
+    """As much of a package as is asked for."""
+
+    @staticmethod
+    def table(folder: Path, name: str):
+        """A series."""
+        assert name == "series"
+        return {"time (s)": np.array([0.0, 1.0]), "front (m)": np.array([0.0, 2.4])}
+
+
+def test_the_error_is_the_distance_from_the_answers_that_the_front_keeps(tmp_path):
+    front = front_beside(tmp_path, references=[{"front": [1.0]}])
+    assert error_of(Package, front, tmp_path) == pytest.approx((1.2 - 1.0) / 2.0)
+
+
+def test_a_front_without_answers_leaves_the_error_open(tmp_path):
+    assert error_of(Package, front_beside(tmp_path), tmp_path) is None
+
+
+def test_a_run_within_30_per_cent_and_the_scatter_keeps_its_promise(tmp_path):
+    card = {"seconds": 2.5, "core_seconds": 1.1}
+    kept = judged(front_beside(tmp_path), Choice(POINT, 2.0, 1.0), card, 0.06)
+    assert kept.on_time
+    assert kept.as_good
+    assert "kept" in kept.line()
+
+
+@pytest.mark.parametrize(("what", "value"), [("took", 2.7), ("took", 1.3), ("found", 0.09)])
+def test_a_run_beyond_either_does_not(what, value):
+    promise = replace(Promise("10", 2.0, 2.0, 1.0, 1.0, 0.05, 0.01, 0.05), **{what: value})
+    assert not (promise.on_time and promise.as_good)
+    assert "not kept" in promise.line()
+
+
+def test_the_point_runs_for_as_long_as_it_was_measured():
+    assert settings(POINT) == ("time.end=0.8", "numerics.spacing=0.1")
+
+
+def test_a_case_without_a_front_has_no_row(tmp_path):
+    assert list(benchmark(Package, tmp_path)) == []
