@@ -100,11 +100,11 @@ def turn(flow: SoilFlow, angle: float, steps: int) -> tuple[Floats, Floats]:
     return angles, errors
 
 
-def spun(turns: float, pull: float, *, rows: int = 20, **law: Any) -> float:
-    """Elongation of a bar of cohesive soil, 1 m by 0.4 m and free, that spins, over the exact one, ρ ω² L³/12 E'.
+def bar_that_spins(pull: float, *, rows: int = 20, **law: Any) -> SoilFlow:
+    """A bar of cohesive soil, 1 m by 0.4 m, free, without stress, that begins to spin.
 
-    turns : that it is watched, the mean of the second half of them;  pull : tension in its middle, ρ ω² L²/8, over
-    E' = E/(1 - ν²), which is plane strain's;  rows : particles over its length;  law : more of `SoilLaw`.
+    pull : tension in its middle, ρ ω² L²/8, over E' = E/(1 - ν²), which is plane strain's;  rows : particles over its
+    length;  law : more of `SoilLaw`.
     """
     spacing = 1.0 / rows
     x = square_lattice((-0.5, -0.2), (0.5, 0.2), spacing)
@@ -112,10 +112,16 @@ def spun(turns: float, pull: float, *, rows: int = 20, **law: Any) -> float:
     stiff = material.stiffness / (1.0 - material.poisson**2)
     omega = math.sqrt(8.0 * pull * stiff / material.density)
     flow = body(x, spacing, material, (0.0, 0.0, 0.0, 0.0), **law)
-    soil = flow.soil
-    soil.v[:, 0], soil.v[:, 1] = -omega * x[:, 1], omega * x[:, 0]
+    flow.soil.v[:, 0], flow.soil.v[:, 1] = -omega * x[:, 1], omega * x[:, 0]
     flow.start()
-    ends = x[:, 0] < -0.5 + spacing, x[:, 0] > 0.5 - spacing
+    return flow
+
+
+def elongation(flow: SoilFlow, pull: float, turns: float) -> float:
+    """Elongation of such a bar over the exact one, ρ ω² L³/12 E', mean of the second half of ``turns``."""
+    soil, spacing = flow.soil, flow.law.spacing
+    ends = soil.x[:, 0] < -0.5 + spacing, soil.x[:, 0] > 0.5 - spacing
+    omega = float(np.hypot(*soil.v[0]) / np.hypot(*soil.x[0]))
     end, lengths, seconds = 2.0 * math.pi * turns / omega, 0.0, 0.0
     while flow.time < end:
         step = flow.next_step
@@ -124,3 +130,8 @@ def spun(turns: float, pull: float, *, rows: int = 20, **law: Any) -> float:
             length = float(np.hypot(*(soil.x[ends[1]].mean(axis=0) - soil.x[ends[0]].mean(axis=0))))
             lengths, seconds = lengths + step * (length / (1.0 - spacing) - 1.0), seconds + step
     return lengths / seconds / (pull * 2.0 / 3.0)
+
+
+def spun(turns: float, pull: float, *, rows: int = 20, **law: Any) -> float:
+    """`elongation` of a bar that spins for ``turns``."""
+    return elongation(bar_that_spins(pull, rows=rows, **law), pull, turns)
