@@ -57,7 +57,7 @@ def made(seed: int, folder: Path) -> Line:
     return kind(dice, folder)
 
 
-def _spoil(dice: random.Random, source: Path, target: Path, sound: float = 0.1) -> Path:
+def _spoil(dice: random.Random, source: Path, target: Path, sound: float = 0.3) -> Path:
     """A copy of a file, spoilt but for a share of ``sound`` ones."""
     content = source.read_bytes()
     target.parent.mkdir(parents=True, exist_ok=True)
@@ -68,7 +68,7 @@ def _spoil(dice: random.Random, source: Path, target: Path, sound: float = 0.1) 
 def _options(dice: random.Random) -> list[str]:
     """Some settings, odd ones among them."""
     words = []
-    for _ in range(dice.choice((0, 0, 1, 2))):
+    for _ in range(dice.choice((0, 0, 0, 1, 2))):
         words += ["--set", f"{dice.choice(SETTINGS)}={dice.choice((*ODD, '1', '0.001', '1 mm'))}"]
     if dice.random() < 0.1:
         words += ["--set", dice.choice(ODD)]
