@@ -6,6 +6,7 @@ from pydantic import ValidationError
 
 from continuum_sph.pile import FREE, LEFT, RIGHT, UNDER, PartedList, Pile, hold_back, part, side_of
 from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.seepage_model import SeepageSimulation
 from continuum_sph.smoothing import CUBIC, kernel_value
 from porescale.particles import PairList, square_lattice
 
@@ -127,6 +128,23 @@ def test_a_scene_has_room_for_its_pile():
     for wrong in ({"x": 0.2, "tip": 0.4}, {"x": 0.75, "tip": 0.9}):
         with pytest.raises(ValidationError, match="pile"):
             scene(pile=wrong)
+
+
+@pytest.mark.slow
+def test_a_run_beside_a_pile_goes_on_bit_for_bit():
+    rising = [{"left": 0, "right": 0.7, "bottom": 0.6, "rise": [[0.0, 0.8], [0.02, 0.95]]}]
+    settings = scene(tank={"width": 1.5, "height": 1.0, "lid": False}, reservoir=rising)
+    first, second = SeepageSimulation(settings), SeepageSimulation(settings)
+    first.advance(40)
+    second.restore(first.state())
+    for model in (first, second):
+        model.advance(40)
+    for one, other in (
+        (first.both.water.layer, second.both.water.layer),
+        (first.soil.flow.soil, second.soil.flow.soil),
+    ):
+        assert np.array_equal(one.x, other.x)
+        assert np.array_equal(one.v, other.v)
 
 
 def test_a_pile_stands_in_soil():
