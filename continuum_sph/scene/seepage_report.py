@@ -49,6 +49,7 @@ def seepage_report(scene: Scene) -> Report:
         air_report(out, scene, law, len(dry_pores(scene, soil)))
     step = SHARE * law.smoothing.length / ((modulus + stiff / porosity) / whole) ** 0.5
     out.row("longest step for sound in both together", step, "s")
+    step = min(step, law.limits(0.0, 0.0)[0])  # of air beside water
     out.row("expected time", scene.time.end / step * (len(soil) + len(soil)) / RATE, "s", "of both layers, about")
     tell_origin(out, section.origin)
     if scene.reservoir:
