@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from porescale.runs.model import Array, Model
     from porescale.workbench.benchmarks import Benchmarks
     from porescale.workbench.extremes import Extremes
+    from porescale.workbench.parts import Kinds
     from porescale.workbench.report import Report
     from porescale.workbench.validations import Validations
 
@@ -172,6 +173,13 @@ def extremes() -> Extremes:
     return EXTREMES
 
 
+def parts() -> Kinds:
+    """Kinds of scenes for `study parts`."""
+    from continuum_sph.scene.parts import KINDS
+
+    return KINDS
+
+
 PACKAGE = Package(
     name="continuum-sph",
     summary="Soil, water and air as layers of smoothed particles (water and soil in a tank, seepage, bubbles).",
@@ -186,6 +194,7 @@ PACKAGE = Package(
     validations=validations,
     benchmarks=benchmarks,
     extremes=extremes,
+    parts=parts,
 )
 
 

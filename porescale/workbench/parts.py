@@ -139,26 +139,25 @@ def write(folder: Path, about: Mapping[str, Any], rows: Sequence[Row]) -> None:
 
 
 def markdown(about: Mapping[str, Any], rows: Sequence[Row]) -> str:
-    """Two tables: kinds beside the smallest kernel, and what parts add."""
+    """Two tables, each if there is anything in it: kinds beside the smallest kernel, and what parts add."""
     lines = [
         "# Only what a scene requires", "",
         f"Made by `{about.get('command', '')}`, {about.get('date', '')}, "
         f"{about.get('machine', {}).get('processor', '')}, one thread.",
-        "Times are the least over rounds in which both are timed in turns.", "",
-        "## Scenes beside the smallest kernel that does the same", "",
-        "| scene | built | bytes | ns a step | smallest | ratio | |", "|---|---|---|---|---|---|---|",
+        "Times are the least over rounds in which both are timed in turns.",
     ]  # fmt: skip
-    for row in rows:
-        if row.beside == SMALLEST:
+    tables = {
+        ("Scenes beside the smallest kernel that does the same", "smallest"): [r for r in rows if r.beside == SMALLEST],
+        ("What a part adds to a scene that asks for it", "beside"): [r for r in rows if r.beside != SMALLEST],
+    }
+    for (title, other), mine in tables.items():
+        if mine:
+            lines += ["", f"## {title}", "", f"| scene | built | bytes | ns a step | {other} | ratio | |",
+                      "|---|---|---|---|---|---|---|"]  # fmt: skip
+        for row in mine:
             ratio = f"{row.ratio:.3f}" if row.lean else f"**{row.ratio:.3f}**"
-            lines.append(
-                "| " + " | ".join([*_head(row), f"{_each(row, row.other_seconds)}", ratio, row.because]) + " |"
-            )
-    lines += ["", "## What a part adds to a scene that asks for it", "",
-              "| scene | built | bytes | ns a step | beside | ratio | |", "|---|---|---|---|---|---|---|"]  # fmt: skip
-    for row in rows:
-        if row.beside != SMALLEST:
-            lines.append("| " + " | ".join([*_head(row), row.beside, f"{row.ratio:.3f}", row.because]) + " |")
+            what = _each(row, row.other_seconds) if other == "smallest" else row.beside
+            lines.append(f"| {' | '.join([*_head(row), what, ratio, row.because])} |")
     return "\n".join(lines) + "\n"
 
 
