@@ -201,12 +201,10 @@ class Scene(Section):
                 faults.append(Fault("pile", "given", "needs soil beside it", repair="add [soil]"))
         if self.reservoir and self.soil is None:
             faults.append(Fault("reservoir", "given", "needs soil beside it", repair="add [soil]"))
-        if self.air is not None and (self.soil is None or not self.water.column):
+        if self.air is not None and (self.soil is None or not (self.water.column or self.reservoir)):
             faults.append(Fault("air", "given", "needs soil and water", repair="add [soil] and [[water.column]]"))
         if self.air is not None and self.soil is not None and self.soil.saturated:
             faults.append(Fault("air", "given", "has no room in full pores", repair="take out soil.saturated"))
-        if self.air is not None and self.reservoir:
-            faults.append(Fault("air", "given", "cannot be with reservoirs", repair="take out [[reservoir]]"))
         for index, column in enumerate(self.water.column):
             key = f"water.column[{index}]"
             slack = WHOLE * spacing

@@ -95,7 +95,7 @@ def seepage_of(scene: Scene) -> Seepage:
         x, v = np.concatenate((x, pores)), np.concatenate((v, np.zeros_like(pores)))
         rho = np.concatenate((rho, np.full(len(pores), scene.air.density)))
     present, top = len(x), height + margin
-    waiting = spare(scene, x)
+    waiting = spare(scene, x[:wet])
     berth = berths(present + waiting, width, top, BERTH * law.smoothing.support)
     if waiting:
         x, v = np.concatenate((x, berth[present:])), np.concatenate((v, np.zeros((waiting, 2))))

@@ -50,13 +50,13 @@ def moor(fluid, x, v, mass, density, predicted, berth, density0):
 
 
 @kernel
-def sound_out(fluid, x, mass, left, right, ramp_left, ramp_right, bottom, spacing, least, tops):
+def sound_out(fluid, x, mass, material, left, right, ramp_left, ramp_right, bottom, spacing, least, tops):
     """(Σ w m over the strip above its bottom, kg/m;  number of its highest particle of a w over
     ``least``, -1 for none);  overwrites ``tops``
     (columns,) m, the highest particle near the middle of each column of the strip, half a spacing below the bottom
     where there is none.
 
-    x (n, 2) m;  mass (n,) kg/m, 0: not there;  left, right, bottom, ramps, spacing: m.
+    x (n, 2) m;  mass (n,) kg/m, 0: not there;  material (n,), water is 0;  left, right, bottom, ramps, spacing: m.
     """
     columns = tops.shape[0]
     breadth = (right - left) / columns
@@ -65,7 +65,7 @@ def sound_out(fluid, x, mass, left, right, ramp_left, ramp_right, bottom, spacin
     total = 0.0
     highest = -1
     for i in range(fluid):
-        if mass[i] == 0.0 or x[i, 0] < left or x[i, 0] > right or x[i, 1] < bottom:
+        if mass[i] == 0.0 or material[i] != 0 or x[i, 0] < left or x[i, 0] > right or x[i, 1] < bottom:
             continue
         weight = 1.0
         if x[i, 0] < left + ramp_left:
@@ -158,8 +158,8 @@ class Supply:
         full = self.density * pool.width
         while True:
             held, highest = sound_out(
-                layer.fluid, layer.x, layer.mass, pool.left, pool.right, *pool.ramps, pool.bottom, self.spacing,
-                -1.0 if target <= pool.bottom else 0.5, pool.tops,
+                layer.fluid, layer.x, layer.mass, layer.material, pool.left, pool.right, *pool.ramps, pool.bottom,
+                self.spacing, -1.0 if target <= pool.bottom else 0.5, pool.tops,
             )  # fmt: skip
             over = held - full * (target - pool.bottom)
             pool.level = pool.bottom + held / full

@@ -59,10 +59,9 @@ def test_gas_follows_the_law_of_its_section():
     [
         {"soil": None},
         {"water": {}},
-        {"reservoir": [{"left": 0.0, "right": 0.1, "bottom": 0.2, "level": 0.4}]},
     ],
 )
-def test_air_without_soil_and_water_or_beside_reservoirs_is_refused(changes):
+def test_air_without_soil_and_water_is_refused(changes):
     with pytest.raises(InputError) as refused:
         scene(**changes)
     assert "air" in {fault.key for fault in refused.value.faults}
