@@ -68,6 +68,7 @@ class Flow:
     def __post_init__(self) -> None:
         layer, count = self.layer, self.layer.count
         layer.length[:] = self.law.smoothing.length
+        self.pairs.adaptive = True
         self.split = np.zeros(count, np.int64)
         self.lower, self.upper = np.full(2, -np.inf), np.full(2, np.inf)
         walls = count - layer.fluid

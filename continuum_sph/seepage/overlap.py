@@ -55,6 +55,7 @@ class Overlap:
     ) -> None:
         self.water, self.length = water, length
         self.pairs = PairList(water + soil, skin, lower, upper, periodic, full=True)
+        self.pairs.adaptive = True
         self.pairs.group = np.repeat(np.array([0, 1], np.int32), [water, soil])
         self.x = np.zeros((water + soil, 2))
         self.reach = np.full(water + soil, length)

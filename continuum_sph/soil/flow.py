@@ -54,6 +54,7 @@ class SoilFlow:
     def __post_init__(self) -> None:
         soil = self.soil
         soil.length[:] = self.law.smoothing.length
+        self.pairs.adaptive = True
         self.table = table(self.law.materials)
         self.pulling = self.law.repulsion > 0.0 and bool((self.table[:, TENSION] > 0.0).any())
         self.split = np.zeros(soil.count, np.int64)

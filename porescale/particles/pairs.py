@@ -6,6 +6,7 @@ Simulation Using Particles (1981), section 8.4.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,9 @@ Floats = NDArray[np.float64]
 
 SERIAL_BELOW = 20_000  # points; fewer cost less in one thread than a barrier costs (measured)
 ROW = 256  # entries for a row that is being made, to begin with
+BUILD = 2.0  # steps that a build costs (measured: smoothed water, 20 neighbours)
+LONG = 64  # updates after which a list that still holds may be made anew with a lesser skin
+LEAST = 0.2  # of the largest skin: the rest of a step hardly feels less
 BLOCK = 2.0  # cutoffs: smaller blocks move more alike, but what is not beside them must stay away
 CELLS_PER_CUTOFF = 2  # half-cutoff cells: a window of 6.25 instead of 9 squared cutoffs to look through
 
@@ -33,7 +37,8 @@ class PairList:
 
     group : (n,) int or None, settable: points of the same group >= 0 are not paired, those of groups below -1 with
     no other, from the next build on;
-    tilt : m, see ``set_cell``.
+    tilt : m, see ``set_cell``;  adaptive : settable, whether `update` makes the skin less than ``skin`` was where the
+    list lasts long.
 
     After a build (all replaced by the next one: fetch them again after ``update`` returns True)
 
@@ -64,6 +69,7 @@ class PairList:
         width, height = self.upper[0] - self.lower[0], self.upper[1] - self.lower[1]
         self.period = (width if self.periodic[0] else 0.0, height if self.periodic[1] else 0.0)  # m, 0: none
         self.tilt = 0.0
+        self.adaptive, self.most, self.lasted = False, self.skin, 0  # m, largest skin;  updates since the last build
         self.group: NDArray[np.int32] | None = None
         self.builds = 0
         self.anchor: Floats = np.zeros((count, 2))
@@ -118,10 +124,28 @@ class PairList:
         Those that have not cannot have come within reach unlisted.  True if built; the arrays are then new.  Raises
         ValueError at a position or reach that is no number.
         """
-        if self.builds and self._holds(x, reach):
+        self.lasted += 1
+        if self.builds and self._holds(x, reach) and not (self.adaptive and self._wide(reach)):
             return False
+        if self.adaptive and self.builds:
+            self.skin = self._best(reach)
         self.build(x, reach)
         return True
+
+    def _best(self, reach: Floats) -> float:
+        """Skin (m) that costs least where points come nearer by ``skin`` in ``lasted`` updates, at most ``most``.
+
+        A step costs as many pairs as lie within r + s, and a share u/s of a build: (r + s)² (1 + b u/s) is least where
+        2 s² + b u s = b u r, with u = skin/lasted.
+        """
+        paid = BUILD * self.skin / self.lasted
+        cutoff = 2.0 * float(reach.max(initial=0.0))
+        best = 0.25 * (math.sqrt(paid * paid + 8.0 * paid * cutoff) - paid)
+        return min(self.most, max(LEAST * self.most, best))
+
+    def _wide(self, reach: Floats) -> bool:
+        """Whether the list has lasted so long that a build with a lesser skin pays."""
+        return self.lasted >= LONG and self._best(reach) < 0.7 * self.skin
 
     def _holds(self, x: Floats, reach: Floats) -> bool:
         """Whether no pair can be missing from the list."""
@@ -183,6 +207,7 @@ class PairList:
         self.anchor[:] = x
         self._anchor_reach[:] = reach
         self.builds += 1
+        self.lasted = 0
 
     def _check_periods(self, cutoff: float) -> None:
         for axis, name in enumerate(("width", "height")):
@@ -222,6 +247,8 @@ class PairList:
             "anchor": self.anchor.copy(),
             "anchor_reach": self._anchor_reach.copy(),
             "builds": np.array(self.builds, np.int64),
+            "lasted": np.array(self.lasted, np.int64),
+            "skin": np.array(self.skin),
         }
 
     def restore(self, state: dict[str, NDArray[np.generic]]) -> None:
@@ -234,5 +261,6 @@ class PairList:
         self.carried[:] = state["carried"]
         self.anchor[:] = state["anchor"]
         self._anchor_reach[:] = state["anchor_reach"]
-        self.builds = int(state["builds"])
+        self.builds, self.lasted = int(state["builds"]), int(state["lasted"])
+        self.skin = float(state["skin"])
         self._blocked = -1

@@ -78,11 +78,11 @@ def test_rebuilds_when_two_points_may_have_come_nearer_by_the_skin_and_not_befor
 
 def test_growing_reach_uses_up_the_skin_too():
     x, reach = cloud(50)
-    x[4] = x[3] + [0.0, 0.5]
+    x[3], x[4] = [5.2, 3.3], [5.2, 3.35]  # in one block: the growth of both counts
     listed = PairList(50, 0.2, LOWER, UPPER)
     listed.update(x, reach)
     reach[3] += 0.06
-    x[3] += [0.0, 0.13]
+    x[3] += [0.0, 0.07]
     assert not listed.update(x, reach)
     x[3] += [0.0, 0.02]
     assert listed.update(x, reach)
@@ -115,6 +115,30 @@ def test_two_crowds_that_meet_from_afar_do_not(monkeypatch):
     ask = drift.drifted
     monkeypatch.setattr(drift, "drifted", lambda *a: ask(*a[:9], np.inf, *a[10:]))
     assert meet() == (False, False)
+
+
+def test_the_skin_shrinks_where_a_list_lasts_and_grows_back_and_no_pair_is_missing():
+    x, reach = cloud(150, seed=5)
+    rng = np.random.default_rng(6)
+    listed, twin = (PairList(150, 0.1, LOWER, UPPER, full=True) for _ in range(2))
+    listed.adaptive = twin.adaptive = True
+    least, skins = 0.1, []
+    for k in range(200):
+        listed.update(x, reach)
+        if k == 80:
+            twin.restore(listed.state())
+        if k > 80:  # what comes next is known from the state
+            twin.update(x, reach)
+            assert twin.skin == listed.skin
+            assert np.array_equal(twin.partner, listed.partner)
+        within = neighbours(x, reach, 0.0, LOWER, UPPER, (False, False), True)
+        for row, must in zip(rows_of(listed), within, strict=True):
+            assert set(must) <= set(row)
+        least = min(least, listed.skin)
+        skins.append(listed.skin)
+        x += rng.normal(0.0, 1e-4 if k < 150 else 0.02, x.shape)
+    assert least == pytest.approx(0.02)
+    assert skins[-1] > 0.09
 
 
 @pytest.mark.parametrize("periodic", [(False, False), (True, True)])
