@@ -8,7 +8,6 @@ stand still while others have the core.
 from __future__ import annotations
 
 import json
-import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -18,7 +17,7 @@ import numpy as np
 
 from porescale.workbench.folders import write_whole
 from porescale.workbench.names import choose
-from porescale.workbench.timing import seconds_of
+from porescale.workbench.timing import core_seconds_of
 
 NAME = "parts"
 DEARER = 1.05
@@ -86,7 +85,7 @@ def measure(kind: Kind, rounds: int = 15) -> Row:
     least = [float("inf"), float("inf")]
     for turn in range(-1, rounds):  # the first to warm up
         for at in (0, 1) if turn % 2 else (1, 0):
-            seconds = seconds_of(calls[at], time.thread_time)
+            seconds = core_seconds_of(calls[at])
             least[at] = min(least[at], seconds) if turn >= 0 else least[at]
     other, own = (seconds / kind.steps for seconds in least)
     return Row(
