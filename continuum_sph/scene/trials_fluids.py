@@ -54,6 +54,17 @@ def drop(
     return flow
 
 
+def strewn(across: int, radius: float, stretch: float, seed: int, *, tension: float = TENSION) -> Flow:
+    """The drop of `drop`, its particles strewn by a fifth of a spacing about a lattice that lies anywhere."""
+    flow, rng = drop(across, radius, tension=tension), np.random.default_rng(seed)
+    layer, spacing = flow.layer, flow.law.spacing
+    layer.x[:] = (layer.x + spacing * (rng.uniform(0.0, 1.0, 2) + rng.uniform(-0.2, 0.2, layer.x.shape))) % 1.0
+    place = (layer.x - 0.5) * [1.0 / stretch, stretch]
+    layer.material[:] = np.hypot(place[:, 0], place[:, 1]) < radius
+    flow.evaluate(0.0, 0.0)
+    return flow
+
+
 def hysing(spacing: float) -> Scene:
     """Test case 1 of Hysing et al., Int. J. Numer. Methods Fluids 60 (2009) 1259, a light thick bubble, as a scene."""
     return validate(
