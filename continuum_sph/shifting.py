@@ -10,7 +10,7 @@ Density does not see the drift's own divergence, so what shifting pushes togethe
 and corrected gradients stir each other, and a column of 1 m sank by 2 cm in 10 s.  (To let density see it keeps the
 volume, but takes 5 % of the speed of vortices, and water tears itself apart at an impact: measured.)  Water at rest has
 no streamlines to line up on: U counts from QUIET of the speed of sound on.  Two fluids are shifted at any
-speed: without it a drop that turns round loses its shape (its period becomes 8 to 20 % too long).
+speed: without it a drop that turns round loses its shape.
 
 Gas is not shifted: its densities do not follow the drift, so a bubble would grow at the pressure it has.
 
