@@ -296,3 +296,9 @@ def test_a_number_is_read_as_the_row_says():
     for at in ("begin", {"share_of": "rise", "first_below": 1}, {}):
         with pytest.raises(ValueError, match=r"at|share_of"):
             measured(columns, {**row, "at": at})
+
+
+def test_the_last_row_stands_for_half_a_row_more() -> None:
+    columns = {"time (s)": np.array([0.0, 0.2, 0.399]), "front (m)": np.array([0.0, 2.0, 3.0])}
+    assert measured(columns, {"column": "front (m)", "at": 0.4}) == 3.0  # a step that does not divide the end
+    assert math.isnan(measured(columns, {"column": "front (m)", "at": 0.5}))  # over 0.0995 s, half a row
