@@ -112,13 +112,17 @@ def picture(points: Sequence[Traded], packings: Mapping[str, float]) -> bytes:
     best = sorted((one for one in shown if one.on_front), key=lambda one: one.core_seconds)
     axes.plot([one.core_seconds for one in best], [100 * one.error for one in best], "k-", linewidth=0.8, zorder=0,
               label="front")  # fmt: skip
-    for one in best:
-        axes.annotate(one.label, (one.core_seconds, 100 * one.error), (4, 4), textcoords="offset points", fontsize=7)
+    for one in shown:
+        axes.annotate(one.label, (one.core_seconds, 100 * one.error), (4, 4), textcoords="offset points", fontsize=6.5,
+                      color="black" if one.on_front else "grey")  # fmt: skip
     if packings:
         floor = (sum(value**2 for value in packings.values()) / len(packings)) ** 0.5
         axes.axhline(100 * floor, color="grey", linestyle=":", linewidth=0.9, label="another packing")
     axes.set_xscale("log")
     axes.set_yscale("log")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter("{x:g}")
     axes.set_xlabel("core-seconds")
     axes.set_ylabel("error, %")
     if shown:
