@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from continuum_sph.scene.seepage_model import SeepageSimulation
 from continuum_sph.scene.trials_levee import FAR, OVER, PARTS, Levee
 from porescale.runs.film import write_film
-from porescale.scene.case import conclude, options
+from porescale.scene.case import conclude, draw, options
 from porescale.scene.case_bodies import pixels
 
 HERE = Path(__file__).resolve().parent
@@ -95,7 +95,7 @@ def main() -> int:
         print(f"film: {write_film(given.out / 'levee', frames(levee), 20)}")
     if given.overflow:
         given.out.mkdir(parents=True, exist_ok=True)
-        figure.savefig(given.out / "overflow.png", dpi=100)
+        draw(figure, given.out / "overflow.png")
         print(f"{times}\npicture: {given.out / 'overflow.png'}")
         return 0
     return conclude(HERE, numbers, figure, given.out)
