@@ -130,10 +130,10 @@ def added(name: str, item: str, of: str, base: Callable[..., Scene], **more: Any
 
 KINDS = Kinds([
     Kind("water only", "cell", SMALLEST, lambda: built(water(), "cell", lattice),
-         because="terms of a body force, which is zero here, and of any law's own rate"),
+         because="not taken apart: presumably terms of a body force, zero here"),
     Kind("dry grains", "grain", SMALLEST, lambda: built(dry(), "grain", discs),
          because="measured apart: pairs 35, walls 5, motion 4 ns; the law by material and periodic images take the "
-                 "smallest kernel 1 % more; the rest comes and goes with what else the machine does"),
+                 "smallest kernel 1 % more; the rest is not found"),
     Kind("dry grains without friction or rotation", "grain", SMALLEST,
          lambda: built(dry({"stiffness": 5e5, "restitution": 0.97, "friction": 0.0}), "grain", discs),
          because="grains without friction still turn and their contacts keep a spring at zero: one more kind of "
