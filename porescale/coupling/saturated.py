@@ -108,6 +108,7 @@ class Saturated:
         )  # fmt: skip
         self.pairs = np.zeros((0, 2), np.int64)
         self._placed = np.full((discs, 2), np.nan)  # centres for which the patches are filled
+        self._stands = np.zeros(self._placed.shape, np.bool_)
         self._covered: Array | None = None
         self._shape = ny, nx
         self._load, self._inside = np.zeros((count, 3)), np.zeros((count, 2))
@@ -178,7 +179,7 @@ class Saturated:
         Where there are discs only and none has moved since, all of that is there already.
         """
         others = self.rim or self.polygons or self.bodies
-        if not others and np.array_equal(centre, self._placed):
+        if not others and np.equal(centre, self._placed, out=self._stands).all():
             return centre, velocity, spin
         self._placed[:] = centre
         if self.rim:

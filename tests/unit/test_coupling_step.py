@@ -247,15 +247,16 @@ def many():
 
 
 def grown(coupled, step, steps=60):
-    """Growth in each of ``steps`` steps, and which of them rebuilt the list of pairs; the first four go unmeasured."""
-    sizes, rebuilt = [], []
+    """Growth in each of ``steps`` steps, and which of them rebuilt the list of pairs or made its buffers grow; the
+    first four go unmeasured."""
+    sizes, rebuilt, pairs = [], [], coupled.grains.pairs
     for _ in range(4):
         step()
     tracemalloc.start()
     for _ in range(steps):
-        builds = coupled.grains.pairs.builds
+        before = pairs.builds, pairs._bounds.size
         sizes.append(growth(step))
-        rebuilt.append(coupled.grains.pairs.builds > builds)
+        rebuilt.append((pairs.builds, pairs._bounds.size) != before)
     tracemalloc.stop()
     return np.array(sizes), np.array(rebuilt)
 
@@ -267,7 +268,7 @@ def test_a_step_allocates_no_array_but_for_a_rebuild():
     assert np.count_nonzero(grains.pairs.carried) > 20
     assert grains.plate_spring.any()
     assert grains.wall_spring.any()
-    assert rebuilt.sum() >= 2
+    assert rebuilt.any()
     # What Python itself needs for its calls (5 kB of tuples and numbers, at any size) stays below a byte a disc.
     assert sizes[~rebuilt].max() < 8192
 
