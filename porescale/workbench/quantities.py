@@ -27,7 +27,7 @@ TIME = "time (s)"
 def measured(columns: Columns, row: Mapping[str, Any]) -> float:
     """The number that ``row`` speaks of; nan beyond the end of the run, infinity where it never falls so low.
 
-    Whole steps end a little before or after the time that was asked for: the last row stands for half a row more.
+    Whole steps end a little before or after the time that was asked for: the last row stands for less than half a row more.
 
     Raises KeyError where the table has no such column, ValueError where ``at`` is none of the above.
     """
@@ -48,7 +48,7 @@ def measured(columns: Columns, row: Mapping[str, Any]) -> float:
     if isinstance(at, str):
         raise ValueError(f"at = {at!r} is none of end, max, min, a time or a table")
     over = 0.5 * (time[-1] - time[-2]) if len(time) > 1 else 0.0
-    return float(np.interp(at, time, values, right=values[-1] if at <= time[-1] + over else np.nan))
+    return float(np.interp(at, time, values, right=values[-1] if at < time[-1] + over else np.nan))
 
 
 def _found(time: NDArray[Any], values: NDArray[Any], at: Mapping[str, Any]) -> float:

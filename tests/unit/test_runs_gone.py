@@ -141,8 +141,12 @@ def test_a_second_stop_does_not_wait_and_loses_nothing(tmp_path, untouched):
             time.sleep(1e-3)
         signal.raise_signal(signal.SIGINT)
 
-    with pytest.raises(KeyboardInterrupt):
-        run_toy(folder, model=Watched(twice), checkpoint_seconds=0.0)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            run_toy(folder, model=Watched(twice), checkpoint_seconds=0.0)
+    finally:
+        signal.signal(signal.SIGINT, before)
     whole(folder)
     assert read_checkpoint(folder / "checkpoint.h5")["step"] <= 60
     run_toy(folder, resume=True)
