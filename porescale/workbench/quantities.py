@@ -27,7 +27,7 @@ TIME = "time (s)"
 def measured(columns: Columns, row: Mapping[str, Any]) -> float:
     """The number that ``row`` speaks of; nan beyond the end of the run, infinity where it never falls so low.
 
-    Whole steps end a little before or after the time that was asked for: the last row stands for less than half a row more.
+    Whole steps end a little off the time that was asked for: the last row stands for less than half a row more.
 
     Raises KeyError where the table has no such column, ValueError where ``at`` is none of the above.
     """
