@@ -64,8 +64,18 @@ class Overlap:
     def update(self, water: Floats, soil: Floats) -> None:
         """Take positions (n, 2) m of both layers; lists and weights follow."""
         self.x[: self.water], self.x[self.water :] = water, soil
+        self.pairs.update(self.x, self.reach)
+        self._weigh()
+
+    def restore(self, state: dict[str, NDArray[np.generic]], water: Floats, soil: Floats) -> None:
+        """Go on from the ``state`` of the list, taken at these positions (n, 2) m: it holds, and nothing is counted."""
+        self.pairs.restore(state)
+        self.x[: self.water], self.x[self.water :] = water, soil
+        self._weigh()
+
+    def _weigh(self) -> None:
+        """Weights of the list at ``x``."""
         pairs = self.pairs
-        pairs.update(self.x, self.reach)
         if len(self.weight) < len(pairs.partner) + LANES:
             self.weight = np.zeros(len(pairs.partner) * 3 // 2 + LANES)
         overlap_weights(pairs.start, pairs.partner, self.x, self.weight, self.length, *pairs.period)

@@ -132,5 +132,4 @@ class PoreFlow(Flow):
         super().restore(state)
         self.pores[:], self.heat[:], self.borne[:] = state["pores"], state["heat"], state["borne"]
         self.layer.record[:], self.home[:] = state["record"], state["home"]
-        self.overlap.pairs.restore(state["overlap"])
-        self.overlap.update(self.layer.x[: self.layer.fluid], self.skeleton.x)
+        self.overlap.restore(state["overlap"], self.layer.x[: self.layer.fluid], self.skeleton.x)
