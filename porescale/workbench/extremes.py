@@ -15,12 +15,19 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from porescale.ground.check import InputError, Unstable
+from porescale.workbench import study, study_files
 from porescale.workbench.folders import write_whole
 from porescale.workbench.names import choose
 
 NAME = "extremes"
 RIGHT, STABLE, REFUSED, STOPPED = "right", "stable", "refused", "stopped"
-COLOURS = {RIGHT: "#1b7837", STABLE: "#2c7fb8", REFUSED: "#bdbdbd", STOPPED: "#a50f15"}
+COLOURS = {
+    RIGHT: study_files.COLOURS[study.RIGHT],
+    STABLE: study_files.COLOURS[study.STABLE],
+    REFUSED: "#bdbdbd",
+    STOPPED: study_files.COLOURS[study.UNSTABLE],
+}
+"""Those of the map of stability, and one for what never starts."""
 
 
 @dataclass(frozen=True)
@@ -115,7 +122,7 @@ def picture(rows: Sequence[Row]) -> bytes:
     for line, axis in enumerate(axes):
         for place, row in enumerate(row for row in rows if row.axis == axis):
             plot.barh(line, 0.96, left=place, height=0.9, color=COLOURS[row.end])
-            ink = "black" if row.end == REFUSED else "white"
+            ink = "black" if row.end in (STABLE, REFUSED) else "white"
             plot.text(place + 0.48, line, row.value, ha="center", va="center", color=ink, fontsize=7)
     plot.set_yticks(range(len(axes)), axes)
     plot.set_xticks([])

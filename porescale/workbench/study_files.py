@@ -108,22 +108,41 @@ def _single(flow: Flow, values: Sequence[float]) -> str:
 
 
 def picture(flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> bytes:
-    """A panel for each flow, as a PNG: laws down, each with a strip for each y, x across."""
+    """A panel for each flow, as a PNG: laws down, each with a strip for each y, x across; many in two columns."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
-    heights = [flow.count(quick) for flow in flows]
-    figure = Figure(figsize=(11, 1.6 + sum(1.5 + 0.1 * height for height in heights)), layout="constrained")
+    columns = _columns(flows, quick)
+    tallest = max(sum(_height(flow, quick) for flow in column) for column in columns)
+    figure = Figure(figsize=(9.5 * len(columns), 1.0 + tallest), layout="constrained")
     FigureCanvasAgg(figure)
-    panels = figure.subplots(len(flows), 1, squeeze=False, height_ratios=[4 + height for height in heights])[:, 0]
-    for flow, axes in zip(flows, panels, strict=True):
-        _panel(axes, flow, rows, quick)
+    parts = figure.subfigures(1, len(columns), squeeze=False)[0]
+    for part, column in zip(parts, columns, strict=True):
+        ratios = [_height(flow, quick) for flow in column]
+        for flow, axes in zip(
+            column, part.subplots(len(column), 1, squeeze=False, height_ratios=ratios)[:, 0], strict=True
+        ):
+            _panel(axes, flow, rows, quick)
     patches = [Patch(color=COLOURS[name], label=text) for name, text in _LEGEND.items()]
     figure.legend(handles=patches, loc="outside upper center", ncols=len(patches), frameon=False)
     out = io.BytesIO()
     figure.savefig(out, dpi=100, metadata={"Software": None})
     return out.getvalue()
+
+
+def _height(flow: Flow, quick: bool) -> float:
+    """Of its panel, inches."""
+    return 1.4 + 0.09 * flow.count(quick)
+
+
+def _columns(flows: Sequence[Flow], quick: bool) -> list[Sequence[Flow]]:
+    """Flows in one column, or more than two in the two, one after the other, that differ least in height."""
+    if len(flows) < 3:
+        return [flows]
+    heights = [_height(flow, quick) for flow in flows]
+    cut = min(range(1, len(flows)), key=lambda k: abs(sum(heights[:k]) - sum(heights[k:])))
+    return [flows[:cut], flows[cut:]]
 
 
 def _panel(axes: Axes, flow: Flow, rows: Sequence[Row], quick: bool) -> None:
@@ -138,7 +157,7 @@ def _panel(axes: Axes, flow: Flow, rows: Sequence[Row], quick: bool) -> None:
     axes.set_xlim(-0.6, len(xs) - 0.4)
     axes.invert_yaxis()
     axes.set_xlabel(flow.x.name)
-    down = f"; {flow.y.name} {_several(ys)} downwards" if len(ys) > 1 else f"; {_single(flow, ys)}"
-    axes.set_title(f"{flow.title}{down}", loc="left", fontsize=9)
+    down = f"{flow.y.name} {_several(ys)} downwards" if len(ys) > 1 else _single(flow, ys)
+    axes.set_title(f"{flow.title}\n{down}", loc="left", fontsize=9)
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)
