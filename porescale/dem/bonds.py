@@ -17,8 +17,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from porescale.dem.cell import image
 from porescale.dem.contact.law import material_of, stiffness
@@ -255,6 +253,9 @@ def pieces(grains: Grains, whole: NDArray[np.uint8] | None = None) -> Index:
 
     whole : (m,) of the bonds, default: as they are.
     """
+    from scipy.sparse import coo_array  # takes longer to import than a scene to be judged
+    from scipy.sparse.csgraph import connected_components
+
     count, bonds = grains.discs.count, grains.bonds
     body = np.arange(count)
     if grains.steered:

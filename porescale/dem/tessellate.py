@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial import Delaunay, Voronoi
 
 from porescale.ground.check import Fault, InputError
 
@@ -26,6 +25,8 @@ def voronoi(seeds: ArrayLike, lower: Corner, upper: Corner) -> list[Array]:
     counter-clockwise.  Raises InputError at a seed outside, or two in one place.
     """
     at, scale = _inside(seeds, lower, upper)
+    from scipy.spatial import Voronoi  # takes longer to import than a scene to be judged
+
     found = Voronoi(_mirrored(at, lower, upper))
     return [_ordered(found.vertices[found.regions[found.point_region[k]]], scale) for k in range(len(at))]
 
@@ -46,6 +47,8 @@ def delaunay(seeds: ArrayLike, lower: Corner, upper: Corner) -> list[Array]:
     corners = {tuple(row) for row in moved[np.all((moved == low) | (moved == high), axis=1)].tolist()}
     if len(np.unique(moved, axis=0)) < len(moved) or len(corners) < 4:
         raise InputError(Fault("seeds", len(at), "too few, or too uneven, for one at each corner of the rectangle"))
+    from scipy.spatial import Delaunay  # takes longer to import than a scene to be judged
+
     triangles = [_ordered(moved[corner], scale) for corner in Delaunay(moved).simplices]
     return [each for each in triangles if len(each) == 3 and area(each) > FLAT * scale**2]
 

@@ -1,9 +1,12 @@
-"""The one place that configures numba.
+"""How functions become kernels: compiled by numba when they are first called, and not before.
 
-Kernels are compiled once and kept on disk.  numba stamps a cached kernel with its own file only, so an edited
-contact law would survive inside a cached pair loop; the cache folder is therefore named after a hash of all
-sources of both packages.  ``error_model="numpy"`` because the default division check stops vectorisation.
-Fast-math is off: results must not depend on how a loop was cut into vectors.
+numba takes longer to import than a wrong scene takes to be found wrong, so what is defined here waits for it: a
+`Kernel` until it is called, and what is told of other functions (`by_law`, `part` …) until the first kernel is.
+compiling.py does the work then, and lanes_code.py for lanes.py.
+
+Kernels are compiled once and kept on disk.  numba stamps a cached kernel with its own file only, so an edited contact
+law would survive inside a cached pair loop; the cache folder is therefore named after a hash of all sources of both
+packages.
 """
 
 from __future__ import annotations
@@ -11,10 +14,15 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
+from functools import cached_property, update_wrapper
+from importlib import import_module
 from pathlib import Path
-from typing import Any, TypeVar
+from threading import RLock
+from typing import Any, TypeVar, cast
 
-from porescale.ground.cache import cache_root, hash_of, keep_only_used, writable
+import numpy as np
+
+from porescale.ground.cache import cache_root, hash_of, keep_only_used
 from porescale.ground.check import Fault, InputError
 
 PACKAGES = ("porescale", "continuum_sph")
@@ -38,43 +46,84 @@ if not os.environ.get("NUMBA_CACHE_DIR"):
     KERNELS = cache_folder()
     os.environ["NUMBA_CACHE_DIR"] = str(KERNELS)
     keep_only_used(KERNELS, "kernels-*")
-# Threads that wait at the end of a loop spin for milliseconds by default.  On a machine with other work that costs a
-# factor of 20 (measured, two threads beside eight busy processes); this many turns, some 10 us, cost a quiet one
-# nothing.
-os.environ.setdefault("GOMP_SPINCOUNT", "3000")
-
-import llvmlite.binding as llvm  # noqa: E402  (after the cache folder is set)
-import numba  # noqa: E402
-import numpy as np  # noqa: E402
-from llvmlite import ir  # noqa: E402
-from numba.extending import intrinsic, overload  # noqa: E402
-
-# A row kernel reads and writes nine population rows: LLVM must compare 36 pairs of them before it vectorises,
-# and gives up at 8 by default.
-llvm.set_option("porescale", "-runtime-memory-check-threshold=256")
 
 F = TypeVar("F", bound=Callable[..., Any])
-# Where the folder cannot be written numba would cache beside the sources, or give up: compile anew then.
-_FLAGS: dict[str, Any] = {"error_model": "numpy", "cache": writable(cache_folder()), "nogil": True}
-_INLINED: Any = {"error_model": "numpy", "nogil": True, "forceinline": True}
+
+_WAITING: list[Callable[[Any], object]] = []
+_LOCK = RLock()
+_compiler: Any = None
+
+
+def when_compiling(teach: Callable[[Any], object]) -> None:
+    """Call ``teach`` with compiling.py before any kernel is compiled: at once if one may have been already."""
+    with _LOCK:
+        _WAITING.append(teach)
+        if _compiler is not None:
+            compiler()
+
+
+def compiler() -> Any:
+    """compiling.py, once all that has waited for it is told; numba is imported by the first call."""
+    global _compiler
+    with _LOCK:
+        if _compiler is None:
+            _compiler = import_module(f"{__package__}.compiling")
+        while _WAITING:
+            _WAITING.pop(0)(_compiler)
+    return _compiler
+
+
+class Kernel:
+    """A function that is compiled when it is first called; also from within other kernels.
+
+    py_func : the function in plain Python;  compiled : what numba makes of it, whose attributes it has as well.
+    """
+
+    def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
+        update_wrapper(self, function)
+        self.py_func, self._options = function, options
+
+    @cached_property
+    def compiled(self) -> Any:
+        """numba's dispatcher."""
+        return compiler().dispatcher(self.py_func, self._options)
+
+    @property
+    def _numba_type_(self) -> Any:
+        """Type of this as a name in a kernel: that of the dispatcher."""
+        return self.compiled._numba_type_
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Compile it for the types of these arguments, if that is still to be done, and run it."""
+        return self.compiled(*arguments)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):  # asked by those who want to know what this is
+            raise AttributeError(name)
+        return getattr(self.compiled, name)
+
+    def __reduce__(self) -> str:
+        return cast(str, vars(self)["__qualname__"])  # copied and pickled by name, as functions are
+
+
+def _decorator(**options: Any) -> Callable[[F], F]:
+    """A decorator that makes a kernel with these options of numba's."""
+    return lambda function: cast(Any, Kernel(function, options))
 
 
 def kernel(function: F) -> F:
     """Compile a serial kernel over arrays and numbers."""
-    compiled: F = numba.njit(**_FLAGS)(function)
-    return compiled
+    return _decorator()(function)
 
 
 def parallel_kernel(function: F) -> F:
     """Compile a kernel whose ``prange`` loops run over threads; it must give the same bits at any count."""
-    compiled: F = numba.njit(parallel=True, **_FLAGS)(function)
-    return compiled
+    return _decorator(parallel=True)(function)
 
 
 def inline(function: F) -> F:
     """Compile a small function that LLVM merges into the kernels that call it."""
-    compiled: F = numba.njit(forceinline=True, **_FLAGS)(function)
-    return compiled
+    return _decorator(forceinline=True)(function)
 
 
 def by_law(signature: F) -> Any:
@@ -92,10 +141,6 @@ def by_law(signature: F) -> Any:
     def plain(*arguments: Any) -> Any:
         return bodies[type(arguments[-1])].py_func(*arguments)
 
-    def choose(*types: Any) -> Any:
-        body = bodies.get(getattr(types[-1], "instance_class", type(None)))
-        return None if body is None else body.py_func
-
     def of(*laws: type) -> Callable[[F], F]:
         def add(body: F) -> F:
             compiled = body if hasattr(body, "py_func") else inline(body)
@@ -105,7 +150,7 @@ def by_law(signature: F) -> Any:
         return add
 
     vars(chosen).update(__name__=signature.__name__, __doc__=signature.__doc__, of=of, py_func=plain)
-    overload(chosen, strict=False, jit_options=_INLINED)(choose)
+    when_compiling(lambda machine: machine.choose_by_law(chosen, bodies))
     return chosen
 
 
@@ -119,12 +164,8 @@ def by_precision(build: Callable[[type], Any]) -> Any:
     def chosen(number: Any) -> Any:
         return constants[8 * np.dtype(type(number)).itemsize]
 
-    def choose(number: Any) -> Any:
-        known = constants.get(getattr(number, "bitwidth", 0))
-        return None if known is None else lambda number: known
-
     vars(chosen).update(__name__=build.__name__, __doc__=build.__doc__)
-    overload(chosen, strict=False, jit_options=_INLINED)(choose)
+    when_compiling(lambda machine: machine.choose_by_precision(chosen, constants))
     return chosen
 
 
@@ -137,62 +178,11 @@ def part(array: Any, first: Any, count: Any) -> Any:
     return array[first : first + count]
 
 
-def _view(typing: Any, array: Any, first: Any, count: Any) -> Any:
-    """``part`` in kernels."""
-    if not isinstance(array, numba.types.Array) or array.ndim != 1 or array.layout != "C":
-        return None
-
-    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        whole, made = (
-            context.make_array(array)(context, builder, values[0]),
-            context.make_array(array)(context, builder),
-        )
-        size = context.get_constant(numba.intp, context.get_abi_sizeof(context.get_data_type(array.dtype)))
-        context.populate_array(
-            made, data=builder.gep(whole.data, [values[1]], inbounds=True), shape=[values[2]], strides=[size],
-            itemsize=size, meminfo=None,
-        )  # fmt: skip
-        return made._getvalue()
-
-    return array(array, numba.intp, numba.intp), code
-
-
-_part: Any = intrinsic(_view)
-
-
-@overload(part, strict=False, jit_options=_INLINED)
-def _choose_part(array: Any, first: Any, count: Any) -> Any:
-    return lambda array, first, count: _part(array, first, count)
-
-
 def fetch(array: Any, at: Any) -> None:
     """Ask for the entry ``at`` of a contiguous array, counted as if it were flat, to be brought to the nearest cache.
 
     For entries that a loop comes to in an order that no machine foresees.  Does nothing else, nor in plain Python.
     """
-
-
-def _prefetch(typing: Any, array: Any, at: Any) -> Any:
-    """``fetch`` in kernels."""
-
-    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        data = context.make_array(array)(context, builder, values[0]).data
-        byte, number = ir.IntType(8).as_pointer(), ir.IntType(32)
-        kind = ir.FunctionType(ir.VoidType(), [byte, number, number, number])
-        ask = builder.module.declare_intrinsic("llvm.prefetch", (byte,), kind)
-        place = builder.bitcast(builder.gep(data, [values[1]]), byte)
-        builder.call(ask, [place, number(0), number(3), number(1)])  # to read, near, data
-        return context.get_dummy_value()
-
-    return numba.types.none(array, numba.intp), code
-
-
-_fetch: Any = intrinsic(_prefetch)
-
-
-@overload(fetch, strict=False, jit_options=_INLINED)
-def _choose_fetch(array: Any, at: Any) -> Any:
-    return lambda array, at: _fetch(array, at)
 
 
 def sum_by_halves(count: int) -> Any:
@@ -208,37 +198,20 @@ def sum_by_halves(count: int) -> Any:
             left = left[:half] + left[half:]
         return left[0]
 
-    def vector(typing: Any, array: Any, first: Any) -> Any:
-        def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            start = builder.gep(context.make_array(array)(context, builder, values[0]).data, [values[1]], inbounds=True)
-            kind = ir.VectorType(context.get_data_type(array.dtype), count)
-            left = builder.load(builder.bitcast(start, kind.as_pointer()), align=4)
-            size = count
-            while size > 1:
-                size //= 2
-                none = ir.Constant(left.type, ir.Undefined)
-                halves = [
-                    builder.shuffle_vector(left, none, ir.Constant(ir.VectorType(ir.IntType(32), size), lanes))
-                    for lanes in (list(range(size)), list(range(size, 2 * size)))
-                ]
-                left = builder.fadd(*halves)
-            return builder.extract_element(left, ir.Constant(ir.IntType(32), 0))
-
-        return array.dtype(array, numba.intp), code
-
-    vector_total: Any = intrinsic(vector)
-
-    def choose(array: Any, first: Any) -> Any:
-        return lambda array, first: vector_total(array, first)
-
     vars(total)["py_func"] = total
-    overload(total, strict=False, jit_options=_INLINED)(choose)
+    when_compiling(lambda machine: machine.teach_sum_by_halves(total, count))
     return total
 
 
-prange = numba.prange
-thread: Any = vars(numba)["get_thread_id"]
-"""Number, below ``most_threads()``, of the thread that runs an iteration of a prange loop: for scratch, not results."""
+prange: Any = range
+"""``range`` over iterations that threads share, in a `parallel_kernel`; plain `range` elsewhere."""
+
+
+def thread() -> int:
+    """Number, below ``most_threads()``, of the thread that runs an iteration of a prange loop: for scratch, not
+    results.
+    """
+    return 0
 
 
 def set_threads(count: int | None) -> int:
@@ -247,15 +220,15 @@ def set_threads(count: int | None) -> int:
     chosen = limit if count is None else count
     if not 1 <= chosen <= limit:
         raise InputError(Fault("--threads", count, "is out of range", allowed=f"1 to {limit}"))
-    numba.set_num_threads(chosen)
+    compiler().numba.set_num_threads(chosen)
     return chosen
 
 
 def most_threads() -> int:
     """Most threads that parallel kernels can be given."""
-    return int(vars(numba.config)["NUMBA_NUM_THREADS"])
+    return int(vars(compiler().numba.config)["NUMBA_NUM_THREADS"])
 
 
 def threads() -> int:
     """Number of threads that parallel kernels use now."""
-    return int(numba.get_num_threads())
+    return int(compiler().numba.get_num_threads())

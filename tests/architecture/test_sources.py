@@ -12,7 +12,7 @@ from sources import ROOT, Source, functions, is_kernel, read, sources, written
 LONGEST = 400
 UNFINISHED = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b")
 JIT = "porescale.ground.jit"
-LANES = "porescale.ground.lanes"
+COMPILING = ("porescale.ground.compiling", "porescale.ground.lanes_code")
 
 
 def undocumented(source: Source) -> Iterator[str]:
@@ -64,7 +64,7 @@ def unannotated(source: Source) -> Iterator[str]:
 def compiled_elsewhere(source: Source) -> Iterator[str]:
     """Imports of numba or llvmlite outside the modules that configure them and add to what kernels know."""
     for node, name in source.imports():
-        if name.split(".")[0] in ("numba", "llvmlite") and source.module not in (JIT, LANES):
+        if name.split(".")[0] in ("numba", "llvmlite") and source.module not in COMPILING:
             yield f"{source.at(node)}: imports {name}"
 
 

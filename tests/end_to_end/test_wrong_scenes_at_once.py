@@ -1,7 +1,8 @@
-"""What is no scene at all is said before a compiler is imported for it, by every command that takes one."""
+"""Scenes are judged before a compiler is imported for them, so that a wrong one is answered at once."""
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -48,8 +49,28 @@ def test_what_is_no_scene_is_said_before_numba_is_imported(tmp_path, package):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["latin.toml", "torn.toml"]
 
 
-def test_a_scene_that_is_judged_brings_its_rooms_along(tmp_path):  # the twin: the question can be answered otherwise
-    (tmp_path / "scene.toml").write_text("[domain]\nwidth = 1\nheight = 1\n")
-    code, compiler, lines = asked("porescale", "check", tmp_path)
-    assert (code, compiler) == (2, True)
-    assert lines
+WRONG = {
+    "porescale": ("porescale/app", "grains.packing.width=99", "out of the box", "fluid.viskosity=1e-6", "'viscosity'"),
+    "continuum_sph": ("continuum_sph", "tank.width=0.1", "beyond the tank", "tank.hight=3", "'height'"),
+}
+"""By package: folder of its template; a number that others contradict and words of its fault; a key that there is
+none of and what it is taken for."""
+
+
+@pytest.mark.parametrize("package", FIRST)
+def test_a_scene_is_judged_before_numba_is_imported_whatever_is_wrong_with_it(tmp_path, package):
+    folder, number, said, key, meant = WRONG[package]
+    scene = shutil.copy(ROOT / folder / "template.toml", tmp_path / "scene.toml")
+    code, compiler, lines = asked(package, "check", scene, "--set", number)
+    assert (code, compiler) == (2, False)
+    assert said in "".join(lines)
+    code, compiler, lines = asked(
+        package, "run", scene, "--set", key, "--set", "time.end=-1", "--out", tmp_path / "out"
+    )
+    assert (code, compiler, len(lines)) == (2, False, 2)
+    assert f"did you mean {meant}" in "".join(lines)
+    assert "out of range" in "".join(lines)
+    # The twin: the question can be answered otherwise, here by what counts the machine's threads.
+    code, compiler, lines = asked(package, "run", scene, "--threads", 0, "--out", tmp_path / "out")
+    assert (code, compiler, len(lines)) == (2, True, 1)
+    assert not (tmp_path / "out").exists()

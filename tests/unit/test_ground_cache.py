@@ -56,7 +56,7 @@ def test_kernel_folders_unused_for_a_month_go_but_never_the_current_one(tmp_path
 
 
 def test_kernels_are_kept_below_the_cache_unless_a_folder_is_named(tmp_path):
-    ask = "from porescale.ground import jit; print(jit.numba.config.CACHE_DIR)"
+    ask = "from porescale.ground import jit; print(jit.compiler().numba.config.CACHE_DIR)"
     old = tmp_path / "porescale" / "kernels-old"
     old.mkdir(parents=True)
     os.utime(old, (0, 0))

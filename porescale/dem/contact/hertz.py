@@ -26,7 +26,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import quad
 
 from porescale.dem.contact.law import (
     CN,
@@ -225,6 +224,8 @@ class Hertz:
 
         def falling(z: float) -> float:
             return float(measure(end - half * z**1.25) ** -0.2 * half * z**0.25)
+
+        from scipy.integrate import quad  # takes longer to import than a scene to be judged
 
         total = quad(rising, 0.0, 1.0)[0] + quad(falling, 0.0, 1.0)[0]
         return float(total * (speed / w) ** -0.2 / w)

@@ -10,8 +10,6 @@ from __future__ import annotations
 
 import math
 
-from scipy.optimize import brentq
-
 from porescale.ground.check import Fault, InputError
 
 
@@ -53,6 +51,8 @@ def ratio_from_restitution(restitution: float, release: str) -> float:
 
     def excess(h: float) -> float:
         return h * contact_phase(h, release) - wanted
+
+    from scipy.optimize import brentq  # takes longer to import than a scene to be judged
 
     return float(brentq(excess, 0.0, highest, xtol=1e-15, rtol=1e-14))
 
