@@ -60,7 +60,7 @@ def test_the_package_and_its_help_wait_for_no_compiler():
     for command in commands:
         words = [sys.executable, "-c", watch.format(command)]
         assert subprocess.run(words, cwd=ROOT, check=False, capture_output=True).returncode == 0
-    compiled = [sys.executable, "-c", watch.format("import porescale.ground.jit")]  # the twin: it would be seen
+    compiled = [sys.executable, "-c", watch.format("import porescale.ground.compiling")]  # the twin: it would be seen
     assert subprocess.run(compiled, cwd=ROOT, check=False).returncode == 1
 
 
