@@ -127,8 +127,10 @@ class Canvas:
         """A line from each centre towards the rim shows how a disc has turned."""
         big = radii >= 4
         tip = at + 0.8 * radii[:, None] * np.stack([np.cos(angle), -np.sin(angle)], 1)
-        for start, end, radius in zip(at[big], tip[big], radii[big].tolist(), strict=True):
-            self._line(image, np.array([start, end]), rgb(RIM), max(1, round(radius / 10)))
+        starts, ends = (np.rint(points[big] * ONE).astype(int).tolist() for points in (at, tip))
+        widths, colour = np.maximum(1, np.rint(radii[big] / 10)).astype(int).tolist(), rgb(RIM)
+        for start, end, width in zip(starts, ends, widths, strict=True):
+            cv2.line(image, start, end, colour, width, cv2.LINE_AA, SHIFT)
 
     def _colours(self, cloud: Cloud) -> Array:
         """(n, 3) uint8."""

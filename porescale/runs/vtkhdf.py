@@ -28,8 +28,8 @@ from porescale.runs.vtkhdf_cells import NO_CELLS, TOPOLOGIES, Cells, cells_of, r
 
 FORMAT = 1
 """Of these files."""
-ROWS = 65536
-"""Rows of points in a chunk."""
+ROWS = 512, 65536
+"""Rows of points in a chunk, at least and at most; in between those of a frame: frames are read one by one."""
 FILTERS: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle": True, "fletcher32": True}
 """Shuffled bytes compress as well at level 1 as plain ones at level 9, several times faster."""
 
@@ -146,10 +146,10 @@ def _points(
     before = np.cumsum(n) - n
     total, frames = int(n.sum()), len(n)
     _dataset(root, "NumberOfPoints", n)
-    points = _empty(root, "Points", total, Column(np.dtype(float), (3,), "m"))
+    points = _empty(root, "Points", total, Column(np.dtype(float), (3,), "m"), frames)
     data = root.create_group("PointData")
     for key, column in columns.items():
-        _empty(data, key, total, column)
+        _empty(data, key, total, column, frames)
     firsts, befores = np.zeros((frames, 4), np.int64), np.zeros((frames, 4), np.int64)
     for side, topology in enumerate(TOPOLOGIES):
         group = root.create_group(topology)
@@ -164,8 +164,8 @@ def _points(
         room = np.maximum(counts_of_cells, 1) if used else 0 * counts_of_cells
         firsts[:, side], befores[:, side] = np.cumsum(room) - room, np.cumsum(counts_of_ids) - counts_of_ids
         index = Column(np.dtype(np.int64), (), "1")
-        made_offsets = _empty(group, "Offsets", frames + int(room.sum()), index)
-        made_ids = _empty(group, "Connectivity", int(counts_of_ids.sum()), index)
+        made_offsets = _empty(group, "Offsets", frames + int(room.sum()), index, frames)
+        made_ids = _empty(group, "Connectivity", int(counts_of_ids.sum()), index, frames)
         for k, (offsets, ids) in enumerate(own if used else []):
             at, id_at = int(firsts[k, side]) + k, int(befores[k, side])
             made_offsets[at : at + len(offsets)] = offsets
@@ -198,9 +198,10 @@ def _dataset(group: h5py.Group, name: str, values: Array, units: str = "1") -> N
     made.attrs["units"] = units
 
 
-def _empty(group: h5py.Group, name: str, rows: int, column: Column) -> h5py.Dataset:
-    """A dataset of ``rows`` items to be filled; HDF5 cannot protect one without items."""
-    how: dict[str, Any] = {"chunks": (min(rows, ROWS), *column.item), **FILTERS} if rows else {}
+def _empty(group: h5py.Group, name: str, rows: int, column: Column, frames: int) -> h5py.Dataset:
+    """A dataset of ``rows`` items of all frames to be filled; HDF5 cannot protect one without items."""
+    piece = min(rows, max(ROWS[0], min(-(-rows // max(frames, 1)), ROWS[1])))
+    how: dict[str, Any] = {"chunks": (piece, *column.item), **FILTERS} if rows else {}
     made = group.create_dataset(name, (rows, *column.item), column.dtype, **how)
     made.attrs["units"] = column.units
     return made
