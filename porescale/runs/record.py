@@ -214,6 +214,8 @@ class Record:
         self.refuse_gone()
         self.card.update(outcome=outcome, ended=cards.now(), seconds=self.seconds(), step=model.step, time=model.time)
         self.card["core_seconds"] = self.cost.of(model.step)
+        self.card["core_seconds_besides"] = self.cost.besides()
+        self.card["core_pace"] = self.cost.pace()
         self.card["peak_bytes"] = max(peak_bytes(), int(self.card.get("peak_bytes") or 0))
         if problem:
             self.card["problem"] = problem

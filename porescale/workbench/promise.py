@@ -1,25 +1,27 @@
 """What `run --error` promises, held against a new run: a benchmark of each package that has a front beside a case.
 
-The cheapest point of the front is asked for by its error and run anew as a process of its own.  Kept is a promise
-whose run takes within 30 % of the time said, and is off by no more than said and scattered, from the answers of the
-reference that the front keeps.  Core-seconds stand beside: on a machine that others use, too, seconds promise little.
+A point of the front, the cheapest if not said which, is begun to rescale its time, and run anew.  Kept is a promise
+whose run takes within 30 % of the time said, from building the model to the last picture, and is off by no more than
+said and scattered, in the quantities whose answers by the reference the front keeps.  Core-seconds of the steps stand
+beside, also rescaled: on a machine that others use, too, seconds promise little.
 """
 
 from __future__ import annotations
 
 import json
 import tempfile
-from dataclasses import dataclass
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from porescale.ground.card import read_card
 from porescale.ground.check import Fault, InputError
 from porescale.workbench.benchmarks import Benchmarks, Dtype, Work
-from porescale.workbench.campaign import FINISHED, Campaign
-from porescale.workbench.commands.sweep import module_of
-from porescale.workbench.front import Choice, Front, FrontPoint, choose, pace_of, percent, read_front
+from porescale.workbench.commands.run import card_of
+from porescale.workbench.front import Choice, Front, FrontPoint, begun, choose, percent, read_front
 from porescale.workbench.package import Package
-from porescale.workbench.points import Point
 from porescale.workbench.quantities import measured
 from porescale.workbench.scene_file import find
 from porescale.workbench.sections import open_scene, validate
@@ -34,8 +36,8 @@ SCATTERS = 3.0
 
 @dataclass(frozen=True)
 class Promise:
-    """expected, took : s;  core_expected, core_took : core-seconds, of the front and of the run;  said, scatter,
-    found : errors, shares; found is None where the front keeps no answers of the reference."""
+    """expected, took : s;  core_expected, core_took : core-seconds of the steps;  said, scatter, found : errors,
+    shares; found is None where the front keeps no answers of the reference."""
 
     label: str
     expected: float
@@ -62,30 +64,34 @@ class Promise:
         good = "not known" if self.found is None else f"{percent(self.found)}, {'kept' if self.as_good else 'not kept'}"
         return (
             f"{self.label} promised {self.expected:.3g} s, took {self.took:.3g} s ({time}; {self.core_took:.3g} "
-            f"core-seconds, {self.core_expected:.3g} when it was measured); error {percent(self.said)} ± "
+            f"core-seconds in steps, {self.core_expected:.3g} promised); error {percent(self.said)} ± "
             f"{percent(self.scatter)}, found {good}"
         )
 
 
-def asked_again(package: Package, scene: Path) -> Promise:
-    """The promise of the cheapest point of the front beside ``scene``, and a new run of it."""
+def asked_again(package: Package, scene: Path, which: int = 1) -> Promise:
+    """The promise of a point of the front beside ``scene``, 1 the cheapest, and a new run of it."""
     front = read_front(scene)
-    choice = choose(front, front.points[0].error, None, lambda point: (pace_of(_model(package, scene, point)), None))
-    with tempfile.TemporaryDirectory() as folder:
-        point = Point("again", settings(choice.point), choice.point.quality)
-        ended = Campaign(module_of(package), scene, Path(folder)).one(point)
-        if ended.outcome != FINISHED:
-            raise InputError(Fault(str(scene), choice.point.label, f"{ended.outcome}: {ended.problem}"))
-        return judged(front, choice, ended.card, error_of(package, front, ended.folder))
+    asked = replace(front, points=front.points[which - 1 :][:1])
+    if not asked.points:
+        raise InputError(Fault("--size", which, "is no point of the front", "", f"1 to {len(front.points)}"))
+    point = asked.points[0]
+    opened = open_scene(scene, package.scene(), quality=point.quality, overrides=settings(point))
+    choice = choose(asked, point.error, None, lambda _: begun(lambda: package.build(opened.scene)))
+    with tempfile.TemporaryDirectory() as made:
+        folder, before = Path(made) / "run", time.perf_counter()
+        model = package.build(opened.scene)
+        package.drive(model, folder, opened.scene, card=card_of(package, opened), resume=False, quiet=True)
+        took = time.perf_counter() - before
+        return judged(choice, took, read_card(folder), *error_of(package, front, point, folder))
 
 
-def judged(front: Front, choice: Choice, card: dict[str, float], found: float | None) -> Promise:
-    """A choice of a front beside the card of its run."""
-    point = choice.point
+def judged(choice: Choice, took: float, card: Mapping[str, Any], said: float, found: float | None) -> Promise:
+    """A choice of a front beside its run: seconds, card, and the error said and found in what can be compared."""
+    core_took = float(card["core_seconds"])
     return Promise(
-        point.label, choice.seconds, float(card["seconds"]), point.core_seconds, float(card["core_seconds"]),
-        point.error, point.scatter, found,
-    )  # fmt: skip
+        choice.point.label, choice.seconds, took, choice.core_seconds, core_took, said, choice.point.scatter, found
+    )
 
 
 def settings(point: FrontPoint) -> tuple[str, ...]:
@@ -93,22 +99,17 @@ def settings(point: FrontPoint) -> tuple[str, ...]:
     return (f"time.end={point.time!r}", *point.settings)
 
 
-def error_of(package: Package, front: Front, folder: Path) -> float | None:
-    """Rms distance of a run from the answers of the first reference that the front keeps, over quantities."""
+def error_of(package: Package, front: Front, point: FrontPoint, folder: Path) -> tuple[float, float | None]:
+    """Error that the front says and rms distance of a run from the answers of its first reference, over the quantities
+    whose answers it keeps: numbers, not curves and fields.  The error in all quantities and None where there are none.
+    """
     table = json.loads(front.file.read_text(encoding="utf-8"))
-    told = table.get("references") or [{}]
-    asked = [validate(Quantity, row) for row in table["quantities"] if row["name"] in told[0]]
-    if not asked or len(asked) < len(table["quantities"]):
-        return None
-    distances = [
-        (measured(package.table(folder, it.file), it.row()) - told[0][it.name][0]) / it.scale for it in asked
-    ]  # fmt: skip
-    return rms(distances)
-
-
-def _model(package: Package, scene: Path, point: FrontPoint) -> Any:
-    opened = open_scene(scene, package.scene(), quality=point.quality, overrides=settings(point))
-    return package.build(opened.scene)
+    told = (table.get("references") or [{}])[0]
+    asked = [validate(Quantity, row) for row in table["quantities"] if row["name"] in told]
+    if not asked:
+        return point.error, None
+    distances = [(measured(package.table(folder, it.file), it.row()) - told[it.name][0]) / it.scale for it in asked]
+    return rms([point.errors[it.name] for it in asked]), rms(distances)
 
 
 def benchmark(package: Package, case: Path) -> Benchmarks:
@@ -119,14 +120,17 @@ def benchmark(package: Package, case: Path) -> Benchmarks:
 
     @rows.row("promise")
     def promise(size: int | None, threads: int, dtype: Dtype) -> Work:
-        """Steps of the cheapest point of the front beside a case, and what its promise is worth."""
-        scene = find(case)
-        model = _model(package, scene, read_front(scene).points[0])
+        """Steps of a point of the front beside a case (size: which, 1 the cheapest), and what its promise is worth."""
+        scene, which = find(case), size or 1
+        points = read_front(scene).points
+        point = points[min(which, len(points)) - 1]
+        opened = open_scene(scene, package.scene(), quality=point.quality, overrides=settings(point))
+        model = package.build(opened.scene)
         steps = 50
         model.advance(steps)
         return Work(
             lambda: model.advance(steps), float(steps), "steps/s", steps,
-            remark=lambda: asked_again(package, scene).line(),
+            remark=lambda: asked_again(package, scene, which).line(),
         )  # fmt: skip
 
     return rows

@@ -34,9 +34,10 @@ Answer = tuple[NDArray[Any] | None, NDArray[Any]]
 class Traded:
     """A point of the trade.
 
-    errors : of each quantity;  error, scatter : of all together, over repeats;  core_seconds, seconds, peak_bytes,
-    steps, time (s, simulated) : means over repeats;  outcome : "finished", or the first other one, and errors are
-    infinite.
+    errors : of each quantity;  error, scatter : of all together, over repeats;  core_seconds (of steps), seconds,
+    peak_bytes, steps, time (s, simulated), besides (core-seconds of other things: snapshots, pictures, film), pace
+    (core-seconds of a step as runs began) : means over repeats;  outcome : "finished", or the first other one, and
+    errors are infinite.
     """
 
     knob: str
@@ -51,6 +52,8 @@ class Traded:
     peak_bytes: float
     steps: int
     time: float
+    besides: float = 0.0
+    pace: float = 0.0
     on_front: bool = False
     problem: str = ""
 
@@ -140,22 +143,20 @@ def rms(values: Any) -> float:
     return float(np.sqrt(np.mean(np.square(np.asarray(values, float)))))
 
 
-def costs(ends: Sequence[Ended]) -> tuple[float, float, float, int, float]:
-    """Core-seconds, seconds, bytes, steps, simulated time: means over runs that say them; seconds stand in for
-    core-seconds.
+def costs(ends: Sequence[Ended]) -> tuple[float, float, float, int, float, float, float]:
+    """Core-seconds, seconds, bytes, steps, simulated time, core-seconds besides, pace: means over runs that say them;
+    seconds stand in for core-seconds, all steps for the first ones.
     """
 
     def mean(key: str) -> float:
         known = [float(ended.card[key]) for ended in ends if ended.card.get(key)]
         return sum(known) / len(known) if known else 0.0
 
+    core_seconds, steps = mean("core_seconds") or mean("seconds"), round(mean("step"))
+    pace = mean("core_pace") or core_seconds / max(steps, 1)
     return (
-        mean("core_seconds") or mean("seconds"),
-        mean("seconds"),
-        mean("peak_bytes"),
-        round(mean("step")),
-        mean("time"),
-    )
+        core_seconds, mean("seconds"), mean("peak_bytes"), steps, mean("time"), mean("core_seconds_besides"), pace,
+    )  # fmt: skip
 
 
 def front(points: Sequence[Traded]) -> list[Traded]:

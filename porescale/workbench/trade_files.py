@@ -15,23 +15,28 @@ from porescale.workbench.trade import Traded
 
 FRONT = "front.json"
 NAME = "trade"
-FORMAT = 1
+FORMAT = 2
+Caveats = Mapping[tuple[str | None, tuple[str, ...]], str]
+"""What is to be said of points, by quality and settings."""
 
 
-def as_dict(one: Traded, pace: float | None = None) -> dict[str, Any]:
-    """A point, JSON-able: infinite errors become null.  pace : seconds of a step at its start."""
+def as_dict(one: Traded, but: str = "") -> dict[str, Any]:
+    """A point, JSON-able: infinite errors become null.  but : what its errors do not show."""
     made = {key: value for key, value in vars(one).items() if key not in ("point", "error", "errors", "scatter")}
     return made | {
         "name": one.point.name, "quality": one.point.quality, "settings": list(one.point.settings),
-        "pace": pace, "error": _finite(one.error), "scatter": one.scatter,
+        "error": _finite(one.error), "scatter": one.scatter, "but": but,
         "errors": {name: _finite(value) for name, value in one.errors.items()},
     }  # fmt: skip
 
 
-def front_json(about: Mapping[str, Any], points: Sequence[Traded], paces: Mapping[str, float]) -> str:
+def front_json(about: Mapping[str, Any], points: Sequence[Traded], caveats: Caveats) -> str:
     """``about`` (command, version, machine, date, …) and the points, a line each, so that two can be compared."""
     head = json.dumps({"format": FORMAT, **about}, indent=1, allow_nan=False).removesuffix("\n}")
-    lines = (json.dumps(as_dict(one, paces.get(one.point.name)), allow_nan=False) for one in points)
+    lines = (
+        json.dumps(as_dict(one, caveats.get((one.point.quality, one.point.settings), "")), allow_nan=False)
+        for one in points
+    )
     return head + ',\n "points": [\n  ' + ",\n  ".join(lines) + "\n ]\n}\n"
 
 
@@ -40,18 +45,18 @@ def write(
     about: dict[str, Any],
     points: Sequence[Traded],
     packings: Mapping[str, float],
-    paces: Mapping[str, float],
+    caveats: Caveats | None = None,
 ) -> None:
     """Write the files into ``folder``.
 
-    packings : how far references of different repeats are off their mean;  paces : seconds of a step of points of the
-    front, by their names.
+    packings : how far references of different repeats are off their mean;  caveats : what errors of points do not show.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    write_whole(folder / FRONT, front_json(about | {"packings": dict(packings)}, points, paces).encode())
+    write_whole(folder / FRONT, front_json(about | {"packings": dict(packings)}, points, caveats or {}).encode())
     write_whole(folder / f"{NAME}.csv", csv_text(points).encode())
     write_whole(folder / f"{NAME}.md", markdown(about, points, packings).encode())
-    write_whole(folder / f"{NAME}.png", picture(points, packings))
+    dear = about.get("reference", {}).get("core_seconds", 0.0)
+    write_whole(folder / f"{NAME}.png", picture(points, packings, dear))
 
 
 def csv_text(points: Sequence[Traded]) -> str:
@@ -95,8 +100,9 @@ def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def picture(points: Sequence[Traded], packings: Mapping[str, float]) -> bytes:
-    """Error over core-seconds, a colour for each knob, the front as a line, as a PNG."""
+def picture(points: Sequence[Traded], packings: Mapping[str, float], dear: float = 0.0) -> bytes:
+    """Error over core-seconds, a colour for each knob, the front as a line, as a PNG.  dear : core-seconds of the
+    reference, which has no error to show; 0 where there is none."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -118,6 +124,8 @@ def picture(points: Sequence[Traded], packings: Mapping[str, float]) -> bytes:
     if packings:
         floor = (sum(value**2 for value in packings.values()) / len(packings)) ** 0.5
         axes.axhline(100 * floor, color="grey", linestyle=":", linewidth=0.9, label="another packing")
+    if dear:
+        axes.axvline(dear, color="grey", linestyle="--", linewidth=0.9, label="what errors are held against")
     axes.set_xscale("log")
     axes.set_yscale("log")
     for axis in (axes.xaxis, axes.yaxis):

@@ -1,5 +1,10 @@
 """What a trade study asks: trade.toml beside a scene.
 
+draft = 0.1                         # error of a draft at most; as far as repeats of the reference are apart if absent
+
+[base]                              # what lies under every point, so that nothing hangs on the scene's quality levels
+settings = { fluid.spacing = "0.3 mm" }
+
 [over]                              # repeats of every point, whose scatter is what another packing changes
 key = "grains.packing.seed"
 values = [1, 2, 3]
@@ -33,7 +38,7 @@ import pydantic
 
 from porescale.ground.check import Fault, InputError
 from porescale.workbench import scene_file
-from porescale.workbench.points import Point, literal, named, settings_of
+from porescale.workbench.points import Point, flat, literal, named, settings_of
 from porescale.workbench.sections import Refused, Section, quantity, validate
 
 NAME = "trade.toml"
@@ -54,9 +59,11 @@ class Settings(Section):
 
 
 class Variant(Settings):
-    """A point of a knob.  label : in tables and pictures."""
+    """A point of a knob.  label : in tables and pictures;  but : what the errors asked for do not show, so that no
+    quality level is made of it."""
 
     label: str = pydantic.Field(min_length=1)
+    but: str = ""
 
 
 class Knob(Section):
@@ -105,6 +112,8 @@ class Quantity(Section):
 class Plan(Section):
     """A trade study."""
 
+    draft: float | None = quantity("", None, gt=0, help="error of a draft at most")
+    base: Settings = pydantic.Field(default_factory=Settings, description="what lies under every point")
     over: Over | None = None
     reference: Settings | None = None
     quantity: tuple[Quantity, ...] = pydantic.Field(min_length=1)
@@ -125,12 +134,16 @@ class Plan(Section):
         made: dict[tuple[str | None, tuple[str, ...]], tuple[str, str]] = {}
         for knob in self.knob:
             for variant in knob.point:
-                key = (variant.quality, settings_of(variant.settings))
+                key = self._over_base(variant)
                 before = made.get(key)
                 label = f"{knob.name} {variant.label}"
                 made[key] = (f"{before[0]}; {knob.name}", f"{before[1]}; {label}") if before else (knob.name, label)
         points = named([Point(label, settings, quality) for (quality, settings), (_, label) in made.items()])
         return [(knob, label, point) for (knob, label), point in zip(made.values(), points, strict=True)]
+
+    def caveats(self) -> dict[tuple[str | None, tuple[str, ...]], str]:
+        """What is to be said of points, by quality and settings."""
+        return {self._over_base(it): it.but for knob in self.knob for it in knob.point if it.but}
 
     def repeats(self, point: Point) -> list[Point]:
         """One point for each value of ``over``, or the point itself."""
@@ -147,7 +160,13 @@ class Plan(Section):
         """The run finer than all."""
         if self.reference is None:
             return None
-        return Point("reference", settings_of(self.reference.settings), self.reference.quality)
+        quality, settings = self._over_base(self.reference)
+        return Point("reference", settings, quality)
+
+    def _over_base(self, given: Settings) -> tuple[str | None, tuple[str, ...]]:
+        """Quality and settings of a point, laid over those of the base."""
+        settings = dict(flat(self.base.settings)) | dict(flat(given.settings))
+        return given.quality or self.base.quality, settings_of(settings)
 
 
 def read_plan(scene: Path, given: Path | None) -> tuple[Plan, Path]:

@@ -88,9 +88,10 @@ def made(folder: Path, name: str) -> Path:
         file.write_text('[[quantity]]\nname = "e"\ncolumn = "y"\nscale = 1\nexact = 2\n[[knob]]\nname = "k"\n'
                         '[[knob.point]]\nlabel = "1"\nsettings = { a.b = 1 }\n')  # fmt: skip
     elif part == "front.json":
-        file.write_text('{"format": 1, "machine": {"processor": "p"}, "date": "d", "points": [{"label": "a",'
+        file.write_text('{"format": 2, "machine": {"processor": "p"}, "date": "d", "points": [{"label": "a",'
                         '"on_front": true,'
-                        '"error": 0.1, "scatter": 0, "core_seconds": 1, "seconds": 1, "time": 1, "pace": 1,'
+                        '"error": 0.1, "scatter": 0, "core_seconds": 1, "besides": 1, "time": 1, "pace": 1,'
+                        '"errors": {}, "but": "",'
                         '"quality": null,'
                         '"settings": ["a.b=1"]}]}')  # fmt: skip
     return file

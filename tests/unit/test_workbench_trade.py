@@ -15,7 +15,7 @@ from porescale.ground.check import InputError
 from porescale.workbench import trade_files
 from porescale.workbench.campaign import Ended
 from porescale.workbench.commands.pick import _seconds, _share
-from porescale.workbench.front import FrontPoint, choose, pace_of, read_front
+from porescale.workbench.front import FrontPoint, Here, begun, choose, pace_of, read_front
 from porescale.workbench.points import Point
 from porescale.workbench.quantities import curve, measured
 from porescale.workbench.sections import validate
@@ -72,9 +72,9 @@ def tables(folder: Path, name: str) -> dict[str, np.ndarray]:
 
 
 def traded(error: float, seconds: float) -> Traded:
-    return Traded(
-        "k", f"{error:g}", Point(f"{error:g}", ()), "finished", {"q": error}, error, 0.0, seconds, seconds, 0, 1, 2.0
-    )
+    """A point whose steps take nine tenths of its core-seconds."""
+    return Traded("k", f"{error:g}", Point(f"{error:g}", ()), "finished", {"q": error}, error, 0.0, 0.9 * seconds, 77.0,
+                  0, 1, 2.0, 0.1 * seconds, 0.5)  # fmt: skip
 
 
 def test_a_plan_has_a_run_for_every_repeat_and_shares_what_two_knobs_have_in_common(tmp_path):
@@ -176,36 +176,36 @@ def test_the_front_is_what_nobody_beats():
     assert all(one.on_front for one in same)  # neither beats the other
 
 
-def written(tmp_path: Path, points: list[Traded], paces: dict[str, float]) -> Path:
+def written(tmp_path: Path, points: list[Traded]) -> Path:
     about = {"command": "toy study trade", "machine": {"processor": "abacus"}, "date": "2001-01-01"}
-    trade_files.write(tmp_path, about, front(points), {"q": 0.02}, paces)
+    trade_files.write(tmp_path, about, front(points), {"q": 0.02})
     return tmp_path / "scene.toml"
 
 
 def test_the_files_hold_every_point_and_say_which_are_on_the_front(tmp_path):
     worse = replace(traded(0.3, 9.0), outcome="unstable", error=math.inf, errors={"q": math.inf})
-    scene = written(tmp_path, [traded(0.1, 10.0), traded(0.2, 5.0), worse], {"0.1": 1e-3, "0.2": 5e-4})
+    scene = written(tmp_path, [traded(0.1, 10.0), traded(0.2, 5.0), worse])
     text = (tmp_path / "trade.md").read_text()
-    assert "| **0.1** | 10 |" in text
-    assert "| 0.3 | 9 | 0 | unstable |" in text
+    assert "| **0.1** | 9 |" in text
+    assert "| 0.3 | 8.1 | 0 | unstable |" in text
     assert "another packing" in text
     assert (tmp_path / "trade.png").read_bytes().startswith(b"\x89PNG")
     assert len((tmp_path / "trade.csv").read_text().splitlines()) == 4
     found = read_front(scene)
     assert [point.label for point in found.points] == ["0.2", "0.1"]  # from cheap to dear
-    assert (found.machine, found.points[0].pace) == ("abacus", 5e-4)
+    assert (found.machine, found.points[0].pace, found.points[0].errors) == ("abacus", 0.5, {"q": 0.2})
 
 
-@pytest.mark.parametrize("content", ["", "[]", "{}", '{"format": 1, "points": 3}', '{"format": 7}', "\x00"])
+@pytest.mark.parametrize("content", ["", "[]", "{}", '{"format": 2, "points": 3}', '{"format": 7}', "\x00"])
 def test_a_damaged_front_is_said(tmp_path, content):
     (tmp_path / "front.json").write_text(content)
     with pytest.raises(InputError, match=r"damaged|format"):
         read_front(tmp_path / "scene.toml")
 
 
-@pytest.mark.parametrize("key", ["pace", "seconds", "time", "error", "label"])
+@pytest.mark.parametrize("key", ["pace", "besides", "core_seconds", "time", "error", "label"])
 def test_a_point_without_a_number_is_damage(tmp_path, key):
-    scene = written(tmp_path, [traded(0.1, 10.0)], {"0.1": 1e-3})
+    scene = written(tmp_path, [traded(0.1, 10.0)])
     table = json.loads((tmp_path / "front.json").read_text())
     table["points"][0][key] = "x" if key != "label" else None
     if key == "label":
@@ -223,12 +223,12 @@ def test_no_front_says_how_to_get_one(tmp_path):
 @pytest.fixture
 def measured_front(tmp_path):
     points = [traded(0.2, 5.0), traded(0.1, 10.0), traded(0.01, 100.0)]
-    return read_front(written(tmp_path, points, {"0.2": 1.0, "0.1": 2.0, "0.01": 4.0}))
+    return read_front(written(tmp_path, points))
 
 
-def twice(point: FrontPoint) -> tuple[float, float | None]:
+def twice(point: FrontPoint) -> Here:
     """A machine half as fast as the one of the front."""
-    return 2.0 * point.pace, None
+    return Here(2.0 * point.pace, 2.0 * point.pace)
 
 
 def test_an_error_picks_the_cheapest_point_that_is_as_good(measured_front):
@@ -236,8 +236,10 @@ def test_an_error_picks_the_cheapest_point_that_is_as_good(measured_front):
     assert (choice.point.label, choice.seconds, choice.slowness) == ("0.1", 20.0, 2.0)
     assert choose(measured_front, 0.1, 20.0, twice).point.label == "0.1"
     assert "picked 0.1" in choice.line(measured_front)
-    longer = choose(measured_front, 0.15, None, lambda point: (2.0 * point.pace, 3.0 * point.time))
+    longer = choose(measured_front, 0.15, None, lambda point: replace(twice(point), end=3.0 * point.time))
     assert (longer.seconds, longer.slowness) == (60.0, 2.0)  # three times the time simulated, on the same machine
+    later = choose(measured_front, 0.15, None, lambda point: replace(twice(point), start=7.0))
+    assert (later.seconds, later.core_seconds) == (27.0, 18.0)  # start-up is said as it took here
     with pytest.raises(InputError, match="below the best"):
         choose(measured_front, 0.001, None, twice)
     with pytest.raises(InputError, match="is not enough for an error"):
@@ -252,6 +254,16 @@ def test_a_budget_picks_the_best_point_that_takes_no_longer_here(measured_front)
         choose(measured_front, None, 9.0, twice)
 
 
+def test_a_machine_that_others_use_makes_a_run_longer_but_not_dearer(measured_front):
+    shared = choose(measured_front, 0.15, None, lambda point: Here(3.0 * point.pace, point.pace))
+    assert (shared.seconds, shared.core_seconds) == (30.0, 9.0)
+
+
+def test_two_threads_hasten_steps_and_nothing_else(measured_front):
+    two = choose(measured_front, 0.15, None, lambda point: Here(0.5 * point.pace, point.pace))
+    assert (two.seconds, two.core_seconds) == (0.5 * 9.0 + 1.0, 9.0)
+
+
 def test_a_pace_is_that_of_steps_without_the_first_ones():
     class Slow:
         step = 0
@@ -260,8 +272,12 @@ def test_a_pace_is_that_of_steps_without_the_first_ones():
             self.step += steps
 
     model = Slow()
-    assert 0.0 < pace_of(model) < 1e-3
+    wall, core = pace_of(model)
+    assert 0.0 < core <= 1.01 * wall < 1e-3  # clocks tick apart
     assert model.step > 8
+    here = begun(Slow, 3.0)
+    assert here.end == 3.0
+    assert 0.0 < here.start < 1.0
 
 
 def test_shares_and_times_are_read_as_people_write_them():

@@ -12,14 +12,14 @@ from porescale.ground.check import Fault, InputError
 from porescale.workbench.package import Package
 
 if TYPE_CHECKING:
-    from porescale.workbench.front import Choice, FrontPoint
+    from porescale.workbench.front import Choice, FrontPoint, Here
 
 
 def pick(
     package: Package, scene: Path, error: str | None, budget: str | None, settings: Sequence[str], *, quiet: bool
 ) -> Choice:
     """The point, said on stderr with what to expect; InputError on wrong options, no front, or nothing that fits."""
-    from porescale.workbench.front import choose, pace_of, read_front
+    from porescale.workbench.front import begun, choose, read_front
     from porescale.workbench.scene_file import find
     from porescale.workbench.sections import open_scene
 
@@ -27,12 +27,12 @@ def pick(
     seconds = None if budget is None else _seconds(budget)
     front = read_front(find(scene))
 
-    def here(point: FrontPoint) -> tuple[float, float | None]:
-        """Seconds of a step of the point's scene, and the time it is to simulate, s, where its scene says that."""
+    def here(point: FrontPoint) -> Here:
+        """The beginning of the point's scene, and the time it is to simulate, s, where its scene says that."""
         overrides = (*point.settings, *settings)
         opened = open_scene(scene, package.scene(), quality=point.quality, overrides=overrides)
         end = getattr(getattr(opened.scene, "time", None), "end", None)
-        return pace_of(package.build(opened.scene)), end
+        return begun(lambda: package.build(opened.scene), end)
 
     choice = choose(front, allowed, seconds, here)
     if settings and not quiet:

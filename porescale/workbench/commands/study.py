@@ -1,4 +1,4 @@
-"""`study trade SCENE`, `study stability [FLOW…]`: where it stays stable and is right, `study extremes [WHAT…]`."""
+"""`study trade` and `levels SCENE`, `study stability [FLOW…]`: where it stays stable and is right, `study extremes`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from porescale.ground.check import Fault, InputError
-from porescale.workbench.commands import endurance, parts, trade
+from porescale.workbench.commands import endurance, levels, parts, trade
 from porescale.workbench.commands.options import Json, Threads, use_threads
 from porescale.workbench.folders import refuse_unwritable
 from porescale.workbench.package import Package
@@ -23,6 +23,7 @@ def command(package: Package) -> App:
     """The `study` command of a package, with a command for each kind of study."""
     app = App(name="study", help="Measure what accuracy costs, and where it can be trusted.")
     app.command(trade.command(package))
+    app.command(levels.command(package))
     if package.stability is not None:
         app.command(_stability(package))
     if package.extremes is not None:

@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
@@ -25,10 +25,6 @@ from porescale.workbench.commands.sweep import (
     say,
 )
 from porescale.workbench.package import Package
-
-if TYPE_CHECKING:
-    from porescale.workbench.points import Point
-    from porescale.workbench.trade import Traded
 
 
 def command(package: Package) -> Callable[..., int]:
@@ -76,7 +72,8 @@ def command(package: Package) -> Callable[..., int]:
         if code := conclude([ends[point.name] for point in truth]):
             say("the reference did not finish: nothing to hold the others against")
             return code
-        judge = Judge(asked, package.table, features, [ends[point.name] for point in truth])
+        judged = [ends[point.name] for point in truth]
+        judge = Judge(asked, package.table, features, judged)
         traded = front(
             [judge.trade(knob, label, point, [ends[one.name] for one in group])
              for (knob, label, point), group in zip(variants, groups, strict=True)]
@@ -86,9 +83,11 @@ def command(package: Package) -> Callable[..., int]:
         about = circumstances(package, shlex.join([*words, *laid_over(None, settings)]), threads or 1)
         about["quantities"] = [one.model_dump(mode="json", exclude_none=True) for one in asked.quantity]
         about["references"] = judge.told()
-        trade_files.write(
-            folder, about, traded, judge.packings(), paces(package, scene, traded, groups, settings or [])
-        )
+        if reference:
+            about["reference"] = trade_files.as_dict(judge.trade("", "reference", reference, judged))
+        if asked.draft is not None:
+            about["draft"] = asked.draft
+        trade_files.write(folder, about, traded, judge.packings(), asked.caveats())
         print(f"{folder / trade_files.FRONT}, {trade_files.NAME}.csv, .md, .png")
         return conclude(list(ends.values()))
 
@@ -104,19 +103,3 @@ def circumstances(package: Package, command: str, threads: int) -> dict[str, Any
         "machine": machine(),
         "date": datetime.now(UTC).date().isoformat(),
     }  # fmt: skip
-
-
-def paces(
-    package: Package, scene: Path, traded: list[Traded], groups: list[list[Point]], settings: list[str]
-) -> dict[str, float]:
-    """Seconds of a step at the start of each point of the front, by the point's name, taken on this machine."""
-    from porescale.workbench.front import pace_of
-    from porescale.workbench.sections import open_scene
-
-    made = {}
-    for one, group in zip(traded, groups, strict=True):
-        if one.on_front:
-            overrides = (*settings, *group[0].settings)
-            opened = open_scene(scene, package.scene(), quality=group[0].quality, overrides=overrides)
-            made[one.point.name] = pace_of(package.build(opened.scene))
-    return made
