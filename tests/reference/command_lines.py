@@ -15,6 +15,9 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from porescale.runs.film import write_film
+from tests.reference import grounds
+from tests.reference.pictures import photograph
 from tests.reference.spoiled import spoiled
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -32,12 +35,14 @@ SETTINGS = (
     "fluid.spacing", "time.end", "grains", "grains.packing", "grains.packing.diameter", "contact.stiffness", "gate.x",
     "domain.width", "output.snapshot_interval", "fluid.operator", "domain.left", "homogenise.grains", "a.b.c",
     "fluid[0]", "grains.grain[7].x", "disc[0].x", "tank.width", "numerics.spacing", "water.column[0].width",
-    "soil.material", "title",
+    "soil.material", "soil.permeability", "pile.tip", "reservoir[0].level", "air.density", "title",
 )  # fmt: skip
 SCENES = {
     "porescale": ("permeameter", "settling_disc", "piston", "lid_driven_cavity", "lifting_gate", "towed_cylinder"),
     "continuum_sph": ("hydrostatic_column", "bubble_in_water", "soil_column_collapse", "dry_slope"),
 }
+TRADED = {"porescale": "column_collapse", "continuum_sph": "collapsing_water_column"}
+"""Cases with what is asked of speed against accuracy, and what was found."""
 DECKS = ("demseg_disc", "demseg_clump", "demseg_chain")
 PARTS = ("card.json", "checkpoint.h5", "series.csv", "fields.vtkhdf", "grains.vtkhdf")
 
@@ -80,8 +85,11 @@ def _options(dice: random.Random) -> list[str]:
 def checked(dice: random.Random, folder: Path) -> Line:
     """A scene that is checked."""
     package = dice.choice(list(SCENES))
-    case = dice.choice(SCENES[package])
-    file = _spoil(dice, CASES / case / "scene.toml", folder / "scene.toml")
+    case = CASES / dice.choice(SCENES[package]) / "scene.toml"
+    if package == "continuum_sph" and dice.random() < 0.5:
+        case = folder / "sound.toml"
+        case.write_text(dice.choice(list(grounds.SCENES.values())))
+    file = _spoil(dice, case, folder / "scene.toml")
     where = dice.choice((str(file), str(folder), "scene.toml", "."))
     return Line(package, ("check", where, *_options(dice)))
 
@@ -114,6 +122,7 @@ def resumed(dice: random.Random, folder: Path) -> Line:
         ("run", "run/scene.toml", "--out", "run", "--resume", "--overwrite"),
         ("piv", "render", "run", "--out", "out", "--start", dice.choice(ODD), "--end", dice.choice(ODD)),
         ("piv", "render", "run", "--out", "out", "--scale", dice.choice(ODD)),
+        ("show", "run"),
     ]
     return Line("porescale", dice.choice(ways))
 
@@ -145,10 +154,12 @@ def pictured(dice: random.Random, folder: Path) -> Line:
         cv2.imwrite(str(folder / "sound.png"), image)
         _spoil(dice, folder / "sound.png", folder / name, 0.4)
     (folder / "sound.png").unlink()
-    (folder / "film.mp4").write_bytes(dice.randbytes(300))
-    films = dice.choice((("a.png", "b.png"), ("a.png",), ("film.mp4",), (".",), ("*.png",), ()))
+    sound = write_film(folder / "sound", (np.dstack([np.roll(image, shift)] * 3) for shift in range(3)), 10)
+    film = _spoil(dice, sound, folder / f"film{sound.suffix}", 0.1)
+    sound.unlink()
+    films = dice.choice((("a.png", "b.png"), ("a.png",), (film.name,), (film.name,), (".",), ("*.png",), ()))
     option = (dice.choice(("--window", "--overlap", "--search", "--region", "--scale")), dice.choice(ODD))
-    return Line("porescale", ("piv", "measure", *films, "--out", "out", *option))
+    return Line("porescale", ("piv", "measure", *films, "--out", "out", *(option if dice.random() < 0.5 else ())))
 
 
 def wrong_use(dice: random.Random, folder: Path) -> Line:
@@ -166,14 +177,75 @@ def wrong_use(dice: random.Random, folder: Path) -> Line:
     return Line("porescale", (first, *(dice.choice(ODD) for _ in range(dice.randrange(3)))))
 
 
+TABLES = {
+    "table.csv": 'name,fluid.spacing,gate.x\na,"1 mm",0.1\nb,2e-3,\n',
+    "table.toml": '[[point]]\nname = "a"\nfluid.spacing = "1 mm"\n[vary]\ngate.x = [0.1, 0.2]\n',
+}
+"""What a sweep may be asked."""
+
+
 def planned(dice: random.Random, folder: Path) -> Line:
     """A table of a sweep, spoilt, over a scene that none of its rows makes sound."""
-    file = folder / "scene.toml"
-    file.write_text("[domain]\nwidth = 1\nheight = 1\n")
-    (folder / "sound.csv").write_text('name,fluid.spacing,gate.x\na,"1 mm",0.1\nb,2e-3,\n')
-    _spoil(dice, folder / "sound.csv", folder / dice.choice(("table.csv", "table.toml")), 0.2)
-    (folder / "sound.csv").unlink()
-    return Line("porescale", ("sweep", "scene.toml", dice.choice(("table.csv", "table.toml")), "--out", "out"))
+    (folder / "scene.toml").write_text("[domain]\nwidth = 1\nheight = 1\n")
+    name = dice.choice(list(TABLES))
+    (folder / "sound").write_text(TABLES[name])
+    _spoil(dice, folder / "sound", folder / name, 0.2)
+    package = dice.choice(list(SCENES))
+    return Line(package, ("sweep", "scene.toml", name, "--out", "out"))
+
+
+def traded(dice: random.Random, folder: Path) -> Line:
+    """A front that a run is picked from, or a plan of a study, spoilt, beside a scene that is refused."""
+    package, wrong = dice.choice(list(TRADED)), ("--set", "title.wrong=1", "--out", "out")
+    for name in ("front.json", "trade.toml", "scene.toml"):
+        _spoil(dice, CASES / TRADED[package] / name, folder / name, 0.4)
+    share = dice.choice(ODD) if dice.random() < 0.3 else dice.choice(("5%", "0.3", "1e-9"))
+    time = dice.choice(ODD) if dice.random() < 0.3 else dice.choice(("3min", "90", "1e-9 s"))
+    ways = [
+        ("run", "scene.toml", "--error", share, *wrong, "--quiet"),
+        ("run", ".", "--budget", time, *wrong, "--quiet"),
+        ("run", "scene.toml", "--error", share, "--budget", time, *wrong),
+        ("study", "trade", "scene.toml", *wrong),
+        ("study", "trade", "scene.toml", "--plan", dice.choice(("trade.toml", "front.json", *ODD)), *wrong),
+    ]
+    return Line(package, dice.choice(ways))
+
+
+HEAP = """\
+[domain]
+width = 0.1
+height = 0.1
+[grains]
+density = 2650
+[grains.circles]
+{}
+[contact]
+stiffness = 1e5
+restitution = 0.5
+[time]
+end = 0.001
+[output]
+snapshot_interval = 0.001
+series_interval = 0.0005
+"""
+"""A scene whose grains stand in a file."""
+
+
+def heaped(dice: random.Random, folder: Path) -> Line:
+    """A scene of grains whose list of circles, or picture of them, is spoilt."""
+    name = dice.choice(("circles.csv", "circles.png"))
+    at, radius = np.array([[30.0, 20.0], [60.0, 20.0], [45.0, 60.0]]), np.full(3, 10.0)
+    if name == "circles.csv":
+        (folder / "sound").write_text("x,y,diameter\n" + "".join(f"{x},{y},20\n" for x, y in at))
+        how = 'file = "circles.csv"\nunit = "mm"'
+    else:
+        cv2.imwrite(str(folder / "sound.png"), photograph(at, radius, (100, 100)))
+        (folder / "sound.png").rename(folder / "sound")
+        how = 'file = "circles.png"\npixel = "1 mm"\nsmallest = "15 mm"\nlargest = "25 mm"\npart = true'
+    _spoil(dice, folder / "sound", folder / name, 0.2)
+    (folder / "scene.toml").write_text(HEAP.format(how))
+    more = ("--set", f"grains.circles.file={dice.choice(ODD)}") if dice.random() < 0.2 else ()
+    return Line("porescale", ("check", "scene.toml", *more))
 
 
 def grounded(dice: random.Random, folder: Path) -> Line:
@@ -185,5 +257,5 @@ def grounded(dice: random.Random, folder: Path) -> Line:
 
 
 KINDS = (checked, checked, checked, refused, refused, resumed, deck, compared, pictured, wrong_use, wrong_use, planned,
-         grounded)  # fmt: skip
+         grounded, traded, traded, heaped)  # fmt: skip
 """The more often, the more there is to get wrong."""
