@@ -12,6 +12,7 @@ minus : another column to take away;  where : {column: value} of the rows to loo
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from fnmatch import fnmatchcase
 from typing import Any
@@ -22,6 +23,10 @@ from numpy.typing import NDArray
 Columns = Mapping[str, NDArray[Any]]
 
 TIME = "time (s)"
+WHERE = ("end", "max", "min")
+"""Words that say where to read."""
+SHARES = ("fall", "peak")
+"""What a column may be a share of."""
 
 
 def measured(columns: Columns, row: Mapping[str, Any]) -> float:
@@ -88,6 +93,33 @@ LATE: dict[str, Callable[[NDArray[Any], NDArray[Any]], float]] = {
     "period_from": _period,
 }
 """What is taken of the rows from a time on, by key."""
+
+
+def wrong(row: Mapping[str, Any]) -> str:
+    """What is wrong with how a row says what to read, "" if nothing is; a table may still lack its columns."""
+    for key in ("name", "column", "minus", "unit", "file"):
+        if not isinstance(row.get(key, ""), str):
+            return f"{key} is no text"
+    if not isinstance(row.get("where", {}), Mapping):
+        return "where is no table"
+    at = row["at"]
+    if isinstance(at, str):
+        return "" if at in WHERE else f"at is none of {', '.join(WHERE)}, a time or a table"
+    if not isinstance(at, Mapping):
+        return "" if _is_number(at) else "at is no time"
+    falls, known = ("first_below", "last_above"), (*LATE, "quantile", "first_below", "last_above")
+    chosen = [key for key in at if key != "share_of"]
+    if len(chosen) != 1 or chosen[0] not in known:
+        return f"at has not one of {', '.join(known)}"
+    if not _is_number(at[chosen[0]]) or (chosen[0] == "quantile" and not 0 <= at["quantile"] <= 1):
+        return f"at.{chosen[0]} is out of range"
+    if "share_of" in at and (chosen[0] not in falls or at["share_of"] not in SHARES):
+        return f"at.share_of is none of {', '.join(SHARES)}, with {' or '.join(falls)}"
+    return ""
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def curve(columns: Columns, row: Mapping[str, Any]) -> tuple[NDArray[Any], NDArray[Any]]:

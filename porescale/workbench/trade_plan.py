@@ -39,6 +39,7 @@ import pydantic
 from porescale.ground.check import Fault, InputError
 from porescale.workbench import scene_file
 from porescale.workbench.points import Point, flat, literal, named, settings_of
+from porescale.workbench.quantities import wrong
 from porescale.workbench.sections import Refused, Section, quantity, validate
 
 NAME = "trade.toml"
@@ -96,6 +97,8 @@ class Quantity(Section):
             raise Refused(Fault("exact", self.exact, "is a number, what is measured a curve or field"))
         if (self.is_curve or self.feature) and not (self.at == "end" or isinstance(self.at, float)):
             raise Refused(Fault("at", str(self.at), "is not when to look at a curve or field", "s", 'a time or "end"'))
+        if problem := wrong(self.row()):
+            raise Refused(Fault("quantity", self.name, problem))
         return self
 
     @property

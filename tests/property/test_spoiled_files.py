@@ -18,13 +18,18 @@ from porescale.dem.packing import read_circles, read_packing, write_packing
 from porescale.ground.card import read_card
 from porescale.ground.check import Fault, InputError
 from porescale.piv.field import read as read_field
-from porescale.piv.film import picture
+from porescale.piv.film import open_film, picture
 from porescale.runs.checkpoint import read_checkpoint, write_checkpoint
+from porescale.runs.film import write_film
 from porescale.runs.open_run import open_run
+from porescale.scene.packing import Circles
+from porescale.workbench.commands.sweep import expected
 from porescale.workbench.front import read_front
 from porescale.workbench.points import read_points
 from porescale.workbench.sections import open_scene
 from porescale.workbench.trade_plan import read_plan
+from tests.reference import grounds
+from tests.reference.pictures import photograph
 from tests.reference.spoiled import spoiled
 from tests.reference.toy_model import run_toy
 
@@ -64,6 +69,11 @@ def made(folder: Path, name: str) -> Path:
     if kind == "deck":
         case, _, part = part.partition("/")
         return deck(case)(folder) / part
+    if kind == "ground":
+        file.write_text(grounds.SCENES[file.stem])
+    elif part == "material.toml":
+        shutil.copy(CASES / "micro_to_macro" / "ground.toml", folder / "scene.toml")
+        shutil.copy(CASES / "micro_to_macro" / part, file)
     if kind == "run":
         run_toy(folder / "run")
         return folder / "run" / part
@@ -80,6 +90,12 @@ def made(folder: Path, name: str) -> Path:
         file.write_text("# x y u v flags mask\n" + "".join(f"{x} {y} 1 2 0 0\n" for y in (8, 16) for x in (8, 16)))
     elif part == "picture.png":
         cv2.imwrite(str(file), np.arange(64 * 64, dtype=np.uint8).reshape(64, 64))
+    elif part == "circles.png":
+        at, radius = np.array([[30.0, 20.0], [60.0, 20.0], [45.0, 60.0]]), np.full(3, 10.0)
+        cv2.imwrite(str(file), photograph(at, radius, (80, 90)))
+    elif part == "film.mp4":
+        grey = np.arange(64 * 64, dtype=np.uint8).reshape(64, 64)
+        write_film(folder / "film", (np.dstack([np.roll(grey, k)] * 3) for k in range(4)), 10).rename(file)
     elif part == "points.csv":
         file.write_text('name,fluid.spacing,gate.x\na,"1 mm",0.1\nb,2e-3,\n')
     elif part == "points.toml":
@@ -87,6 +103,8 @@ def made(folder: Path, name: str) -> Path:
     elif part == "trade.toml":
         file.write_text('[[quantity]]\nname = "e"\ncolumn = "y"\nscale = 1\nexact = 2\n[[knob]]\nname = "k"\n'
                         '[[knob.point]]\nlabel = "1"\nsettings = { a.b = 1 }\n')  # fmt: skip
+    elif part == "expected.toml":
+        shutil.copy(CASES / "lifting_gate" / part, file)
     elif part == "front.json":
         file.write_text('{"format": 2, "machine": {"processor": "p"}, "date": "d", "points": [{"label": "a",'
                         '"on_front": true,'
@@ -97,11 +115,18 @@ def made(folder: Path, name: str) -> Path:
     return file
 
 
+SIZES = {"pixel": 1e-3, "smallest": 0.015, "largest": 0.025}
+"""Of the discs in a picture, m."""
 READERS: dict[str, Read] = {
     "scene:column_collapse": scene_of(PORESCALE),
     "scene:lifting_gate": scene_of(PORESCALE),
     "scene:permeameter": scene_of(PORESCALE),
     "scene:bubble_in_water": scene_of(CONTINUUM),
+    "scene:trapped_air": scene_of(CONTINUUM),
+    "ground:pile.toml": scene_of(CONTINUUM),
+    "ground:air.toml": scene_of(CONTINUUM),
+    "ground:bubble.toml": scene_of(CONTINUUM),
+    "of ground:material.toml": lambda file: scene_of(CONTINUUM)(file.parent / "scene.toml"),
     "deck:demseg_chain/in_gm.dat": lambda file: read_deck(file.parent),
     "deck:demseg_chain/in_bc.dat": lambda file: read_deck(file.parent),
     "run:card.json": lambda file: read_card(file.parent),
@@ -110,12 +135,15 @@ READERS: dict[str, Read] = {
     "run:grains.vtkhdf": lambda file: whole_run(file.parent),
     "of grains:circles.csv": lambda file: read_circles(file, "m"),
     "of grains:packing.h5": read_packing,
+    "of grains:circles.png": lambda file: Circles(file=file.name, **SIZES).grains(file.parent),
     "of a run:checkpoint.h5": read_checkpoint,
     "of film:field.csv": read_field,
     "of film:field.txt": read_field,
     "of film:picture.png": picture,
+    "of film:film.mp4": lambda file: list(open_film([file])),
     "of a sweep:points.csv": read_points,
     "of a sweep:points.toml": read_points,
+    "of a sweep:expected.toml": lambda file: expected(file.parent / "scene.toml"),
     "of a study:trade.toml": lambda file: read_plan(file.parent / "scene.toml", None),
     "of a study:front.json": lambda file: read_front(file.parent / "scene.toml"),
 }

@@ -12,7 +12,7 @@ import pytest
 from porescale.ground.check import InputError
 from porescale.workbench import sweep_files
 from porescale.workbench.campaign import Campaign, Ended
-from porescale.workbench.commands.sweep import refuse_wrong_points
+from porescale.workbench.commands.sweep import expected, refuse_wrong_points
 from porescale.workbench.points import Point, crossed, named, read_points, varied
 from tests.reference.toy_package import TOY
 
@@ -197,3 +197,34 @@ def test_a_number_that_cannot_be_had_is_none(tmp_path):
     assert np.isnan(sweep_files.number(ended, {"column": "left (m)", "at": "begin"}, TOY.table))
     assert np.isnan(sweep_files.number(ended, {"column": "left (m)", "at": "end", "file": "lines"}, TOY.table))
     assert sweep_files.number(ended, {"column": "left (m)", "at": "end"}, TOY.table) == pytest.approx(np.exp(-1))
+
+
+SOUND = ['"end"', '"min"', "0.5", "{ max_from = 6 }", '{ first_below = 0.5, share_of = "fall" }', "{ quantile = 0.9 }"]
+TORN = ['"ends"', "nan", "true", "[1]", "{}", '{ max_from = "6" }', "{ max_from = 6, min_from = 2 }",
+        "{ quantile = 9 }", '{ max_from = 6, share_of = "fall" }', '{ first_below = 1, share_of = "all" }']  # fmt: skip
+
+
+def asks(folder: Path, at: str) -> list[dict[str, object]]:
+    """What expected.toml asks of a sweep, beside a row without a place to read."""
+    row = f'[[expected]]\nname = "n"\ncolumn = "y (m)"\nat = {at}\n[[expected]]\nname = "by a script"\nvalue = 1\n'
+    (folder / "expected.toml").write_text(row)
+    return expected(folder / "scene.toml")
+
+
+@pytest.mark.parametrize("at", SOUND)
+def test_what_is_expected_is_asked_of_every_point(tmp_path, at):
+    assert [row["name"] for row in asks(tmp_path, at)] == ["n"]
+
+
+@pytest.mark.parametrize("at", TORN)
+def test_what_cannot_be_read_is_refused_before_anything_runs(tmp_path, at):
+    with pytest.raises(InputError, match="expected 'n': at"):
+        asks(tmp_path, at)
+
+
+def test_an_expectation_that_is_no_table_is_refused(tmp_path):
+    assert expected(tmp_path / "scene.toml") == []
+    for text, said in (("expected = 3", "no list of tables"), ("[[expected", "line 1")):
+        (tmp_path / "expected.toml").write_text(text)
+        with pytest.raises(InputError, match=said):
+            expected(tmp_path / "scene.toml")

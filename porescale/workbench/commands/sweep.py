@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shlex
 import sys
-import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -142,12 +141,24 @@ def module_of(package: Package) -> str:
 
 
 def expected(scene: Path) -> list[dict[str, Any]]:
-    """The rows of expected.toml beside the scene file, none where there is none."""
+    """The rows of expected.toml beside the scene file that say where to read a number, none where there is none.
+
+    Raises InputError with what is wrong with any of them.
+    """
+    from porescale.workbench.quantities import wrong
+    from porescale.workbench.scene_file import read
+
     file = scene.parent / "expected.toml"
     if not file.is_file():
         return []
-    rows: list[dict[str, Any]] = tomllib.loads(file.read_text(encoding="utf-8")).get("expected", [])
-    return [row for row in rows if {"name", "column", "at"} <= row.keys()]
+    rows = read(file).get("expected", [])
+    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+        raise InputError(Fault("expected", None, "is no list of tables", repair="write [[expected]]", file=str(file)))
+    asked = [row for row in rows if {"name", "column", "at"} <= row.keys()]
+    faults = [Fault(f"expected {row['name']!r}", None, said, file=str(file)) for row in asked if (said := wrong(row))]
+    if faults:
+        raise InputError(faults)
+    return asked
 
 
 def columns_at_end(package: Package, ends: Sequence[Ended]) -> list[dict[str, Any]]:
