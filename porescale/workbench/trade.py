@@ -145,8 +145,10 @@ def rms(values: Any) -> float:
 
 def costs(ends: Sequence[Ended]) -> tuple[float, float, float, int, float, float, float]:
     """Core-seconds, seconds, bytes, steps, simulated time, core-seconds besides, pace: means over runs that say them;
-    seconds stand in for core-seconds, all steps for the first ones.
+    seconds stand in for core-seconds, all steps for the first ones.  Where some say their pace, costs are those of
+    these runs: a pace goes with the core-seconds of its own run, since machines have better and worse hours.
     """
+    ends = [ended for ended in ends if ended.card.get("core_pace")] or ends
 
     def mean(key: str) -> float:
         known = [float(ended.card[key]) for ended in ends if ended.card.get(key)]
