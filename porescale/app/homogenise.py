@@ -117,7 +117,7 @@ def _pores(folder: Path, ratio: float, cells: int) -> dict[str, float]:
         known = json.loads(kept.read_text(encoding="utf-8"))
         if known["of"] == of:
             return {str(name): float(value) for name, value in known["numbers"].items()}
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         pass  # not there, torn or of another question: measured anew
     run = open_run(folder)
     side = float(run.card["scene"]["domain"]["width"])

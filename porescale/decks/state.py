@@ -43,7 +43,7 @@ def read_state(path: Path) -> dict[str, Any]:
         at += 1
         if not head:
             continue
-        if len(head) < 2 or head[1] not in TYPES or not all(word.isdigit() for word in head[2:]):
+        if len(head) < 2 or head[1] not in TYPES or not all(word.isdecimal() and len(word) < 10 for word in head[2:]):
             raise _damaged(path, first, lines[first - 1][:40], f"a name, one of {', '.join(TYPES)}, and lengths")
         shape = tuple(int(word) for word in head[2:])
         count, words = int(np.prod(shape, dtype=np.int64)), list[str]()

@@ -29,6 +29,8 @@ SIDE = 1024
 """px of the longer side of a picture, where nothing else is asked for."""
 LARGEST = 4096
 """px a side, at most."""
+LONGEST = 100_000
+"""Frames of a film, at most."""
 
 
 @dataclass(frozen=True)
@@ -78,18 +80,22 @@ def shooting(run: Run, shot: Shooting) -> Shooting:
     """``shot`` with the picture's size from the run's domain.  InputError where there is nothing to film."""
     grid = grid_of(run)
     (dx, dy), (ny, nx) = grid.spacing, grid.shape
-    size = (round(ny * dy / shot.scale), round(nx * dx / shot.scale))
+    most = 1e9 * shot.scale  # beyond all sense, but a whole number of pixels
+    size = tuple(round(min(side, most) / shot.scale) if shot.scale > 0 else 0 for side in (ny * dy, nx * dx))
     faults = []
     if min(size) < 32 or max(size) > LARGEST:
         given = f"{size[1]} x {size[0]}"
         faults.append(Fault("--scale", shot.scale, f"gives pictures of {given} px", "m", f"32 to {LARGEST} px a side"))
     if shot.interval <= 0 or shot.end <= shot.start:
         faults.append(Fault("--interval", shot.interval, "leaves no frames between --start and --end", "s"))
+    elif (shot.end - shot.start) / shot.interval > LONGEST:
+        problem = f"makes more than {LONGEST} frames between --start and --end"
+        faults.append(Fault("--interval", shot.interval, problem, "s", "", "take a longer one"))
     if not 0 <= shot.exposure <= 1:
         faults.append(Fault("--exposure", shot.exposure, "is out of range", allowed="0 to 1"))
     if faults:
         raise InputError(faults)
-    camera = replace(shot.camera, size=size)
+    camera = replace(shot.camera, size=(size[0], size[1]))
     camera.check()
     return replace(shot, camera=camera)
 

@@ -59,7 +59,7 @@ class Bonds(Section):
         faults = []
         for k, word in enumerate(self.bodies):
             kind, _, number = word.partition(" ")
-            if kind not in KINDS or (number and not number.isdigit()):
+            if kind not in KINDS or (number and not (number.isdecimal() and len(number) < 10)):
                 allowed = ", ".join(KINDS)
                 faults.append(Fault(f"bodies[{k}]", word, "names no body", "", allowed, 'write "grain", or "grain 3"'))
         if self.within and not (self.within[0] < self.within[2] and self.within[1] < self.within[3]):

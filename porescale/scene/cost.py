@@ -82,6 +82,6 @@ def _file() -> Path:
 def _slowness() -> float | None:
     try:
         value = float(json.loads(_file().read_text())["slowness"])
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
     return value if math.isfinite(value) and value > 0 else None

@@ -56,10 +56,14 @@ def translate(error: ValidationError, scene_type: type[BaseModel], data: Mapping
     return found
 
 
+LONGEST_INDEX = 9
+"""Digits: what is longer counts nothing, and is a name."""
+
+
 def parse_key(text: str) -> Key:
     """``grains[1].radius`` or ``grains.1.radius`` as ``("grains", 1, "radius")``."""
     parts = text.replace("[", ".").replace("]", "").split(".")
-    return tuple(int(part) if part.isdigit() else part for part in parts)
+    return tuple(int(part) if part.isdecimal() and len(part) <= LONGEST_INDEX else part for part in parts)
 
 
 def _placed(key: Key, fault: Fault) -> tuple[Key, Fault]:

@@ -63,6 +63,8 @@ def read(file: Path) -> dict[str, Any]:
         raise InputError(
             Fault(f"line {line}", problem="is not UTF-8 text", repair="save it as UTF-8", file=str(file))
         ) from None
+    except ValueError as error:  # a number of thousands of digits
+        raise InputError(Fault("TOML", problem=str(error).partition(";")[0], file=str(file))) from None
     except OSError as error:
         raise InputError(Fault(str(file), problem=f"cannot be read ({error.strerror})")) from None
 
@@ -112,11 +114,17 @@ def parse_setting(text: str) -> tuple[Key, Any]:
                 repair="write it as --set fluid.spacing=0.001",
             )
         )
+    key = parse_key(name.strip())
     try:
         parsed = tomllib.loads(f"value = {value}")
-    except tomllib.TOMLDecodeError:
+        if len(key) > DEEPEST or _deeper(parsed, DEEPEST):
+            raise RecursionError
+    except RecursionError:
+        problem = "has tables or lists within each other without end"
+        raise InputError(Fault(f"{name[:20]}…", None, problem, "", f"<= {DEEPEST} levels", file="--set")) from None
+    except ValueError:  # no TOML
         parsed = {}
-    return parse_key(name.strip()), parsed["value"] if parsed.keys() == {"value"} else value.strip()
+    return key, parsed["value"] if parsed.keys() == {"value"} else value.strip()
 
 
 def assign(table: Mapping[str, Any], key: Key, value: Any) -> dict[str, Any]:

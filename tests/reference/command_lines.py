@@ -31,6 +31,14 @@ ODD = (
     "9" * 30, "1_0", "0x10", "true", "1,2", "1;2", ".", "..", "*", "?", "con", "\udcff",
 )  # fmt: skip
 """Values that options and names may be given."""
+WITHOUT_END = (
+    "a." * 2000 + "b=1",
+    "a=" + "[" * 5000,
+    "a=" + "9" * 5000,
+    f"a[{'9' * 5000}]=1",
+    "a.\N{SUPERSCRIPT TWO}=1",
+)
+"""Settings that nest, or count, too far."""
 SETTINGS = (
     "fluid.spacing", "time.end", "grains", "grains.packing", "grains.packing.diameter", "contact.stiffness", "gate.x",
     "domain.width", "output.snapshot_interval", "fluid.operator", "domain.left", "homogenise.grains", "a.b.c",
@@ -76,7 +84,7 @@ def _options(dice: random.Random) -> list[str]:
     for _ in range(dice.choice((0, 0, 0, 1, 2))):
         words += ["--set", f"{dice.choice(SETTINGS)}={dice.choice((*ODD, '1', '0.001', '1 mm'))}"]
     if dice.random() < 0.1:
-        words += ["--set", dice.choice(ODD)]
+        words += ["--set", dice.choice((*ODD, *WITHOUT_END))]
     if dice.random() < 0.2:
         words += ["--quality", dice.choice(("draft", "fine", *ODD))]
     return words
@@ -122,6 +130,7 @@ def resumed(dice: random.Random, folder: Path) -> Line:
         ("run", "run/scene.toml", "--out", "run", "--resume", "--overwrite"),
         ("piv", "render", "run", "--out", "out", "--start", dice.choice(ODD), "--end", dice.choice(ODD)),
         ("piv", "render", "run", "--out", "out", "--scale", dice.choice(ODD)),
+        ("piv", "render", "run", "--out", "out", "--interval", dice.choice(ODD)),
         ("show", "run"),
     ]
     return Line("porescale", dice.choice(ways))

@@ -132,6 +132,8 @@ def test_frames_are_written_and_the_same_for_the_same_seed(run, tmp_path):
 def test_what_cannot_be_filmed_is_refused(run):
     for changes, words in (
         ({"scale": 1.0}, "--scale"),
+        ({"scale": 1e-320}, "--scale"),
+        ({"interval": 1e-320}, "more than"),
         ({"end": 0.0}, "--interval"),
         ({"exposure": 2.0}, "--exposure"),
     ):

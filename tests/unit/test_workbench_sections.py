@@ -339,11 +339,24 @@ def test_what_is_assigned_is_found_there(table: dict, names: list[str], value: i
     assert assigned == value
 
 
-@given(st.lists(st.one_of(st.from_regex(r"[a-z_]+", fullmatch=True), st.integers(0, 99)), min_size=1))
+@given(st.lists(st.one_of(st.from_regex(r"[a-z_]+", fullmatch=True), st.integers(0, 99)), min_size=1, max_size=20))
 def test_keys_written_and_parsed_are_the_same(parts: list) -> None:
     key = ("root", *parts)
     assert parse_key(dotted(key)) == key
     assert parse_setting(f"{dotted(key)}=1") == (key, 1)
+
+
+@pytest.mark.parametrize("text", ["a." * 2000 + "b=1", "a=" + "[" * 5000, "a=" + "[" * 100 + "]" * 100])
+def test_what_is_nested_without_end_is_refused(text: str) -> None:
+    with pytest.raises(InputError, match="without end"):
+        parse_setting(text)
+
+
+def test_digits_that_count_nothing_are_text() -> None:
+    digits = "9" * 5000  # more than Python makes a number of
+    assert parse_setting(f"a={digits}") == (("a",), digits)
+    assert parse_setting(f"a.{digits}=1") == (("a", digits), 1)
+    assert parse_setting("a.\N{SUPERSCRIPT TWO}=1") == (("a", "\N{SUPERSCRIPT TWO}"), 1)
 
 
 def test_all_keys_of_a_scene_are_known() -> None:
