@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from porescale.runs.drive import Outcome
     from porescale.runs.model import Array, Model
     from porescale.workbench.benchmarks import Benchmarks
+    from porescale.workbench.endurance import Endurances
     from porescale.workbench.extremes import Extremes
     from porescale.workbench.parts import Kinds
     from porescale.workbench.report import Report
@@ -173,6 +174,13 @@ def extremes() -> Extremes:
     return EXTREMES
 
 
+def endurance() -> Endurances:
+    """What runs for a million steps."""
+    from continuum_sph.scene.endurance import ENDURANCES
+
+    return ENDURANCES
+
+
 def parts() -> Kinds:
     """Kinds of scenes for `study parts`."""
     from continuum_sph.scene.parts import KINDS
@@ -194,6 +202,7 @@ PACKAGE = Package(
     validations=validations,
     benchmarks=benchmarks,
     extremes=extremes,
+    endurance=endurance,
     parts=parts,
 )
 

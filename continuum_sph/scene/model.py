@@ -11,6 +11,7 @@ from continuum_sph.energy import book
 from continuum_sph.law import RULES
 from continuum_sph.scene.bubble import bubble
 from continuum_sph.scene.build import flow_of, water_of
+from continuum_sph.scene.health import Leaps, refuse_no_numbers
 from continuum_sph.scene.instruments import Cloud, tables
 from continuum_sph.scene.sections import Scene
 from continuum_sph.step import Flow
@@ -33,6 +34,7 @@ class Simulation:
         """flow : that of the scene's water where soil has it made."""
         self.scene = scene
         self.flow: Flow = flow or flow_of(scene)
+        self.leaps = Leaps(scene.numerics.spacing)
         self.refresh()
 
     def refresh(self) -> None:
@@ -40,6 +42,7 @@ class Simulation:
         self.step: int = self.flow.step
         self.time: float = self.flow.time
         self.step_seconds: float = self.flow.next_step
+        self.leaps.went(self.time, self.flow.swiftest)
 
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps; Unstable when a position is no number any more."""
@@ -61,15 +64,17 @@ class Simulation:
         return inside
 
     def check(self) -> None:
-        """Raise Unstable when a particle is nowhere, or water in the tank is faster than sound or too dense to mean
-        anything.
+        """Raise Unstable when a particle is nowhere or where none could have come to, or water in the tank is faster
+        than sound or too dense to mean anything.
         """
         layer, tait = self.flow.layer, water_of(self.scene)
-        for name, unit, array in (("position", "m", layer.x), ("velocity", "m/s", layer.v), ("density", "kg/m³",
-                                  layer.density[:, None])):  # fmt: skip
-            nowhere = np.flatnonzero(~np.isfinite(array[: layer.fluid]).all(axis=1))
-            if nowhere.size:
-                raise Unstable(f"particle {nowhere[0]}", name, float("nan"), unit, self.step, self.time, REPAIR)
+        n = layer.fluid
+        recorded = {
+            "position": ("m", layer.x[:n]), "velocity": ("m/s", layer.v[:n]), "density": ("kg/m³", layer.density),
+            "mass": ("kg/m", layer.mass[:n]), "pressure": ("Pa", layer.pressure[:n]), "energy": ("J/m", layer.energy),
+        }  # fmt: skip
+        refuse_no_numbers(recorded, self.step, self.time, REPAIR)
+        self.leaps.check(layer.x[:n], layer.mass[:n], self.step, self.time, REPAIR)
         inside = np.flatnonzero(self.inside() & (layer.material[: layer.fluid] == 0))
         speed = np.hypot(layer.v[inside, 0], layer.v[inside, 1])
         ratio = layer.density[inside] / tait.density
@@ -148,4 +153,5 @@ class Simulation:
     def restore(self, state: dict[str, Any]) -> None:
         """Go on bit for bit from a state of a model of the same scene."""
         self.flow.restore(state["flow"])
+        self.leaps.forget()
         self.refresh()

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from continuum_sph.scene.air_build import AIR as GAS
 from continuum_sph.scene.air_build import air_rows
+from continuum_sph.scene.health import refuse_no_numbers
 from continuum_sph.scene.instruments import Cloud, discharge, tables
-from continuum_sph.scene.model import Simulation
+from continuum_sph.scene.model import REPAIR, Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.seepage_build import seepage_of
 from continuum_sph.scene.soil_model import SoilSimulation
@@ -22,6 +23,9 @@ from porescale.runs.model import Snapshot
 
 WATER, DRY, WET, AIR = range(4)
 """Values of "layer" in a snapshot's particles: water, soil whose pores are less than half full, other soil, air."""
+
+HIGHER = 0.1
+"""Share of the tank's height by which the water of a reservoir may stand over it: splashes."""
 
 
 def chosen(cloud: Points, rows: NDArray[np.bool_]) -> Points:
@@ -41,6 +45,7 @@ class SeepageSimulation:
         assert isinstance(ground, SoilFlow)
         self.water = Simulation(scene, self.both.water)
         self.soil = SoilSimulation(scene, ground)
+        self.water.leaps.strips = [(it.left, it.right) for it in scene.reservoir]
         self.refresh()
 
     def refresh(self) -> None:
@@ -65,9 +70,25 @@ class SeepageSimulation:
             self.refresh()
 
     def check(self) -> None:
-        """Raise Unstable when water or soil has left what makes sense."""
+        """Raise Unstable when water, soil, the pores between them or a reservoir has left what makes sense."""
         self.water.check()
         self.soil.check()
+        flow = self.both.water
+        recorded = {"porosity about": ("", flow.porosity), "room about": ("", flow.room),
+                    "heat of drag": ("J/m", flow.heat), "seepage": ("m/s", flow.slip)}  # fmt: skip
+        refuse_no_numbers(recorded, self.step, self.time, REPAIR)
+        wrong = np.flatnonzero((flow.porosity <= 0.0) | (flow.porosity > 1.0))
+        if wrong.size:
+            at = int(wrong[0])
+            raise Unstable(
+                f"particle {at}", "porosity about", float(flow.porosity[at]), "", self.step, self.time, REPAIR
+            )
+        for pool in self.both.supply.reservoirs if self.both.supply else ():
+            if not pool.bottom - HIGHER <= pool.level <= self.scene.tank.height * (1.0 + HIGHER):
+                raise Unstable(
+                    f"reservoir {pool.name}", "level", pool.level, "m", self.step, self.time,
+                    "its strip is too narrow, or water comes in faster than it leaves: widen it",
+                )  # fmt: skip
 
     def series(self) -> dict[str, float]:
         """One row: that of the water, and of the soil what it does not share with it."""

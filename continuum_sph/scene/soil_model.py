@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from continuum_sph.scene.health import Leaps, refuse_no_numbers
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil_build import soil_flow
 from continuum_sph.soil import SoilFlow, porosity
@@ -15,6 +16,7 @@ from continuum_sph.soil.state import XX, XY, YY, ZZ
 from porescale.ground.check import Unstable
 from porescale.runs.model import Cloud, Snapshot
 
+REPAIR = "raise soil.stiffness or soil.numerics.damping, or lower numerics.courant"
 DEEPEST = 0.5  # of a porosity at the start, left when soil is pressed together beyond sense
 
 
@@ -29,6 +31,7 @@ class SoilSimulation:
         self.flow: SoilFlow = flow or soil_flow(scene)
         self.first = self.flow.soil.x[: self.flow.soil.soil].copy()  # (soil, 2) m, where displacements count from
         self.counted = scene.soil is not None and scene.soil.numerics.settle == 0.0
+        self.leaps = Leaps(self.flow.law.spacing)
         self.refresh()
 
     def refresh(self) -> None:
@@ -36,6 +39,7 @@ class SoilSimulation:
         self.step: int = self.flow.step
         self.time: float = self.flow.time
         self.step_seconds: float = self.flow.next_step
+        self.leaps.went(self.time, self.flow.swiftest)
 
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps; Unstable when a position is no number any more."""
@@ -57,8 +61,17 @@ class SoilSimulation:
             self.counted = True
 
     def check(self) -> None:
-        """Raise Unstable when soil is faster than its own sound or denser than its grains."""
+        """Raise Unstable when soil is nowhere or where none could have come to, faster than its own sound or denser
+        than its grains.
+        """
         soil, n = self.flow.soil, self.flow.soil.soil
+        recorded = {
+            "position": ("m", soil.x[:n]), "velocity": ("m/s", soil.v[:n]), "density": ("kg/m³", soil.density),
+            "mass": ("kg/m", soil.mass[:n]), "stress": ("Pa", soil.stress[:n]), "plastic strain": ("", soil.plastic),
+            "opening": ("", soil.opening),
+        }  # fmt: skip
+        refuse_no_numbers(recorded, self.step, self.time, REPAIR, "soil particle")
+        self.leaps.check(soil.x[:n], soil.mass[:n], self.step, self.time, REPAIR)
         speed = np.hypot(soil.v[:n, 0], soil.v[:n, 1])
         sound = self.flow.pace * self.flow.law.smoothing.length
         left = porosity(soil.density, soil.material[:n], self.flow.table)
@@ -71,7 +84,7 @@ class SoilSimulation:
                 at = bad[0]
                 raise Unstable(
                     f"particle {at} at ({soil.x[at, 0]:.4g}, {soil.x[at, 1]:.4g}) m", name, float(values[at]), unit,
-                    self.step, self.time, "raise soil.stiffness or soil.numerics.damping, or lower numerics.courant",
+                    self.step, self.time, REPAIR,
                 )  # fmt: skip
 
     def displacement(self) -> NDArray[np.float64]:
@@ -139,4 +152,5 @@ class SoilSimulation:
         """Go on bit for bit from a state of a model of the same scene."""
         self.flow.restore(state["flow"])
         self.first[:], self.counted = state["first"], bool(state["counted"])
+        self.leaps.forget()
         self.refresh()

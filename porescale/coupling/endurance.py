@@ -1,4 +1,5 @@
-"""Grains in water for very long: six that fly about in a periodic box, and a heap at the bottom of a closed one."""
+"""Grains in water for very long: six that fly about in a periodic box, and a heap at the bottom of a closed one, which
+may sleep."""
 
 from __future__ import annotations
 
@@ -7,6 +8,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from porescale.coupling.experiments import handful, immersed
+from porescale.coupling.experiments_sleep import let_sleep
+from porescale.coupling.stability_watch import Sense
 from porescale.coupling.step import Coupled
 from porescale.workbench.endurance import Endurance, Endurances, Held
 
@@ -37,11 +40,19 @@ class Watched:
         discs = coupled.grains.discs
         self._size = float(np.sum(discs.mass[:, None] * np.abs(discs.velocity)))
         self._cells = coupled.fluid.nx * coupled.fluid.ny
+        self._sense = Sense(
+            coupled.fluid, coupled.scales, coupled, operator="trt", eddies=False, solid_operator="exact-wall"
+        )
 
     def advance(self, steps: int) -> None:
         """Fluid steps with their contact steps."""
         for _ in range(steps):
             self.coupled.advance()
+
+    def check(self) -> None:
+        """As a run asks."""
+        self.coupled.grains.check()
+        self._sense.check(self.coupled.fluid.step, float(self.coupled.fluid.step))
 
     def read(self) -> Mapping[str, float]:
         """Mass of the fluid, and momentum or places of grains."""
@@ -52,19 +63,23 @@ class Watched:
             return mass | {"momentum x over Σ mv at the start ()": x, "momentum y over Σ mv at the start ()": y}
         diameter = float(2.0 * discs.radius.mean())
         speed = float(np.hypot(discs.velocity[:, 0], discs.velocity[:, 1]).max())
-        return mass | {
+        sleep = self.coupled.grains.sleep
+        return mass | ({ASLEEP: float(sleep.count)} if sleep else {}) | {
             "mean place x (diameters)": float(discs.position[:, 0].mean()) / diameter,
             "mean height (diameters)": float(discs.position[:, 1].mean()) / diameter,
             "highest grain (diameters)": float((discs.position[:, 1] + discs.radius).max()) / diameter,
             "fastest grain (cells/step)": speed,
-        }
+        }  # fmt: skip
 
+
+ASLEEP = "grains asleep ()"
 
 MASS = Held(
     "mass over that at rest, less 1 ()", lambda steps: 1e-12,
     "asked for; the sum of nine rounded populations errs by eps a step either way, 1e3 eps in a million",
 )  # fmt: skip
 ROUNDING = "round-off: every step, and each of its 4 contact steps, rounds velocities, all one way: 5 eps a step"
+PLACES = ("mean place x (diameters)", "mean height (diameters)", "highest grain (diameters)")
 SETTLED = "share of a diameter by which a packing may shift: the overlap of a grain under its weight is 1e-4"
 
 ENDURANCES = Endurances([
@@ -78,9 +93,16 @@ ENDURANCES = Endurances([
     Endurance(
         "settled heap", "fifteen grains settle in a closed box of 44 x 56 cells of water within a tenth, and lie",
         lambda: Watched(heap(), periodic=False),
-        (MASS, *(Held(name, lambda steps: 1e-3, SETTLED)
-                 for name in ("mean place x (diameters)", "mean height (diameters)", "highest grain (diameters)")),
+        (MASS, *(Held(name, lambda steps: 1e-3, SETTLED) for name in PLACES),
          Held("fastest grain (cells/step)", lambda steps: 1e-6, "at rest: 1e-3 of a cell in a thousand steps")),
+        settles=2,
+    ),
+    Endurance(
+        "sleeping heap", "the same heap, whose grains may sleep, does and is not woken by the water",
+        lambda: Watched(let_sleep(heap(), after=None), periodic=False),
+        (MASS, Held(ASLEEP, lambda steps: 0.0, "nothing disturbs them"),
+         *(Held(name, lambda steps: 0.0, "who sleeps does not move, not by a last digit")
+           for name in (*PLACES, "fastest grain (cells/step)"))),
         settles=2,
     ),
 ])  # fmt: skip

@@ -90,7 +90,8 @@ def _outline_moments(corners: Array) -> tuple[float, float]:
 class ImmersedPolygons:
     """The polygons of ``grains``, in the order of the frames.
 
-    polygons : of the lattice, in cells of ``spacing`` m;  weight (m, 2) N/m, less buoyancy;  inner_mass, inner_inertia
+    polygons : of the lattice, in cells of ``spacing`` m;  outlines : corners of each, (k, 2) m about its centroid, at
+    angle 0;  weight (m, 2) N/m, less buoyancy;  inner_mass, inner_inertia
     (m,): of fluid of ``density`` (kg/m³) within;  uptake (m, 2): see step.py;  inner_velocity, inner_spin,
     inner_momentum: of the fluid inside;  fluid_force (m, 2) N/m, fluid_torque (m,) N m/m;  force, torque: as the
     contact steps hold them, with the weight.
@@ -105,6 +106,7 @@ class ImmersedPolygons:
         assert clumps is not None
         self._grains = grains
         self.first, corners = outlines(grains)
+        self.outlines = corners
         self.polygons = Polygons([each / spacing for each in corners])
         m = len(corners)
         moments = np.array([[area, second] for area, _, second in map(polygon_moments, corners)])

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.coupling.crossing import refuse_crossing
 from porescale.coupling.displaced import displaced
 from porescale.coupling.stability_cause import Circumstances, likely_cause
 from porescale.coupling.step import Coupled
@@ -42,7 +43,8 @@ class Sense:
     def check(self, step: int, time: float) -> None:
         """Raise Unstable, naming cell, quantity, value and likely cause, where the fluid is beyond sense.
 
-        That is: a number that is none, Mach 0.6, a density changed by a half.  step, time (s): as the message has it.
+        That is: a number that is none, Mach 0.6, a density changed by a half, polygons within each other.  step, time
+        (s): as the message has it.
         Fields are those of the fluid alone, so that grains which are nowhere do no harm.
         """
         rho, ux, uy = self.fluid.fields()
@@ -57,6 +59,8 @@ class Sense:
                 where = f"cell ({x}, {y}) at ({(x + 0.5) * h:.4g}, {(y + 0.5) * h:.4g}) m"
                 cause = likely_cause(self._before(speed))
                 raise Unstable(where, name, float(values[y, x]) * factor, unit, step, time, cause)
+        if self.coupled and self.coupled.polygons:
+            refuse_crossing(self.coupled.polygons, self.coupled.grains, step, time)
         fastest = max(float(speed.max()), self._told())
         self.last = replace(self.last, speed=fastest, density_change=float(change.max()))
 

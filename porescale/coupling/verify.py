@@ -13,6 +13,7 @@ from porescale.coupling import (
     verify_moving,
     verify_polygons,
     verify_rings,
+    verify_sleep,
     verify_towed,
 )
 from porescale.coupling import experiments as lab
@@ -127,5 +128,6 @@ for _more in (
     verify_clumps.VALIDATIONS,
     verify_polygons.VALIDATIONS,
     verify_endurance.VALIDATIONS,
+    verify_sleep.VALIDATIONS,
 ):
     VALIDATIONS.include(_more)

@@ -77,6 +77,11 @@ class Health:
             raise _unstable(
                 grains, f"plate {grains.plate_names[nowhere]}", "place", float("nan"), "m", "a motion without numbers"
             )
+        if grains.sleep is not None and not np.isfinite(grains.sleep.removed.sum()):
+            nowhere = int((~np.isfinite(grains.sleep.removed)).argmax())
+            raise _unstable(
+                grains, f"grain {nowhere}", "energy taken by sleep", float("nan"), "J/m", "it slept without a speed",
+            )  # fmt: skip
         bad, column = first_without_number(d.position, d.velocity, d.spin, d.angle)
         if bad >= 0:
             quantity, unit = (("position", "m"), ("velocity", "m/s"), ("spin", "rad/s"), ("angle", "rad"))[column]

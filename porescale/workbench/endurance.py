@@ -2,7 +2,8 @@
 
 Rooms register what lasts; `study endurance` runs it, a million steps by default, and writes a table and a picture.
 Quantities are taken as they are at marks, equal numbers of steps apart; each has a largest distance from its value at
-the first mark that counts, and a reason for it.  The peak of the process's memory must not grow from there on, either.
+the first mark that counts, and a reason for it.  The peak of the process's memory must not grow from there on, either,
+and nothing must be found wrong: that is asked as often as a run asks.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
+from porescale.ground.check import Unstable
 from porescale.ground.machine import peak_bytes
 from porescale.workbench.folders import write_whole
 from porescale.workbench.names import choose
@@ -24,6 +26,9 @@ MARKS = 20
 MEMORY = "peak memory (MiB)"
 GROWTH = 1.0
 """MiB by which the peak may grow: the interpreter's own books; a leak of a byte a step is as much in a million."""
+FOUND = "found wrong ()"
+ASK_EVERY = 100
+"""Steps after which it is asked whether all is well: those of a run."""
 
 
 class Lasting(Protocol):
@@ -31,6 +36,9 @@ class Lasting(Protocol):
 
     def advance(self, steps: int) -> None:
         """So many steps more."""
+
+    def check(self) -> None:
+        """Unstable where something is wrong."""
 
     def read(self) -> Mapping[str, float]:
         """What is watched, by name with unit."""
@@ -77,13 +85,13 @@ Say = Callable[[str], object]
 
 
 def endure(it: Endurance, steps: int, say: Say = lambda text: None) -> list[Line]:
-    """Run it for ``steps`` steps: a line for each quantity and one for memory."""
+    """Run it for ``steps`` steps: a line for each quantity, one for what was found wrong, and one for memory."""
     run, at, begun = it.start(), [0], time.perf_counter()
     seen: dict[str, list[float]] = {name: [float(value)] for name, value in run.read().items()}
-    memory = [peak_bytes() / 2**20]
+    memory, found = [peak_bytes() / 2**20], [0.0]
     for mark in range(1, MARKS + 1):
         to = steps * mark // MARKS
-        run.advance(to - at[-1])
+        found.append(found[-1] + _advance(run, to - at[-1], say))
         at.append(to)
         for name, value in run.read().items():
             seen[name].append(float(value))
@@ -99,7 +107,24 @@ def endure(it: Endurance, steps: int, say: Say = lambda text: None) -> list[Line
 
     # Before the first mark kernels are compiled or loaded: memory counts from there.
     lines = [line(each.name, seen[each.name], each.allowed(steps), each.because) for each in it.held]
-    return [*lines, line(MEMORY, memory, GROWTH, "nothing is kept from step to step", max(1, it.settles))]
+    asked = f"all is well, asked every {ASK_EVERY} steps"
+    return [
+        *lines, line(FOUND, found, 0.0, asked, 0),
+        line(MEMORY, memory, GROWTH, "nothing is kept from step to step", max(1, it.settles)),
+    ]  # fmt: skip
+
+
+def _advance(run: Lasting, steps: int, say: Say) -> int:
+    """So many steps; how often something was found wrong."""
+    wrong = 0
+    for done in range(0, steps, ASK_EVERY):
+        run.advance(min(ASK_EVERY, steps - done))
+        try:
+            run.check()
+        except Unstable as error:
+            wrong += 1
+            say(str(error))
+    return wrong
 
 
 class Endurances:

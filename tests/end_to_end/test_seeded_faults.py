@@ -12,13 +12,12 @@ import pytest
 from continuum_sph.scene.model import Simulation as Continuum
 from continuum_sph.scene.sections import Scene as Tank
 from porescale import build
-from porescale.ground.check import Unstable
 from porescale.runs.drive import CHECK_EVERY
 from porescale.scene.simulation import Simulation
 from porescale.workbench.sections import validate
 from tests.reference.scenes import column
+from tests.reference.seeded import INF, NAN, found, put, times
 
-NAN, INF = float("nan"), float("inf")
 TANK = {
     "tank": {"width": 0.4, "height": 0.3},
     "water": {"viscosity": 1e-3, "column": [{"width": 0.2, "height": 0.2}]},
@@ -43,30 +42,6 @@ def flowing() -> tuple[Continuum, dict[str, Any]]:
     simulation.advance(60)
     simulation.check()
     return simulation, copy.deepcopy(simulation.state())
-
-
-def put(place: str, index: Any, value: float) -> Callable[[Any], None]:
-    """Writes ``value`` at ``index`` of the array that a dotted ``place`` names."""
-
-    def fault(simulation: Any) -> None:
-        array = simulation
-        for part in place.split("."):
-            array = getattr(array, part)
-        array[index] = value
-
-    return fault
-
-
-def times(place: str, index: Any, factor: float) -> Callable[[Any], None]:
-    """Multiplies what is there."""
-
-    def fault(simulation: Any) -> None:
-        array = simulation
-        for part in place.split("."):
-            array = getattr(array, part)
-        array[index] *= factor
-
-    return fault
 
 
 def onto(one: int, other: int, share: float) -> Callable[[Simulation], None]:
@@ -141,31 +116,6 @@ WATER_FAULTS: dict[str, Callable[[Continuum], None]] = {
     "clump of ten": clump(10),
     "clump of sixty": clump(60),
 }  # fmt: skip
-
-
-def found(simulation: Any) -> int:
-    """Steps until the simulation says that something is wrong, asked as a run asks; -1 if it never does.
-
-    Every snapshot is preceded by a check, so that what is found at once is never recorded; what is not yet wrong then,
-    a force that only the next step adds, say, changes nothing that a snapshot holds.
-    """
-    error = None
-    try:
-        simulation.check()
-        for step in range(1, CHECK_EVERY + 1):
-            simulation.advance(1)
-            if step in (1, 2, 5, 20, CHECK_EVERY):
-                simulation.check()
-    except Unstable as raised:
-        error = raised
-    if error is None:
-        return -1
-    assert error.where
-    assert error.cause
-    return int(simulation.step) - START[type(simulation)]
-
-
-START: dict[type, int] = {Simulation: 80, Continuum: 60}
 
 
 @pytest.mark.parametrize("name", FAULTS)

@@ -1,4 +1,4 @@
-"""Long runs hold mass, momentum, places and memory, and would be found out if they did not."""
+"""Long runs hold mass, momentum, places and memory, find nothing wrong, and would be found out if they did not."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ from porescale.coupling import endurance, verify_endurance
 from porescale.coupling.experiments import handful
 from porescale.coupling.verify import VALIDATIONS as ALL
 from porescale.coupling.verify_endurance import VALIDATIONS
-from porescale.workbench.endurance import MARKS, Endurance, Held, endure, markdown, picture
+from porescale.ground.check import Unstable
+from porescale.runs.drive import CHECK_EVERY
+from porescale.workbench.endurance import ASK_EVERY, FOUND, MARKS, Endurance, Held, endure, markdown, picture
 
 
 @pytest.mark.slow
@@ -33,14 +35,19 @@ def test_a_heap_that_is_not_yet_down_is_not_settled():
 
 
 class Counter:
-    """Counts steps."""
+    """Counts steps, and is well up to ``sound`` of them."""
 
-    def __init__(self) -> None:
-        self.steps = 0
+    def __init__(self, sound: int = 10_000) -> None:
+        self.steps, self.sound = 0, sound
 
     def advance(self, steps: int) -> None:
         """More."""
         self.steps += steps
+
+    def check(self) -> None:
+        """Whether it is well."""
+        if self.steps > self.sound:
+            raise Unstable("counter", "steps", self.steps, "", self.steps, 0.0, "too many")
 
     def read(self) -> dict[str, float]:
         """How many."""
@@ -49,10 +56,24 @@ class Counter:
 
 def test_marks_lie_apart_evenly_and_count_from_where_it_has_settled():
     held = (Held("steps ()", lambda steps: 0.5 * steps, "because"),)
-    found, memory = endure(Endurance("counter", "counts", Counter, held, settles=10), 1000)
+    found, wrong, memory = endure(Endurance("counter", "counts", Counter, held, settles=10), 1000)
     assert found.at == [1000 * k // MARKS for k in range(MARKS + 1)]
     assert found.off == 500.0
     assert found.holds
+    assert wrong.holds
     assert memory.holds
     assert "| counter | 1000 | steps () | 50, 1000 | 500 | 500 | because |" in markdown("x", [found])
     assert picture([found, memory])[:4] == b"\x89PNG"
+
+
+def test_what_is_found_wrong_on_the_way_is_said():
+    said: list[str] = []
+    lines = endure(Endurance("counter", "counts", lambda: Counter(1900), ()), 2000, said.append)
+    wrong = {line.quantity: line for line in lines}[FOUND]
+    assert not wrong.holds
+    assert wrong.values[-1] == 1.0  # asked at step 2000
+    assert any("counter" in text for text in said)
+
+
+def test_it_is_asked_as_often_as_a_run_asks():
+    assert ASK_EVERY == CHECK_EVERY

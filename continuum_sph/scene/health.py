@@ -1,0 +1,67 @@
+"""Whether particles still make sense: numbers that are some, and nobody farther than anybody goes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.ground.check import Unstable
+
+Floats = NDArray[np.float64]
+
+FARTHER = 2.0
+"""Ways of the fastest particle that another may have come: shifting and smoothed velocities add to its own."""
+
+
+def refuse_no_numbers(
+    arrays: Mapping[str, tuple[str, NDArray[Any]]], step: int, time: float, repair: str, of: str = "particle"
+) -> None:
+    """Unstable at the first entry that is no number of ``arrays``: (unit, (n,) or (n, k) of particles) by name."""
+    for name, (unit, values) in arrays.items():
+        if np.isfinite(values.sum()):  # a sum that is a number has none among it that is not
+            continue
+        lost = ~np.isfinite(values.reshape(len(values), -1)).all(axis=1)
+        if lost.any():
+            raise Unstable(f"{of} {int(lost.argmax())}", name, float("nan"), unit, step, time, repair)
+
+
+class Leaps:
+    """Remembers where particles were at the last look, and the way of the fastest since.
+
+    A particle that came farther than `FARTHER` such ways and a spacing did not go there.  strips : (left, right) m of
+    reservoirs, whose particles come and go.
+    """
+
+    def __init__(self, spacing: float) -> None:
+        self.spacing = spacing
+        self.strips: Sequence[tuple[float, float]] = ()
+        self.forget()
+
+    def forget(self) -> None:
+        """Nothing is known of where they were."""
+        self._seen: Floats | None = None
+        self._there: NDArray[np.bool_] | None = None
+        self._way, self._time, self._swiftest = 0.0, -1.0, 0.0
+
+    def went(self, time: float, swiftest: float) -> None:
+        """It is ``time`` (s) now, and the fastest goes at ``swiftest``, m/s."""
+        if self._time >= 0.0:
+            self._way += (time - self._time) * max(swiftest, self._swiftest)
+        self._time, self._swiftest = time, swiftest
+
+    def check(self, x: Floats, mass: Floats, step: int, time: float, repair: str) -> None:
+        """Unstable when a particle of ``mass`` (n,) kg/m, 0: not there, has leapt to its place ``x`` (n, 2) m."""
+        there = mass > 0.0
+        for left, right in self.strips:
+            there &= (x[:, 0] < left) | (x[:, 0] > right)
+        if self._seen is not None and self._there is not None:
+            gone = np.hypot(x[:, 0] - self._seen[:, 0], x[:, 1] - self._seen[:, 1])
+            leapt = there & self._there & ~(gone <= FARTHER * self._way + self.spacing)
+            if leapt.any():
+                at = int(leapt.argmax())
+                where = f"particle {at} at ({x[at, 0]:.4g}, {x[at, 1]:.4g}) m"
+                raise Unstable(where, "way since the last look", float(gone[at]), "m", step, time, repair)
+        self._seen, self._there, self._way = x.copy(), there, 0.0

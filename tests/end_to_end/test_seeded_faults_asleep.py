@@ -1,0 +1,126 @@
+"""Faults put among grains that sleep under water, and among polygons in it: found in time, too."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from porescale import build
+from porescale.runs.drive import CHECK_EVERY
+from porescale.scene.sections import Scene
+from porescale.scene.simulation import Simulation
+from porescale.workbench.sections import validate
+from tests.reference.killing import ASLEEP
+from tests.reference.scenes import column, grain
+from tests.reference.seeded import INF, NAN, found, put, times
+
+pytestmark = pytest.mark.slow
+SQUARES = {
+    "sides": 4,
+    "diameter": 0.0014,
+    "thickness": 2e-5,
+    "at": [[0.004, 0.005], [0.004, 0.0034]],
+    "angle": [0.3, 0.1],
+}
+
+
+@pytest.fixture(scope="module")
+def sleeping() -> tuple[Simulation, dict[str, Any]]:
+    """Grains that sleep while another sinks towards them, and their state."""
+    simulation = build(validate(Scene, ASLEEP))
+    simulation.advance(400)
+    simulation.check()
+    assert simulation.grains.sleep.count > 10
+    return simulation, copy.deepcopy(simulation.state())
+
+
+@pytest.fixture(scope="module")
+def sinking() -> tuple[Simulation, dict[str, Any]]:
+    """Two squares and a grain that sink, and their state."""
+    water = {"gate": None, "grains__packing": None, "domain__top": "wall"}
+    simulation = build(column(**water, polygon=[SQUARES], grains__grain=[grain(0.008, 0.005)]))
+    simulation.advance(60)
+    simulation.check()
+    return simulation, copy.deepcopy(simulation.state())
+
+
+def onto(one: int, other: int) -> Callable[[Simulation], None]:
+    """A sleeper is put into another."""
+
+    def fault(simulation: Simulation) -> None:
+        x = simulation.grains.discs.position
+        x[one] = 0.7 * x[other] + 0.3 * x[one]
+
+    return fault
+
+
+def deepest(simulation: Simulation) -> None:
+    """The sleeper that lies lowest loses its way."""
+    x = simulation.grains.discs.position
+    x[int(np.argmin(x[:, 1])), 0] = NAN
+
+
+DISC, BODY = "grains.discs.", "coupled.polygons.polygons."
+SLEEPERS: dict[str, Callable[[Simulation], None]] = {
+    "deepest sleeper nowhere": deepest,
+    "position nan": put(f"{DISC}position", (5, 0), NAN),
+    "velocity nan": put(f"{DISC}velocity", (5, 1), NAN),
+    "spin nan": put(f"{DISC}spin", 5, NAN),
+    "angle nan": put(f"{DISC}angle", 5, NAN),
+    "velocity": put(f"{DISC}velocity", (5, 1), 50.0),
+    "thrown out": put(f"{DISC}position", (5, 0), -0.001),
+    "radius explodes": times(f"{DISC}radius", 5, 4.0),
+    "one into another": onto(5, 6),
+    "load nan": put("coupled.force", (5, 0), NAN),
+    "torque nan": put("coupled.torque", 5, NAN),
+    "load inf": put("coupled.force", (5, 0), INF),
+    "weight nan": put("coupled.weight", (5, 1), NAN),
+    "population nan": put("fluid.populations", (3, 8, 10), NAN),
+    "energy taken nan": put("grains.sleep.removed", 5, NAN),
+}  # fmt: skip
+POLYGONS: dict[str, Callable[[Simulation], None]] = {
+    "corner nowhere": put(f"{DISC}position", (-1, 0), NAN),
+    "velocity nan": put("coupled.polygons.velocity", (0, 0), NAN),
+    "spin nan": put("coupled.polygons.spin", 0, NAN),
+    "angle nan": put("coupled.polygons.angle", 0, NAN),
+    "position nan": put("coupled.polygons.position", (0, 1), NAN),
+    "thrown out": put("coupled.polygons.position", (0, 1), -0.01),
+    "velocity": put("coupled.polygons.velocity", (0, 1), 50.0),
+    "one into the other": put("coupled.polygons.position", (0, 1), 0.0036),
+    "grain into it": put(f"{DISC}position", 0, (0.004, 0.005)),
+    "load nan": put("coupled.polygons.force", (0, 0), NAN),
+    "torque nan": put("coupled.polygons.torque", 0, NAN),
+    "inner velocity nan": put("coupled.polygons.inner_velocity", (0, 0), NAN),
+    "population nan": put("fluid.populations", (3, 22, 20), NAN),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SLEEPERS)
+def test_a_fault_among_sleepers_is_found(sleeping, name):
+    simulation, state = sleeping
+    simulation.restore(copy.deepcopy(state))
+    weight, radius = simulation.coupled.weight.copy(), simulation.grains.discs.radius.copy()
+    SLEEPERS[name](simulation)
+    try:
+        assert 0 <= found(simulation) <= CHECK_EVERY
+    finally:
+        simulation.coupled.weight[:], simulation.grains.discs.radius[:] = weight, radius
+
+
+@pytest.mark.parametrize("name", POLYGONS)
+def test_a_fault_among_polygons_is_found(sinking, name):
+    simulation, state = sinking
+    simulation.restore(copy.deepcopy(state))
+    POLYGONS[name](simulation)
+    assert 0 <= found(simulation) <= CHECK_EVERY
+
+
+def test_nothing_is_found_where_nothing_is_wrong(sleeping, sinking):  # the twin that must not fail
+    for simulation, state in (sleeping, sinking):
+        simulation.restore(copy.deepcopy(state))
+        for _ in range(5):
+            assert found(simulation) == -1

@@ -1,0 +1,116 @@
+"""Faults put into a levee with water in and beside it: found within a hundred steps and before they are recorded."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.seepage_model import SeepageSimulation
+from continuum_sph.scene.trials_levee import Levee
+from porescale.runs.drive import CHECK_EVERY
+from tests.reference.seeded import INF, NAN, found, put, times
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def levee() -> tuple[SeepageSimulation, dict[str, Any]]:
+    """A saturated levee between a river and land that drains, and its state."""
+    simulation = SeepageSimulation(Scene.model_validate(Levee(rows=8).table()))
+    simulation.advance(60)
+    simulation.check()
+    return simulation, copy.deepcopy(simulation.state())
+
+
+def level(value: float) -> Callable[[SeepageSimulation], None]:
+    """The river stands at ``value``, m, it says."""
+
+    def fault(simulation: SeepageSimulation) -> None:
+        assert simulation.both.supply
+        simulation.both.supply.reservoirs[0].level = value
+
+    return fault
+
+
+def flood(simulation: SeepageSimulation) -> None:
+    """The river is to rise over the tank."""
+    assert simulation.both.supply
+    simulation.both.supply.reservoirs[0].levels[:] = 5.0
+
+
+def crowd(simulation: SeepageSimulation) -> None:
+    """Twenty particles of soil in one place."""
+    soil = simulation.soil.flow.soil
+    soil.x[40:60] = soil.x[40]
+
+
+def inside(count: int) -> Callable[[SeepageSimulation], None]:
+    """So many particles of water in the soil are thrown out over the levee, the tank, or beneath its floor."""
+
+    def fault(simulation: SeepageSimulation) -> None:
+        flow = simulation.both.water
+        wet = np.flatnonzero((flow.porosity < 1.0) & (flow.layer.mass[: flow.layer.fluid] > 0.0))
+        flow.layer.x[wet[:count]] += (0.0, 1.2)
+
+    return fault
+
+
+LEVELS = np.array([row[1] for row in Levee(rows=8).table()["reservoir"][0]["rise"]])
+"""Of the river."""
+SOIL, WATER = "soil.flow.soil.", "both.water.layer."
+FAULTS: dict[str, Callable[[SeepageSimulation], None]] = {
+    **{f"soil stress {k} nan": put(f"{SOIL}stress", (50, k), NAN) for k in range(4)},
+    "soil stress inf": put(f"{SOIL}stress", (50, 1), INF),
+    **{f"soil {name} {value:g}": put(f"{SOIL}{name}", at, value) for name, at, value in (
+        ("x", (50, 0), NAN), ("x", (50, 1), INF), ("v", (50, 0), NAN), ("v", (50, 1), -1e4), ("density", 50, NAN),
+        ("density", 50, 0.0), ("density", 50, 5e3), ("mass", 50, NAN), ("plastic", 50, NAN), ("opening", 50, NAN),
+        ("acceleration", (50, 0), NAN), ("drift", (50, 0), NAN))},
+    "soil thrown up": put(f"{SOIL}x", (50, 1), 3.0),
+    "soil thrown through the wall": put(f"{SOIL}x", (50, 0), -1.0),
+    "soil thrown aside": put(f"{SOIL}x", (50, 0), 1.0),
+    "soil crowded": crowd,
+    "porosity runs away": times(f"{SOIL}density", slice(30, 60), 3.0),
+    "water thrown out of the levee": inside(1),
+    "much water thrown out of the levee": inside(30),
+    "water thrown through the wall": put(f"{WATER}x", (20, 0), -1.0),
+    "water thrown through the floor": put(f"{WATER}x", (20, 1), -1.0),
+    **{f"water {name} {value:g}": put(f"{WATER}{name}", at, value) for name, at, value in (
+        ("x", (20, 0), NAN), ("v", (20, 0), 1e3), ("density", 20, NAN), ("density", 20, 5e3), ("mass", 20, NAN),
+        ("pressure", 20, NAN), ("energy", (20, 0), NAN))},
+    "porosity about water nan": put("both.water.pores", (20, 0), NAN),
+    "porosity about water gone": put("both.water.pores", (20, 0), -0.2),
+    "heat of drag nan": put("both.water.heat", 20, NAN),
+    "slip nan": put("both.water.slip", (20, 0), NAN),
+    "river beyond the tank": level(5.0),
+    "river nowhere": level(NAN),
+    "river that rises over the tank": flood,
+}  # fmt: skip
+
+
+def anew(levee: tuple[SeepageSimulation, dict[str, Any]]) -> SeepageSimulation:
+    """The levee as it was, looked at as a run looks: what no state holds, too."""
+    simulation, state = levee
+    simulation.restore(copy.deepcopy(state))
+    assert simulation.both.supply
+    simulation.both.supply.reservoirs[0].levels[:] = LEVELS
+    simulation.both.water.slip[:] = 0.0
+    simulation.check()
+    return simulation
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_fault_in_a_levee_is_found(levee, name):
+    simulation = anew(levee)
+    FAULTS[name](simulation)
+    assert 0 <= found(simulation) <= CHECK_EVERY
+
+
+def test_nothing_is_found_where_nothing_is_wrong(levee):  # the twin that must not fail
+    simulation = anew(levee)
+    for _ in range(8):
+        assert found(simulation) == -1

@@ -1,0 +1,38 @@
+"""The validations of sleep under water hold, and would not if sleepers were deaf or fell asleep too early."""
+
+from __future__ import annotations
+
+import pytest
+
+from porescale.coupling import experiments_sleep as lab
+from porescale.coupling import verify_sleep
+from porescale.coupling.verify import VALIDATIONS as ALL
+from porescale.coupling.verify_sleep import VALIDATIONS
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.mark.parametrize("validation", list(VALIDATIONS), ids=lambda row: row.name)
+def test_the_validation_holds(validation):
+    row = validation.run()
+    assert row.passed, row
+    assert validation.name in [it.name for it in ALL]
+
+
+@pytest.mark.parametrize("sinks", [False, True])
+def test_the_water_and_a_grain_wake_sleepers_and_they_sleep_again(sinks):
+    found = lab.disturbed(sinks, steps=8000)
+    before, fewest = found.asleep
+    assert before == 12
+    assert fewest < 6
+    assert found.coupled.grains.sleep.count >= 12
+
+
+@pytest.mark.parametrize("sinks", [False, True])
+def test_sleepers_that_do_not_wake_are_out_of_balance(sinks):
+    found = lab.disturbed(sinks, deaf=True)
+    assert found.imbalance > 2 * VALIDATIONS["coupling.sleepers_under_water_are_in_balance"].tolerance
+
+
+def test_sleep_at_half_the_weight_stops_a_collapse_too_early():
+    assert verify_sleep.off(0.5).error > VALIDATIONS["coupling.sleep_leaves_a_collapse_under_water"].tolerance
