@@ -167,7 +167,9 @@ class PartedList(PairList):
         v: Floats = AT_REST,
     ) -> None:
         """like : a full list of the same points, whose place this one takes."""
-        super().__init__(like.count, like.skin, like.lower, like.upper, like.periodic, full=like.full)
+        super().__init__(
+            like.count, like.skin, like.lower, like.upper, like.periodic, full=like.full, between=like.between
+        )
         self.group, self.v, self.stopped = like.group, v, 0
         self.at, self.bottom, self.half = pile.x, pile.bottom, 0.5 * pile.spacing
         self.side = np.concatenate((np.full(like.count - len(side), FREE), side))

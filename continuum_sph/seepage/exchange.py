@@ -2,92 +2,131 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from continuum_sph.layers import RHO
-from continuum_sph.seepage.mixture import POROSITY, ROOM
+from continuum_sph.seepage.mixture import (
+    DENSITY,
+    MASS,
+    MASSES,
+    POROSITY,
+    PULL_X,
+    PULL_Y,
+    RESISTING,
+    ROOM,
+    SLIP_X,
+    SLIP_Y,
+    WEIGHT,
+)
 from continuum_sph.seepage.resistance import drag
-from porescale.ground.jit import parallel_kernel, prange
-from porescale.ground.lanes import LANES, nothing, take_line, take_rows, take_two, total
+from porescale.ground.jit import inline, parallel_kernel, prange
+from porescale.ground.lanes import LANES, lesser, nothing, put_line, take_line, take_two, total
+
+LONGEST = 44.0  # times of relaxation: e^-44 is less than half a unit in the last place of 1
+HALVINGS = 6  # of it, after which the series needs 12 terms: (44/64)^12/13! is 2e-12 of half such a unit
+FASTER, FURTHER, SHARE, LIGHT = range(4)
+"""Lines of parts, of a water particle: impulse per slip, kg/m; per pull, kg s/m; 1/R; 1/m."""
+
+
+@inline
+def relaxed(times):
+    """1 - e^-x of x >= 0 ``times`` of relaxation, to some units in the last place, however small.
+
+    By its series for x/64, and 1 - e^-2y = (1 - e^-y)(2 - (1 - e^-y)): no branch, and several at once.
+    """
+    y = lesser(times, LONGEST) * (1.0 / 2.0**HALVINGS)
+    rest = 1.0 - y * (1.0 / 12.0)
+    rest = 1.0 - y * (1.0 / 11.0) * rest
+    rest = 1.0 - y * (1.0 / 10.0) * rest
+    rest = 1.0 - y * (1.0 / 9.0) * rest
+    rest = 1.0 - y * (1.0 / 8.0) * rest
+    rest = 1.0 - y * (1.0 / 7.0) * rest
+    rest = 1.0 - y * (1.0 / 6.0) * rest
+    rest = 1.0 - y * (1.0 / 5.0) * rest
+    rest = 1.0 - y * (1.0 / 4.0) * rest
+    rest = 1.0 - y * (1.0 / 3.0) * rest
+    rest = 1.0 - y * (1.0 / 2.0) * rest
+    gone = y * rest
+    for _ in range(HALVINGS):
+        gone = gone * (2.0 - gone)
+    return gone
 
 
 @parallel_kernel
-def brake(
-    fluid, near, other, weight, record, pores, mass, v, acceleration, burden, law, factor, gravity, thick, seconds,
-    slip, push, heat,
-):  # fmt: skip
-    """Takes the drag of ``seconds`` from the water's ``v`` (fluid…, 2) m/s; what it takes goes to `take`.
+def against_soil(fluid, near, other, weight, shown, own, pores, line):
+    """Overwrites ``line`` and the next of ``pores``: ``own`` (fluid…, 2) less the mean of the soil's about each water
+    particle by r W; 0 where there is none.
 
-    Overwrites ``slip`` (fluid, 2) m/s, velocity of the water over the soil's before, and ``push`` (fluid, 2), the
-    impulse over the weight by which soil particles share it; adds to ``heat`` (fluid…,) J/m the work that it takes
-    from both layers.
-
-    near, other, weight: the overlap, water rows first;  record: true densities of water;  pores: of `blend`;  mass
-    kg/m;  acceleration (fluid, 2) m/s², without drag;  burden: see Skeleton, soil's accelerations without drag;
-    law, factor, gravity: of `Resistance`;  thick (fluid,) N/m³, what stands for ρ g in the drag on particles of several
-    fluids, ρ_w g μ/μ_w; empty for one.
+    near, other, weight: the overlap, water rows first;  shown (s, 2): the soil's times r, of `Skeleton.weigh`.
     """
     for i in prange(fluid):
-        resisting = nothing()
-        masses = nothing()
-        flow_x = nothing()
-        flow_y = nothing()
-        gain_x = nothing()
-        gain_y = nothing()
+        sum_x = nothing()
+        sum_y = nothing()
         k = near[i]
         while k < near[i + 1]:  # any soil stands for the missing end of a row, with no weight
-            _, resistance, inertia, vx, vy, fx, fy, _ = take_rows(burden, other, k, near[i + 1], 0, 0, fluid)
+            sx, sy = take_two(shown, other, k, near[i + 1], 0, 0, fluid)
             near_by = take_line(weight, k, near[i + 1])
             k += LANES
-            share = resistance * near_by
-            resisting += share
-            masses += inertia * near_by
-            flow_x += share * vx
-            flow_y += share * vy
-            gain_x += share * fx
-            gain_y += share * fy
-        sum_of = total(resisting)
-        partial = total(masses)
-        ux = total(flow_x)
-        uy = total(flow_y)
-        bx = total(gain_x)
-        by = total(gain_y)
-        push[i, 0] = 0.0
-        push[i, 1] = 0.0
-        slip[i, 0] = 0.0
-        slip[i, 1] = 0.0
-        if sum_of > 0.0:
-            porosity = pores[i, POROSITY]
-            rho = record[i, RHO]
-            volume = mass[i] / (porosity * rho)
-            unit = thick[i] if thick.shape[0] > 0 else rho * gravity
-            beta = drag(law, porosity, sum_of / pores[i, ROOM], unit, factor)
-            wx = v[i, 0] - ux / sum_of
-            wy = v[i, 1] - uy / sum_of
-            ax = acceleration[i, 0] - bx / sum_of
-            ay = acceleration[i, 1] - by / sum_of
-            lightness = 1.0 / (porosity * rho) + pores[i, ROOM] / partial
-            kappa = beta * lightness
-            gone = -np.expm1(-kappa * seconds)
-            late = seconds - gone / kappa
-            impulse = volume / lightness
-            jx = impulse * (gone * wx + late * ax)
-            jy = impulse * (gone * wy + late * ay)
-            slip[i, 0] = wx
-            slip[i, 1] = wy
-            push[i, 0] = jx / sum_of
-            push[i, 1] = jy / sum_of
-            v[i, 0] -= jx / mass[i]
-            v[i, 1] -= jy / mass[i]
-            # Half the velocities before and after, kick included, times the impulse; what soil gains is in `take`.
-            work = jx * (wx + 0.5 * seconds * ax) + jy * (wy + 0.5 * seconds * ay)
-            heat[i] += work - 0.5 * (jx * jx + jy * jy) / mass[i]
+            sum_x += near_by * sx
+            sum_y += near_by * sy
+        resisting = pores[RESISTING, i]
+        share = 1.0 / resisting if resisting > 0.0 else 0.0
+        pores[line, i] = own[i, 0] - share * total(sum_x) if resisting > 0.0 else 0.0
+        pores[line + 1, i] = own[i, 1] - share * total(sum_y) if resisting > 0.0 else 0.0
+
+
+@parallel_kernel
+def brake(fluid, pores, v, law, factor, seconds, parts, push, heat):
+    """Takes the drag of ``seconds`` from the water's ``v`` (fluid…, 2) m/s; what it takes goes to `take`.
+
+    Overwrites ``push`` (fluid, 2), the impulse over the weight by which soil particles share it, and the scratch
+    ``parts`` (4, fluid + LANES); adds to ``heat`` (fluid…,) J/m the work that it takes from both layers.
+
+    pores: of `meet`, `blend` and `against_soil`: slip and pull of now, the latter without drag;  law, factor: of
+    `Resistance`.
+    """
+    lines = pores.ravel()
+    width = pores.shape[1]
+    for block in prange((fluid + LANES - 1) // LANES):
+        first = block * LANES
+        end = first + LANES  # lines are that much longer
+        porosity = take_line(lines, POROSITY * width + first, POROSITY * width + end)
+        rho = take_line(lines, DENSITY * width + first, DENSITY * width + end)
+        room = take_line(lines, ROOM * width + first, ROOM * width + end)
+        resisting = take_line(lines, RESISTING * width + first, RESISTING * width + end)
+        partial = take_line(lines, MASSES * width + first, MASSES * width + end)
+        unit = take_line(lines, WEIGHT * width + first, WEIGHT * width + end)
+        mass = take_line(lines, MASS * width + first, MASS * width + end)
+        own = 1.0 / (porosity * rho)
+        lightness = own + room / partial
+        kappa = drag(law, porosity, resisting / room, unit, factor) * lightness
+        gone = relaxed(kappa * seconds)
+        impulse = mass * own / lightness
+        put_line(parts[FASTER], first, end, impulse * gone)
+        put_line(parts[FURTHER], first, end, impulse * (seconds - gone / kappa))
+        put_line(parts[SHARE], first, end, 1.0 / resisting)
+        put_line(parts[LIGHT], first, end, 1.0 / mass)
+        for i in range(first, min(end, fluid)):
+            push[i, 0] = 0.0
+            push[i, 1] = 0.0
+            if pores[RESISTING, i] > 0.0:
+                wx = pores[SLIP_X, i]
+                wy = pores[SLIP_Y, i]
+                ax = pores[PULL_X, i]
+                ay = pores[PULL_Y, i]
+                jx = parts[FASTER, i] * wx + parts[FURTHER, i] * ax
+                jy = parts[FASTER, i] * wy + parts[FURTHER, i] * ay
+                push[i, 0] = jx * parts[SHARE, i]
+                push[i, 1] = jy * parts[SHARE, i]
+                v[i, 0] -= jx * parts[LIGHT, i]
+                v[i, 1] -= jy * parts[LIGHT, i]
+                # Half the velocities before and after, kick included, times the impulse; what soil gains is in `take`.
+                work = jx * (wx + 0.5 * seconds * ax) + jy * (wy + 0.5 * seconds * ay)
+                heat[i] += work - 0.5 * (jx * jx + jy * jy) * parts[LIGHT, i]
 
 
 @parallel_kernel
 def take(fluid, near, other, weight, push, resisting, soil_mass, soil_v, seconds, borne, heat):
     """Gives ``push`` (fluid, 2), of `brake`, to the soil: adds to ``soil_v`` (s, 2) m/s; overwrites ``borne`` (s, 2)
     N/m, the mean force over ``seconds``; takes from ``heat`` (fluid + s,) J/m what they do in excess of `brake`'s."""
+    often = 1.0 / seconds
     for s in prange(resisting.shape[0]):
         sum_x = nothing()
         sum_y = nothing()
@@ -98,10 +137,11 @@ def take(fluid, near, other, weight, push, resisting, soil_mass, soil_v, seconds
             k += LANES
             sum_x += share * px
             sum_y += share * py
-        jx = total(sum_x)
-        jy = total(sum_y)
-        soil_v[s, 0] += resisting[s] / soil_mass[s] * jx
-        soil_v[s, 1] += resisting[s] / soil_mass[s] * jy
-        borne[s, 0] = resisting[s] / seconds * jx
-        borne[s, 1] = resisting[s] / seconds * jy
-        heat[fluid + s] -= 0.5 * resisting[s] * resisting[s] / soil_mass[s] * (jx * jx + jy * jy)
+        jx = resisting[s] * total(sum_x)
+        jy = resisting[s] * total(sum_y)
+        light = 1.0 / soil_mass[s]
+        soil_v[s, 0] += light * jx
+        soil_v[s, 1] += light * jy
+        borne[s, 0] = often * jx
+        borne[s, 1] = often * jy
+        heat[fluid + s] -= 0.5 * light * (jx * jx + jy * jy)

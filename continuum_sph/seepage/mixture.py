@@ -1,33 +1,90 @@
 """Water and grains in one volume: porosity and flux at water particles, and what of their forces the grains bear.
 
-Notation and derivation: `continuum_sph.seepage`.
+Notation and derivation: `continuum_sph.seepage`.  What water finds about it of the soil is gathered once a step, by
+`meet`, drag's sums too, with the weights of all pairs; soil finds its weights in `bear`.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from continuum_sph.layers import VOLUME, VX, VY, X, Y
+from continuum_sph.layers import RHO, VOLUME, VX, VY, X, Y
+from continuum_sph.seepage.overlap import closeness
 from continuum_sph.smoothing import CUBIC, kernel_value
 from porescale.ground.jit import parallel_kernel, prange
-from porescale.ground.lanes import LANES, nothing, take_line, take_rows, take_two, total
+from porescale.ground.lanes import LANES, kept, nothing, put_line, take_four, take_rows, total
 from porescale.particles.cells import minimum_image
 
-POROSITY, ROOM, GRAINS = range(3)
-"""Columns of pores: n, Ω, Σ V^grains W."""
+(
+    POROSITY, ROOM, GRAINS, FLUX_X, FLUX_Y, RESISTING, MASSES, DENSITY, MASS, WEIGHT, SLIP_X, SLIP_Y, PULL_X, PULL_Y,
+) = range(14)  # fmt: skip
+"""Lines of pores, of each water particle: n;  Ω;  Σ V^grains W;  the same times velocity, m/s;  R = Σ r W with r =
+V^grains/k, s/m;  Σ m W, kg/m³;  its own density kg/m³, mass kg/m and what stands for ρ g in the drag, N/m³;  velocity
+(m/s) and acceleration (m/s²) less the soil's mean by r W."""
+LINES = 14
 LEAST_ROOM = 0.2  # of a kernel: a particle in a right-angled corner has a quarter
 LEAST_POROSITY = 0.05  # grains that crowd beyond this leave the water no more volume
 
 
 @parallel_kernel
-def blend(
-    fluid, start, split, partner, record, home, near, soil, weight, burden, pores, h, period_x, period_y
-):  # fmt: skip
-    """Overwrites ``pores`` (fluid, 3), and in ``record`` the velocity by q and the volume by m/(n ρ_f), of water.
+def meet(fluid, near, soil, weight, record, mass, burden, gravity, thick, pores, h, period_x, period_y):
+    """Overwrites ``weight`` (m,) 1/m² of the water's rows, W, and all lines of ``pores`` (14, fluid…) but porosity,
+    room and pull.
+
+    near, soil, weight: rows of the overlap;  record: of the water alone;  mass (fluid…,) kg/m;  burden: see Skeleton;
+    gravity: g, m/s²;  thick (fluid,) N/m³, what stands for ρ g in the drag on particles of several fluids,
+    ρ_w g μ/μ_w; empty for one;  h: smoothing length;  periods, m or 0.
+    """
+    several = thick.shape[0] > 0
+    turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
+    turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
+    for i in prange(fluid):
+        xi = record[i, X]
+        yi = record[i, Y]
+        grains = nothing()
+        flux_x = nothing()
+        flux_y = nothing()
+        resisting = nothing()
+        masses = nothing()
+        flow_x = nothing()
+        flow_y = nothing()
+        k = near[i]
+        while k < near[i + 1]:  # any soil stands for the missing end of a row, with no weight
+            xj, yj, volume, resistance, inertia, vx, vy, _ = take_rows(burden, soil, k, near[i + 1], 0, 0, fluid)
+            near_by = closeness(xi - xj, yi - yj, h, period_x, period_y, turns_x, turns_y)
+            near_by = kept(near_by, k, near[i + 1])
+            put_line(weight, k, near[i + 1], near_by)
+            k += LANES
+            share = volume * near_by
+            grains += share
+            flux_x += share * vx
+            flux_y += share * vy
+            share = resistance * near_by
+            resisting += share
+            flow_x += share * vx
+            flow_y += share * vy
+            masses += inertia * near_by
+        pores[GRAINS, i] = total(grains)
+        pores[FLUX_X, i] = total(flux_x)
+        pores[FLUX_Y, i] = total(flux_y)
+        resists = total(resisting)
+        pores[RESISTING, i] = resists
+        pores[MASSES, i] = total(masses)
+        pores[DENSITY, i] = record[i, RHO]
+        pores[MASS, i] = mass[i]
+        pores[WEIGHT, i] = thick[i] if several else record[i, RHO] * gravity
+        share = 1.0 / resists if resists > 0.0 else 0.0
+        pores[SLIP_X, i] = record[i, VX] - share * total(flow_x) if resists > 0.0 else 0.0
+        pores[SLIP_Y, i] = record[i, VY] - share * total(flow_y) if resists > 0.0 else 0.0
+
+
+@parallel_kernel
+def blend(fluid, start, split, partner, record, home, pores, h, period_x, period_y):
+    """Overwrites porosity and room in ``pores`` (14, fluid…), and in ``record`` the velocity by q and the volume by
+    m/(n ρ_f), of water.
 
     start, split, partner: the water's full list, walls from ``split[i]`` on, which have the volume that ``record``
-    gives them and stand at ``home`` (n, 2) m;  near, soil, weight: rows of the overlap;  burden: see Skeleton;  h:
-    smoothing length;  periods, m or 0.
+    gives them and stand at ``home`` (n, 2) m;  h: smoothing length;  periods, m or 0.
     """
     for i in prange(fluid):
         room = 1.0
@@ -37,64 +94,62 @@ def blend(
             dy = minimum_image(record[i, Y] - home[j, 1], period_y)
             room -= record[j, VOLUME] * kernel_value(CUBIC, np.sqrt(dx * dx + dy * dy) / h, h)
         room = max(LEAST_ROOM, room)
-        grains = nothing()
-        flux_x = nothing()
-        flux_y = nothing()
-        n = near[i]
-        while n < near[i + 1]:  # any soil stands for the missing end of a row, with no weight
-            volume, _, _, vx, vy, _, _, _ = take_rows(burden, soil, n, near[i + 1], 0, 0, fluid)
-            share = volume * take_line(weight, n, near[i + 1])
-            n += LANES
-            grains += share
-            flux_x += share * vx
-            flux_y += share * vy
-        solid = total(grains)
-        ux = total(flux_x)
-        uy = total(flux_y)
-        pores[i, ROOM] = room
+        solid = pores[GRAINS, i]
         porosity = 1.0
         if solid > 0.0:
             porosity = max(LEAST_POROSITY, 1.0 - solid / room)
             # The mean velocity of the grains, times their share: q is exact for layers that move as one.
             part = (1.0 - porosity) / solid
-            record[i, VX] = porosity * record[i, VX] + part * ux
-            record[i, VY] = porosity * record[i, VY] + part * uy
+            record[i, VX] = porosity * record[i, VX] + part * pores[FLUX_X, i]
+            record[i, VY] = porosity * record[i, VY] + part * pores[FLUX_Y, i]
             record[i, VOLUME] /= porosity
-        pores[i, POROSITY] = porosity
-        pores[i, GRAINS] = solid
+        pores[ROOM, i] = room
+        pores[POROSITY, i] = porosity
 
 
 @parallel_kernel
-def part_forces(
-    fluid, near, other, weight, grains, mass, acceleration, gx, gy, pores, rate, power, thrust, force
-):  # fmt: skip
-    """Divides ``rate`` (fluid,) and ``power`` (fluid, 4) by n; overwrites ``force`` (s, 2) N/m on the soil, and
-    ``thrust`` (fluid, 2) N/m: force of the whole volume over the grains' weight.
+def part_forces(fluid, mass, acceleration, gx, gy, pores, rate, power, thrust):
+    """Divides ``rate`` (fluid,) and ``power`` (fluid, 4) by n; overwrites the last two columns of ``thrust``
+    (fluid, 4), N/m: force of the whole volume over the grains' weight.
 
-    acceleration (fluid, 2) m/s² of the water, with gravity (gx, gy), which acts on each layer by itself;  near, other,
-    weight: the overlap, water rows first;  mass (fluid…,) kg/m, of water;  grains (s,) m².
+    acceleration (fluid, 2) m/s² of the water, with gravity (gx, gy), which acts on each layer by itself;  mass
+    (fluid…,) kg/m, of water.
     """
     for i in prange(fluid):
-        porosity = pores[i, POROSITY]
-        solid = pores[i, GRAINS]
-        thrust[i, 0] = 0.0
-        thrust[i, 1] = 0.0
+        porosity = pores[POROSITY, i]
+        solid = pores[GRAINS, i]
+        thrust[i, 2] = 0.0
+        thrust[i, 3] = 0.0
         if solid > 0.0:
-            rate[i] /= porosity
+            open_ = 1.0 / porosity
+            rate[i] *= open_
             for k in range(4):
-                power[i, k] /= porosity
+                power[i, k] *= open_
             whole = mass[i] * (1.0 - porosity) / (porosity * solid)
-            thrust[i, 0] = whole * (acceleration[i, 0] - gx)
-            thrust[i, 1] = whole * (acceleration[i, 1] - gy)
+            thrust[i, 2] = whole * (acceleration[i, 0] - gx)
+            thrust[i, 3] = whole * (acceleration[i, 1] - gy)
+
+
+@parallel_kernel
+def bear(fluid, near, other, weight, x, grains, thrust, force, h, period_x, period_y):
+    """Overwrites ``force`` (s, 2) N/m on the soil, of `part_forces`, and ``weight`` (m,) 1/m² of its rows, W.
+
+    near, other, weight: the overlap, water rows first;  x (s, 2) m, grains (s,) m²: of the soil;  thrust (fluid, 4):
+    places of the water, m, and what `part_forces` makes;  h: smoothing length;  periods, m or 0.
+    """
+    turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
+    turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
     for s in prange(grains.shape[0]):
         fx = nothing()
         fy = nothing()
         k = near[fluid + s]
-        while k < near[fluid + s + 1]:
-            tx, ty = take_two(thrust, other, k, near[fluid + s + 1], 0)
-            share = take_line(weight, k, near[fluid + s + 1])
+        end = near[fluid + s + 1]
+        while k < end:
+            xj, yj, tx, ty = take_four(thrust, other, k, end, 0)
+            near_by = kept(closeness(x[s, 0] - xj, x[s, 1] - yj, h, period_x, period_y, turns_x, turns_y), k, end)
+            put_line(weight, k, end, near_by)
             k += LANES
-            fx += share * tx
-            fy += share * ty
+            fx += near_by * tx
+            fy += near_by * ty
         force[s, 0] = grains[s] * total(fx)
         force[s, 1] = grains[s] * total(fy)

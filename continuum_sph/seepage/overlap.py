@@ -10,28 +10,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.smoothing import CUBIC, kernel_value
-from porescale.ground.jit import parallel_kernel, prange
+from porescale.ground.jit import inline, parallel_kernel, prange
 from porescale.ground.lanes import LANES, nearest, put_line, root, take_two
 from porescale.particles import PairList
 
 Floats = NDArray[np.float64]
 
 
+@inline
+def closeness(dx, dy, h, period_x, period_y, turns_x, turns_y):
+    """W, 1/m², of the nearest images at (dx, dy) m;  turns: 1/period, 1/m, or 0."""
+    dx -= period_x * nearest(dx * turns_x)
+    dy -= period_y * nearest(dy * turns_y)
+    return kernel_value(CUBIC, root(dx * dx + dy * dy) * (1.0 / h), h)
+
+
 @parallel_kernel
 def overlap_weights(start, partner, x, weight, h, period_x, period_y):
     """Overwrites ``weight`` (m,) 1/m², W of every entry of a full list;  x (n, 2) m;  h: smoothing length;  periods, m
-    or 0."""
+    or 0.  A step has them from `mixture.meet` and `mixture.bear`, to the same bits; here they are made anew."""
     turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
     turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
     for i in prange(x.shape[0]):
         k = start[i]
         while k < start[i + 1]:
             xj, yj = take_two(x, partner, k, start[i + 1], i)
-            dx = x[i, 0] - xj
-            dy = x[i, 1] - yj
-            dx -= period_x * nearest(dx * turns_x)
-            dy -= period_y * nearest(dy * turns_y)
-            put_line(weight, k, start[i + 1], kernel_value(CUBIC, root(dx * dx + dy * dy) * (1.0 / h), h))
+            near = closeness(x[i, 0] - xj, x[i, 1] - yj, h, period_x, period_y, turns_x, turns_y)
+            put_line(weight, k, start[i + 1], near)
             k += LANES
 
 
@@ -54,31 +59,30 @@ class Overlap:
         periodic: tuple[bool, bool] = (False, False),
     ) -> None:
         self.water, self.length = water, length
-        self.pairs = PairList(water + soil, skin, lower, upper, periodic, full=True)
+        self.pairs = PairList(water + soil, skin, lower, upper, periodic, full=True, between=water)
         self.pairs.adaptive = True
-        self.pairs.group = np.repeat(np.array([0, 1], np.int32), [water, soil])
         self.x = np.zeros((water + soil, 2))
         self.reach = np.full(water + soil, length)
         self.weight = np.zeros(0)
 
     def update(self, water: Floats, soil: Floats) -> None:
-        """Take positions (n, 2) m of both layers; lists and weights follow."""
+        """Take positions (n, 2) m of both layers; lists follow, and room for the weights."""
         self.x[: self.water], self.x[self.water :] = water, soil
         self.pairs.update(self.x, self.reach)
-        self._weigh()
+        self._make_room()
 
     def restore(self, state: dict[str, NDArray[np.generic]], water: Floats, soil: Floats) -> None:
         """Go on from the ``state`` of the list, taken at these positions (n, 2) m: it holds, and nothing is counted."""
-        self.pairs.restore(state)
-        self.x[: self.water], self.x[self.water :] = water, soil
-        self._weigh()
-
-    def _weigh(self) -> None:
-        """Weights of the list at ``x``."""
         pairs = self.pairs
-        if len(self.weight) < len(pairs.partner) + LANES:
-            self.weight = np.zeros(len(pairs.partner) * 3 // 2 + LANES)
+        pairs.restore(state)
+        self.x[: self.water], self.x[self.water :] = water, soil
+        self._make_room()
         overlap_weights(pairs.start, pairs.partner, self.x, self.weight, self.length, *pairs.period)
+
+    def _make_room(self) -> None:
+        """For the weights of the list."""
+        if len(self.weight) < len(self.pairs.partner) + LANES:
+            self.weight = np.zeros(len(self.pairs.partner) * 3 // 2 + LANES)
 
     @property
     def rows(self) -> tuple[NDArray[np.int64], NDArray[np.int32], Floats]:

@@ -9,12 +9,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.seepage.drain import Drain, drain_walls, follow
-from continuum_sph.seepage.exchange import brake, take
-from continuum_sph.seepage.mixture import GRAINS, POROSITY, ROOM, blend, part_forces
+from continuum_sph.seepage.exchange import against_soil, brake, take
+from continuum_sph.seepage.mixture import (
+    LINES,
+    POROSITY,
+    PULL_X,
+    ROOM,
+    SLIP_X,
+    SLIP_Y,
+    bear,
+    blend,
+    meet,
+    part_forces,
+)
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.seepage.resistance import Resistance
 from continuum_sph.seepage.skeleton import Skeleton
 from continuum_sph.step import Flow
+from porescale.ground.lanes import LANES
 
 Floats = NDArray[np.float64]
 
@@ -23,10 +35,9 @@ Floats = NDArray[np.float64]
 class PoreFlow(Flow):
     """Water of a law among the grains of a skeleton.
 
-    resistance : law of drag;  thick (fluid,) N/m³, of several fluids, see `brake`, or empty;  drains : faces of given
-    pressure;  pores (fluid, 3) porosity, room before walls and grains at water particles;  slip (fluid, 2) m/s, of
-    water over soil, and borne (soil, 2) N/m, drag on the soil, of the last half step;  heat (fluid + soil,) J/m, work
-    that drag took from both layers.
+    resistance : law of drag;  thick (fluid,) N/m³, of several fluids, see `meet`, or empty;  drains : faces of given
+    pressure;  pores (14, fluid + LANES) what water particles have about them, see `mixture`;  borne (soil, 2) N/m, drag
+    on the soil of the last half step;  heat (fluid + soil,) J/m, work that drag took from both layers.
     """
 
     skeleton: Skeleton = field(kw_only=True)
@@ -38,10 +49,10 @@ class PoreFlow(Flow):
     def __post_init__(self) -> None:
         super().__post_init__()
         fluid = self.layer.fluid
-        self.pores = np.ones((fluid, 3))
-        self.pores[:, GRAINS] = 0.0
+        self.pores = np.zeros((LINES, fluid + LANES))
+        self.pores[[POROSITY, ROOM]] = 1.0
         self.home = self.layer.x.copy()  # of walls: where they stood at the start, grains reach no further
-        self.thrust, self.slip, self.push = (np.zeros((fluid, 2)) for _ in range(3))
+        self.thrust, self.push, self.parts = np.zeros((fluid, 4)), np.zeros((fluid, 2)), np.zeros((4, fluid + LANES))
         self.borne = np.zeros((self.skeleton.count, 2))
         self.heat = np.zeros(fluid + self.skeleton.count)
 
@@ -58,11 +69,16 @@ class PoreFlow(Flow):
     def evaluate(self, step: float, ratio: float) -> None:
         """As of water alone, of the mixture; forces of the water on the soil beside."""
         layer, soil = self.layer, self.skeleton
-        self.overlap.update(layer.x[: layer.fluid], soil.x)
+        x, length = layer.x[: layer.fluid], self.law.smoothing.length
+        self.overlap.update(x, soil.x)
         super().evaluate(step, ratio)
+        self.thrust[:, :2] = x
         part_forces(
-            layer.fluid, *self.overlap.rows, soil.grains, layer.mass, layer.acceleration, *self.law.gravity,
-            self.pores, layer.rate, layer.power, self.thrust, soil.force,
+            layer.fluid, layer.mass, layer.acceleration, *self.law.gravity, self.pores, layer.rate, layer.power,
+            self.thrust,
+        )  # fmt: skip
+        bear(
+            layer.fluid, *self.overlap.rows, soil.x, soil.grains, self.thrust, soil.force, length, *self.pairs.period
         )  # fmt: skip
 
     def show_walls(self, step: float, ratio: float) -> None:
@@ -71,38 +87,51 @@ class PoreFlow(Flow):
         layer, pairs, smoothing = self.layer, self.pairs, self.law.smoothing
         how = (smoothing.kind, smoothing.length, *pairs.period)
         self.skeleton.show()
-        blend(
-            layer.fluid, pairs.start, self.split, pairs.partner, layer.record, self.home, *self.overlap.rows,
-            self.skeleton.burden, self.pores, *how[1:],
+        meet(
+            layer.fluid, *self.overlap.rows, layer.record, layer.mass, self.skeleton.burden, self.resistance.gravity,
+            self.thick, self.pores, *how[1:],
         )  # fmt: skip
+        blend(layer.fluid, pairs.start, self.split, pairs.partner, layer.record, self.home, self.pores, *how[1:])
         for face in self.drains:
             drain_walls(
                 face.rows, face.pressure, pairs.start, self.split, pairs.partner, layer.x, layer.record,
                 layer.pressure, *face.point, *face.normal, *how,
             )  # fmt: skip
 
+    def feel(self) -> None:
+        """Take up the accelerations that both layers have now, without drag, for the drag that follows."""
+        layer, soil = self.layer, self.skeleton
+        shown = soil.weigh(soil.acceleration)
+        against_soil(layer.fluid, *self.overlap.rows, shown, layer.acceleration, self.pores, PULL_X)
+
+    def glide(self) -> None:
+        """Take up the velocities that both layers have now; `evaluate` does so too."""
+        layer, soil = self.layer, self.skeleton
+        against_soil(layer.fluid, *self.overlap.rows, soil.weigh(soil.v), layer.v, self.pores, SLIP_X)
+
     def brake(self, seconds: float) -> None:
-        """Drag of ``seconds`` between water and soil, with the accelerations that both have now."""
+        """Drag of ``seconds`` between water and soil, with the velocities and accelerations taken up last."""
         layer, soil, law = self.layer, self.skeleton, self.resistance
-        soil.show()
-        brake(
-            layer.fluid, *self.overlap.rows, layer.record, self.pores, layer.mass, layer.v, layer.acceleration,
-            soil.burden, law.number, law.factor, law.gravity, self.thick, seconds, self.slip, self.push, self.heat,
-        )  # fmt: skip
+        brake(layer.fluid, self.pores, layer.v, law.number, law.factor, seconds, self.parts, self.push, self.heat)
         take(
             layer.fluid, *self.overlap.rows, self.push, soil.resisting, soil.mass, soil.v, seconds, self.borne,
             self.heat,
         )  # fmt: skip
 
     @property
+    def slip(self) -> Floats:
+        """Velocity of water over soil before the last drag, (fluid, 2) m/s: 0 in the open."""
+        return self.pores[SLIP_X : SLIP_Y + 1, : self.layer.fluid].T
+
+    @property
     def porosity(self) -> Floats:
         """n at water particles, (fluid,): 1 in the open."""
-        return self.pores[:, POROSITY]
+        return self.pores[POROSITY, : self.layer.fluid]
 
     @property
     def room(self) -> Floats:
         """Ω at water particles, (fluid,)."""
-        return self.pores[:, ROOM]
+        return self.pores[ROOM, : self.layer.fluid]
 
     def saturation(self) -> Floats:
         """Share of the volume about each soil particle that water and its grains take up, (soil,): 1 where pores are

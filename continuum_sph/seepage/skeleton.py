@@ -16,17 +16,25 @@ HEAVIEST = 1e300  # kg/m: stands for the infinite mass of soil that is held, as 
 
 
 @parallel_kernel
-def show_soil(v, acceleration, mass, grains, resisting, burden):
-    """Overwrites ``burden`` (s, 8), all that water reads of a soil particle, in one cache line: grains m², resisting
-    m s, mass kg/m, velocity m/s and acceleration m/s²."""
+def show_soil(x, v, mass, grains, resisting, burden):
+    """Overwrites ``burden`` (s, 8), all that water reads of a soil particle, in one cache line: place m, grains m²,
+    resisting m s, mass kg/m, velocity m/s."""
     for s in prange(mass.shape[0]):
-        burden[s, 0] = grains[s]
-        burden[s, 1] = resisting[s]
-        burden[s, 2] = min(HEAVIEST, mass[s])
-        burden[s, 3] = v[s, 0]
-        burden[s, 4] = v[s, 1]
-        burden[s, 5] = acceleration[s, 0]
-        burden[s, 6] = acceleration[s, 1]
+        burden[s, 0] = x[s, 0]
+        burden[s, 1] = x[s, 1]
+        burden[s, 2] = grains[s]
+        burden[s, 3] = resisting[s]
+        burden[s, 4] = min(HEAVIEST, mass[s])
+        burden[s, 5] = v[s, 0]
+        burden[s, 6] = v[s, 1]
+
+
+@parallel_kernel
+def weigh(resisting, values, shown):
+    """Overwrites ``shown`` (s, 2): ``values`` (s, 2) times ``resisting`` (s,) m s."""
+    for s in prange(resisting.shape[0]):
+        shown[s, 0] = resisting[s] * values[s, 0]
+        shown[s, 1] = resisting[s] * values[s, 1]
 
 
 @dataclass
@@ -47,6 +55,7 @@ class Skeleton:
     resisting: Floats = field(init=False)  # grains/k, m s
     held: bool = field(init=False)  # whether it cannot move, whatever acts on it
     burden: Floats = field(init=False)  # (soil, 8) what a water particle reads of its partners
+    shown: Floats = field(init=False)  # (soil, 2) of these what it reads anew, times resisting
 
     def __post_init__(self) -> None:
         count = len(self.x)
@@ -56,11 +65,16 @@ class Skeleton:
             assert getattr(self, name).shape == (count,), name
         self.resisting = self.grains / self.permeability
         self.held = bool(np.isinf(self.mass).any())
-        self.burden = np.zeros((count, 8))
+        self.burden, self.shown = np.zeros((count, 8)), np.zeros((count, 2))
 
     def show(self) -> None:
-        """Take velocities and accelerations of now into ``burden``."""
-        show_soil(self.v, self.acceleration, self.mass, self.grains, self.resisting, self.burden)
+        """Take places and velocities of now into ``burden``."""
+        show_soil(self.x, self.v, self.mass, self.grains, self.resisting, self.burden)
+
+    def weigh(self, values: Floats) -> Floats:
+        """``values`` (soil, 2) times ``resisting``, in ``shown``."""
+        weigh(self.resisting, values, self.shown)
+        return self.shown
 
     @property
     def count(self) -> int:

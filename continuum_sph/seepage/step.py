@@ -84,6 +84,7 @@ class Seepage:
     def advance(self) -> None:
         """One step."""
         water, ground, step = self.water, self.ground, self.next_step
+        water.glide()  # accelerations are those of the end of the last step
         water.brake(0.5 * step)
         ground.begin(step)
         ratio = water.begin(step)
@@ -101,7 +102,7 @@ class Seepage:
 
     def take_up(self) -> None:
         """Accelerations of the soil without drag.  Its walls know of the drag: they carry on what weight and all forces
-        make of its stress."""
+        make of its stress.  The next drag knows both layers' accelerations."""
         water, soil = self.water, self.water.skeleton
         np.copyto(self.wet, soil.force)
         soil.force += water.borne
@@ -112,6 +113,7 @@ class Seepage:
         if not soil.held:
             np.divide(water.borne, soil.mass[:, None], out=self.wet)
             soil.acceleration -= self.wet
+        water.feel()
 
     def choose(self) -> None:
         """The next step: the shortest that water, ground and their common sound allow."""

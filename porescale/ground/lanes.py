@@ -65,6 +65,11 @@ def take_line(line: Any, first: Any, end: Any) -> Any:
     return np.where(inside, line[first : first + LANES], 0.0)
 
 
+def kept(a: Any, first: Any, end: Any) -> Any:
+    """Lanes of ``a`` that stand for entries ``first``, ``first + 1`` … of a row, 0 from ``end`` on."""
+    return np.where(np.arange(first, first + LANES) < end, a, 0.0)
+
+
 def put_line(line: Any, first: Any, end: Any, values: Any) -> None:
     """Write LANES values to ``line[first]``, ``line[first + 1]`` … of a float64 array, none from ``line[end]`` on."""
     count = min(LANES, end - first)

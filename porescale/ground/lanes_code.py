@@ -19,6 +19,7 @@ from porescale.ground.lanes import (
     LANES,
     WORDS,
     greater,
+    kept,
     lesser,
     nearest,
     nothing,
@@ -207,18 +208,25 @@ def _put_ascending(typing: Any, line: Any, count: Any, target: Any, first: Any) 
     return types.none(line, types.int64, target, types.int64), code
 
 
+def _kept(builder: Any, values: Any, first: Any, end: Any) -> Any:
+    """Code of `kept`."""
+    places = ir.Constant(ir.VectorType(COUNT, LANES), list(range(LANES)))
+    inside = builder.icmp_signed("<", places, _everywhere(builder, builder.sub(end, first)))
+    return builder.select(inside, values, ir.Constant(VECTOR, [0.0] * LANES))
+
+
+def _keep(typing: Any, a: Any, first: Any, end: Any) -> Any:
+    """``kept`` in kernels."""
+    return lanes(lanes, types.int64, types.int64), lambda context, builder, _, values: _kept(builder, *values)
+
+
 def _take_line(typing: Any, line: Any, first: Any, end: Any) -> Any:
     """``take_line`` in kernels."""
 
     def code(context: Any, builder: Any, _: Any, values: Any) -> Any:
         data = context.make_array(line)(context, builder, values[0]).data
         at = builder.bitcast(builder.gep(data, [values[1]]), VECTOR.as_pointer())
-        known = builder.load(at, align=8)
-        inside = ir.Constant(ir.VectorType(ir.IntType(1), LANES), ir.Undefined)
-        for lane in range(LANES):
-            taken = builder.icmp_signed("<", builder.add(values[1], COUNT(lane)), values[2])
-            inside = builder.insert_element(inside, taken, SHORT(lane))
-        return builder.select(inside, known, ir.Constant(VECTOR, [0.0] * LANES))
+        return _kept(builder, builder.load(at, align=8), values[1], values[2])
 
     return lanes(line, types.int64, types.int64), code
 
@@ -234,6 +242,7 @@ def _joined(builder: Any, parts: list[Any]) -> Any:
 _nothing: Any = intrinsic(_zero)
 _total: Any = intrinsic(_sum)
 _line: Any = intrinsic(_take_line)
+_keeping: Any = intrinsic(_keep)
 _put: Any = intrinsic(_put_line)
 _ascending: Any = intrinsic(_put_ascending)
 
@@ -253,6 +262,11 @@ def _choose_line(line: Any, first: Any, end: Any) -> Any:
     return lambda line, first, end: _line(line, first, end)
 
 
+@overload(kept, strict=False, jit_options=INLINED)
+def _choose_kept(a: Any, first: Any, end: Any) -> Any:
+    return lambda a, first, end: _keeping(a, first, end)
+
+
 @overload(put_line, strict=False, jit_options=INLINED)
 def _choose_put(line: Any, first: Any, end: Any, values: Any) -> Any:
     return lambda line, first, end, values: _put(line, first, end, values)
@@ -261,6 +275,37 @@ def _choose_put(line: Any, first: Any, end: Any, values: Any) -> Any:
 @overload(put_ascending, strict=False, jit_options=INLINED)
 def _choose_ascending(line: Any, count: Any, target: Any, first: Any) -> Any:
     return lambda line, count, target, first: _ascending(line, count, target, first)
+
+
+def _numbers(builder: Any, listed: Any, first: Any, end: Any, other: Any, before: Any) -> list[Any]:
+    """LANES entries of the list from ``first`` on, less ``before``, and ``other`` from ``end`` on.
+
+    All but the last ones of a row are there without asking each.
+    """
+
+    def known(at: Any) -> Any:
+        return builder.sub(builder.sext(builder.load(builder.gep(listed, [at])), COUNT), before)
+
+    places = [builder.add(first, COUNT(lane)) for lane in range(LANES)]
+    with builder.if_else(builder.icmp_signed("<", places[-1], end), likely=True) as (whole, part):
+        with whole:
+            found = [known(at) for at in places]
+            in_whole = builder.block
+        with part:
+            within = [builder.icmp_signed("<", at, end) for at in places[:-1]]
+            some = [
+                builder.select(inside, known(builder.select(inside, at, first)), other)
+                for inside, at in zip(within, places[:-1], strict=True)
+            ]
+            some.append(other)
+            in_part = builder.block
+    numbers = []
+    for here, there in zip(found, some, strict=True):
+        number = builder.phi(COUNT)
+        number.add_incoming(here, in_whole)
+        number.add_incoming(there, in_part)
+        numbers.append(number)
+    return numbers
 
 
 def teach_rows(take: Callable[..., Any], columns: int) -> None:
@@ -274,13 +319,8 @@ def teach_rows(take: Callable[..., Any], columns: int) -> None:
             table = context.make_array(record)(context, builder, values[0])
             width = builder.extract_value(table.shape, 1)
             listed = context.make_array(row)(context, builder, values[1]).data
-            rows = []
-            for lane in range(LANES):
-                at = builder.add(values[2], COUNT(lane))
-                inside = builder.icmp_signed("<", at, values[3])
-                known = builder.load(builder.gep(listed, [builder.select(inside, at, values[2])]))
-                number = builder.select(inside, builder.sub(builder.sext(known, COUNT), values[6]), values[4])
-                rows.append(builder.gep(table.data, [builder.add(builder.mul(number, width), values[5])]))
+            numbers = _numbers(builder, listed, values[2], values[3], values[4], values[6])
+            rows = [builder.gep(table.data, [builder.add(builder.mul(at, width), values[5])]) for at in numbers]
             side_by_side = []
             for pair in range(0, columns, 2):
                 where = [builder.bitcast(builder.gep(at, [COUNT(pair)]), TWO.as_pointer()) for at in rows]

@@ -33,7 +33,8 @@ class PairList:
 
     count : points;  skin : m, >= 0;  lower, upper : corners of the box, m (points may lie outside);
     periodic : per axis, distances are then between nearest images;  full : list every pair from both ends, else only
-    partner > i;  carried : numbers that each listed pair keeps over rebuilds (new pairs start at 0).
+    partner > i;  carried : numbers that each listed pair keeps over rebuilds (new pairs start at 0);  between : of a
+    full list, pairs only of the first so many points with the others; None: of all.
 
     group : (n,) int or None, settable: points of the same group >= 0 are not paired, those of groups below -1 with
     no other, from the next build on;
@@ -57,12 +58,14 @@ class PairList:
         periodic: tuple[bool, bool] = (False, False),
         full: bool = False,
         carried: int = 0,
+        between: int | None = None,
     ) -> None:
+        assert full or between is None
         if not (np.isfinite(skin) and skin >= 0.0):
             raise InputError(Fault("skin", skin, "must be a length", "m", ">= 0"))
         if not all(np.isfinite((*lower, *upper))) or lower[0] >= upper[0] or lower[1] >= upper[1]:
             raise InputError(Fault("box", (lower, upper), "upper corner must lie beyond the lower one", "m"))
-        self.count, self.skin, self.full = count, float(skin), full
+        self.count, self.skin, self.full, self.between = count, float(skin), full, between
         self.lower = (float(lower[0]), float(lower[1]))
         self.upper = (float(upper[0]), float(upper[1]))
         self.periodic = (bool(periodic[0]), bool(periodic[1]))
@@ -79,10 +82,11 @@ class PairList:
         self._partners = [np.empty(0, np.int32), np.empty(0, np.int32)]
         self._carrieds = [np.zeros((0, carried)), np.zeros((0, carried))]
         self._current = 0
-        self._cell = np.empty(count, np.int32)
-        self._order = np.empty(count, np.int32)
+        self._first = between or 0  # of the points that others are searched among
+        self._cell = np.empty(count - self._first, np.int32)
+        self._order = np.empty(count - self._first, np.int32)
         self._cell_start = np.zeros(2, np.int64)
-        self._sorted = np.empty((3, count))  # x, y, reach in cell order
+        self._sorted = np.empty((3, count - self._first))  # x, y, reach in cell order
         self._block = np.empty(count, np.int32)  # that each anchor lies in, for the list of build ``_blocked``
         self._blocked = -1
         self._bounds = np.empty((0, drift.BOUNDS))
@@ -181,23 +185,30 @@ class PairList:
             raise ValueError(f"point {bad}: position {x[bad].tolist()} m, reach {reach[bad]} m")
         cutoff = 2.0 * float(reach.max(initial=0.0)) + self.skin
         self._check_periods(cutoff)
-        shape = self._sort(x, reach, cutoff)
+        shape = self._sort(x[self._first :], reach[self._first :], cutoff)
         new = 1 - self._current
         old_start, old_partner, old_carried = self.start, self.partner, self.carried
-        where: tuple[Any, ...] = (x, reach, *self._sorted, self._order, self._cell_start, *self.lower, *shape)
+        rows, ends = self.count, 1  # points with rows to search, ends of a pair that are listed for each found
+        if self.between is not None:
+            rows, ends = self.between, 2
+        where: tuple[Any, ...] = (x[:rows], reach[:rows], *self._sorted, self._order, self._cell_start)
+        where += (*self.lower, *shape)
         where += (*self.period, self.tilt, float(reach.max(initial=0.0)), self.skin, self.full)
-        start = self._starts[new]
+        start = self._starts[new][: rows + 1]
         if self.count < SERIAL_BELOW or threads() == 1:
             total, longest = search.fill_serial(start, self._partners[new], self._row, *where)
-            if total > self._partners[new].shape[0] or longest > self._row.shape[0]:
-                self._reserve(new, total)
+            if ends * total > self._partners[new].shape[0] or longest > self._row.shape[0]:
+                self._reserve(new, ends * total)
                 self._lengthen(longest)
                 search.fill_serial(start, self._partners[new], self._row, *where)
         else:
             total, longest = search.count_parallel(start, self._partners[new], self._row, *where)
-            self._reserve(new, total)
+            self._reserve(new, ends * total)
             length = self._lengthen(longest)
             search.fill_parallel(start, self._partners[new], self._row, length, *where)
+        start = self._starts[new]
+        if self.between is not None:
+            total = search.mirror(self.between, start, self._partners[new])
         if self.group is not None:
             total = search.leave_out(self.group, start, self._partners[new])
         self._current = new
@@ -236,6 +247,8 @@ class PairList:
             self._cell, self._cell_start[: columns * rows + 1], self._order,
         )  # fmt: skip
         search.gather_sorted(x, reach, self._order, self._sorted)
+        if self._first:
+            self._order += np.int32(self._first)
         return inverse_x, inverse_y, columns, rows
 
     def state(self) -> dict[str, NDArray[np.generic]]:

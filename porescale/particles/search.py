@@ -223,6 +223,33 @@ def fill_parallel(
 
 
 @kernel
+def mirror(first, start, partner):
+    """Rows of the points from ``first`` on, from those of the points before, whose partners they are: overwrites the
+    rest of ``start`` (n + 1,) and ``partner``, which has room for as much again; returns the number of pairs, twice
+    what there was.  Points before come in order, so rows ascend.
+    """
+    count = start.shape[0] - 1
+    half = start[first]
+    for j in range(first + 1, count + 1):
+        start[j] = 0
+    for k in range(half):
+        if partner[k] + 1 < count:  # number of partners of j, two on from its own place
+            start[partner[k] + 2] += 1
+    if first + 1 <= count:
+        start[first + 1] = half
+    for j in range(first + 2, count + 1):
+        start[j] += start[j - 1]
+    k = 0
+    for i in range(first):  # start[j + 1] walks from the first entry of j's row to its end
+        while k < start[i + 1]:
+            slot = start[partner[k] + 1]
+            partner[slot] = i
+            start[partner[k] + 1] = slot + 1
+            k += 1
+    return 2 * half
+
+
+@kernel
 def leave_out(group, start, partner):
     """Take pairs of one ``group`` (n,) >= 0, and all of groups below -1, out of the rows: overwrites both; returns the
     number that are left.

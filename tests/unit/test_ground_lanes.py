@@ -10,6 +10,7 @@ from porescale.ground.lanes import (
     COLUMNS,
     LANES,
     greater,
+    kept,
     lesser,
     nearest,
     nothing,
@@ -31,7 +32,7 @@ def everything(record, row, first, end, other, found):
     s -= greater(0.0, d) + lesser(e, 0.5)
     s = s + nearest(10.0 * g) - (-h) * i
     j, k = take_two(record, row, first, end, other, 2, 1)
-    s += j * take_line(found, 2, 2 + end - first) - k
+    s += j * take_line(found, 2, 2 + end - first) - kept(k, first, end)
     found[0] = total(s)
     put_line(found, 2, 2 + end - first, s)
     found[1] = greater(found[0], 3.0) - lesser(found[0], 3.0) + nearest(0.5) + root(2.0)
@@ -65,6 +66,11 @@ def test_nothing_is_taken_or_put_beyond_the_end():
     np.testing.assert_array_equal(take_line(line, 1, 3), [2.0, 3.0, *[0.0] * (LANES - 2)])
     put_line(line, 1, 3, np.zeros(LANES))
     np.testing.assert_array_equal(line, [1.0, 0.0, 0.0, *range(4, 2 + LANES)])
+
+
+def test_nothing_is_kept_beyond_the_end():
+    np.testing.assert_array_equal(kept(np.ones(LANES), 3, 4), [1.0, *[0.0] * (LANES - 1)])
+    np.testing.assert_array_equal(kept(np.ones(LANES), 3, 3 + LANES), np.ones(LANES))
 
 
 def test_lanes_are_added_by_halves():

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from porescale.particles import PairList, search
+from porescale.particles import PairList, pairs, search
 from porescale.particles.cells import minimum_image, tilted_image, untilted
 from tests.reference.dem_bodies import tilted_neighbours
 from tests.reference.pairs import rows_of
@@ -83,6 +83,32 @@ def test_pairs_of_one_group_are_left_out(compiled):
     assert run(group, start, partner) == 5
     assert start.tolist() == [0, 2, 4, 5, 5, 5]
     assert partner[:5].tolist() == [1, 3, 2, 4, 3]
+
+
+@pytest.mark.parametrize("serial_below", [0, 1000])
+@pytest.mark.parametrize(("first", "periodic"), [(0, False), (40, True), (79, False), (80, False)])
+def test_pairs_between_two_kinds_are_those_that_groups_leave(first, periodic, serial_below, monkeypatch):
+    monkeypatch.setattr(pairs, "SERIAL_BELOW", serial_below)
+    rng = np.random.default_rng(2)
+    x, reach = rng.uniform(0.0, 1.0, (80, 2)), rng.uniform(0.03, 0.06, 80)
+    box = (0.0, 0.0), (1.0, 1.0), (periodic, periodic)
+    listed, twin = PairList(80, 0.02, *box, full=True, between=first), PairList(80, 0.02, *box, full=True)
+    twin.group = np.repeat(np.array([0, 1], np.int32), [first, 80 - first])
+    for _ in range(2):
+        listed.build(x, reach)
+        twin.build(x, reach)
+        assert rows_of(listed) == rows_of(twin)
+        x += rng.uniform(-0.05, 0.05, x.shape)
+    twin.group = None
+    twin.build(x, reach)
+    assert rows_of(listed) != rows_of(twin)  # the twin that must fail
+
+
+def test_rows_are_mirrored_in_plain_python_too():
+    start, partner = np.array([0, 2, 3, -1, -1, -1]), np.array([2, 4, 4, -1, -1, -1], np.int32)
+    assert search.mirror.py_func(2, start, partner) == 6
+    assert start.tolist() == [0, 2, 3, 4, 4, 6]
+    assert partner.tolist() == [2, 4, 4, 0, 0, 1]
 
 
 def test_points_of_a_group_below_minus_one_are_in_no_pair():
