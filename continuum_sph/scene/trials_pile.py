@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from continuum_sph.pile import Pile
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.seepage_model import SeepageSimulation
+from continuum_sph.scene.trials_seepage_steady import Face, flux, held_ground
 from porescale.ground.constants import GRAVITY
 
 Floats = NDArray[np.float64]
@@ -156,3 +158,36 @@ class Heave:
         """Head over i_c s at which the surface of the prism has risen ``times`` as much as elasticity explains; nan if
         it never does."""
         return next((head for _, head, rise, _ in self.course() if rise > times * self.elastic), float("nan"))
+
+
+@dataclass(frozen=True)
+class Around:
+    """Seepage around a pile that both sides touch, in ground of depth T = 1 m that is held, under a head of 1 m.
+
+    share : s/T;  rows : particles over T;  reach : of each side over T;  permeability m/s.
+    """
+
+    share: float
+    rows: int
+    reach: float = 1.0
+    permeability: float = 1e-3
+
+    def run(self, steps: int) -> tuple[float, float]:
+        """(q/(k h), i_E T/h) after ``steps``: mean of what goes in and comes out; the first term of i d + c d³, d the
+        depth of particles beside the pile, down to 0.6 s or three rows."""
+        spacing, k = 1.0 / self.rows, self.permeability
+        width = (2 * round(self.reach * self.rows) + 1) * spacing
+        left, right = 0.5 * (width - spacing), 0.5 * (width + spacing)
+        pile = Pile.instead_of(0.5 * width, 1.0 - self.share, spacing, rough=False)
+        faces = [Face("lid", 1.0, end=left), Face("lid", 0.0, start=right)]
+        both = held_ground((width, 1.0), spacing, faces, k, pile=pile)
+        for _ in range(steps):
+            both.advance()
+        x, q, volume = flux(both)
+        band = (x[:, 1] > 1.0 - 6.0 * spacing) & (x[:, 1] < 1.0 - 2.0 * spacing)
+        out, down = x[:, 0] > right, x[:, 0] < left
+        through = (volume * q[:, 1])[band & out].sum() - (volume * q[:, 1])[band & down].sum()
+        column = out & (x[:, 0] < right + spacing) & (x[:, 1] > 1.0 - max(3.0 * spacing, 0.6 * self.share))
+        depth, head = 1.0 - x[column, 1], both.water.layer.pressure[: len(x)][column] / (WATER * GRAVITY)
+        steepness = float(np.linalg.lstsq(np.column_stack((depth, depth**3)), head)[0][0])
+        return 0.5 * float(through) / (4.0 * spacing * k), steepness

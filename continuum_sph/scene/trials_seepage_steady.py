@@ -14,6 +14,7 @@ from continuum_sph.eos import Tait
 from continuum_sph.fluids import Fluid
 from continuum_sph.law import Law
 from continuum_sph.layers import VX, VY, Layer
+from continuum_sph.pile import PartedList, Pile
 from continuum_sph.scene.trials_soil import RATIO, SKIN
 from continuum_sph.seepage import Drain, Frame, PoreFlow, Resistance, Seepage
 from continuum_sph.seepage.overlap import Overlap
@@ -42,16 +43,27 @@ class Face:
 
 
 def held_ground(
-    size: tuple[float, float], spacing: float, faces: list[Face], permeability: float, pace: float = 0.3
+    size: tuple[float, float],
+    spacing: float,
+    faces: list[Face],
+    permeability: float,
+    pace: float = 0.3,
+    pile: Pile | None = None,
 ) -> Seepage:
     """A rectangle (width, height), m, of saturated ground that is held, its water at rest but for the ``faces``.
 
     Pressures are those above water at rest, so gravity plays no part.  pace : sound speed of the water times k, m²/s²:
-    pressure spreads by c² k/(n g), so what is steady is so after the same number of steps for any k.
+    pressure spreads by c² k/(n g), so what is steady is so after the same number of steps for any k.  pile : what cuts
+    the ground from above, if anything does.
     """
     width, height = size
     smoothing, at = Smoothing("wendland", RATIO * spacing), square_lattice((0.0, 0.0), size, spacing)
-    n, walls = len(at), tank_walls(width, height, spacing, WALLS, lid=True)
+    walls, side = tank_walls(width, height, spacing, WALLS, lid=True), np.zeros(0, np.int64)
+    if pile:
+        at = at[~pile.holds(at)]
+        piled, _, side = pile.particles(WALLS, height)
+        walls = np.concatenate((walls, piled))
+    n = len(at)
     frame = Frame(at.copy(), spacing**2, POROSITY, permeability)
     fluid = Fluid(Tait(WATER, pace / permeability))
     rules = Law(smoothing, spacing, (fluid,), (0.0, 0.0), diffusion=0.02, noise=LINEAR, cut=False, corrected=True)
@@ -59,12 +71,15 @@ def held_ground(
     box = (-margin, -margin), (width + margin, height + margin)
     mass = np.full(n + len(walls), WATER * spacing**2)
     layer = Layer(n, np.concatenate((at, walls)), np.zeros((len(mass), 2)), mass, np.full(n, WATER))
+    pairs, overlap = PairList(layer.count, skin, *box, full=True), Overlap(n, n, smoothing.length, skin, *box)
+    if pile:
+        pairs, overlap.pairs = PartedList(pairs, pile, n, side, layer.v), PartedList(overlap.pairs, pile)
     flow = PoreFlow(
-        layer, rules, PairList(layer.count, skin, *box, full=True), skeleton=frame.skeleton,
-        overlap=Overlap(n, n, smoothing.length, skin, *box), resistance=Resistance(POROSITY),
+        layer, rules, pairs, skeleton=frame.skeleton, overlap=overlap, resistance=Resistance(POROSITY)
     )  # fmt: skip
+    beside = walls[: len(walls) - len(side)]
     for face in faces:
-        flow.drains.append(_drain(face, walls, n, size))
+        flow.drains.append(_drain(face, beside, n, size))
     both = Seepage(flow, frame)
     both.start()
     mass[:n] = flow.porosity * WATER * spacing**2

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 
-from continuum_sph.scene.trials_pile import Heave
+from continuum_sph.scene.trials_pile import Around, Heave
 from porescale.workbench.validations import Measured, Validations
 
 VALIDATIONS = Validations()
@@ -33,3 +33,38 @@ def heave_row() -> Measured:
     low, high = BOUNDS[QUICK.share]
     found = onset()
     return Measured(0.5 * (low + high), found, abs(found - 0.5 * (low + high)))
+
+
+AROUND = {
+    Around(0.25, 32): (0.6888, 1.3200), Around(0.5, 24): (0.4637, 0.6361), Around(0.75, 24): (0.3193, 0.3887),
+}  # fmt: skip
+"""(q/(k h), i_E T/h as `Around` reads it) by finite volumes: `tests/reference/sheet_pile.py`."""
+
+
+@functools.cache
+def seepage(given: Around) -> tuple[float, float]:
+    """Discharge and exit gradient over those of finite volumes."""
+    discharge, gradient = given.run(100 * given.rows)
+    return discharge / AROUND[given][0], gradient / AROUND[given][1]
+
+
+def around_row(given: Around) -> None:
+    """Add the row of a pile of one depth."""
+
+    @VALIDATIONS.row(
+        f"continuum.pile_both_sides_{100 * given.share:.0f}",
+        source="Laplace's equation by finite volumes in the same ground: 1 T beside a pile one particle thick",
+        because="the tip lies between wall and open particles, uncertain to half a spacing of 1/32 or 1/24 T, q by "
+        "1.9 % of itself; kernels 1.3 spacings wide round off the root of its edge; held to 3 %, and 8 % for the "
+        "gradient, scaled to that",
+        tolerance=0.03,
+        slow=True,
+    )
+    def row() -> Measured:
+        """q and i_E of a pile that both sides touch over those of finite volumes, 32 or 24 particles over T."""
+        q, gradient = seepage(given)
+        return Measured([1.0, 1.0], [q, gradient], max(abs(q - 1.0), abs(gradient - 1.0) * 3.0 / 8.0))
+
+
+for ground in AROUND:
+    around_row(ground)
