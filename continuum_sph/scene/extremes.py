@@ -121,6 +121,7 @@ def spun(tension: str, shifting: float) -> Callable[[], str]:
     """A square of water that spins in open space: its middle is in tension, `trials.spinning_square`."""
 
     def run() -> str:
+        """A quarter turn: least pressure, how far it reaches, energies."""
         flow = trials.spinning_square(24, cut=tension == "cut", shifting=shifting)
         layer, start, pull = flow.layer, book(flow)["energy balance"], 0.0
         while flow.time < 0.5 * np.pi:  # a quarter turn
@@ -137,6 +138,7 @@ def thrown(speed: float) -> Callable[[], str | Judged]:
     """The collapse in a tank without a lid, its uppermost row thrown up (or down) at ``speed`` times sound."""
 
     def run() -> str | Judged:
+        """How it ends after half a second."""
         model = Simulation(trials.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released"))
         scene = model.scene.model_copy(update={"tank": model.scene.tank.model_copy(update={"lid": False})})
         model = Simulation(scene)

@@ -17,6 +17,7 @@ def stirred(permeability: float, seconds: float = 0.2) -> Callable[[], str]:
     """A periodic box of saturated elastic soil, both layers stirred at random, at the step that sound allows."""
 
     def run() -> str:
+        """How much energy is left, and how much it ever grew; Unstable where a particle is lost."""
         both = saturated_box(16, 1, permeability=permeability, speed=SPEED)
         ground = both.ground
         assert isinstance(ground, SoilFlow)

@@ -132,6 +132,7 @@ def speed(intrinsic: float, water: Any) -> float:
     given = water if isinstance(water, Mapping) else {}
 
     def number(key: str, unit: str, usual: float) -> float:
+        """A quantity of the water in ``unit``, ``usual`` where it is not given or makes no sense."""
         try:
             found = to_si(given.get(key, usual), unit)
         except (TypeError, ValueError):

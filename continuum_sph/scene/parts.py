@@ -53,6 +53,7 @@ def added(name: str, because: str = "", **more: Any) -> Kind:
     """A scene with something more, beside water alone."""
 
     def make() -> Built:
+        """Both scenes, started."""
         it = scene(**more)
         own, other = started(it), started(scene())
         return Built(own, parts_of(it), own.flow.layer.fluid, own.advance, other.advance)

@@ -80,6 +80,7 @@ class TrappedAir:
         n = self.porosity
 
         def rates(_: float, state: Floats) -> list[float]:
+            """Speed and acceleration of a front at the depth and with the speed of ``state``, m, m/s."""
             z, u = state
             h = self.standing - n * z
             push = GRAVITY * (h + z) - self.resisted(z, u) / WATER - 0.5 * (1.0 - n * n) * u * u

@@ -248,6 +248,7 @@ def kept(corrected: bool = True, seconds: float = 0.1, one_sided: bool = False) 
     soil.v[:, 0], soil.v[:, 1] = -20.0 * x[:, 1], 20.0 * x[:, 0]
 
     def momenta() -> tuple[float, float, float]:
+        """Momentum x, y and angular momentum about the origin."""
         px, py = (soil.mass[:, None] * soil.v).sum(axis=0)
         return px, py, float((soil.mass * (soil.x[:, 0] * soil.v[:, 1] - soil.x[:, 1] * soil.v[:, 0])).sum())
 

@@ -147,6 +147,7 @@ def _passes(pairs: int) -> Callable[[], None]:
     done, last = 0, time.perf_counter()
 
     def tell() -> None:
+        """One pair more."""
         nonlocal done, last
         done += 1
         if time.perf_counter() - last > PATIENCE:

@@ -62,6 +62,7 @@ def gate_lines(scene: dict[str, Any]) -> Callable[[Snapshot], list[Line]]:
     gate, height = scene.get("gate"), scene["domain"]["height"]
 
     def lines(snapshot: Snapshot) -> list[Line]:
+        """What is left of the gate."""
         if gate is None:
             return []
         since = snapshot.time - gate["opens_at"]
@@ -80,6 +81,7 @@ def solid_lines(scene: dict[str, Any]) -> Callable[[Snapshot], list[Line]]:
     gate, size = gate_lines(scene), (scene["domain"]["width"], scene["domain"]["height"])
 
     def lines(snapshot: Snapshot) -> list[Line]:
+        """The gate, and each rectangle where it is by then."""
         found = gate(snapshot)
         for section in scene.get("rectangle") or ():
             found += outline(section, snapshot.time, size)

@@ -36,6 +36,7 @@ def stirred(side: int, dtype: Dtype) -> Callable[[int], None]:
     wet = Saturated(fluid, np.full(count, pitch * math.sqrt(SOLID / math.pi)))
 
     def run(steps: int) -> None:
+        """So many steps; discs turn round every 64."""
         for _ in range(steps):
             if fluid.step % 64 == 32:
                 np.negative(velocity, out=velocity)

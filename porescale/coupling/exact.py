@@ -37,6 +37,7 @@ def start_up(ratio: float, time: float) -> float:
     """
 
     def transform(p: NDArray[np.complexfloating]) -> NDArray[np.complexfloating]:
+        """V(p)."""
         z = np.sqrt(p)
         return np.asarray(1 / (p**2 * (ratio + 1 + 4 * kve(1, z) / (z * kve(0, z)))))
 
@@ -50,6 +51,7 @@ def spin_down(ratio: float, time: float) -> float:
     """
 
     def transform(p: NDArray[np.complexfloating]) -> NDArray[np.complexfloating]:
+        """W(p)."""
         z = np.sqrt(p)
         return np.asarray(ratio / (ratio * p + 8 + 4 * z * kve(0, z) / kve(1, z)))
 

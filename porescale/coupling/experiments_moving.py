@@ -162,6 +162,7 @@ def settled_speed(
     cells = width, 4 * width
 
     def made(held: bool, pulled: bool) -> float:
+        """The speed a disc settles at, or the load on one that is held, in cells and steps."""
         coupled = immersed(
             cells, [(width / 2, cells[1] / 2 + 0.3)], a, ratio, relaxation_time=relaxation_time,
             acceleration=(0.0, 0.0 if held else -g), force=(0.0, -g if pulled else 0.0), method=method,

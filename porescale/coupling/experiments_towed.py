@@ -153,6 +153,7 @@ def near_wall(
     unit = nu * SLOW * (radius if motion == "turning" else 1.0)
 
     def load() -> float:
+        """Drag, lift or torque over its unit, films included."""
         if motion == "turning":
             return -float(coupled.fluid_torque[0]) / unit
         film = coupled.lubrication.force[0] if coupled.lubrication else np.zeros(2)

@@ -232,6 +232,7 @@ def _single(grains: Grains, kernel: Any, table: Array, laws: Array, spring: Arra
     """The forces of row ``w`` of a table on discs by index; the spring that results, (c,) m, is returned."""
 
     def forces(i: Index, force: Array, torque: Array) -> Array:
+        """Add to ``force`` (c, 2) N and ``torque`` (c,) N m of the discs ``i`` (c,); returns their springs (c,) m."""
         d, kept, total = grains.discs, spring[w : w + 1, i].copy(), np.zeros((1, 2))
         kernel(
             d.position[i], d.velocity[i], d.spin[i], d.radius[i], force, torque, table[w : w + 1], laws[w : w + 1],

@@ -48,6 +48,7 @@ def choose_by_law(chosen: Callable[..., Any], bodies: dict[type, Any]) -> None:
     """Let ``chosen`` mean, in kernels, the body for the type of its last argument."""
 
     def choose(*types: Any) -> Any:
+        """The body for the types of the arguments."""
         body = bodies.get(getattr(types[-1], "instance_class", type(None)))
         return None if body is None else body.compiled.py_func
 
@@ -58,6 +59,7 @@ def choose_by_precision(chosen: Callable[..., Any], constants: dict[int, Any]) -
     """Let ``chosen`` mean, in kernels, the constants for the bits of its argument."""
 
     def choose(number: Any) -> Any:
+        """A function of the constants of the number's precision."""
         known = constants.get(getattr(number, "bitwidth", 0))
         return None if known is None else lambda number: known
 
@@ -70,6 +72,7 @@ def _view(typing: Any, array: Any, first: Any, count: Any) -> Any:
         return None
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        """An array of the same memory, from an entry on."""
         whole, made = (
             context.make_array(array)(context, builder, values[0]),
             context.make_array(array)(context, builder),
@@ -96,6 +99,7 @@ def _prefetch(typing: Any, array: Any, at: Any) -> Any:
     """``fetch`` in kernels."""
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        """The machine's own word for it."""
         data = context.make_array(array)(context, builder, values[0]).data
         byte, number = ir.IntType(8).as_pointer(), ir.IntType(32)
         kind = ir.FunctionType(ir.VoidType(), [byte, number, number, number])
@@ -119,7 +123,10 @@ def teach_sum_by_halves(total: Callable[..., Any], count: int) -> None:
     """Let ``total`` (array, first) of ``sum_by_halves`` mean vector additions in kernels."""
 
     def vector(typing: Any, array: Any, first: Any) -> Any:
+        """``total`` in kernels."""
+
         def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            """One load, then halves of the vector added until one number is left."""
             start = builder.gep(context.make_array(array)(context, builder, values[0]).data, [values[1]], inbounds=True)
             kind = ir.VectorType(context.get_data_type(array.dtype), count)
             left = builder.load(builder.bitcast(start, kind.as_pointer()), align=4)

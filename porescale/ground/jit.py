@@ -142,6 +142,8 @@ def by_law(signature: F) -> Any:
         return bodies[type(arguments[-1])].py_func(*arguments)
 
     def of(*laws: type) -> Callable[[F], F]:
+        """Take the decorated function as body for ``laws``; returns it compiled."""
+
         def add(body: F) -> F:
             compiled = body if hasattr(body, "py_func") else inline(body)
             bodies.update(dict.fromkeys(laws, compiled))
@@ -192,6 +194,7 @@ def sum_by_halves(count: int) -> Any:
     """
 
     def total(array: Any, first: Any) -> Any:
+        """Sum of ``count`` entries from ``first`` on."""
         left = array[first : first + count]
         while left.shape[0] > 1:
             half = left.shape[0] // 2

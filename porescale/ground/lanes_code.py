@@ -121,6 +121,7 @@ def _by_machine(name: str) -> Callable[..., Any]:
     """Code of LLVM's function of one vector of that name."""
 
     def code(builder: Any, a: Any) -> Any:
+        """A call of it."""
         kind = ir.FunctionType(VECTOR, [VECTOR])
         return builder.call(get_or_insert_function(builder.module, kind, f"llvm.{name}.v{LANES}f64"), [a])
 
@@ -147,6 +148,7 @@ def _sum(typing: Any, a: Any) -> Any:
     """``total`` in kernels."""
 
     def code(context: Any, builder: Any, _: Any, values: Any) -> Any:
+        """Halves of the vector added until one number is left."""
         left, size = values[0], LANES
         while size > 1:
             size //= 2
@@ -162,6 +164,7 @@ def _put_line(typing: Any, line: Any, first: Any, end: Any, values: Any) -> Any:
     """``put_line`` in kernels."""
 
     def code(context: Any, builder: Any, _: Any, taken: Any) -> Any:
+        """One store where all lanes lie before the end, else those that do, one by one."""
         data = context.make_array(line)(context, builder, taken[0]).data
         at = builder.gep(data, [taken[1]])
         whole = builder.icmp_signed("<=", builder.add(taken[1], COUNT(LANES)), taken[2])
@@ -184,6 +187,7 @@ def _put_ascending(typing: Any, line: Any, count: Any, target: Any, first: Any) 
     vector, none = ir.VectorType(SHORT, WORDS), COUNT(0)
 
     def code(context: Any, builder: Any, _: Any, values: Any) -> Any:
+        """The place of each entry is how many are less."""
         source, there = (context.make_array(line)(context, builder, values[at]).data for at in (0, 2))
         target, number = builder.gep(there, [values[3]]), values[1]
         less = alloca_once(builder, vector)
@@ -224,6 +228,7 @@ def _take_line(typing: Any, line: Any, first: Any, end: Any) -> Any:
     """``take_line`` in kernels."""
 
     def code(context: Any, builder: Any, _: Any, values: Any) -> Any:
+        """A load, of which lanes beyond the end are zero."""
         data = context.make_array(line)(context, builder, values[0]).data
         at = builder.bitcast(builder.gep(data, [values[1]]), VECTOR.as_pointer())
         return _kept(builder, builder.load(at, align=8), values[1], values[2])
@@ -316,6 +321,7 @@ def teach_rows(take: Callable[..., Any], columns: int) -> None:
         found = types.UniTuple(lanes, columns)
 
         def code(context: Any, builder: Any, _: Any, values: Any) -> Any:
+            """A vector for each column; lanes beyond the end take the row ``other``."""
             table = context.make_array(record)(context, builder, values[0])
             width = builder.extract_value(table.shape, 1)
             listed = context.make_array(row)(context, builder, values[1]).data

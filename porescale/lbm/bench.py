@@ -61,6 +61,7 @@ def bench_operators(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
     steps = steps_of(side**2)
 
     def work(operator: str, smagorinsky: float) -> Work:
+        """Steps of a box with this operator."""
         law = choose(operator, RELAXATION_TIME, (0.0, 0.0), dtype, smagorinsky=smagorinsky)
 
         def run() -> None:

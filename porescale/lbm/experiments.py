@@ -93,6 +93,7 @@ def taylor_green(
     fluid = Fluid(cells, cells, relaxation_time(viscosity), operator=operator, sides=periodic)
 
     def exact(time: float) -> tuple[Array, Array, Array]:
+        """The vortices where they have been carried, faded by then."""
         x, y = np.meshgrid(np.arange(cells) - carried * time, np.arange(cells) - 0.5 * carried * time)
         a = top * math.exp(-decay * time)
         ux, uy = -a * np.cos(k * x) * np.sin(k * y), a * np.sin(k * x) * np.cos(k * y)

@@ -38,6 +38,7 @@ def write_frames(run: Run, shot: Shooting, folder: Path) -> int:
     began = last = time.perf_counter()
 
     def painted() -> Iterator[NDArray[Any]]:
+        """Frames in colour, each written with its mask as it comes."""
         nonlocal count, last
         for frame in frames(run, shot):
             mask = np.where(frame.solid, 255, 0).astype(np.uint8)

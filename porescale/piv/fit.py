@@ -133,12 +133,14 @@ def solved(grid: Grid, c: Single, known: Equations, stiffness: float, still: Rim
     at = np.empty((2, *hxx.shape), np.float32)
 
     def carried(values: tuple[Single, Single], axes: tuple[Axis, Axis] = (down, across)) -> Single:
+        """Values of pixels gathered at the knots by the splines' weights."""
         found = np.empty_like(c)
         for k in (0, 1):
             collect(values[k], axes[0].first, axes[0].weights, axes[1].first, axes[1].weights, spare[k], found[k])
         return found
 
     def bent(p: Single) -> Single:
+        """What stiffness, and rims that are still, take of the coefficients p."""
         found = np.empty_like(p)
         for k in (0, 1):
             bending(p[k], found[k])
@@ -148,6 +150,7 @@ def solved(grid: Grid, c: Single, known: Equations, stiffness: float, still: Rim
         return found
 
     def applied(p: Single) -> Single:
+        """The whole matrix times p; overwrites ``spare`` and ``at``."""
         for k in (0, 1):
             expand(p[k], down.first, down.weights, across.first, across.weights, spare[k], at[k])
         u, v = at

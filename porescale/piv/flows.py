@@ -98,6 +98,7 @@ def _swirl(name: str, size: tuple[int, int], spin: Callable[[Array], Array]) -> 
     cx, cy = 0.5 * (size[1] - 1), 0.5 * (size[0] - 1)
 
     def velocity(x: Array, y: Array) -> tuple[Array, Array]:
+        """Spin times the distance from the centre, across it."""
         dx, dy = x - cx, y - cy
         turn = spin(dx * dx + dy * dy)
         return -turn * dy, turn * dx
@@ -125,6 +126,7 @@ def lamb_oseen(size: tuple[int, int], peak: float, core: float) -> Flow:
     scale = peak * core / (1 - np.exp(-LAMB_PEAK))
 
     def spin(r2: Array) -> Array:
+        """Radians an interval at a squared radius."""
         s = LAMB_PEAK * np.maximum(r2, 1e-12) / core**2
         return np.asarray(scale * LAMB_PEAK / core**2 * (-np.expm1(-s)) / s)
 
@@ -149,6 +151,7 @@ def past_discs(size: tuple[int, int], peak: float, discs: Discs, layer: float = 
     """
 
     def bells(x: Array, y: Array) -> list[tuple[Array, Array, Array]]:
+        """c_k and its slopes in x and y, of every disc."""
         found = []
         for a, b, r in zip(discs.x, discs.y, discs.radius, strict=True):
             dx, dy = x - a, y - b
@@ -160,6 +163,7 @@ def past_discs(size: tuple[int, int], peak: float, discs: Discs, layer: float = 
         return found
 
     def velocity(x: Array, y: Array) -> tuple[Array, Array]:
+        """(dpsi/dy, -dpsi/dx)."""
         known = bells(x, y)
         open_, ox, oy = np.ones_like(x), np.zeros_like(x), np.zeros_like(x)  # prod (1 - c) and its slopes
         for c, cx, cy in known:

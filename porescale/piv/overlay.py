@@ -31,6 +31,7 @@ def overlay_film(folder: Path, film: Film, span: tuple[float, ...], rate: int = 
     """
 
     def painted() -> Iterator[NDArray[Any]]:
+        """Pictures with the arrows of their fields."""
         fast = 0.0
         for image, field in zip(film, fields_of_film(folder), strict=False):
             if fast <= 0:

@@ -179,6 +179,7 @@ class Binder:
         at, clumps = as_bodies(self.grains).position, self.bodies.clumps
 
         def inside(body: Body) -> bool:
+            """Whether a body's centre lies there; a clump's is its first disc's."""
             name = self.bodies.named[body]
             if isinstance(name, ClumpNumber):
                 assert clumps is not None

@@ -142,6 +142,7 @@ def with_consequences(table: Any) -> Any:
     made, faults = dict(table), []
 
     def follows(key: str, value: float, source: str, unit: str = "") -> None:
+        """Take ``value`` for a key, with a fault where another one is given."""
         given = _number(made.get(key), unit)
         if given is not None and abs(given - value) > SAME * value:
             problem = f"follows from {source}: {value:.6g}"

@@ -94,6 +94,7 @@ def without(it: Scene) -> Callable[[Simulation], Callable[[int], object]]:
     """A scene that lacks a part."""
 
     def other(made: Simulation) -> Callable[[int], object]:
+        """Steps of the scene, warm."""
         twin = build(it)
         twin.advance(WARM)
         return twin.advance
@@ -111,6 +112,7 @@ def nothing_moves(made: Simulation) -> Callable[[int], object]:
     motion = held.position / units.spacing, np.zeros_like(held.velocity), np.zeros_like(held.spin)
 
     def steps(count: int) -> None:
+        """So many steps of the fluid and its solid cells."""
         for _ in range(count):
             wet.advance(fluid, *motion)
 

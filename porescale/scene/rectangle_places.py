@@ -197,6 +197,7 @@ def nearest(it: Rectangle, path: Body, place: Array, t0: float, t1: float) -> fl
     """
 
     def distance(time: float) -> float:
+        """At a ``time`` (s), m."""
         at = np.asarray(place) + path.travelled(time)
         gone = np.asarray(it.travelled(time))
         return float(np.hypot(*(at - np.clip(at, it.lower + gone, it.upper + gone))))

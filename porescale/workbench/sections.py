@@ -46,6 +46,7 @@ class Section(BaseModel):
         """Validation that collects an InputError raised inside a section with the other faults."""
 
         def collect(value: Any, inner: pydantic.ValidatorFunctionWrapHandler) -> Any:
+            """``value`` validated, with the faults that a section raises."""
             try:
                 return inner(cls._spell_booleans(value))
             except InputError as error:

@@ -141,6 +141,7 @@ class Stability:
         assert name not in self._known, f"two flows named {name}"
 
         def register(measure: Measure) -> Measure:
+            """Keep it; returns it as it is."""
             made = Flow(name=name, measure=measure, **parts)
             assert made.right >= 0
             assert made.because, "a tolerance has a reason"

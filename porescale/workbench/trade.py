@@ -151,6 +151,7 @@ def costs(ends: Sequence[Ended]) -> tuple[float, float, float, int, float, float
     ends = [ended for ended in ends if ended.card.get("core_pace")] or ends
 
     def mean(key: str) -> float:
+        """Over the runs that say it, 0 where none does."""
         known = [float(ended.card[key]) for ended in ends if ended.card.get(key)]
         return sum(known) / len(known) if known else 0.0
 
@@ -165,6 +166,7 @@ def front(points: Sequence[Traded]) -> list[Traded]:
     """The same points, each saying whether no other is both no dearer and no worse, and one of the two better."""
 
     def beaten(one: Traded) -> bool:
+        """Whether another point is as good in both and better in one, or there is no error."""
         return not math.isfinite(one.error) or any(
             other.core_seconds <= one.core_seconds and other.error <= one.error
             and (other.core_seconds < one.core_seconds or other.error < one.error)

@@ -10,6 +10,8 @@ import pytest
 from sources import ROOT, Source, functions, is_kernel, read, sources, written
 
 LONGEST = 400
+PLAIN = 5
+"""Lines of a function within another that says by itself what it does."""
 UNFINISHED = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b")
 JIT = "porescale.ground.jit"
 COMPILING = ("porescale.ground.compiling", "porescale.ground.lanes_code")
@@ -34,6 +36,17 @@ def undocumented(source: Source) -> Iterator[str]:
                 yield from look(node.body, known)
 
     yield from look(source.tree.body, True)
+
+
+def undocumented_within(source: Source) -> Iterator[str]:
+    """Functions within functions, but for kernels, that do not say what they do and are too long to say it themselves."""
+    for owner in functions(source.tree):
+        if is_kernel(owner):
+            continue
+        for node in functions(owner):
+            length = (node.end_lineno or node.lineno) - node.lineno + 1
+            if length > PLAIN and not ast.get_docstring(node):
+                yield f"{source.at(node)}: {owner.name}.{node.name}"
 
 
 def unannotated(source: Source) -> Iterator[str]:
@@ -107,7 +120,7 @@ def skipped(source: Source) -> Iterator[str]:
             yield f"{source.at(node)}: {node.attr}"
 
 
-PACKAGE_CHECKS = [undocumented, unannotated, compiled_elsewhere, too_long, unfinished]
+PACKAGE_CHECKS = [undocumented, undocumented_within, unannotated, compiled_elsewhere, too_long, unfinished]
 
 
 @pytest.mark.parametrize("check", PACKAGE_CHECKS, ids=lambda check: check.__name__)
@@ -135,6 +148,7 @@ BAD = [
     (undocumented, DOC + "class A:\n    '''A.'''\n    def f(self): pass"),
     (undocumented, DOC + "@inline\ndef _f(x): return x"),
     (undocumented, DOC + "if x:\n    def f(): pass"),
+    (undocumented_within, "def f():\n    def g():\n" + "        h()\n" * PLAIN),
     (unannotated, "def f(x) -> None: ..."),
     (unannotated, "def f(x: int): ..."),
     (unannotated, "def f(*x, y: int) -> None: ..."),
@@ -158,6 +172,9 @@ GOOD = [
     (undocumented, ""),
     (undocumented, DOC + "def _f(): pass\nclass _A:\n    def f(self): pass"),
     (undocumented, DOC + "def f():\n    '''F.'''\n    def g(): pass"),
+    (undocumented_within, "def f():\n    def g():\n        'G.'\n" + "        h()\n" * PLAIN),
+    (undocumented_within, "def f():\n    def g():\n" + "        h()\n" * (PLAIN - 1)),
+    (undocumented_within, "@kernel\ndef f():\n    def g():\n" + "        h()\n" * PLAIN),
     (unannotated, "def f(x: int, *y: int, **z: int) -> None: ..."),
     (unannotated, "class A:\n    def f(self) -> None: ...\n    @classmethod\n    def g(cls) -> None: ..."),
     (unannotated, "@kernel\ndef f(x):\n    def g(y): return y\n    return g(x)"),

@@ -145,6 +145,7 @@ class Linear:
             raise InputError(Fault("contact.law", f"{self} and {other}", "differ in kind or release"))
 
         def dashpot(stiff: str, damping: str, between: float) -> float:
+            """A dashpot with the mean damping ratio of both, on a spring of stiffness ``between``."""
             ends = [(getattr(law, stiff), getattr(law, damping)) for law in (self, other)]
             if all(k > 0.0 for k, _ in ends):
                 return float(0.5 * sum(c / math.sqrt(k) for k, c in ends) * math.sqrt(between))
