@@ -39,7 +39,7 @@ def undocumented(source: Source) -> Iterator[str]:
 
 
 def undocumented_within(source: Source) -> Iterator[str]:
-    """Functions within functions, but for kernels, that do not say what they do and are too long to say it themselves."""
+    """Functions within functions, but for kernels, that do not say what they do and are too long to show it."""
     for owner in functions(source.tree):
         if is_kernel(owner):
             continue
