@@ -23,7 +23,7 @@ COLOURS = ("#c8553d", "#c99a2e", "#3f7f4f")
 
 
 OVERFLOW = Levee(
-    land=4.0, river=3.0, plain=1.6, crest=0.3, rising=0.8, low=0.8, high=1.12, end=6.5
+    land=5.0, river=3.0, plain=1.6, crest=0.3, rising=0.8, low=0.8, high=1.12, end=6.5
 )  # fmt: skip
 """A levee flat enough to stand, and a river that rises over its crest."""
 SLID = (

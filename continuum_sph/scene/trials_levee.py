@@ -16,6 +16,14 @@ Floats = NDArray[np.float64]
 
 WATER = 1000.0  # kg/m³
 STIFF = 10.0  # K_w/(n M) of the water
+GRAINS = 2650.0  # kg/m³
+GRAVITY = 9.8  # m/s², of the paper
+CALM = 4.0
+"""χ γ'H/E of the diffusion of stress.  Of particles that slide past each other the strain is uneven, and stress by E
+times that; diffusion takes it away within a shear strain that goes as 1/χ, so what is left goes as E/χ.  It bears load,
+as soil keeps what is over its stress and cuts off what would pull: with χ alone given, a levee would stand the longer
+the stiffer it is."""
+MOST = 1000.0  # χ at most
 PARTS = {"toe": (0.0, 0.25), "middle": (0.4, 0.65), "crest": (0.8, 1.01)}
 """Heights of the land side's surface over that of the crest, from and to."""
 SHALLOW = 0.15  # depth below the surface of what is watched, over the height of the crest
@@ -30,7 +38,7 @@ class Levee:
     rows : particles over its height;  height, crest : m;  river, land : run of its slopes over the height;  pool,
     plain : breadth of river and land beside it, m;  stiffness : E, Pa;  ratio : K_w/(n M) of the water;  permeability
     m/s;  friction : degrees;  cohesion : Pa;  low, high : levels of the river over the height;  viscosity : artificial,
-    α of the water;  end : s.
+    α of the water;  calm : see CALM;  end : s.
     """
 
     rows: int = 12
@@ -48,6 +56,7 @@ class Levee:
     low: float = 0.6
     high: float = 0.95
     viscosity: float = 0.01
+    calm: float = CALM
     settle: float = 0.5
     rising: float = 0.5
     end: float = 5.5
@@ -75,6 +84,16 @@ class Levee:
         """M of a column, Pa, with ν = 0.3."""
         return self.stiffness * 0.7 / (1.3 * 0.4)
 
+    @property
+    def weight(self) -> float:
+        """γ'H of soil under water, Pa."""
+        return (1.0 - self.porosity) * (GRAINS - WATER) * GRAVITY * self.height
+
+    @property
+    def diffusion(self) -> float:
+        """χ of the diffusion of stress."""
+        return min(MOST, self.calm * self.stiffness / self.weight)
+
     def table(self) -> dict[str, Any]:
         """The scene of it, as a file would have it."""
         foot, top, edge, toe = self.corners
@@ -83,7 +102,7 @@ class Levee:
         covered = self.whole(foot + (top - foot) * self.low)
         return {
             "title": "A saturated levee under a sudden rise of the river",
-            "gravity": 9.8,
+            "gravity": GRAVITY,
             "tank": {"width": width, "height": self.whole(1.4 * self.height), "lid": False},
             "water": {
                 "sound_speed": (self.ratio * self.porosity * self.modulus / WATER) ** 0.5,
@@ -91,8 +110,9 @@ class Levee:
             },
             "soil": {
                 "stiffness": self.stiffness, "permeability": self.permeability, "saturated": True,
+                "density": (1.0 - self.porosity) * GRAINS, "porosity": self.porosity,
                 "friction_angle": f"{self.friction} degree", "cohesion": self.cohesion,
-                "numerics": {"settle": self.settle},
+                "numerics": {"settle": self.settle, "stress_diffusion": self.diffusion},
                 "body": [{"outline": [[foot, 0], [toe, 0], [edge, self.height], [top, self.height]]}],
             },
             "reservoir": [
@@ -132,11 +152,12 @@ class Levee:
                 yield np.array(row), model
 
     def times(self, rows: Floats) -> dict[str, float]:
-        """When (s) each of the PARTS had moved by FAR and water was OVER the crest, of rows of the course (m, 5); nan
-        for never."""
+        """When (s) each of the PARTS had moved by FAR and water was OVER the crest, on straight lines between the
+        rows of the course (m, 5); nan for never."""
         limits = [FAR * self.height] * len(PARTS) + [OVER * self.height**2]
         found = {}
         for column, (name, limit) in enumerate(zip((*PARTS, "overtopped"), limits, strict=True), 1):
             beyond = np.flatnonzero(rows[:, column] > limit)
-            found[name] = float(rows[beyond[0], 0]) if beyond.size else float("nan")
+            last = rows[beyond[0] - 1 : beyond[0] + 1] if beyond.size and beyond[0] else rows[:1]
+            found[name] = float(np.interp(limit, last[:, column], last[:, 0])) if beyond.size else float("nan")
         return found

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from continuum_sph.scene.trials_levee import FAR, PARTS, Levee
+from continuum_sph.scene.validations import VALIDATIONS
+from continuum_sph.scene.verify_levee import QUICK, STIFFER, gone
 
 
 def course(given):
@@ -14,10 +18,18 @@ def course(given):
 
 
 @pytest.mark.slow
-def test_toe_middle_and_crest_go_one_after_the_other():
-    given = Levee(rows=8, end=2.3)
-    times = given.times(course(given))
-    assert times["toe"] < times["middle"] < times["crest"]
+def test_toe_middle_and_crest_go_one_after_the_other_however_stiff():
+    for given in (QUICK, replace(QUICK, stiffness=STIFFER * QUICK.stiffness)):
+        toe, middle, crest = gone(given)
+        assert toe < middle < crest
+
+
+@pytest.mark.slow
+def test_with_the_same_diffusion_of_stress_a_stiffer_levee_goes_otherwise():  # the twin that must fail
+    stiff = replace(QUICK, stiffness=STIFFER * QUICK.stiffness, calm=QUICK.calm / STIFFER)
+    assert stiff.diffusion == pytest.approx(QUICK.diffusion)
+    late = [abs(one - other) for one, other in zip(gone(QUICK), gone(stiff), strict=True)]
+    assert max(late) > 2.0 * VALIDATIONS["continuum.levee_stiffness"].tolerance
 
 
 @pytest.mark.slow
@@ -44,5 +56,5 @@ def test_the_parts_lie_one_above_the_other_on_the_land_side():
 def test_what_never_moved_has_no_time():
     rows = np.array([[0.0, 0.0, 0.0, 0.0, 0.0], [0.1, 0.3, 0.1, 0.0, 0.0]])
     times = Levee().times(rows)
-    assert times["toe"] == 0.1
+    assert times["toe"] == pytest.approx(0.1 * FAR / 0.3)
     assert all(np.isnan(times[name]) for name in ("middle", "crest", "overtopped"))
