@@ -122,7 +122,7 @@ class Numerics(Section):
     xsph: float = quantity("", 0.0, ge=0, le=1, help="epsilon of eq. 53")
     tension: Literal["cut", "kept"] = "kept"
     courant: float = quantity("", 0.25, ge=1e-3, le=0.5, help="share of the acoustic step of eq. 49")
-    skin: float = quantity("", 0.25, ge=1e-3, le=2, help="skin of the pair list over smoothing length")
+    skin: float = quantity("", 0.25, ge=1e-3, le=2, help="largest skin of the pair lists over h; less where it pays")
 
 
 class Time(Section):
