@@ -97,12 +97,12 @@ class Sleep:
     def step(self, grains: Grains, dt: float, drag: float, count: int) -> int:
         """Up to ``count`` contact steps with the external loads of ``grains``; how many are left, for all awake."""
         self._look(grains, dt)
-        left, limit = count, (0.5 * grains.pairs.skin) ** 2
+        left = count
         while left > 0 and self._part_now(grains, dt):
             part = self._part
             assert part
             self._take_out(grains, part)
-            done, grains._stale = part.steps(grains, left, dt, drag, limit, True)
+            done, grains._stale = part.steps(grains, left, dt, drag, grains.pairs.room**2, True)
             calls = self._put_back(grains, part, done, left == count)
             left -= done
             grains.steps += done
@@ -160,10 +160,13 @@ class Sleep:
     def _part_now(self, grains: Grains, dt: float) -> bool:
         """Whether anybody sleeps; then the part is up to date, and nobody within is out of balance."""
         while self._some:
+            looked_at = grains._stale
             pairs = grains.current_pairs()
             if self._part is None or self._builds != pairs.builds:
                 self._divide(grains, dt)
                 self._builds = pairs.builds
+            elif looked_at:
+                np.take(pairs.mark, self._part.index, axis=0, out=self._part.anchor, mode="clip")
             d = grains.discs
             if not disturbed(
                 self._deep, self.balance, grains.external_force, grains.external_torque, d.radius, self.allowed,

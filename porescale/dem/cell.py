@@ -71,8 +71,10 @@ def image(dx, dy, cell):
 
 @image.of(Still)
 def image_still(dx, dy, cell):
-    """Two minimum images."""
-    return minimum_image(dx, cell.period_x), minimum_image(dy, cell.period_y)
+    """Two minimum images; nothing is worked out in a cell that is not periodic at all."""
+    if cell.period_x > 0.0 or cell.period_y > 0.0:
+        return minimum_image(dx, cell.period_x), minimum_image(dy, cell.period_y)
+    return dx, dy
 
 
 @image.of(Straining)

@@ -268,7 +268,7 @@ class Grains:
             self.external_torque[:] = 0.0
         elif external_torque is not self.external_torque:
             self.external_torque[:] = external_torque
-        d, limit = self.discs, (0.5 * self.pairs.skin) ** 2
+        d = self.discs
         if dt != self.last_dt:
             self._time, self._steps_of_dt, self.last_dt = self.time, 0, dt
         if self.book is not None and self.book_start is None:
@@ -291,7 +291,7 @@ class Grains:
                 left, dt, drag,
                 d.position, d.angle, d.velocity, d.spin, d.radius, d.mass, d.inertia, d.force, d.torque,
                 self.external_force, self.external_torque,
-                pairs.start, pairs.partner, pairs.carried, pairs.anchor, limit,
+                pairs.start, pairs.partner, pairs.carried, pairs.mark, pairs.room**2,
                 self.contact,
                 self.walls, self.wall_laws, self.wall_spring, self.wall_load,
                 self.plates, self.plate_laws, self.plate_spring, self.plate_force,

@@ -5,6 +5,7 @@ none left its place by half the skin.  That is quick to see, and too strict wher
 ways of points that lie near each other are then alike, however long.  So the box is cut into blocks, and the ways of
 all points of a block, as arrows, into a rectangle: two points came nearer by at most the diagonal of the rectangle that
 holds those of both blocks.  Blocks that do not touch are a whole block apart, so all ways together may be longer.
+What is left of the skin then is asked for only when some point has gone half of it further.
 """
 
 from __future__ import annotations
@@ -58,11 +59,12 @@ def nearing(bounds, a, b):
 
 
 @kernel
-def drifted(x, anchor, reach, anchor_reach, block, bounds, columns, rows, skin, gap, period_x, period_y):
-    """True if points of blocks that touch may have come nearer by more than ``skin``, or any by more than ``gap``, m.
+def spare(x, anchor, reach, anchor_reach, block, bounds, columns, rows, skin, gap, period_x, period_y):
+    """Way (m) by which any two points may still come nearer: those of blocks that touch may by ``skin`` (m), all others
+    by ``gap`` (m), since the list was made.  Below 0 where some may have already.
 
     x, anchor (n, 2) m, reach, anchor_reach (n,) m: now and when the list was made;  block: of `into_blocks`;  bounds
-    (columns rows + 1, 5): overwritten, the last row by that of all.  Positions that are no numbers count as drifted.
+    (columns rows + 1, 5): overwritten, the last row by that of all.  Positions that are no numbers leave -inf.
     """
     whole = columns * rows
     for b in range(whole + 1):
@@ -89,7 +91,8 @@ def drifted(x, anchor, reach, anchor_reach, block, bounds, columns, rows, skin, 
         if growth > bounds[b, GROWTH]:
             bounds[b, GROWTH] = growth
     if nowhere > 0:
-        return True
+        return -np.inf
+    most = 0.0
     for row in range(rows):
         for column in range(columns):
             a = row * columns + column
@@ -102,11 +105,13 @@ def drifted(x, anchor, reach, anchor_reach, block, bounds, columns, rows, skin, 
                     c %= columns
                 if period_y > 0.0:
                     r %= rows
-                if 0 <= c < columns and r < rows and nearing(bounds, a, r * columns + c) > skin:
-                    return True
+                if 0 <= c < columns and r < rows:
+                    most = max(most, nearing(bounds, a, r * columns + c))
             bounds[whole, LEFT] = min(bounds[whole, LEFT], bounds[a, LEFT])
             bounds[whole, DOWN] = min(bounds[whole, DOWN], bounds[a, DOWN])
             bounds[whole, RIGHT] = max(bounds[whole, RIGHT], bounds[a, RIGHT])
             bounds[whole, UP] = max(bounds[whole, UP], bounds[a, UP])
             bounds[whole, GROWTH] = max(bounds[whole, GROWTH], bounds[a, GROWTH])
-    return x.shape[0] > 0 and nearing(bounds, whole, whole) > gap
+    if x.shape[0] == 0:
+        return skin
+    return min(skin - most, gap - nearing(bounds, whole, whole))

@@ -46,6 +46,9 @@ class PairList:
     start : (n + 1,) int64, row i is ``partner[start[i]:start[i + 1]]``, ascending;  partner : (m,) int32;
     carried : (m, k);  anchor : (n, 2) m, positions at the build;  builds : number of builds so far.
 
+    mark (n, 2) m, room m : the list holds, without ``update``, until some point is further than room from its mark;
+    both are others after an ``update``.
+
     The list is the same at any number of threads.  Buffers grow geometrically and are reused.
     """
 
@@ -77,6 +80,9 @@ class PairList:
         self.builds = 0
         self.anchor: Floats = np.zeros((count, 2))
         self._anchor_reach: Floats = np.zeros(count)
+        self.mark: Floats = np.zeros((count, 2))
+        self._mark_reach: Floats = np.zeros(count)
+        self.room = 0.0
         # Two of each, so that a build can read the last list while it writes the next.
         self._starts = [np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)]
         self._partners = [np.empty(0, np.int32), np.empty(0, np.int32)]
@@ -153,8 +159,7 @@ class PairList:
 
     def _holds(self, x: Floats, reach: Floats) -> bool:
         """Whether no pair can be missing from the list."""
-        since = (x, self.anchor, reach, self._anchor_reach)
-        if not drift.strayed(*since, 0.5 * self.skin, *self.period):
+        if not drift.strayed(x, self.mark, reach, self._mark_reach, self.room, *self.period):
             return True
         if self.tilt != 0.0:  # images aside: blocks have other neighbours
             return False
@@ -170,7 +175,16 @@ class PairList:
                 self.anchor, *self.lower, columns / width, rows / height, columns, rows, *self.period, self._block
             )
         gap = min(width / columns, height / rows) - largest
-        return not drift.drifted(*since, self._block, self._bounds, columns, rows, self.skin, gap, *self.period)
+        since = (x, self.anchor, reach, self._anchor_reach)
+        left = drift.spare(*since, self._block, self._bounds, columns, rows, self.skin, gap, *self.period)
+        if left < 0.0:
+            return False
+        self._look_again(x, reach, 0.5 * left)
+        return True
+
+    def _look_again(self, x: Floats, reach: Floats, room: float) -> None:
+        """The list holds until some point is ``room`` (m) from where it is now."""
+        self.mark[:], self._mark_reach[:], self.room = x, reach, room
 
     def build(self, x: Floats, reach: Floats) -> None:
         """List the pairs of ``x`` (n, 2) m with ``reach`` (n,) m now; data of pairs listed before is kept.
@@ -217,6 +231,7 @@ class PairList:
             search.carry(old_start, old_partner, old_carried, self.start, self.partner, self.carried)
         self.anchor[:] = x
         self._anchor_reach[:] = reach
+        self._look_again(x, reach, 0.5 * self.skin)
         self.builds += 1
         self.lasted = 0
 
@@ -259,6 +274,9 @@ class PairList:
             "carried": self.carried.copy(),
             "anchor": self.anchor.copy(),
             "anchor_reach": self._anchor_reach.copy(),
+            "mark": self.mark.copy(),
+            "mark_reach": self._mark_reach.copy(),
+            "room": np.array(self.room),
             "builds": np.array(self.builds, np.int64),
             "lasted": np.array(self.lasted, np.int64),
             "skin": np.array(self.skin),
@@ -276,4 +294,8 @@ class PairList:
         self._anchor_reach[:] = state["anchor_reach"]
         self.builds, self.lasted = int(state["builds"]), int(state["lasted"])
         self.skin = float(state["skin"])
+        self._look_again(self.anchor, self._anchor_reach, 0.5 * self.skin)  # of states that do not say
+        if "mark" in state:
+            mark, reach = (np.asarray(state[name], np.float64) for name in ("mark", "mark_reach"))
+            self._look_again(mark, reach, float(state["room"]))
         self._blocked = -1

@@ -112,8 +112,8 @@ def test_two_crowds_that_meet_from_afar_do_not(monkeypatch):
         return built, rows_of(listed) == neighbours(x, np.full(6, 0.1), 0.2, LOWER, UPPER)
 
     assert meet() == (True, True)
-    ask = drift.drifted
-    monkeypatch.setattr(drift, "drifted", lambda *a: ask(*a[:9], np.inf, *a[10:]))
+    ask = drift.spare
+    monkeypatch.setattr(drift, "spare", lambda *a: ask(*a[:9], np.inf, *a[10:]))
     assert meet() == (False, False)
 
 
@@ -287,7 +287,9 @@ def test_kernels_as_plain_python():
     for far, built in ((0.0, False), (0.2, True)):
         moved = x + far * (np.arange(25)[:, None] == 3)
         how = (listed.anchor, reach, reach, block, bounds, 2, 2, 0.1, 1.0, 10.0, 0.0)
-        assert drift.drifted.py_func(moved, *how) == drift.drifted(moved, *how) == built
+        left = drift.spare(moved, *how)
+        assert drift.spare.py_func(moved, *how) == left
+        assert (left < 0.0) == built
     assert search.first_unusable.py_func(x, reach) == -1
 
 
