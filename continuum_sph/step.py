@@ -36,7 +36,7 @@ from continuum_sph.motion import kick, kick_drift, pressurise
 from continuum_sph.rates import rates, split_rows
 from continuum_sph.rates_plain import plain_rates
 from continuum_sph.shifting import MOST, QUIET, shift
-from continuum_sph.surface_tension import colours, normals, pull_interface
+from continuum_sph.surface_tension import colours, curvatures, middle_curvatures, normals, pull_interface
 from porescale.particles import PairList
 
 Floats = NDArray[np.float64]
@@ -78,6 +78,7 @@ class Flow:
         self.crowd, self.slant = np.zeros((count, 2)), np.zeros((count, 2))
         self.normalised = np.zeros(layer.fluid)
         self.colour, self.normal = np.zeros(layer.fluid), np.zeros((layer.fluid, 3))
+        self.curvature, self.middle = np.zeros(layer.fluid), np.zeros(layer.fluid)
 
     def choose(self) -> NDArray[np.int64]:
         """The choices of `rates`."""
@@ -203,8 +204,11 @@ class Flow:
         how = (law.smoothing.kind, law.smoothing.length, *pairs.period)
         colours(*where, layer.material, self.colour, *how)
         normals(*where, self.colour, self.normal, *how)
+        curvatures(*where, self.normal, self.curvature, *how)
+        middle_curvatures(*where, self.normal, self.curvature, self.middle, *how)
         pull_interface(
-            *where, self.normal, law.tension, layer.acceleration, layer.mass, layer.v, layer.power, *how
+            *where, layer.material, self.middle, layer.matrix, law.corrected, law.tension, layer.acceleration,
+            layer.mass, layer.v, layer.power, *how,
         )  # fmt: skip
 
     def show_walls(self, step: float, ratio: float) -> None:

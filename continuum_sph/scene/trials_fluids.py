@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.eos import Tait
+from continuum_sph.exact import drop_period
+from continuum_sph.exact_drop import swing_period
 from continuum_sph.fluids import Fluid
 from continuum_sph.law import Law
 from continuum_sph.layers import Layer
 from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.trials import run_until
 from continuum_sph.smoothing import Smoothing
 from continuum_sph.step import Flow
 from porescale.particles import PairList, square_lattice
@@ -20,6 +25,8 @@ Floats = NDArray[np.float64]
 TENSION = 1.0  # N/m
 OUTER = 0.1  # kg/m³; the drop has 1
 SOUND = 10.0  # m/s, of the drop
+SWINGING = 0.01, 0.001  # Pa s, of a drop that swings and around it
+SETTLED = 0.15  # s after which the staircase of a lattice has gone, both fluids at 0.05 Pa s
 
 
 def drop(
@@ -63,6 +70,68 @@ def strewn(across: int, radius: float, stretch: float, seed: int, *, tension: fl
     layer.material[:] = np.hypot(place[:, 0], place[:, 1]) < radius
     flow.evaluate(0.0, 0.0)
     return flow
+
+
+def kicked(across: int, radius: float, amplitude: float, *, tension: float = TENSION) -> tuple[Flow, float]:
+    """A round drop of `drop` that has settled, set in the motion of Lamb's mode n = 2; and its radius (m) by its area.
+
+    amplitude : of the swing over the radius, were there no viscosity;  viscosities from then on: SWINGING.
+    """
+    flow = run_until(drop(across, radius, tension=tension), SETTLED)
+    layer, law = flow.layer, flow.law
+    fluids = tuple(replace(law.fluids[k], viscosity=SWINGING[1 - k]) for k in range(2))
+    inside = layer.material == 1
+    radius = float((layer.mass[inside] / layer.density[inside]).sum() / np.pi) ** 0.5
+    out = layer.x - layer.x[inside].mean(axis=0)
+    rate = amplitude * 2.0 * np.pi / drop_period(radius, tension, 1.0, OUTER, SOUND)
+    # ∇(x² - y²)/2 inside, and outside of that R⁴/r⁴ mirrored: both move the interface alike
+    r, angle = np.hypot(out[:, 0], out[:, 1]), np.arctan2(out[:, 1], out[:, 0])
+    turned = np.where(inside, -angle, 3.0 * angle)
+    size = rate * np.where(inside, r, radius**4 / np.maximum(r, 0.5 * radius) ** 3)
+    layer.v[:] = size[:, None] * np.column_stack((np.cos(turned), np.sin(turned)))
+    flow.law, flow.time = replace(law, fluids=fluids), 0.0
+    flow.start()
+    return flow, radius
+
+
+def swing(flow: Flow, seconds: float) -> tuple[Floats, Floats]:
+    """Times (s) and how far the drop is drawn out, see `stretched`, at every tenth step."""
+    times, shapes = [0.0], [stretched(flow)]
+    while flow.time < seconds:
+        for _ in range(10):
+            flow.advance()
+        times.append(flow.time)
+        shapes.append(stretched(flow))
+    return np.array(times), np.array(shapes)
+
+
+def second_round(times: Floats, shapes: Floats, after: float) -> float:
+    """When (s) a drop of ``shapes`` at ``times`` becomes wider than high, from ``after`` (s) on; infinity if never."""
+    turns = np.flatnonzero((shapes[:-1] < 0.0) & (shapes[1:] >= 0.0) & (times[1:] > after))
+    if not turns.size:
+        return float("inf")
+    k = int(turns[0])
+    return float(times[k] - shapes[k] * (times[k + 1] - times[k]) / (shapes[k + 1] - shapes[k]))
+
+
+def exact_period(radius: float, *, viscous: bool = True) -> float:
+    """Time (s) until a kicked drop of ``radius`` (m) is round for the second time.
+
+    That of `swing_period`, longer by as much as sound makes Lamb's period;  Lamb's with sound if not ``viscous``.
+    """
+    with_sound = drop_period(radius, TENSION, 1.0, OUTER, SOUND)
+    if not viscous:
+        return with_sound
+    lamb = 2.0 * np.pi * ((1.0 + OUTER) * radius**3 / (6.0 * TENSION)) ** 0.5
+    return with_sound / float(lamb) * swing_period(radius, TENSION, (1.0, OUTER), SWINGING)
+
+
+def period_over_exact(across: int, radius: float, amplitude: float, tension: float = TENSION) -> float:
+    """Time until a kicked drop is round for the second time, over `exact_period`, which has TENSION."""
+    flow, radius = kicked(across, radius, amplitude, tension=tension)
+    exact = exact_period(radius)
+    times, shapes = swing(flow, 1.4 * exact)
+    return second_round(times, shapes, 0.7 * exact) / exact
 
 
 def hysing(spacing: float) -> Scene:
