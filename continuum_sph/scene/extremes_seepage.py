@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from continuum_sph.scene.health import stepped
 from continuum_sph.scene.trials_seepage import energies, saturated_box
 from continuum_sph.soil import SoilFlow
-from porescale.ground.check import Unstable
 from porescale.workbench.extremes import Extreme
 
 CHECKED = 20  # steps between two looks at the energies
@@ -26,12 +26,7 @@ def stirred(permeability: float, seconds: float = 0.2) -> Callable[[], str]:
         free = least = start
         growth = 0.0
         while both.time < seconds:
-            try:
-                both.advance()
-            except ValueError as error:
-                raise Unstable(
-                    str(error), "position", float("nan"), "m", both.water.step, both.time, "lower numerics.courant"
-                ) from error
+            stepped(both.advance, both.water.step, both.time, "lower numerics.courant")
             if both.water.step % CHECKED == 0:
                 parts = energies(both, ground)
                 free = parts["sum"] - parts["heat of drag"]

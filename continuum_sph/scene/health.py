@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,15 @@ Floats = NDArray[np.float64]
 
 FARTHER = 2.0
 """Ways of the fastest particle that another may have come: shifting and smoothed velocities add to its own."""
+
+
+def stepped(advance: Callable[[], object], step: int, time: float, repair: str) -> None:
+    """Do a step, from the ``step`` and ``time`` (s) reached; Unstable when a position is no number any more, which the
+    search for neighbours says."""
+    try:
+        advance()
+    except ValueError as error:
+        raise Unstable(str(error), "position", float("nan"), "m", step, time, repair) from error
 
 
 def refuse_no_numbers(

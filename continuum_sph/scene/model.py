@@ -11,7 +11,7 @@ from continuum_sph.energy import book
 from continuum_sph.law import RULES
 from continuum_sph.scene.bubble import bubble
 from continuum_sph.scene.build import flow_of, water_of
-from continuum_sph.scene.health import Leaps, refuse_no_numbers
+from continuum_sph.scene.health import Leaps, refuse_no_numbers, stepped
 from continuum_sph.scene.instruments import Cloud, tables
 from continuum_sph.scene.sections import Scene
 from continuum_sph.step import Flow
@@ -20,8 +20,6 @@ from porescale.runs.model import Cloud as Points
 from porescale.runs.model import Snapshot
 
 DENSEST = 1.3  # of ρ0: Tait pressures of half B and more; sound at Mach 0.1 needs 1.01, the hardest impacts 1.15
-
-
 REPAIR = "lower numerics.courant, or raise numerics.artificial_viscosity or water.sound_speed"
 
 
@@ -47,13 +45,7 @@ class Simulation:
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps; Unstable when a position is no number any more."""
         for _ in range(steps):
-            try:
-                self.flow.advance()
-            except ValueError as error:
-                raise Unstable(
-                    str(error), "position", float("nan"), "m", self.step, self.time,
-                    REPAIR,
-                ) from error  # fmt: skip
+            stepped(self.flow.advance, self.step, self.time, REPAIR)
             self.refresh()
 
     def inside(self) -> NDArray[np.bool_]:

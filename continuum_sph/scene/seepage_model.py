@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from continuum_sph.scene.air_build import AIR as GAS
 from continuum_sph.scene.air_build import air_rows
-from continuum_sph.scene.health import refuse_no_numbers
+from continuum_sph.scene.health import refuse_no_numbers, stepped
 from continuum_sph.scene.instruments import Cloud, discharge, tables
 from continuum_sph.scene.model import REPAIR, Simulation
 from continuum_sph.scene.sections import Scene
@@ -59,13 +59,7 @@ class SeepageSimulation:
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps; Unstable when a position is no number any more."""
         for _ in range(steps):
-            try:
-                self.both.advance()
-            except ValueError as error:
-                raise Unstable(
-                    str(error), "position", float("nan"), "m", self.step, self.time,
-                    "lower numerics.courant, or raise numerics.artificial_viscosity or water.sound_speed",
-                ) from error  # fmt: skip
+            stepped(self.both.advance, self.step, self.time, REPAIR)
             self.soil.count()
             self.refresh()
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.scene.health import Leaps, refuse_no_numbers
+from continuum_sph.scene.health import Leaps, refuse_no_numbers, stepped
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil_build import soil_flow
 from continuum_sph.soil import SoilFlow, porosity
@@ -44,13 +44,7 @@ class SoilSimulation:
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps; Unstable when a position is no number any more."""
         for _ in range(steps):
-            try:
-                self.flow.advance()
-            except ValueError as error:
-                raise Unstable(
-                    str(error), "position", float("nan"), "m", self.step, self.time,
-                    "lower numerics.courant, or raise soil.numerics.damping or soil.stiffness",
-                ) from error  # fmt: skip
+            stepped(self.flow.advance, self.step, self.time, REPAIR)
             self.count()
             self.refresh()
 

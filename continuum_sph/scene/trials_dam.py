@@ -134,14 +134,7 @@ class Dam:
 
     def heights(self, both: Seepage) -> Floats:
         """Heights (m) of the free surface at `STATIONS`, each over a tenth of the length."""
-        layer = both.water.layer
-        n = layer.fluid
-        there = layer.mass[:n] > 0.0
-        volume = (layer.mass[:n] / (both.water.porosity * layer.density))[there]
-        cloud = Cloud(
-            layer.x[:n][there], volume, layer.pressure[:n][there], layer.v[:n][there],
-            both.water.law.smoothing.length, self.upstream / self.rows, 2.0 * self.basin + self.length,
-        )  # fmt: skip
+        cloud = water_there(both, self.upstream / self.rows, 2.0 * self.basin + self.length)
         places = [self.basin + part * self.length for part in STATIONS]
         return np.array([surface(Level(name="", x=x, breadth=0.1 * self.length), cloud) for x in places])
 
@@ -157,6 +150,17 @@ class Dam:
             let_in, let_out = above.let_in - above.let_out, below.let_out - below.let_in
             rows.append((both.time, let_in / WATER, let_out / WATER, *self.heights(both)))
         return np.array(rows)
+
+
+def water_there(both: Seepage, spacing: float, width: float) -> Cloud:
+    """Particles of water that there are, in a tank of ``width`` (m), each with the volume of ground that it fills."""
+    layer, n = both.water.layer, both.water.layer.fluid
+    there = layer.mass[:n] > 0.0
+    volume = (layer.mass[:n] / (both.water.porosity * layer.density))[there]
+    return Cloud(
+        layer.x[:n][there], volume, layer.pressure[:n][there], layer.v[:n][there],
+        both.water.law.smoothing.length, spacing, width,
+    )  # fmt: skip
 
 
 def steady(rows: Floats, begin: float) -> tuple[float, float, Floats]:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.scene.instruments import Cloud, Level, surface
-from continuum_sph.scene.trials_dam import WATER, held_between
+from continuum_sph.scene.instruments import Level, surface
+from continuum_sph.scene.trials_dam import WATER, held_between, water_there
 from continuum_sph.seepage import Reservoir, Seepage
 from porescale.ground.constants import GRAVITY
 from porescale.particles import square_lattice
@@ -77,14 +77,7 @@ class Levee:
 
     def line(self, both: Seepage) -> tuple[Floats, Floats]:
         """(places x, heights) of the wetting line, m, at every spacing from the water's edge on the slope on."""
-        layer = both.water.layer
-        n = layer.fluid
-        there = layer.mass[:n] > 0.0
-        volume = (layer.mass[:n] / (both.water.porosity * layer.density))[there]
-        cloud = Cloud(
-            layer.x[:n][there], volume, layer.pressure[:n][there], layer.v[:n][there],
-            both.water.law.smoothing.length, self.spacing, self.size[0],
-        )  # fmt: skip
+        cloud = water_there(both, self.spacing, self.size[0])
         x = np.arange(self.basin + self.slope * self.level, self.basin + self.base, self.spacing)
         return x, np.array([surface(Level(name="", x=place, breadth=4.0 * self.spacing), cloud) for place in x])
 
