@@ -38,9 +38,9 @@ def tank(**sections: Any) -> Scene:
     return validate(Scene, table | sections)
 
 
-def still() -> Scene:
+def still(**numerics: Any) -> Scene:
     """200 particles of water, 20 rows, with the pressure of their weight."""
-    return tank(water={"column": [{"width": 0.5, "height": DEPTH}]})
+    return tank(water={"column": [{"width": 0.5, "height": DEPTH}]}, numerics=NUMERICS | numerics)
 
 
 def sloshing() -> Scene:
@@ -143,6 +143,8 @@ ROUNDING = "round-off: both kicks of a step round every velocity, all one way: 2
 ENDURANCES = Endurances([
     Endurance("still water", "200 particles of water rest in a tank",
               lambda: Tank(Simulation(still()), WATER), (exact(MASS), STAYS, RESTS)),
+    Endurance("still water without density diffusion", "the same, whose densities follow from its motion alone",
+              lambda: Tank(Simulation(still(density_diffusion=0.0)), WATER), (exact(MASS), STAYS, RESTS)),
     Endurance("sloshing water", "200 particles of water slosh in a tank and come to rest within half of the run",
               lambda: Tank(Simulation(sloshing()), WATER), (exact(MASS), STAYS, RESTS), settles=10),
     Endurance("stirred water", "225 particles of water are stirred in a periodic box, without weight",
@@ -150,7 +152,8 @@ ENDURANCES = Endurances([
               settles=0),
     Endurance("ground", "200 particles of level ground rest",
               lambda: Tank(SoilSimulation(ground()), SOIL), (exact(MASS), LIES, RESTS)),
-    Endurance("ground under water", "100 particles of ground rest beneath water",
-              lambda: Tank(SeepageSimulation(wet_ground()), BOTH), (exact(MASS), exact(SOIL_MASS), STAYS, LIES, RESTS)),
+    Endurance("ground under water", "100 particles of ground rest beneath water, for a fifth of the steps",
+              lambda: Tank(SeepageSimulation(wet_ground()), BOTH), (exact(MASS), exact(SOIL_MASS), STAYS, LIES, RESTS),
+              share=0.2),
 ])  # fmt: skip
 """What `continuum-sph study endurance` runs."""

@@ -35,8 +35,13 @@ def endurance() -> Endurances:
 def parts() -> Kinds:
     """Kinds of scenes, and what each is held against."""
     from porescale.scene.parts import KINDS
+    from porescale.scene.parts_rest import KINDS as AT_REST
+    from porescale.workbench.parts import Kinds
 
-    return KINDS
+    kinds = Kinds([])
+    for each in (KINDS, AT_REST):
+        kinds.include(each)
+    return kinds
 
 
 def features() -> Mapping[str, Callable[[Path, float | None], Array]]:

@@ -52,6 +52,23 @@ def plain_step(f, parity, even, odd):
 
 
 @kernel
+def largest_of_rows(f, row, largest):
+    """Overwrites ``largest`` (ny,): the largest size of the shifted populations f (9, ny + 2, nx + 2) of each row, 0
+    where all is at rest, and ``row`` (nx,).  NaNs are not seen."""
+    for y in range(largest.shape[0]):
+        row[:] = 0.0
+        for i in range(f.shape[0]):
+            slot = f[i, y + 1, 1:-1]
+            for x in range(row.shape[0]):
+                size = abs(slot[x])
+                row[x] = size if size > row[x] else row[x]
+        most = 0.0
+        for x in range(row.shape[0]):
+            most = max(most, row[x])
+        largest[y] = most
+
+
+@kernel
 def copy_links(flat, source, target):
     """flat[target] = flat[source]: bounce-back of every link through a side."""
     for k in range(source.shape[0]):

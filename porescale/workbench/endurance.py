@@ -55,13 +55,19 @@ class Held:
 
 @dataclass(frozen=True)
 class Endurance:
-    """What lasts.  start : makes it;  settles : marks before the first that counts."""
+    """What lasts.  start : makes it;  settles : marks before the first that counts;  share : of the steps asked for
+    that it does, where they are dear."""
 
     name: str
     title: str
     start: Callable[[], Lasting]
     held: tuple[Held, ...]
     settles: int = 1
+    share: float = 1.0
+
+    def steps(self, asked: int) -> int:
+        """How many it does."""
+        return max(MARKS, round(self.share * asked))
 
 
 @dataclass(frozen=True)
@@ -85,7 +91,8 @@ Say = Callable[[str], object]
 
 
 def endure(it: Endurance, steps: int, say: Say = lambda text: None) -> list[Line]:
-    """Run it for ``steps`` steps: a line for each quantity, one for what was found wrong, and one for memory."""
+    """Run it for ``steps`` steps, or its share: lines of each quantity, of what was found wrong, and of memory."""
+    steps = it.steps(steps)
     run, at, begun = it.start(), [0], time.perf_counter()
     seen: dict[str, list[float]] = {name: [float(value)] for name, value in run.read().items()}
     memory, found = [peak_bytes() / 2**20], [0.0]
@@ -148,6 +155,16 @@ def write(folder: Path, about: Mapping[str, Any], lines: Sequence[Line]) -> None
     write_whole(folder / f"{NAME}.json", (json.dumps(made, indent=1, allow_nan=False) + "\n").encode())
     write_whole(folder / f"{NAME}.md", markdown(str(about.get("command", "")), lines).encode())
     write_whole(folder / f"{NAME}.png", picture(lines))
+
+
+def finished(folder: Path) -> dict[str, list[Line]]:
+    """Lines of the flows that an earlier call finished in ``folder``, by flow; {} where there are none."""
+    try:
+        rows = json.loads((folder / f"{NAME}.json").read_bytes())["lines"]
+        lines = [Line(**row) for row in rows]
+    except (OSError, ValueError, KeyError, TypeError):
+        return {}
+    return {flow: [line for line in lines if line.flow == flow] for flow in dict.fromkeys(it.flow for it in lines)}
 
 
 def markdown(command: str, lines: Sequence[Line]) -> str:

@@ -124,6 +124,11 @@ class Kinds:
     def __init__(self, kinds: Sequence[Kind]) -> None:
         self._known = {kind.name: kind for kind in kinds}
 
+    def include(self, other: Kinds) -> None:
+        """Add all of another register."""
+        assert not self._known.keys() & other._known.keys()
+        self._known |= other._known
+
     def chosen(self, names: Sequence[str] = ()) -> list[Kind]:
         """By name, all without names; InputError on unknown ones."""
         return [self._known[name] for name in choose(names, self._known, "kind")]

@@ -45,8 +45,6 @@ PATIENCE = 240.0
 """Seconds after which a child that neither ends nor begins what is waited for counts as hanging."""
 LOOK = 5e-4
 """Seconds between looks at what a child does."""
-QUICK = 2.0
-"""Seconds, with a step, within which a run that is asked to stop has saved its state."""
 
 SEEPING: dict[str, Any] = {
     "tank": {"width": 0.3, "height": 0.5, "lid": False},

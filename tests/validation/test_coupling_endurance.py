@@ -12,7 +12,18 @@ from porescale.coupling.verify import VALIDATIONS as ALL
 from porescale.coupling.verify_endurance import VALIDATIONS
 from porescale.ground.check import Unstable
 from porescale.runs.drive import CHECK_EVERY
-from porescale.workbench.endurance import ASK_EVERY, FOUND, MARKS, Endurance, Held, endure, markdown, picture
+from porescale.workbench.endurance import (
+    ASK_EVERY,
+    FOUND,
+    MARKS,
+    Endurance,
+    Held,
+    endure,
+    finished,
+    markdown,
+    picture,
+    write,
+)
 
 
 @pytest.mark.slow
@@ -73,6 +84,14 @@ def test_what_is_found_wrong_on_the_way_is_said():
     assert not wrong.holds
     assert wrong.values[-1] == 1.0  # asked at step 2000
     assert any("counter" in text for text in said)
+
+
+def test_what_a_call_has_finished_is_read_back(tmp_path):
+    lines = endure(Endurance("counter", "counts", Counter, ()), 100)
+    write(tmp_path, {"command": "x"}, lines)
+    assert finished(tmp_path) == {"counter": lines}
+    (tmp_path / "endurance.json").write_text("{}")
+    assert finished(tmp_path) == {}
 
 
 def test_it_is_asked_as_often_as_a_run_asks():

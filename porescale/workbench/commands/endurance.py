@@ -25,11 +25,12 @@ def command(package: Package) -> Callable[..., int]:
         *names: Annotated[str, Parameter(help="what lasts; all if not given")],
         steps: Annotated[int, Parameter(help="of each")] = 1_000_000,
         out: Annotated[str, Parameter(help="folder of endurance.json, .md and .png")] = "runs/endurance",
+        resume: Annotated[bool, Parameter(help="keep what an earlier call has finished there")] = False,
         list_: Annotated[bool, Parameter(name="--list", help="only say what there is")] = False,
         threads: Threads = 1,
         json: Json = False,
     ) -> int:
-        """Run small things for a million steps: what creeps of mass, momentum, places, memory."""
+        """Run small things for a million steps: what creeps of mass, momentum, places, memory; what is found wrong."""
         from porescale.workbench import endurance as made
 
         assert package.endurance is not None
@@ -43,11 +44,16 @@ def command(package: Package) -> Callable[..., int]:
             raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
         refuse_unwritable(Path(out), "--out")
         use_threads(threads)
-        lines: list[made.Line] = []
+        kept = made.finished(Path(out)) if resume else {}
+        asked = " ".join([package.name, "study endurance", *map(json_text.dumps, names), f"--steps {steps}"])
         for it in chosen:
-            lines += made.endure(it, steps, lambda text: print(text, file=sys.stderr, flush=True))
-        asked = " ".join([package.name, "study endurance", *names, f"--steps {steps}"])
-        made.write(Path(out), circumstances(package, asked, threads or 1), lines)
+            if it.name in kept and kept[it.name][0].steps == it.steps(steps):
+                print(f"{it.name}: kept", file=sys.stderr, flush=True)
+                continue
+            kept[it.name] = made.endure(it, steps, lambda text: print(text, file=sys.stderr, flush=True))
+            ordered = [line for flow in package.endurance().chosen() for line in kept.get(flow.name, [])]
+            made.write(Path(out), circumstances(package, asked, threads or 1), ordered)
+        lines = [line for it in chosen for line in kept[it.name]]
         if json:
             print(json_text.dumps([asdict(line) for line in lines], indent=1, allow_nan=False))
         else:

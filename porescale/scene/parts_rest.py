@@ -1,0 +1,66 @@
+"""Kinds of scenes for `study parts` in which little happens: a pile that sleeps under water, and water at rest.
+
+Cells of water at rest are not left out.  At rest shifted populations are zero and a step leaves them so, but whoever
+moves sends sound through all the water within some hundred steps, and what it leaves fades with the viscosity of the
+longest waves: in a collapse hardly a cell goes slower than 1e-6 cells a step from then on (tests/validation holds
+it), though a look at all cells costs but a share of a step.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from porescale.lbm.bench_plain import largest_of_rows
+from porescale.scene.build import build
+from porescale.scene.parts import Table, parts_of, scene, water, without
+from porescale.scene.sections import Scene
+from porescale.workbench.parts import Built, Kind, Kinds
+
+PILE = (0.03, 0.02)
+"""Width and height, m: some 300 grains, 10 cells each."""
+DIAMETER = 1.5e-3
+WARM = 3000
+"""Steps before timing: who may sleep sleeps."""
+FLUID: Table = {"viscosity": 1e-4, "spacing": 1.5e-4, "relaxation_time": 0.8}
+CONTACT: Table = {"stiffness": 5e5, "tangential_stiffness": 1.25e5, "restitution": 0.5, "friction": 0.5}
+
+
+def wet(**more: object) -> Scene:
+    """A settled pile from wall to wall of a tank of water."""
+    packing = {"left": 0.0, "width": PILE[0], "height": PILE[1], "diameter": DIAMETER}
+    grains = {"density": 2500.0, "packing": packing, "hydraulic_radius_ratio": 0.8}
+    return scene(PILE[0], 1.5 * PILE[1], fluid=FLUID, grains=grains, contact=CONTACT, **more)
+
+
+def sleeping() -> Built:
+    """The pile whose grains sleep, beside that whose grains do not."""
+    it = wet(sleep={"share": 0.05})
+    made = build(it)
+    made.advance(WARM)
+    assert made.grains
+    return Built(made, parts_of(it), made.grains.discs.count, made.advance, without(wet())(made))
+
+
+def looking() -> Built:
+    """A look at every cell of a tank, beside a step of it."""
+    it = water()
+    made = build(it)
+    made.advance(2)
+    assert made.fluid
+    populations, row, largest = made.fluid.populations, np.zeros(made.fluid.nx), np.zeros(made.fluid.ny)
+
+    def look(steps: int) -> None:
+        """So many times."""
+        for _ in range(steps):
+            largest_of_rows(populations, row, largest)
+
+    return Built(made, parts_of(it), made.fluid.nx * made.fluid.ny, look, made.advance)
+
+
+KINDS = Kinds([
+    Kind("sleep under water", "grain", "pile under water", sleeping, steps=10,
+         because="contact steps of the pile are saved, those of the fluid are not"),
+    Kind("a look for water at rest", "cell", "water only", looking,
+         because="cells at rest are not left out: in a collapse there are none once sound has crossed the tank"),
+])  # fmt: skip
+"""More of what `porescale study parts` measures."""
