@@ -28,13 +28,10 @@ FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
 def behind(text: str, package: str, known: Iterable[Validation]) -> list[str]:
     """What a README's table of validations lacks, has too much or states otherwise: names, sources, tolerances."""
     lines = WRITER["block"](text, f"{package} verify")
-    stands = [name for name in lines if name not in ("validation", "---")]
+    stands = {name for name in lines if name != "validation"}
     known = list(known)
-    if stands != [one.name for one in known]:
-        wrong = sorted(set(stands) ^ {one.name for one in known})
-        return wrong or ["the order"]
-    found = []
-    for one in known:
+    found = sorted(stands ^ {one.name for one in known})
+    for one in known if not found else ():
         start, end = WRITER["written"](["", one.source])[3:-1], f"| {WRITER['number'](one.tolerance)} |"
         if start not in lines[one.name] or not lines[one.name].endswith(end):
             found.append(f"{one.name}: source or tolerance")
