@@ -97,6 +97,7 @@ def show(folder: Path) -> list[Path]:
     """Write pictures and film of the run in ``folder``; returns their paths."""
     from dataclasses import replace
 
+    from continuum_sph.scene.phreatic import NAME, line_of
     from porescale.runs.film import film
     from porescale.runs.look import Look
     from porescale.runs.open_run import open_run
@@ -123,7 +124,8 @@ def show(folder: Path) -> list[Path]:
         more = [paint_last(folder, name, replace(look, colour=name)) for name in SOIL]
         return [*pictures(folder, look), *more, film(folder, look)]
     if scene["soil"]:
-        look = replace(look, colour="layer", kinds=LAYERS | (AIR if scene.get("air") else {}))
+        line = line_of(run.table(NAME), scene["numerics"]["spacing"])
+        look = replace(look, colour="layer", kinds=LAYERS | (AIR if scene.get("air") else {}) | LINE, marks=line)
         more = [paint_last(folder, name, replace(look, colour=name, kinds={})) for name in SEEPAGE]
         return [*pictures(folder, look), *more, film(folder, look)]
     return [*pictures(folder, look), film(folder, look)]
@@ -133,6 +135,8 @@ SEEPAGE = ("pressure", "velocity", "porosity")
 """What is shown of soil and water at the end, besides where they are."""
 LAYERS = {0: ("water", "#5b8fd0"), 1: ("dry soil", "#d9bd82"), 2: ("wet soil", "#8a6d3b")}
 """Names and colours of water and soil."""
+LINE = {-1: ("phreatic", "#c0182b")}
+"""Of the surface of the water in soil, which is no particle's layer."""
 AIR = {3: ("air", "#e2e2e2")}
 """And of air in it."""
 SOIL = ("mean_stress", "plastic_strain", "velocity")

@@ -12,6 +12,7 @@ from continuum_sph.scene.air_build import air_rows
 from continuum_sph.scene.health import refuse_no_numbers, stepped
 from continuum_sph.scene.instruments import Cloud, discharge, tables
 from continuum_sph.scene.model import REPAIR, Simulation
+from continuum_sph.scene.phreatic import NAME, phreatic_row
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.seepage_build import seepage_of
 from continuum_sph.scene.soil_model import SoilSimulation
@@ -102,11 +103,9 @@ class SeepageSimulation:
         return row | (air_rows(flow) if self.scene.air else {})
 
     def tables(self) -> dict[str, dict[str, float]]:
-        """A row of probes.csv and of levels.csv, where the scene asks for them: of the water, its surface in soil too,
-        and its flow to the right through each strip."""
+        """A row of phreatic.csv, and of probes.csv and levels.csv where the scene asks for them: of the water, its
+        surface in soil too, and its flow to the right through each strip."""
         scene, flow = self.scene, self.both.water
-        if not (scene.probe or scene.level):
-            return {}
         layer, n = flow.layer, flow.layer.fluid
         there = (layer.mass[:n] > 0.0) & (layer.material[:n] != GAS)
         volume = layer.mass[:n] / (flow.porosity * layer.density)
@@ -115,7 +114,7 @@ class SeepageSimulation:
             layer.x[:n][there], volume[there], layer.pressure[:n][there], layer.v[:n][there], length, spacing,
             scene.inner[0],
         )  # fmt: skip
-        found = tables(self.time, scene.probe, scene.level, cloud)
+        found = tables(self.time, scene.probe, scene.level, cloud) | {NAME: phreatic_row(self.time, cloud)}
         for number, level in enumerate(scene.level):
             through = discharge(level, cloud, flow.porosity[there])
             found["levels"][f"{level.name or f'level {number}'} discharge (m2/s)"] = through
