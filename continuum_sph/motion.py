@@ -44,6 +44,7 @@ def kick_drift(
 def pressurise(x, v, mass, density, material, length, table, cut, pressure, record):
     """Pressure (Pa) of fluid particles from ``density`` (fluid,); overwrites their ``pressure`` and ``record``.
 
+    The density of a step's end is extrapolated, for spray that hits a wall below zero: it stops at the fluid's least.
     material (n,), table (m, 9): the particles' fluids;  length (n,): h, m;  cut: pressures below that of the air count
     as none (particles of a free surface do not pull).  Returns the largest (c/h)², 1/s²; a maximum is exact in any
     order.
@@ -52,6 +53,8 @@ def pressurise(x, v, mass, density, material, length, table, cut, pressure, reco
     for i in prange(density.shape[0]):
         kind = material[i]
         rho = density[i]
+        if rho < table[kind, THINNEST]:
+            rho = table[kind, THINNEST]
         ratio = rho / table[kind, DENSITY]
         if table[kind, PRINTED] > 0.0:
             p, speed_ratio2 = printed_gas(ratio, table[kind, STIFFNESS], table[kind, EXPONENT])

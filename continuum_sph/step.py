@@ -36,6 +36,7 @@ from continuum_sph.motion import kick, kick_drift, pressurise
 from continuum_sph.rates import rates, split_rows
 from continuum_sph.rates_plain import plain_rates
 from continuum_sph.shifting import MOST, QUIET, shift
+from continuum_sph.stopped import no_step
 from continuum_sph.surface_tension import colours, curvatures, middle_curvatures, normals, pull_interface
 from porescale.particles import PairList
 
@@ -255,12 +256,10 @@ class Flow:
         self.rule = int(np.argmin(limits))
         self.next_step = limits[self.rule]
         if not 0.0 < self.next_step < np.inf:
-            lost = ~np.isfinite(layer.acceleration).all(axis=1)
-            at = int(np.argmax(lost if lost.any() else np.abs(layer.acceleration).max(axis=1)))
-            raise ValueError(
-                f"the next step would be {self.next_step} s (limited by {RULES[self.rule]}): particle {at} at "
-                f"{layer.x[at].tolist()} m"
-            )
+            raise no_step(
+                self.next_step, RULES[self.rule], layer.x, layer.acceleration, layer.density, self.step, self.time,
+                "lower numerics.courant, or raise numerics.artificial_viscosity or water.sound_speed",
+            )  # fmt: skip
 
     def filter(self) -> None:
         """Normalise the density within each fluid, eq. 27."""

@@ -24,6 +24,7 @@ from continuum_sph.soil.state import Soil
 from continuum_sph.soil.stress import deform
 from continuum_sph.soil.tension import hold_apart
 from continuum_sph.soil.walls import place_walls, show_walls
+from continuum_sph.stopped import no_step
 from porescale.particles import PairList
 
 
@@ -133,7 +134,10 @@ class SoilFlow:
         self.rule = int(np.argmin(limits))
         self.next_step = limits[self.rule]
         if not 0.0 < self.next_step < np.inf:
-            raise ValueError(f"the next step would be {self.next_step} s (limited by {RULES[self.rule]})")
+            raise no_step(
+                self.next_step, RULES[self.rule], soil.x, soil.acceleration, soil.density, self.step, self.time,
+                "lower numerics.courant, or raise soil.numerics.damping or soil.stiffness",
+            )  # fmt: skip
 
     def show_walls(self) -> None:
         """What soil sees of walls: stress and velocity of the soil before them."""

@@ -7,6 +7,10 @@ import pytest
 
 from continuum_sph import correction, shifting, step
 from continuum_sph.boundary import tank_walls
+from continuum_sph.eos import Tait
+from continuum_sph.fluids import Fluid, table
+from continuum_sph.layers import RHO, VOLUME
+from continuum_sph.motion import pressurise
 from continuum_sph.scene import trials
 from continuum_sph.scene.model import Simulation
 from continuum_sph.scene.report import report
@@ -242,3 +246,32 @@ def test_pass_over_pairs_as_plain_python(monkeypatch):
         np.testing.assert_allclose(
             getattr(plain.flow.layer, name), getattr(compiled.flow.layer, name), rtol=1e-11, atol=1e-13
         )
+
+
+def test_a_density_extrapolated_below_zero_stops_at_the_least():
+    # 800 kg/m³ and a rate that has doubled to -7e6 kg/(m³ s): three times that in a step of 5e-5 s lies below zero.
+    fluid = Fluid(Tait(1000.0, 44.0))
+    rho = np.array([1000.0, 800.0 - 3.0 * 7e6 * 5e-5])
+    pressure, record, places = np.zeros(2), np.zeros((2, 8)), np.zeros((2, 2))
+    pace = pressurise.py_func(
+        places, places, np.full(2, 0.1), rho, np.zeros(2, np.int64), np.full(2, 0.013), table((fluid,)), False,
+        pressure, record,
+    )  # fmt: skip
+    assert record[1, RHO] == 800.0
+    assert record[1, VOLUME] == 0.1 / 800.0
+    assert pressure[1] == pytest.approx(float(fluid.state.pressure(np.array(800.0))), rel=1e-14)
+    assert pace == pytest.approx((44.0 / 0.013) ** 2, rel=1e-14)
+    assert 0.1 / rho[1] < 0.0  # the twin that must fail: a volume of less than nothing
+
+
+def test_a_flow_without_a_next_step_names_particle_and_rule():
+    flow = Simulation(scene()).flow
+    flow.layer.acceleration[7] = np.inf, 0.0
+    with pytest.raises(Unstable, match=r"next step = 0 s at particle 7 at .* limited by acceleration; .* inf m/s²"):
+        flow.finish(0.0)
+    flow.layer.acceleration[7] = 0.0
+    flow.finish(0.0)
+    flow.pace = np.inf
+    flow.layer.density[5] = 1e6
+    with pytest.raises(Unstable, match=r"particle 5 .* limited by sound; .* 1e\+06 kg/m³"):
+        flow.finish(0.0)
