@@ -19,6 +19,7 @@ from porescale.dem.contact.law import (
     moments,
     note_contact,
     note_parting,
+    push,
     recall,
     remember,
 )
@@ -85,7 +86,8 @@ def touch(i, k, overlap, dx, dy, du, dv, spin_i, spin_j, ri, rj, mass, p, memory
         reduced, mass, dt, p, law.book, law,
     )  # fmt: skip
     moment_i, moment_j = moments(tangential, resisting, arm_i, arm_j, reduced, law)
-    return -normal * nx - tangential * ny, -normal * ny + tangential * nx, moment_i, moment_j
+    fx, fy = push(normal, tangential, nx, ny, law)
+    return fx, fy, moment_i, moment_j
 
 
 @inline

@@ -50,7 +50,8 @@ def kick_drift(
     """Move all discs one step; True when one has gone further than allowed from its anchor (or is no
     number).
 
-    Overwrites position (n, 2) m, angle (n,) rad, velocity (n, 2) m/s, spin (n,) rad/s.  mass, inertia (n,) kg/m,
+    Overwrites position (n, 2) m, angle (n,) rad, velocity (n, 2) m/s, spin (n,) rad/s; with an angle (0,) nothing turns
+    and spin is left as it is.  mass, inertia (n,) kg/m,
     kg m^2/m;  force (n, 2) N/m, torque (n,) N m/m;  anchor (n, 2) m, limit_square m^2: the list's skin test;
     drag 1/s: background damping -drag m v and -drag I w, central in time (0: none, to the bit);  dt s.
     """
@@ -61,14 +62,16 @@ def kick_drift(
         per_mass = dt / mass[i]
         vx = (velocity[i, 0] * before + force[i, 0] * per_mass) * after
         vy = (velocity[i, 1] * before + force[i, 1] * per_mass) * after
-        w = (spin[i] * before + torque[i] * (dt / inertia[i])) * after
-        velocity[i, 0], velocity[i, 1], spin[i] = vx, vy, w
+        velocity[i, 0], velocity[i, 1] = vx, vy
         x, y = position[i, 0] + dt * vx, position[i, 1] + dt * vy
         position[i, 0], position[i, 1] = x, y
-        angle[i] += dt * w
         dx, dy = x - anchor[i, 0], y - anchor[i, 1]
         if not (dx * dx + dy * dy <= limit_square):  # also true for nan
             moved = True
+    for i in range(angle.shape[0]):
+        w = (spin[i] * before + torque[i] * (dt / inertia[i])) * after
+        spin[i] = w
+        angle[i] += dt * w
     return moved
 
 

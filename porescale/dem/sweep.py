@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.contact.law import HertzRolling, HertzSliding, LinearRolling, LinearSliding
+from porescale.dem.contact.law import HertzRolling, HertzSliding, LinearRolling, LinearSliding, LinearSmooth
 from porescale.dem.forces import pair_contact, pair_forces, start_forces
 from porescale.dem.rectangle import add_rectangle_forces
 from porescale.dem.walls import add_plate_forces, add_wall_forces
@@ -212,6 +212,12 @@ def law_of_block(first, last, law):
 def _linear_sliding(first, last, law):
     """Of its kind."""
     return LinearSliding(law.table, cut(law.material, first, last), law.mass[first:last], cut(law.book, first, last))
+
+
+@law_of_block.of(LinearSmooth)
+def _linear_smooth(first, last, law):
+    """Of its kind."""
+    return LinearSmooth(law.table, cut(law.material, first, last), law.mass[first:last], cut(law.book, first, last))
 
 
 @law_of_block.of(LinearRolling)

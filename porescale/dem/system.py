@@ -22,6 +22,7 @@ from porescale.dem.integrate import contact_steps, stable_step
 from porescale.dem.motion import Arrays
 from porescale.dem.rectangle import Rectangle
 from porescale.dem.rigid import masses
+from porescale.dem.smooth import law_of_steps, turning
 from porescale.dem.steering import Steering
 from porescale.dem.strain import Deforming
 from porescale.dem.sweep import Sweeps
@@ -139,6 +140,7 @@ class Grains:
 
     def _own_laws(self, frictions: Sequence[float | None]) -> Array:
         """Rows (surfaces, materials, COLUMNS) of the wall laws, with its own friction where a surface has one."""
+        self._free_law: KernelLaw | None = None  # see smooth.py; not known until it is asked for
         rows = [
             [(each if own is None else each.with_friction(own)).row() for each in self.laws_at_walls]
             for own in frictions
@@ -260,14 +262,9 @@ class Grains:
         drag (1/s): background damping, for settling only.  Raises Unstable when the list must be rebuilt and a position
         is no number.  No array is allocated, but a rebuild may grow the list's buffers.
         """
-        if external_force is None:
-            self.external_force[:] = 0.0
-        elif external_force is not self.external_force:
-            self.external_force[:] = external_force
-        if external_torque is None:
-            self.external_torque[:] = 0.0
-        elif external_torque is not self.external_torque:
-            self.external_torque[:] = external_torque
+        for own, given in ((self.external_force, external_force), (self.external_torque, external_torque)):
+            if given is not own:
+                own[:] = 0.0 if given is None else given
         d = self.discs
         if dt != self.last_dt:
             self._time, self._steps_of_dt, self.last_dt = self.time, 0, dt
@@ -283,16 +280,20 @@ class Grains:
             self._steering.start(self._time, self._steps_of_dt)
             motion, cell = self._steering.arrays, self._steering.now()
         strained = cell is not self._still
+        if self._free_law is None:
+            self._free_law = law_of_steps(self)
+        free = motion is None and not strained and self.segments is None and self.bonds is None
+        law = self._free_law if free and self._free_law is not None else self.contact
         self.last_count = count
         left = count if self.sleep is None else self.sleep.step(self, dt, drag, count)
         while left > 0:
             pairs = self.current_pairs()
             done, self._stale = contact_steps(
-                left, dt, drag,
-                d.position, d.angle, d.velocity, d.spin, d.radius, d.mass, d.inertia, d.force, d.torque,
+                left, dt, drag, d.position, d.angle if turning(self, law) else d.angle[:0],
+                d.velocity, d.spin, d.radius, d.mass, d.inertia, d.force, d.torque,
                 self.external_force, self.external_torque,
                 pairs.start, pairs.partner, pairs.carried, pairs.mark, pairs.room**2,
-                self.contact,
+                law,
                 self.walls, self.wall_laws, self.wall_spring, self.wall_load,
                 self.plates, self.plate_laws, self.plate_spring, self.plate_force,
                 self.rectangles, self.rectangle_laws, self.rectangle_spring, self.rectangle_force,
@@ -395,4 +396,5 @@ class Grains:
     def restore(self, state: dict[str, Any]) -> None:
         """Go on exactly from ``state()`` of a system made alike; raises InputError when the numbers differ."""
         resume.restore(self, state)
+        self._free_law = None
         self._health.forget()

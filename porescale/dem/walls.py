@@ -24,6 +24,7 @@ from porescale.dem.contact.law import (
     note_contact,
     note_parting,
     note_work,
+    push,
     recall,
     remember,
 )
@@ -150,7 +151,8 @@ def surface_contact(i, nx, ny, distance, radius, vx, vy, spin, turn, memory, dt,
         radius, mass, dt, p, law.book, law,
     )  # fmt: skip
     moment, other = moments(tangential, resisting, arm, 0.0, radius, law)
-    return -normal * nx - tangential * ny, -normal * ny + tangential * nx, moment, other
+    fx, fy = push(normal, tangential, nx, ny, law)
+    return fx, fy, moment, other
 
 
 @kernel

@@ -133,13 +133,11 @@ def added(name: str, item: str, of: str, base: Callable[..., Scene], **more: Any
 KINDS = Kinds([
     Kind("water only", "cell", SMALLEST, lambda: built(water(), "cell", lattice),
          because="not taken apart: presumably terms of a body force, zero here"),
-    Kind("dry grains", "grain", SMALLEST, lambda: built(dry(), "grain", discs),
-         because="measured apart: pairs 35, walls 5, motion 4 ns; the law by material and periodic images take the "
-                 "smallest kernel 1 % more; the rest is not found"),
+    Kind("dry grains", "grain", SMALLEST, lambda: built(dry(), "grain", discs)),
     Kind("dry grains without friction or rotation", "grain", SMALLEST,
          lambda: built(dry({"stiffness": 5e5, "restitution": 0.97, "friction": 0.0}), "grain", discs),
-         because="grains without friction still turn and their contacts keep a spring at zero: one more kind of "
-                 "contact would be compiled for them alone"),
+         because="not taken apart: the law is read for every pair, arrays are counted and torques cleared at every "
+                 "step, a call has some fifty arrays"),
     Kind("fixed grains in water", "cell", SMALLEST, lambda: built(fixed(), "cell", nothing_moves), steps=20),
     added("rolling friction", "grain", "dry grains", dry, contact=CONTACT | ROLLING),
     added("energy book", "grain", "dry grains", dry, output=BOOK),

@@ -88,7 +88,18 @@ class HertzRolling(NamedTuple):
     book: Array | None
 
 
-KernelLaw = LinearSliding | LinearRolling | HertzSliding | HertzRolling
+class LinearSmooth(NamedTuple):
+    """Linear law without friction; fields as in LinearSliding.  Springs are neither read nor written: they are zero
+    and stay so, and nothing turns a disc.
+    """
+
+    table: Array
+    material: NDArray[np.uint8] | None
+    mass: Array
+    book: Array | None
+
+
+KernelLaw = LinearSliding | LinearRolling | HertzSliding | HertzRolling | LinearSmooth
 
 
 def memory_of(law: KernelLaw) -> int:
@@ -134,6 +145,40 @@ def coulomb(spring, slip, limit, dt, stiff, soft, damping):
 
 
 @by_law
+def sliding(spring, slip, limit, dt, stiff, soft, damping, law):
+    """The tangential force (N/m) and its new spring (m): see ``coulomb``."""
+
+
+@sliding.of(LinearSliding, LinearRolling, HertzSliding, HertzRolling)
+def _sliding(spring, slip, limit, dt, stiff, soft, damping, law):
+    """As far as friction goes."""
+    return coulomb(spring, slip, limit, dt, stiff, soft, damping)
+
+
+@sliding.of(LinearSmooth)
+def _smooth(spring, slip, limit, dt, stiff, soft, damping, law):
+    """None."""
+    return 0.0, 0.0
+
+
+@by_law
+def push(normal, tangential, nx, ny, law):
+    """Components (N/m) of the force on a body that presses with ``normal`` along (nx, ny): see ``contact``."""
+
+
+@push.of(LinearSliding, LinearRolling, HertzSliding, HertzRolling)
+def _push(normal, tangential, nx, ny, law):
+    """Both parts."""
+    return -normal * nx - tangential * ny, -normal * ny + tangential * nx
+
+
+@push.of(LinearSmooth)
+def _push_smooth(normal, tangential, nx, ny, law):
+    """The normal one alone."""
+    return -normal * nx, -normal * ny
+
+
+@by_law
 def rolling(roll, turning, limit, scale, softness, damping, dt, p, law):
     """Rolling resistance over the reduced radius and its new spring: (N/m, m).
 
@@ -141,7 +186,7 @@ def rolling(roll, turning, limit, scale, softness, damping, dt, p, law):
     """
 
 
-@rolling.of(LinearSliding, HertzSliding)
+@rolling.of(LinearSliding, HertzSliding, LinearSmooth)
 def _no_rolling(roll, turning, limit, scale, softness, damping, dt, p, law):
     """Discs roll freely."""
     return 0.0, 0.0
@@ -170,6 +215,12 @@ def _moments_rolling(tangential, resisting, arm_i, arm_j, radius, law):
     return tangential * arm_i + resisting * radius, tangential * arm_j - resisting * radius
 
 
+@moments.of(LinearSmooth)
+def _no_moments(tangential, resisting, arm_i, arm_j, radius, law):
+    """None: adding -0.0 changes no bit, so no torque is read or written for it."""
+    return -0.0, -0.0
+
+
 @by_law
 def recall(memory, k, law):
     """(spring, rolling spring), m, of contact k of ``memory`` (m, 1 or 2)."""
@@ -179,6 +230,12 @@ def recall(memory, k, law):
 def _recall_sliding(memory, k, law):
     """One spring a contact."""
     return memory[k, 0], 0.0
+
+
+@recall.of(LinearSmooth)
+def _recall_nothing(memory, k, law):
+    """Springs at rest."""
+    return 0.0, 0.0
 
 
 @recall.of(LinearRolling, HertzRolling)
@@ -196,6 +253,11 @@ def remember(memory, k, spring, roll, law):
 def _remember_sliding(memory, k, spring, roll, law):
     """One spring a contact."""
     memory[k, 0] = spring
+
+
+@remember.of(LinearSmooth)
+def _remember_nothing(memory, k, spring, roll, law):
+    """They are."""
 
 
 @remember.of(LinearRolling, HertzRolling)
@@ -239,7 +301,9 @@ def contact(overlap, closing, slip, turning, spring, roll, radius, mass, dt, p, 
         normal = max(normal, 0.0)
     limit = max(normal, 0.0)
     left = kept(overlap, closing, dt, law)
-    tangential, spring = coulomb(left * spring, slip, p[MU] * limit, dt, p[KT] * scale, p[YIELD] * softness, rubbing)
+    tangential, spring = sliding(
+        left * spring, slip, p[MU] * limit, dt, p[KT] * scale, p[YIELD] * softness, rubbing, law
+    )
     resisting, roll = rolling(left * roll, turning, limit, scale, softness, turning_damping, dt, p, law)
     return normal, tangential, resisting, spring, roll
 

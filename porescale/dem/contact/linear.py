@@ -21,6 +21,7 @@ from porescale.dem.contact.law import (
     RELEASES,
     LinearRolling,
     LinearSliding,
+    LinearSmooth,
     kept,
     scale_at,
     stiffness,
@@ -30,25 +31,25 @@ from porescale.dem.contact.restitution import contact_phase, ratio_from_restitut
 from porescale.ground.check import Fault, InputError
 
 
-@stiffness.of(LinearSliding, LinearRolling)
+@stiffness.of(LinearSliding, LinearRolling, LinearSmooth)
 def _stiffness(overlap, radius, mass, p, law):
     """The same at every overlap."""
     return p[KN] * overlap, p[CN], 1.0, 1.0, p[CT], p[CR]
 
 
-@scale_at.of(LinearSliding, LinearRolling)
+@scale_at.of(LinearSliding, LinearRolling, LinearSmooth)
 def _scale_at(overlap, radius, law):
     """Constant."""
     return 1.0
 
 
-@kept.of(LinearSliding, LinearRolling)
+@kept.of(LinearSliding, LinearRolling, LinearSmooth)
 def _kept(overlap, closing, dt, law):
     """All of it."""
     return 1.0
 
 
-@stored_normal.of(LinearSliding, LinearRolling)
+@stored_normal.of(LinearSliding, LinearRolling, LinearSmooth)
 def _stored_normal(overlap, radius, p, law):
     """Half k d²."""
     return 0.5 * p[KN] * overlap * overlap
