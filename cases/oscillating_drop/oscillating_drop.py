@@ -1,4 +1,4 @@
-"""A drop drawn out by 5 % swings back: its period against Lamb's, and the pressure in a drop at rest against σ/R."""
+"""A drop that was kicked swings: its period against the exact one, and the pressure in a drop at rest against σ/R."""
 
 from __future__ import annotations
 
@@ -6,50 +6,31 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.exact import drop_period
+from continuum_sph.exact_drop import drop_swing, swing_period
 from continuum_sph.scene import trials_fluids
 from continuum_sph.scene.trials import run_until
-from continuum_sph.scene.trials_fluids import OUTER, SOUND, TENSION
+from continuum_sph.scene.trials_fluids import OUTER, SWINGING, TENSION
 from porescale.scene.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 RADIUS, AT_REST = 0.2, 0.25  # m
-VISCOSITY, OUTER_VISCOSITY = 0.01, 0.001  # Pa s
-PERIOD = drop_period(RADIUS, TENSION, 1.0, OUTER, SOUND)  # s
-DAMPING = 4.0 * VISCOSITY / RADIUS**2  # 1/s, n = 2, of the drop alone
-
-
-def swing(across: int, periods: float = 2.0) -> tuple[np.ndarray, np.ndarray]:
-    """Times (s) and how far the drop is drawn out, see `trials_fluids.stretched`, at every tenth step."""
-    flow = trials_fluids.drop(
-        across, RADIUS, stretch=1.05, viscosity=VISCOSITY, outer_viscosity=OUTER_VISCOSITY
-    )  # fmt: skip
-    times, shapes = [0.0], [trials_fluids.stretched(flow)]
-    while flow.time < periods * PERIOD:
-        for _ in range(10):
-            flow.advance()
-        times.append(flow.time)
-        shapes.append(trials_fluids.stretched(flow))
-    return np.array(times), np.array(shapes)
-
-
-def crossings(t: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Times (s) at which a drop is round."""
-    turn = np.flatnonzero(s[:-1] * s[1:] < 0.0)
-    found: np.ndarray = t[turn] - s[turn] * (t[turn + 1] - t[turn]) / (s[turn + 1] - s[turn])
-    return found
+AMPLITUDE = 0.05  # of R
 
 
 def main() -> int:
     """Measure, say, draw; 1 if a row of expected.toml is missed."""
-    given = options(__doc__ or "", HERE, across=(int, 50, "particles across the box of 1 m"))
-    t, s = swing(given.across)
+    given = options(__doc__ or "", HERE, across=(int, 64, "particles across the box of 1 m"))
+    flow, radius = trials_fluids.kicked(given.across, RADIUS, AMPLITUDE)
+    exact = trials_fluids.exact_period(radius)
+    t, s = trials_fluids.swing(flow, 1.4 * exact)
     still = run_until(trials_fluids.drop(40, AT_REST), 0.25)
-    round_at = crossings(t, s)
     figure, (left, right) = stage(2)
-    left.plot(t, s / s[0], color="#1f5fa8", label="computed")
-    left.plot(t, np.exp(-DAMPING * t) * np.cos(2.0 * np.pi * t / PERIOD), "--", color="#777777", label="linear theory")
-    left.set(xlabel="time (s)", ylabel="elongation over that at the start", title="a drop swings")
+    swift = 2.0 * np.pi / trials_fluids.exact_period(radius, viscous=False)
+    inert = swing_period(radius, TENSION, (1.0, OUTER), SWINGING) / exact  # what sound adds is taken out
+    tips = drop_swing(inert * t[1:], radius, TENSION, (1.0, OUTER), SWINGING)
+    left.plot(t / exact, 0.5 * s / AMPLITUDE, color="#1f5fa8", label="computed")
+    left.plot(t[1:] / exact, swift * tips, "--", color="#777777", label="exact")
+    left.set(xlabel="time over the exact period", ylabel="elongation, 1 without viscosity", title="a drop swings")
     left.legend()
     layer = still.layer
     r = np.hypot(layer.x[:, 0] - 0.5, layer.x[:, 1] - 0.5)
@@ -58,7 +39,7 @@ def main() -> int:
     right.step([0.0, 1.0, 2.0], [1.0 + outside, 1.0 + outside, outside], "--", color="#777777")
     right.set(xlabel="r/R", ylabel="p R/σ", title="and one at rest")
     numbers = {
-        "period": float(round_at[2] - round_at[0]) / PERIOD,
+        "period": trials_fluids.second_round(t, s, 0.7 * exact) / exact,
         "pressure jump": trials_fluids.pressure_jump(still, AT_REST) * AT_REST / TENSION,
     }
     return conclude(HERE, numbers, figure, given.out)

@@ -128,6 +128,11 @@ def test_a_tenth_less_tension_draws_a_stretched_drop_back_too_weakly():
 
 
 @pytest.mark.slow
+def test_a_fifth_less_tension_swings_a_drop_too_slowly():
+    assert verify_fluids.period(32, 0.8 * verify_fluids.TENSION) - 1.0 > tolerance("continuum.drop_period")
+
+
+@pytest.mark.slow
 def test_a_bubble_of_five_particles_in_its_radius_rises_too_fast():
     rise, *_ = verify_fluids.rising(0.05, 0.9)
     assert rise / verify_fluids.RISE - 1.0 > tolerance("continuum.rising_bubble")
