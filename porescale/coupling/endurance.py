@@ -98,12 +98,12 @@ ENDURANCES = Endurances([
         settles=2,
     ),
     Endurance(
-        "sleeping heap", "the same heap, whose grains may sleep, does and is not woken by the water",
+        "sleeping heap", "the same heap sleeps and is not woken by the water, for a fifth of the steps",
         lambda: Watched(let_sleep(heap(), after=None), periodic=False),
         (MASS, Held(ASLEEP, lambda steps: 0.0, "nothing disturbs them"),
          *(Held(name, lambda steps: 0.0, "who sleeps does not move, not by a last digit")
            for name in (*PLACES, "fastest grain (cells/step)"))),
-        settles=2,
+        settles=5, share=0.2,
     ),
 ])  # fmt: skip
 """What `porescale study endurance` runs."""

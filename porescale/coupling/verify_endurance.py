@@ -25,7 +25,7 @@ def share(lines: list[Line]) -> Measured:
 
 def settled(it: Endurance) -> Endurance:
     """The same, counted from where the heap has come down in a run of ``DOWN`` steps."""
-    return replace(it, settles=12)
+    return replace(it, settles=12, share=1.0)
 
 
 @VALIDATIONS.row(
