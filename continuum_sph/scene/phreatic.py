@@ -45,6 +45,7 @@ def line_of(table: Mapping[str, Floats], spacing: float) -> Callable[[Snapshot],
     x = np.array([float(name.removeprefix(FIRST).split()[0]) for name in names])
 
     def line(snapshot: Snapshot) -> list[Line]:
+        """Segments ((x, y), (x, y)), m, of the row nearest in time."""
         times = table.get("time (s)", np.zeros(0))
         if len(x) < 2 or not len(times):
             return []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ Floats = NDArray[np.float64]
 
 WATER, GRAINS = 1000.0, 2650.0  # kg/m³
 FREELY = 4.0  # of the rise that elasticity explains: the rest is flow of soil that yields
+BARELY = 0.01  # i_c s, by which a head that is held rises all the same
 STIFF = 10.0  # K_w/(n M) of the water: what soil squeezes out is not stored
 
 
@@ -158,6 +159,14 @@ class Heave:
         """Head over i_c s at which the surface of the prism has risen ``times`` as much as elasticity explains; nan if
         it never does."""
         return next((head for _, head, rise, _ in self.course() if rise > times * self.elastic), float("nan"))
+
+    def stands(self, head: float, seconds: float = 2.2) -> bool:
+        """Whether ground under a ``head`` (over i_c s) that is held for so many ``seconds`` comes to rest: the prism's
+        surface rises less in the last third of them than in the one before."""
+        held = replace(self, first=head, last=head + BARELY, rate=BARELY / seconds)
+        time, _, rise = np.array([row[:3] for row in held.course(seconds / 60.0)]).T
+        before, then, now = np.interp(self.calm + seconds * np.array([1.0, 2.0, 3.0]) / 3.0, time, rise)
+        return bool(now - then < then - before)
 
 
 @dataclass(frozen=True)

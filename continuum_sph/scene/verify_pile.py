@@ -35,6 +35,38 @@ def heave_row() -> Measured:
     return Measured(0.5 * (low + high), found, abs(found - 0.5 * (low + high)))
 
 
+NARROW = {0.25: (2.83, 3.15), 0.5: (2.86, 3.19), 0.75: (3.05, 3.46)}
+"""The same bounds in ground that ends 1 T beside the pile, by finite volumes: `tests/reference/sheet_pile.py`."""
+HEADS = (2.8, 3.0, 3.2)  # over i_c s
+
+
+@functools.cache
+def held(given: Heave = QUICK) -> float:
+    """Middle between the highest of HEADS that ground stands and the next, which it does not; nan without either."""
+    last = float("nan")
+    for head in HEADS:
+        if not given.stands(head):
+            return 0.5 * (last + head)
+        last = head
+    return float("nan")
+
+
+@VALIDATIONS.row(
+    "continuum.heave_under_held_head",
+    source="Terzaghi 1943: prism s/2 wide behind the pile; exit gradient at the pile; both by finite volumes in ground "
+    "that ends 1 T beside it; s/T = 0.5",
+    because="heave begins between the two, whose distance is twice this; heads are held and a fifth apart, so it is "
+    "known to a tenth, and no rate of rising comes in",
+    tolerance=0.5 * (NARROW[0.5][1] - NARROW[0.5][0]),
+    slow=True,
+)
+def held_row() -> Measured:
+    """Head over i_c s, held, above which ground behind a pile to half its depth goes on rising, 12 particles over T."""
+    low, high = NARROW[QUICK.share]
+    found = held()
+    return Measured(0.5 * (low + high), found, abs(found - 0.5 * (low + high)))
+
+
 AROUND = {
     Around(0.25, 32): (0.6888, 1.3200), Around(0.5, 24): (0.4637, 0.6361), Around(0.75, 24): (0.3193, 0.3887),
 }  # fmt: skip

@@ -13,7 +13,7 @@ from scipy.sparse.linalg import spsolve
 
 def heads(cells: int, beside: int, thick: int, deep: int):
     """h (cells, columns), row 0 lowest, nan in the pile: ``cells`` over the depth, ``beside`` on either side of a pile
-    ``thick`` by ``deep``."""
+    ``thick`` by ``deep``, a sheet if it is not thick."""
     columns = 2 * beside + thick
     pile = np.zeros((cells, columns), bool)
     pile[cells - deep :, beside : beside + thick] = True
@@ -23,6 +23,8 @@ def heads(cells: int, beside: int, thick: int, deep: int):
     rows, others = [], []
     for one, other in ((number[:, :-1], number[:, 1:]), (number[:-1], number[1:])):
         open_ = (one >= 0) & (other >= 0)
+        if thick == 0 and one.shape[1] < columns:
+            open_[cells - deep :, beside - 1] = False
         rows += [one[open_], other[open_]]
         others += [other[open_], one[open_]]
     row, column = np.concatenate(rows), np.concatenate(others)
@@ -55,3 +57,16 @@ def around(share: float, rows: int, reach: float):
     """The same without cells: a root of the distance at the pile's corners leaves errors of the first order."""
     coarse, fine = (np.array(seen(share, rows, reach, finer)) for finer in (2, 4))
     return 2.0 * fine - coarse
+
+
+def bounds(share: float, reach: float, cells: int):
+    """h/(i_c s) at which Terzaghi's prism, s/2 wide, has lost its weight, and at which the gradient at the pile's exit
+    is i_c;  a sheet without thickness, sides 1 : ``reach`` of the depth;  linear in the size of cells, of 1 : 2."""
+    found = []
+    for count in (cells, 2 * cells):
+        h = heads(count, round(reach * count), 0, round(share * count))
+        base, wide = count - round(share * count), round(0.5 * share * count)
+        half = h.shape[1] // 2
+        under = 0.5 * (h[base, half : half + wide] + h[base - 1, half : half + wide]).mean()
+        found.append((1.0 / under, 1.0 / (2.0 * h[-1, half] * count * share)))
+    return 2.0 * np.array(found[1]) - np.array(found[0])

@@ -9,8 +9,8 @@ import pytest
 from continuum_sph.scene.trials_pile import Around
 from continuum_sph.scene.trials_seepage_steady import SheetPile
 from continuum_sph.scene.validations import VALIDATIONS
-from continuum_sph.scene.verify_pile import AROUND, BOUNDS, QUICK
-from tests.reference.sheet_pile import around, seen
+from continuum_sph.scene.verify_pile import AROUND, BOUNDS, HEADS, NARROW, QUICK
+from tests.reference.sheet_pile import around, bounds, seen
 
 ROW = VALIDATIONS["continuum.heave_behind_pile"]
 MIDDLE = 0.5 * sum(BOUNDS[QUICK.share])
@@ -58,3 +58,16 @@ def test_the_flow_around_another_pile_is_refused():  # the twin that must fail
     given = Around(0.5, 12)
     discharge, _ = replace(given, share=0.5 + 2.0 / given.rows).run(100 * given.rows)
     assert abs(discharge / AROUND[Around(0.5, 24)][0] - 1.0) > row.tolerance
+
+
+def test_bounds_in_narrow_ground_are_those_of_finite_volumes():
+    # Two digits after the point; what is left of cells of T/80 after extrapolation goes as their square root cubed.
+    for share, known in NARROW.items():
+        assert bounds(share, 1.0, 40) == pytest.approx(known, abs=5e-3 + 40**-1.5)
+
+
+@pytest.mark.slow
+def test_heavier_grains_stand_a_head_that_others_do_not():  # the twin that must fail
+    heavy = replace(QUICK, grains=3200.0)
+    assert heavy.stands(HEADS[1] * QUICK.critical / heavy.critical)
+    assert not QUICK.stands(HEADS[1])
