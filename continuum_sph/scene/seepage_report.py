@@ -9,6 +9,7 @@ from continuum_sph.scene.report import report as water_report
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.seepage_build import pore_law, stiffest
 from continuum_sph.scene.soil_build import ground_of, soil_law, soil_particles
+from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.step import SHARE
 from porescale.ground.check import Fault, InputError
 from porescale.workbench.report import Report
@@ -24,7 +25,11 @@ def seepage_report(scene: Scene) -> Report:
         raise InputError(Fault("inclusion", "given", "cannot be with soil", repair="take out [inclusion] or [soil]"))
     if scene.tank.wall_particles == "images":
         raise InputError(Fault("tank.wall_particles", "images", "cannot be with soil", repair='use "pressure"'))
-    section, out = ground_of(scene), water_report(scene)
+    section = ground_of(scene)
+    if section.porosity < LEAST_POROSITY:
+        least = f">= {LEAST_POROSITY:g} with water"
+        raise InputError(Fault("soil.porosity", section.porosity, "leaves water no room", "", least, "raise it"))
+    out = water_report(scene)
     law, state, modulus = pore_law(scene), water_of(scene), stiffest(scene)
     soil, _ = soil_particles(scene)
     out.heading("soil")

@@ -167,7 +167,7 @@ def _unreadable(path: Path, error: Exception) -> InputError:
 def _decoded(path: Path) -> Iterator[Picture]:
     """Frames of a film, grey."""
     try:
-        with av.open(str(path)) as container:
+        with av.open(str(path), metadata_errors="replace") as container:
             if not container.streams.video:
                 raise InputError(Fault("film", str(path), "holds no pictures"))
             for frame in container.decode(video=0):
@@ -179,7 +179,7 @@ def _decoded(path: Path) -> Iterator[Picture]:
 def _stream(path: Path, name: str) -> Any:
     """An attribute of a film's first stream."""
     try:
-        with av.open(str(path)) as container:
+        with av.open(str(path), metadata_errors="replace") as container:
             if not container.streams.video:
                 raise InputError(Fault("film", str(path), "holds no pictures"))
             return getattr(container.streams.video[0], name)

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from continuum_sph.scene.report import report
+from continuum_sph.app import report
 from continuum_sph.scene.sections import Scene
 from porescale.ground.check import InputError
 from porescale.workbench.sections import validate
@@ -103,5 +103,6 @@ def test_many_numbers_of_ground_end_in_a_report_or_in_refusals(changed, chosen):
 def test_each_number_of_ground_alone_is_judged(name, key):
     exponents = (-300, -12, -6, -3, 0, 3, 9, 15, 300)
     verdicts = {said(name, {key: sign * 10.0**exponent}) for exponent in exponents for sign in (1, -1)}
+    verdicts.add(said(name, {key: 0.0}))
     assert False in verdicts  # some of it is refused
     assert not any(said(name, {key: value}) for value in (math.nan, math.inf))
