@@ -255,16 +255,20 @@ def test_the_column_collapses_as_expected(collapse):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("setting", "end", "names"),
+    ("settings", "end", "names"),
     [
-        ("fluid.viscosity=1e-3", 0.61, {"centre of mass at 0.6 s", "Mach number"}),
-        ("grains.hydraulic_radius_ratio=1", 0.32, {"lowest density", "largest overlap", "overlap in 95 % of rows"}),
+        (("fluid.viscosity=1e-3",), 0.61, {"centre of mass at 0.6 s", "Mach number"}),
+        (
+            ("grains.hydraulic_radius_ratio=1", "fluid.spacing=3e-4", "fluid.step=3.6e-5"), 0.32,
+            {"lowest density", "largest overlap", "overlap in 95 % of rows"},
+        ),
     ],
-)
-def test_another_column_does_not(porescale, tmp_path, setting, end, names):
+)  # fmt: skip
+def test_another_column_does_not(porescale, tmp_path, settings, end, names):
     # The twins that must fail: fluid ten times as thick is slow, and half of the fall comes later; with pores sealed
-    # the water in them is torn instead of flowing in, and presses the grains together.
-    columns = run(porescale, "column_collapse", tmp_path / "out", setting, f"time.end={end}")
+    # the water in them is torn instead of flowing in, and presses the grains together (with the 5 cells of standard;
+    # with the draft's 4 the run is stopped before).
+    columns = run(porescale, "column_collapse", tmp_path / "out", *settings, f"time.end={end}")
     rows = [row for row in expected("column_collapse") if row["name"] in EARLY]
     assert {row["name"] for row in rows} == EARLY
     rows = [row for row in rows if not isinstance(row["at"], float) or row["at"] < end]
