@@ -58,6 +58,12 @@ def test_a_run_beyond_either_does_not(what, value):
     assert "not kept" in promise.line()
 
 
+def test_last_digits_do_not_break_the_promise_of_a_point_that_was_run_once():
+    once = Promise("10", 2.0, 2.0, 1.0, 1.0, 0.05, 0.0, 0.05 * (1 + 1e-12))
+    assert once.as_good
+    assert not replace(once, found=0.052).as_good
+
+
 def test_the_point_runs_for_as_long_as_it_was_measured():
     assert settings(POINT) == ("time.end=0.8", "numerics.spacing=0.1")
 
