@@ -20,13 +20,14 @@ def both(flow, fast):
     where = (layer.fluid, pairs.start, flow.split, pairs.partner, layer.record, layer.ghost)
     how = (law.smoothing.kind, law.smoothing.length, *law.gravity, law.alpha, law.beta, law.softening)
     how += (2.0 * law.diffusion * law.smoothing.length, law.sticky)
+    surveyed = (layer.matrix, flow.slant) if flow.surveyed else (None, None)
     found = []
     for name in ("fast", "all"):
         acceleration, rate = np.zeros((layer.fluid, 2)), np.zeros(layer.fluid)
         power, smoothed = np.zeros((layer.fluid, 6)), np.zeros((layer.fluid, 2))
         if name == "fast":
             fast(
-                *where, layer.material, layer.matrix, flow.slant, layer.drift, layer.mass, flow.table, flow.choices,
+                *where, layer.material, *surveyed, layer.drift, layer.mass, flow.table, flow.choices,
                 acceleration, rate, power, *how, *pairs.period, 1e-3,
             )  # fmt: skip
         else:
