@@ -109,7 +109,7 @@ def plain_rates(
             by += brake * vy - damp * dy
         pushed_x, pushed_y, held_x, held_y, swept = walls_push(
             split[i], start[i + 1], partner, record, ghost, material, xi, yi, vxi, vyi, rho, own, viscosity,
-            lxx, lxy, lyy, kind, h, sticky, period_x, period_y,
+            lxx, lxy, lyy, kind, h, scale, sticky, period_x, period_y,
         )  # fmt: skip
         moved = 0.0
         lifted = 0.0

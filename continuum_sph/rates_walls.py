@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from continuum_sph.layers import VOLUME, VX, VY, P, X, Y
-from continuum_sph.smoothing import kernel_slope
+from continuum_sph.smoothing import slope_shape
 from continuum_sph.viscosity import laminar
 from porescale.ground.jit import inline
 from porescale.particles.cells import minimum_image
@@ -14,12 +14,13 @@ from porescale.particles.cells import minimum_image
 @inline
 def walls_push(
     begin, end, partner, record, ghost, material, x, y, vx, vy, rho, pressure, viscosity,
-    lxx, lxy, lyy, kind, h, sticky, period_x, period_y,
+    lxx, lxy, lyy, kind, h, scale, sticky, period_x, period_y,
 ):  # fmt: skip
     """Of wall partners ``partner[begin:end]`` on a particle at (x, y) m, (vx, vy) m/s, ``rho`` kg/m³, ``pressure`` Pa:
     (acceleration by pressure, m/s², 2;  by friction, 2;  rate of density, kg/(m³ s)).
 
-    record, ghost, material: see Layer;  viscosity μ, Pa s;  lxx, lxy, lyy: gradient correction;  the rest: as
+    record, ghost, material: see Layer;  viscosity μ, Pa s;  lxx, lxy, lyy: gradient correction;  scale: of
+    `slope_scale`;  the rest: as
     `rates.rates`.
     """
     ax = 0.0
@@ -32,7 +33,7 @@ def walls_push(
         j = np.uint64(partner[k])
         dx = minimum_image(x - record[j, X], period_x)
         dy = minimum_image(y - record[j, Y], period_y)
-        slope = kernel_slope(kind, np.sqrt(dx * dx + dy * dy) / h, h)
+        slope = scale * slope_shape(kind, np.sqrt(dx * dx + dy * dy) / h)
         volume = record[j, VOLUME]
         brake = laminar(viscosity, volume, specific, 0.5 * (lxx + lyy) * slope) if sticky and material[j] == 0 else 0.0
         dx, dy = lxx * dx + lxy * dy, lxy * dx + lyy * dy

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from continuum_sph.bench_plain import PlainColumn
 from continuum_sph.scene.model import Simulation
 from continuum_sph.scene.sections import Scene
-from porescale.workbench.parts import Built, Kind, Kinds
+from porescale.workbench.parts import SMALLEST, Built, Kind, Kinds
 from porescale.workbench.sections import validate
 
 SPACING = 1.0 / 32.0  # m: 2048 particles of water
@@ -61,11 +62,19 @@ def added(name: str, because: str = "", **more: Any) -> Kind:
     return Kind(name, "particle", PLAIN, make, because=because)
 
 
+def alone() -> Built:
+    """Water alone, beside the smallest kernels for it."""
+    it = scene()
+    made = started(it)
+    return Built(made, parts_of(it), made.flow.layer.fluid, made.advance, PlainColumn(made.flow).advance)
+
+
 DISC: Table = {"density": 500.0, "law": "liquid", "disc": [{"x": 0.5, "y": 1.0, "radius": 0.2}]}
 SHIFTED: Table = {"gradient": "corrected", "shifting": 2.0}
 
 KINDS = Kinds([
-    added(PLAIN, "a run beside its like: what the method of measuring makes of nothing"),
+    Kind(PLAIN, "particle", SMALLEST, alone),
+    added("water only, twice", "a run beside its like: what the method of measuring makes of nothing"),
     added("walls that hold", tank={"walls": "stick"}),
     added("walls of images", "all choices are made in one pass over pairs, the plain one is a kernel of its own",
           tank={"wall_particles": "images"}),

@@ -57,9 +57,7 @@ def fixed(**more: Any) -> Scene:
         {"x": (i + 0.5) * pitch, "y": (k + 0.5) * pitch, "diameter": 0.6 * pitch}
         for i in range(CELLS // 16) for k in range(CELLS // 16)
     ]  # fmt: skip
-    domain = {"width": CELLS * 1e-3, "height": CELLS * 1e-3, "left": "periodic", "right": "periodic",
-              "bottom": "periodic", "top": "periodic"}  # fmt: skip
-    return scene(1.0, 1.0, domain=domain, fluid=FLUID | {"body_force": (1e-3, 0.0)}, disc=discs, **more)
+    return scene(1.0, 1.0, domain=OPEN, fluid=FLUID | {"body_force": (1e-3, 0.0)}, disc=discs, **more)
 
 
 def parts_of(it: Scene) -> list[str]:
@@ -123,6 +121,10 @@ ROLLING: Table = {"rolling_friction": 0.1, "rolling_stiffness": 1e5}
 BOOK: Table = {"snapshot_interval": 1.0, "series_interval": 1.0, "energy": True}
 WIDER: Table = {"width": 1.5 * GRAINS[0], "height": 3.0 * GRAINS[1]}
 LATER = 1e9  # s
+STEEL: Table = {"name": "steel", "stiffness": 8e5}
+OPEN: Table = {"width": CELLS * 1e-3, "height": CELLS * 1e-3, "left": "periodic", "right": "periodic",
+               "bottom": "periodic", "top": "periodic"}  # fmt: skip
+PENTAGON: Table = {"sides": 5, "diameter": 3e-3, "thickness": 1e-4, "density": 2500.0, "at": [(0.5 * GRAINS[0], 0.12)]}
 
 
 def added(name: str, item: str, of: str, base: Callable[..., Scene], **more: Any) -> Kind:
@@ -143,7 +145,11 @@ KINDS = Kinds([
     added("rolling friction", "grain", "dry grains", dry, contact=CONTACT | ROLLING),
     added("energy book", "grain", "dry grains", dry, output=BOOK),
     added("gate that stands", "grain", "dry grains", dry, domain=WIDER, gate={"x": GRAINS[0], "opens_at": LATER}),
+    added("walls of a second material", "grain", "dry grains", dry, contact=CONTACT | {"wall_material": "steel"},
+          material=[STEEL]),
+    added("a polygon that falls", "grain", "dry grains", dry, polygon=[PENTAGON]),
     added("sleep", "grain", "dry grains", dry, sleep={"share": 0.05}),
+    added("no walls", "cell", "water only", water, domain=OPEN),
     added("gate in water", "cell", "water only", water, gate={"x": 0.5e-3 * CELLS, "opens_at": LATER}),
 ])  # fmt: skip
 """What `porescale study parts` measures."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from porescale.lbm.bench_plain import largest_of_rows
 from porescale.scene.build import build
-from porescale.scene.parts import Table, parts_of, scene, water, without
+from porescale.scene.parts import Table, built, nothing_moves, parts_of, scene, water, without
 from porescale.scene.sections import Scene
 from porescale.workbench.parts import Built, Kind, Kinds
 
@@ -58,6 +58,8 @@ def looking() -> Built:
 
 
 KINDS = Kinds([
+    Kind("moving grains in water", "cell", "the same grains, held",
+         lambda: built(wet(), "cell", nothing_moves), steps=10),
     Kind("sleep under water", "grain", "pile under water", sleeping, steps=10,
          because="contact steps of the pile are saved, those of the fluid are not"),
     Kind("a look for water at rest", "cell", "water only", looking,

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from continuum_sph.bench_plain import PlainColumn
+from continuum_sph.scene.parts import scene, started
 from porescale.dem.bench_plain import PlainDiscs
 from porescale.dem.contact.linear import Linear
 from porescale.dem.experiments_sleep import heap
@@ -44,6 +46,27 @@ def test_the_smallest_discs_do_what_grains_do(law):
     # Forces are sums of terms k x that cancel: eps k x/m dt² a step, 2e-16 5e5 1e-2/8e-3 1e-10, and twice summed.
     allowed = 2.2e-16 * 5e5 * 1e-2 / grains.discs.mass.min() * dt**2 * steps**2
     assert np.abs(twin.discs["position"] - grains.discs.position).max() < allowed
+
+
+@pytest.mark.slow
+def test_the_smallest_water_does_what_smoothed_particles_do():
+    whole = started(scene())
+    plain, layer, steps = PlainColumn(whole.flow), whole.flow.layer, 20
+    start = layer.x.copy()
+    plain.advance(steps)
+    whole.advance(steps)
+    assert np.abs(layer.x - start).max() > 1e-3
+    assert plain.next_step == pytest.approx(whole.step_seconds, rel=1e-12)
+    # A row is some 30 terms of ten roundings, none more than c²/h = 40²/0.04 m/s² or ρ v/h = 1e5 kg/(m³ s), here for
+    # 20 steps of 1 ms at most: 300 eps of what they bring.
+    allowed = 300 * 2.2e-16 * steps * 1e-3
+    assert np.abs(plain.v - layer.v).max() < allowed * 40**2 / 0.04
+    assert np.abs(plain.density - layer.density).max() < allowed * 1e5
+    other = PlainColumn(whole.flow)
+    other.mass = other.mass * (1.0 + 1e-9)  # the twin that must fail
+    whole.advance(steps)
+    other.advance(steps)
+    assert np.abs(other.density - layer.density).max() > allowed * 1e5
 
 
 def test_arrays_are_counted_once_however_they_are_named():
