@@ -1,0 +1,90 @@
+"""Diffusion of density leaves a hydrostatic column alone and is taken down within steps that allow it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from continuum_sph.density import diffusion
+from continuum_sph.eos import Tait
+from continuum_sph.fluids import Fluid
+from continuum_sph.law import Law
+from continuum_sph.smoothing import CUBIC, WENDLAND, Smoothing, kernel_slope
+
+SPACING, RATIO, DEPTH, GRAVITY = 0.05, 1.3, 1.0, 9.81
+H = RATIO * SPACING
+WATER = Tait(1000.0, 44.3)
+
+
+def column_rates(hydrostatic):
+    """What diffusion does to each row of a column at rest, and how much passes through it, kg/(m³ s): (2, 20), from the
+    floor, without walls."""
+    y = (np.arange(20) + 0.5) * SPACING
+    rho = WATER.settled_density(DEPTH - y, GRAVITY)
+    stiff = rho / (WATER.sound_speed**2 * (rho / WATER.density) ** (WATER.exponent - 1.0))
+    strength = 2.0 * 0.1 * H * WATER.sound_speed
+    found = np.zeros((2, 20))
+    for i in range(20):
+        for j in range(20):
+            for dx in np.arange(-3, 4) * SPACING:
+                q = np.hypot(dx, y[j] - y[i]) / H
+                if 0.0 < q < 2.0:
+                    expected = -0.5 * (stiff[i] + stiff[j]) * GRAVITY * (y[j] - y[i]) if hydrostatic else 0.0
+                    slope = kernel_slope.py_func(WENDLAND, q, H)
+                    rate = diffusion.py_func(rho[i], rho[j], expected, SPACING**2, slope, strength)
+                    found[:, i] += rate, abs(rate)
+    return found
+
+
+def test_hydrostatic_column_takes_no_diffusion_inside_nor_at_its_surface():
+    # Trapezoid over a pair: |Δy|³/12 |ρ'''|, ρ = ρ0 (1 + b d)^(1/6), b = 6 g/c0²: ρ''' < 55/216 ρ0 b³.  A pair's
+    # share of the sum: strength Σ V |∇W|/r < strength 3.5/h², Δy < 2h.
+    b = 6.0 * GRAVITY / WATER.sound_speed**2
+    allowed = 0.2 * WATER.sound_speed / H * 3.5 * (2 * H) ** 3 / 12 * 55 / 216 * WATER.density * b**3
+    left, passed = column_rates(hydrostatic=True)
+    assert passed.max() < allowed
+    # Half a pair's difference, g ρ0 Δy/c0² of the next row alone, is 1e5 times what is allowed.
+    assert allowed < 1e-4 * column_rates(hydrostatic=False)[1].min()
+    assert abs(left.sum()) < 1e-9 * allowed + 400 * 1000.0 * np.finfo(float).eps * 0.2 * WATER.sound_speed / H * 3.5
+
+
+def test_plain_diffusion_drains_the_floor_into_the_surface():  # the twin that must fail
+    left, passed = column_rates(hydrostatic=False)
+    assert left[-1] > 0.3 * passed[-1]
+    assert left[0] < -0.3 * passed[0]
+    assert np.abs(left[5:15]).max() < 0.01 * passed[10]  # inside, above and below make up for each other
+
+
+def growth(share):
+    """Largest amplification per step of a wave of which diffusion takes this share: `continuum_sph.law.CALMED`."""
+    return float(np.abs(np.roots([1.0, 3.0 * share - 1.0, -3.0 * share, share])).max())
+
+
+def alternating(kind, ratio):
+    """h² Σ V |∇W|/r (1 - cos k·x) of the fastest wave on a lattice, h = ``ratio`` spacings."""
+    i, j = (grid.ravel() for grid in np.meshgrid(np.arange(-6, 7), np.arange(-6, 7)))
+    q = np.hypot(i, j) / ratio
+    slopes = np.array([-kernel_slope.py_func(kind, each, ratio) if 0.0 < each < 2.0 else 0.0 for each in q])
+    waves = np.linspace(0.0, np.pi, 9)
+    return max(float((slopes * (1.0 - np.cos(a * i + b * j))).sum()) for a in waves for b in waves) * ratio**2
+
+
+@pytest.mark.parametrize("kind", [CUBIC, WENDLAND])
+@pytest.mark.parametrize("ratio", [1.0, 1.3, 2.0, 3.0])
+@pytest.mark.parametrize("delta", [0.1, 0.2])
+def test_shortest_waves_of_density_die_within_the_allowed_step(kind, ratio, delta):
+    smoothing = Smoothing("cubic" if kind == CUBIC else "wendland", ratio * SPACING)
+    law = Law(smoothing, SPACING, (Fluid(WATER),), (0.0, -GRAVITY), diffusion=delta, courant=0.5)
+    pace = WATER.sound_speed / smoothing.length
+    step = law.limits(0.0, pace)[0]
+    assert growth(2.0 * delta * pace * alternating(kind, ratio) * step) <= 1.0 + 1e-12
+
+
+def test_shortest_waves_of_density_grow_at_the_step_of_sound_alone():  # the twin that must fail
+    assert growth(2.0 * 0.2 * alternating(WENDLAND, RATIO) * 0.25) > 1.05
+    assert growth(2.0 / 7.0) == pytest.approx(1.0)
+
+
+def test_little_diffusion_leaves_the_step_to_sound():
+    law = Law(Smoothing("wendland", H), SPACING, (Fluid(WATER),), (0.0, -GRAVITY), diffusion=0.1)
+    assert law.limits(0.0, 100.0)[0] == 0.25 / 100.0
