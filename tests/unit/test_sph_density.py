@@ -5,10 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from continuum_sph import law as laws
 from continuum_sph.density import diffusion
 from continuum_sph.eos import Tait
 from continuum_sph.fluids import Fluid
 from continuum_sph.law import Law
+from continuum_sph.scene.build import flow_of
+from continuum_sph.scene.trials import column_scene
 from continuum_sph.smoothing import CUBIC, WENDLAND, Smoothing, kernel_slope
 
 SPACING, RATIO, DEPTH, GRAVITY = 0.05, 1.3, 1.0, 9.81
@@ -88,3 +91,25 @@ def test_shortest_waves_of_density_grow_at_the_step_of_sound_alone():  # the twi
 def test_little_diffusion_leaves_the_step_to_sound():
     law = Law(Smoothing("wendland", H), SPACING, (Fluid(WATER),), (0.0, -GRAVITY), diffusion=0.1)
     assert law.limits(0.0, 100.0)[0] == 0.25 / 100.0
+
+
+def fastest_at_rest():
+    """Largest speed over that of sound in 3000 steps of water at rest with the strongest diffusion of density, or the
+    first beyond Mach 0.1."""
+    flow, largest = flow_of(column_scene(SPACING, tank=(0.5, 1.2), column=(0.5, DEPTH), density_diffusion=0.2)), 0.0
+    for _ in range(3000):
+        flow.advance()
+        largest = max(largest, flow.swiftest / flow.law.state.sound_speed)
+        if not largest < 0.1:
+            break
+    return largest
+
+
+def test_water_rests_under_the_strongest_diffusion():
+    # A settling row falls by less than a fiftieth of the depth H: √(2 g H/50) = c0 √(1/50)/10 = 0.014 c0.
+    assert fastest_at_rest() < 0.014
+
+
+def test_water_flies_off_at_the_step_of_sound_alone(monkeypatch):  # the twin that must fail
+    monkeypatch.setattr(laws, "CALMED", np.inf)
+    assert not fastest_at_rest() < 0.1
