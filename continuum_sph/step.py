@@ -187,9 +187,9 @@ class Flow:
             2.0 * law.diffusion * law.smoothing.length, law.sticky,
         )  # fmt: skip
         if self.plain:
-            surveyed = (layer.matrix, self.slant) if self.surveyed else (None, None)
+            matrix, slant = (layer.matrix if self.surveyed else None), (self.slant if self.surveyed else None)
             plain_rates(
-                *where, layer.material, *surveyed, layer.drift, layer.mass, self.table, self.choices,
+                *where, layer.material, matrix, slant, layer.drift, layer.mass, self.table, self.choices,
                 layer.acceleration, layer.rate, layer.power, *how, *pairs.period, half,
             )  # fmt: skip
         else:
