@@ -74,8 +74,8 @@ SHIFTED: Table = {"gradient": "corrected", "shifting": 2.0}
 
 KINDS = Kinds([
     Kind(PLAIN, "particle", SMALLEST, alone,
-         because="kernel by kernel: the book of energies, always kept, some 13 %; fluids looked up in a table and walls "
-                 "that might hold 8 %; what Python does between kernels 5 %"),
+         because="kernel by kernel: the book of energies, always kept, some 13 %; fluids looked up in a table and "
+                 "walls that might hold 8 %; what Python does between kernels 5 %"),
     added("water only, twice", "a run beside its like: what the method of measuring makes of nothing"),
     added("walls that hold", tank={"walls": "stick"}),
     added("walls of images", "all choices are made in one pass over pairs, the plain one is a kernel of its own",
