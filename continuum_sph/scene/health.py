@@ -37,6 +37,21 @@ def refuse_no_numbers(
             raise Unstable(f"{of} {int(lost.argmax())}", name, float("nan"), unit, step, time, repair)
 
 
+def refuse_one_place(x: Floats, there: NDArray[np.int64], step: int, time: float, repair: str) -> None:
+    """Unstable when two of the particles ``there`` of ``x`` (n, 2) m are in one place: nothing pushes them apart.
+
+    Only those whose x + √2 y is the same are looked at: one sort.
+    """
+    mixed = x[there, 0] + 2.0**0.5 * x[there, 1]
+    order = np.argsort(mixed, kind="stable")
+    a, b = there[order[:-1]], there[order[1:]]
+    same = (np.diff(mixed[order]) == 0.0) & (x[a] == x[b]).all(axis=1)
+    if same.any():
+        at, other = int(a[same.argmax()]), int(b[same.argmax()])
+        where = f"particle {at} at ({x[at, 0]:.4g}, {x[at, 1]:.4g}) m, and {other} there, too"
+        raise Unstable(where, "distance", 0.0, "m", step, time, repair)
+
+
 class Leaps:
     """Remembers where particles were at the last look, and the way of the fastest since.
 

@@ -11,7 +11,7 @@ from continuum_sph.energy import book
 from continuum_sph.law import RULES
 from continuum_sph.scene.bubble import bubble
 from continuum_sph.scene.build import flow_of, water_of
-from continuum_sph.scene.health import Leaps, refuse_no_numbers, stepped
+from continuum_sph.scene.health import Leaps, refuse_no_numbers, refuse_one_place, stepped
 from continuum_sph.scene.instruments import Cloud, tables
 from continuum_sph.scene.sections import Scene
 from continuum_sph.step import Flow
@@ -68,13 +68,14 @@ class Simulation:
         refuse_no_numbers(recorded, self.step, self.time, REPAIR)
         self.leaps.check(layer.x[:n], layer.mass[:n], self.step, self.time, REPAIR)
         inside = np.flatnonzero(self.inside() & (layer.material[: layer.fluid] == 0))
+        refuse_one_place(layer.x, inside, self.step, self.time, REPAIR)
         speed = np.hypot(layer.v[inside, 0], layer.v[inside, 1])
         ratio = layer.density[inside] / tait.density
         for values, limit, name, unit, scale in (
             (speed, tait.sound_speed, "speed", "m/s", 1.0),
             (ratio, DENSEST, "density", "kg/m³", tait.density),
         ):
-            bad = np.flatnonzero(~(values <= limit))
+            bad = np.flatnonzero(~((values >= 0.0) & (values <= limit)))
             if bad.size:
                 at = inside[bad[0]]
                 raise Unstable(

@@ -67,7 +67,11 @@ def strewn(across: int, radius: float, stretch: float, seed: int, *, tension: fl
     layer, spacing = flow.layer, flow.law.spacing
     layer.x[:] = (layer.x + spacing * (rng.uniform(0.0, 1.0, 2) + rng.uniform(-0.2, 0.2, layer.x.shape))) % 1.0
     place = (layer.x - 0.5) * [1.0 / stretch, stretch]
-    layer.material[:] = np.hypot(place[:, 0], place[:, 1]) < radius
+    inside = np.hypot(place[:, 0], place[:, 1]) < radius
+    layer.material[:] = inside
+    layer.density[:] = np.where(inside, Tait(1.0, SOUND).density_at(np.array(tension / radius)), OUTER)
+    layer.predicted[:] = layer.density
+    layer.mass[:] = layer.density * spacing**2
     flow.evaluate(0.0, 0.0)
     return flow
 
