@@ -12,9 +12,11 @@ from porescale.ground.lanes import lesser
 def artificial(alpha, beta, sound_speed, length, softening, approach, distance2, density_sum):
     """Π_ij, m⁵/(kg s²): (-α c μ + β μ²)/ρ̄ for approaching particles, μ = h v·r/(r² + ε h²), else 0.
 
-    approach v_ij · x_ij, m²/s;  softening ε;  density_sum 2ρ̄, kg/m³.  Acceleration of i: -m_j Π_ij ∇_i W.
-    One division: it is what a pair costs most.
+    approach v_ij · x_ij, m²/s;  beta: None for 0;  softening ε;  density_sum 2ρ̄, kg/m³.  Acceleration of i:
+    -m_j Π_ij ∇_i W.  One division: it is what a pair costs most.
     """
     soft = distance2 + softening * length * length
     per_mass = length * lesser(approach, 0.0) / (soft * density_sum)  # μ/2ρ̄
+    if beta is None:
+        return -2.0 * alpha * sound_speed * per_mass
     return 2.0 * (beta * per_mass * density_sum - alpha * sound_speed) * per_mass

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.density import HYDROSTATIC
+from continuum_sph.density import HYDROSTATIC, haste_of
 from continuum_sph.layers import RHO, STIFF, VOLUME, VX, VY, P, X, Y
 from continuum_sph.rates import split_rows
 from continuum_sph.smoothing import WENDLAND
@@ -70,10 +70,13 @@ def plain_walls(fluid, start, split, partner, record, h, g):
 
 
 @parallel_kernel
-def plain_pairs(fluid, start, split, partner, record, acceleration, rate, h, g, alpha, softening, delta, sound, mu):
+def plain_pairs(
+    fluid, start, split, partner, record, acceleration, rate, h, g, alpha, softening, delta, calm, sound, mu
+):
     """Overwrites ``acceleration`` (fluid, 2) and ``rate`` (fluid,), as `rates_plain.plain_rates`;  g: downwards."""
     scale = -8.75 / (np.pi * h * h * h * h)
     inverse, soft, half_g = 1.0 / h, softening * h * h, 0.5 * g
+    haste, restless = haste_of(calm, h)
     for i in prange(fluid):
         xi, yi, vxi, vyi = record[i, X], record[i, Y], record[i, VX], record[i, VY]
         rho, own, stiff = record[i, RHO], record[i, P], record[i, STIFF]
@@ -89,7 +92,8 @@ def plain_pairs(fluid, start, split, partner, record, acceleration, rate, h, g, 
             rest = greater(1.0 - 0.5 * (root(distance2) * inverse), 0.0)
             part = volume * scale * (rest * rest * rest)
             approach = vx * dx + vy * dy
-            spread += (rho - rho_j + (stiff + stiff_j) * (half_g * dy)) * part
+            hasty = lesser(restless + haste * greater(approach, -approach), 1.0)
+            spread += (rho - rho_j + (stiff + stiff_j) * (half_g * dy)) * (part * hasty)
             change += approach * part
             damp = -2.0 * alpha * sound * h * lesser(approach, 0.0) / ((distance2 + soft) * (rho + rho_j)) * rho_j
             push = ((own + pressure_j) * specific + damp) * part
@@ -166,7 +170,7 @@ class PlainColumn:
         plain_walls(*where, h, -law.gravity[1])
         plain_pairs(
             *where, self.acceleration, self._rate, h, -law.gravity[1], law.alpha, law.softening,
-            2.0 * law.diffusion * h, sound, law.fluids[0].viscosity,
+            2.0 * law.diffusion * h, law.calm, sound, law.fluids[0].viscosity,
         )  # fmt: skip
         hardest = plain_kick(
             self.v, self.acceleration, self.density, self._rate, 0.5 * step, step, 0.8 * self.state.density

@@ -26,14 +26,18 @@ def wall_row(
 
     p_w = Σ (p_f + ρ_f g · (x_w - x_f)) W / Σ W.  Not below zero: a wall does not pull on a free surface's fluid.
     """
+    wraps = period_x > 0.0 or period_y > 0.0
     weight = 0.0
     p = 0.0
     ux = 0.0
     uy = 0.0
     for k in range(np.uint64(start), np.uint64(end)):
         j = np.uint64(partner[k])
-        dx = minimum_image(x[w, 0] - record[j, X], period_x)
-        dy = minimum_image(x[w, 1] - record[j, Y], period_y)
+        dx = x[w, 0] - record[j, X]
+        dy = x[w, 1] - record[j, Y]
+        if wraps:
+            dx = minimum_image(dx, period_x)
+            dy = minimum_image(dy, period_y)
         value = kernel_value(kind, np.sqrt(dx * dx + dy * dy) / h, h)
         weight += value
         p += (pressure[j] + record[j, RHO] * (gx * dx + gy * dy)) * value
@@ -50,11 +54,14 @@ def load_walls(
 ):  # fmt: skip
     """Give wall particles (rows ``fluid`` on) the pressure and velocity of the fluid before them.
 
-    Overwrites their rows of ``record`` (n, 8), ``pressure`` (n,) and ``ghost`` (n, 2),
-    2 v_wall - mean fluid velocity: the average of fluid and ghost is then the wall's velocity at the wall.
-    Their volume stays mass/density0, the square of the spacing, as fluid that has not moved has it.
+    Overwrites the rows of ``record`` (n, 8) and ``ghost`` (n, 2) of those that have fluid for partners, and all of
+    their ``pressure`` (n,);  ghost: 2 v_wall - mean fluid velocity: the average of fluid and ghost is then the wall's
+    velocity at the wall.  Their volume stays mass/density0, the square of the spacing, as that of fluid at the start.
     """
     for w in prange(fluid, x.shape[0]):
+        if start[w] == split[w]:
+            pressure[w] = 0.0  # and no fluid reads the rest
+            continue
         p, ux, uy = wall_row(
             w, start[w], split[w], partner, x, v, record, pressure, kind, h, gx, gy, period_x, period_y
         )  # fmt: skip

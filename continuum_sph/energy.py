@@ -16,9 +16,8 @@ from continuum_sph.step import Flow
 LOST, GIVEN = [VISCOUS, DIFFUSIVE, STOPPED], [BY_WALLS, BY_TENSION, BY_SHIFTING]
 
 
-def book(flow: Flow) -> dict[str, float]:
-    """Energies in J per metre of depth, by name; "total energy" is what flow and water hold, "energy balance" adds what
-    was turned over."""
+def held(flow: Flow) -> dict[str, float]:
+    """Energies that flow and water hold, in J per metre of depth, by name."""
     layer, law = flow.layer, flow.law
     n = layer.fluid
     mass, v, x = layer.mass[:n], layer.v[:n], layer.x[:n]
@@ -31,12 +30,16 @@ def book(flow: Flow) -> dict[str, float]:
         if law.cut:
             density = np.maximum(density, fluid.state.density)
         compressive += float((mass[own] * fluid.state.energy(density)).sum())
-    turned = layer.energy.sum(axis=0)
-    total = kinetic + potential + compressive
-    return {
-        "kinetic energy": kinetic,
-        "potential energy": potential,
-        "compressive energy": compressive,
+    return {"kinetic energy": kinetic, "potential energy": potential, "compressive energy": compressive}
+
+
+def book(flow: Flow) -> dict[str, float]:
+    """The same, what was turned over since `Layer.keep_book`, "total energy", which is that held, and "energy balance",
+    which adds what was turned over."""
+    assert flow.layer.booked
+    own, turned = held(flow), flow.layer.energy.sum(axis=0)
+    total = sum(own.values())
+    return own | {
         "heat of viscosity": float(turned[VISCOUS]),
         "energy diffused": float(turned[DIFFUSIVE]),
         "work of walls": float(turned[BY_WALLS]),

@@ -44,8 +44,9 @@ class Layer:
     length: Floats = field(init=False)  # (n,) m, smoothing lengths, set by the flow
     matrix: Floats = field(init=False)  # (n, 4) xx, xy, yy of the gradient correction, and how closed in: `correction`
     facing: Floats = field(init=False)  # (n, 4) of walls: nearest point of the surface, normal into the fluid
-    power: Floats = field(init=False)  # (fluid, 6) W/m, see VISCOUS, …, STOPPED
-    energy: Floats = field(init=False)  # (fluid, 6) J/m, the same summed over time
+    power: Floats = field(init=False)  # (fluid, 6) W/m, see VISCOUS, …, STOPPED; (0, 6) without `keep_book`
+    energy: Floats = field(init=False)  # the same summed over time, J/m
+    booked: bool = field(init=False, default=False)  # whether a book of them is kept
 
     def __post_init__(self) -> None:
         n = len(self.x)
@@ -62,7 +63,12 @@ class Layer:
         self.record, self.ghost = np.zeros((n, 8)), np.zeros((n, 2))
         self.length, self.facing = np.zeros(n), np.zeros((n, 4))
         self.matrix = np.tile([1.0, 0.0, 1.0, 2.0], (n, 1))
+        self.power, self.energy = np.zeros((0, 6)), np.zeros((0, 6))
+
+    def keep_book(self) -> None:
+        """Book from now on what energies become: kernels do so where ``power`` and ``energy`` have rows."""
         self.power, self.energy = np.zeros((self.fluid, 6)), np.zeros((self.fluid, 6))
+        self.booked = True
 
     @property
     def count(self) -> int:
@@ -70,13 +76,18 @@ class Layer:
         return len(self.x)
 
     KEPT = ("x", "v", "mass", "density", "acceleration", "rate", "rate_before", "smoothed", "drift", "pressure",
-    "length", "power", "energy")  # fmt: skip
+    "length")  # fmt: skip
+    BOOK = ("power", "energy")
+
+    def kept(self) -> tuple[str, ...]:
+        """Names of the arrays that later steps depend on."""
+        return self.KEPT + (self.BOOK if self.booked else ())
 
     def state(self) -> dict[str, Floats]:
         """Copies of the arrays that later steps depend on."""
-        return {name: getattr(self, name).copy() for name in self.KEPT}
+        return {name: getattr(self, name).copy() for name in self.kept()}
 
     def restore(self, state: dict[str, Floats]) -> None:
         """Take over what `state` of an equal layer gave."""
-        for name in self.KEPT:
+        for name in self.kept():
             getattr(self, name)[:] = state[name]

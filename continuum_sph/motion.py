@@ -18,21 +18,24 @@ def kick_drift(
     v += half a;  x += step (v + smoothed + drift);  predicted = ρ + step {D + ratio (D - D_before)}.  half, step: s;
     lower, upper (2,) m: surfaces of the walls.  The pressure of wall particles keeps water out of walls, but spray
     carries none: a particle that reaches a surface is put on it and loses its speed into it, whose energy is added to
-    ``energy`` (fluid, 6) J/m, mass (n,) kg/m.  Returns how often.
+    ``energy`` (fluid, 6) J/m if it has rows, mass (n,) kg/m.  Returns how often.
     """
     stopped = 0
+    booked = energy.shape[0] > 0
     for i in prange(density.shape[0]):
         for axis in range(2):
             v[i, axis] += half * acceleration[i, axis]
             at = x[i, axis] + step * (v[i, axis] + smoothed[i, axis] + drift[i, axis])
             if at < lower[axis]:
                 at = lower[axis]
-                energy[i, STOPPED] += 0.5 * mass[i] * min(0.0, v[i, axis]) ** 2
+                if booked:
+                    energy[i, STOPPED] += 0.5 * mass[i] * min(0.0, v[i, axis]) ** 2
                 v[i, axis] = max(0.0, v[i, axis])
                 stopped += 1
             if at > upper[axis]:
                 at = upper[axis]
-                energy[i, STOPPED] += 0.5 * mass[i] * max(0.0, v[i, axis]) ** 2
+                if booked:
+                    energy[i, STOPPED] += 0.5 * mass[i] * max(0.0, v[i, axis]) ** 2
                 v[i, axis] = min(0.0, v[i, axis])
                 stopped += 1
             x[i, axis] = at
@@ -41,15 +44,16 @@ def kick_drift(
 
 
 @parallel_kernel
-def pressurise(x, v, mass, density, material, length, table, cut, pressure, record):
+def pressurise(x, v, mass, density, material, length, table, cut, varied, pressure, record):
     """Pressure (Pa) of fluid particles from ``density`` (fluid,); overwrites their ``pressure`` and ``record``.
 
     The density of a step's end is extrapolated, for spray that hits a wall below zero: it stops at the fluid's least.
-    material (n,), table (m, 9): the particles' fluids;  length (n,): h, m;  cut: pressures below that of the air count
-    as none (particles of a free surface do not pull).  Returns the largest (c/h)², 1/s²; a maximum is exact in any
-    order.
+    material (n,), table (m, 9): the particles' fluids;  length (n,): h, m, varied: whether it differs;  cut: pressures
+    below that of the air count as none (particles of a free surface do not pull).  Returns the largest (c/h)², 1/s²; a
+    maximum is exact in any order.
     """
     pace = 0.0
+    fastest = 0.0
     for i in prange(density.shape[0]):
         kind = material[i]
         rho = density[i]
@@ -72,8 +76,10 @@ def pressurise(x, v, mass, density, material, length, table, cut, pressure, reco
         record[i, P] = p
         record[i, VOLUME] = mass[i] / rho
         record[i, STIFF] = rho / speed2
-        pace = max(pace, speed2 / (length[i] * length[i]))
-    return pace
+        if varied:
+            pace = max(pace, speed2 / (length[i] * length[i]))
+        fastest = max(fastest, speed2)
+    return pace if varied else fastest / (length[0] * length[0])
 
 
 @parallel_kernel
@@ -82,11 +88,12 @@ def kick(v, acceleration, density, rate, material, length, table, power, energy,
 
     Continuity follows a particle that leaves its neighbours down to the density of a cloud, below zero if they were
     crowded: densities stop at the fluid's least.  varied: h -= step h/(2ρ) dρ/dt, eq. 52 in two dimensions.
-    energy (fluid, 6) J/m grows by step times ``power`` but for what was STOPPED.  Returns the largest |a|² (m²/s⁴) and
-    |v|² (m²/s²), which limit the next step and its shifting.
+    energy (fluid, 6) J/m, if it has rows, grows by step times ``power`` but for what was STOPPED.  Returns the largest
+    |a|² (m²/s⁴) and |v|² (m²/s²), which limit the next step and its shifting.
     """
     hardest = 0.0
     swiftest = 0.0
+    booked = energy.shape[0] > 0
     for i in prange(density.shape[0]):
         ax = acceleration[i, 0]
         ay = acceleration[i, 1]
@@ -95,8 +102,9 @@ def kick(v, acceleration, density, rate, material, length, table, power, energy,
         if varied:
             length[i] -= step * length[i] / (2.0 * density[i]) * rate[i]
         density[i] = max(table[material[i], THINNEST], density[i] + step * rate[i])
-        for k in range(STOPPED):
-            energy[i, k] += step * power[i, k]
+        if booked:
+            for k in range(STOPPED):
+                energy[i, k] += step * power[i, k]
         hardest = max(hardest, ax * ax + ay * ay)
         swiftest = max(swiftest, v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1])
     return hardest, swiftest

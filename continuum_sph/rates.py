@@ -17,7 +17,7 @@ import numpy as np
 
 from continuum_sph.artificial_viscosity import artificial
 from continuum_sph.boundary_paper import image
-from continuum_sph.density import HYDROSTATIC, LINEAR, continuity, diffusion
+from continuum_sph.density import HYDROSTATIC, LINEAR, continuity, diffusion, haste_of, pace
 from continuum_sph.fluids import COHESION, SOUND, VISCOSITY
 from continuum_sph.layers import BY_SHIFTING, BY_WALLS, DIFFUSIVE, RHO, STIFF, VISCOUS, VOLUME, VX, VY, P, X, Y
 from continuum_sph.smoothing import kernel_value, slope_scale, slope_shape
@@ -43,18 +43,18 @@ def split_rows(fluid, start, partner, split):
 def rates(
     fluid, start, split, partner, record, ghost, facing, material, length, matrix, slant, drift, mass, table, choices,
     acceleration, rate, smoothed, power,
-    kind, h, gx, gy, alpha, beta, softening, delta, sticky, smoothing, period_x, period_y, half,
+    kind, h, gx, gy, alpha, beta, softening, delta, calm, sticky, smoothing, period_x, period_y, half,
 ):  # fmt: skip
     """Overwrites ``acceleration`` (fluid, 2) m/s², ``rate`` (fluid,) kg/(m³ s), ``smoothed`` (fluid, 2) m/s and the
-    columns of ``power`` (fluid, 6) W/m but for BY_TENSION.
+    columns of ``power`` (fluid, 6) W/m but for BY_TENSION, unless it has no rows.
 
     start, split, partner: full pair list, wall partners of row i from ``split[i]`` on;  record, ghost, facing,
     material, length, matrix, drift: see Layer;  slant: of `surroundings`;  mass (n,) kg/m;  table (m, 9): the fluids;
     choices: what is NOISE, IMAGED, SHIFTED, CORRECTED, VARIED;  kind, h: smoothing;  gx, gy gravity,
-    m/s²;  alpha, beta, softening: artificial viscosity;  delta 2 δ h of the density diffusion, m;  sticky: walls hold
-    the fluid, else they let it slip;  smoothing: XSPH's ε, for Σ (m_j/ρ̄)(v_j - v_i) W (eq. 53 with the sign that
-    smooths);  periods, m or 0;  half: of the step that ends here, s.  Two fluids rub along the line of centres, one as
-    eq. 34 has it (`viscosity`).
+    m/s²;  alpha, beta, softening: artificial viscosity;  delta 2 δ h of the density diffusion, m, and
+    calm, m/s, of `haste_of`;  sticky: walls hold the fluid, else they let it slip;  smoothing: XSPH's ε, for
+    Σ (m_j/ρ̄)(v_j - v_i) W (eq. 53 with the sign that smooths);  periods, m or 0;  half: of the step that ends here, s.
+    Two fluids rub along the line of centres, one as eq. 34 has it (`viscosity`).
 
     NOISE: what density diffusion takes for noise;  IMAGED: walls of the paper;  SHIFTED: density is that of the place
     that a particle's ``drift`` takes it to;  CORRECTED: gradients by ``matrix``;  VARIED: h by ``length`` (eq. 7).
@@ -66,6 +66,8 @@ def rates(
     shifted = choices[SHIFTED] > 0
     corrected = choices[CORRECTED] > 0
     varied = choices[VARIED] > 0
+    booked = power.shape[0] > 0
+    haste, restless = haste_of(calm, h)
     for i in prange(fluid):
         xi = record[i, X]
         yi = record[i, Y]
@@ -136,7 +138,7 @@ def rates(
                     expected = -0.5 * (stiff_i + record[j, STIFF]) * (gx * dx + gy * dy)
                 elif noise == LINEAR:
                     expected = -0.5 * ((slant[i, 0] + slant[j, 0]) * dx + (slant[i, 1] + slant[j, 1]) * dy)
-                spread += diffusion(rho, rho_j, expected, volume, slope, strength)
+                spread += diffusion(rho, rho_j, expected, volume, slope, strength * pace(approach, haste, restless))
             both = rho + rho_j
             partner_mass = rho_j * volume
             thrust = (own + record[j, P]) * specific * volume
@@ -212,11 +214,12 @@ def rates(
         rate[i] = change + swept + moved + spread
         smoothed[i, 0] = sx
         smoothed[i, 1] = sy
-        # What these do to speeds they do at the step's end, and what they do to densities at its middle.
-        vxi += half * acceleration[i, 0]
-        vyi += half * acceleration[i, 1]
-        work = mass[i] * specific * specific * (own - half * rho / stiff_i * rate[i])
-        power[i, VISCOUS] = -mass[i] * (bx * vxi + by * vyi)
-        power[i, DIFFUSIVE] = -work * spread
-        power[i, BY_WALLS] = work * swept + mass[i] * (pushed_x * vxi + pushed_y * vyi)
-        power[i, BY_SHIFTING] = work * moved - mass[i] * lifted
+        if booked:
+            # What these do to speeds they do at the step's end, and what they do to densities at its middle.
+            vxi += half * acceleration[i, 0]
+            vyi += half * acceleration[i, 1]
+            work = mass[i] * specific * specific * (own - half * rho / stiff_i * rate[i])
+            power[i, VISCOUS] = -mass[i] * (bx * vxi + by * vyi)
+            power[i, DIFFUSIVE] = -work * spread
+            power[i, BY_WALLS] = work * swept + mass[i] * (pushed_x * vxi + pushed_y * vyi)
+            power[i, BY_SHIFTING] = work * moved - mass[i] * lifted

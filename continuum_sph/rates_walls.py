@@ -29,19 +29,24 @@ def walls_push(
     by = 0.0
     change = 0.0
     specific = 1.0 / rho
+    wraps = period_x > 0.0 or period_y > 0.0
     for k in range(np.uint64(begin), np.uint64(end)):
         j = np.uint64(partner[k])
-        dx = minimum_image(x - record[j, X], period_x)
-        dy = minimum_image(y - record[j, Y], period_y)
+        dx = x - record[j, X]
+        dy = y - record[j, Y]
+        if wraps:
+            dx = minimum_image(dx, period_x)
+            dy = minimum_image(dy, period_y)
         slope = scale * slope_shape(kind, np.sqrt(dx * dx + dy * dy) / h)
         volume = record[j, VOLUME]
-        brake = laminar(viscosity, volume, specific, 0.5 * (lxx + lyy) * slope) if sticky and material[j] == 0 else 0.0
+        if sticky and material[j] == 0:
+            brake = laminar(viscosity, volume, specific, 0.5 * (lxx + lyy) * slope)
+            bx += brake * (vx - ghost[j, 0])
+            by += brake * (vy - ghost[j, 1])
         dx, dy = lxx * dx + lxy * dy, lxy * dx + lyy * dy
         swept = volume * ((vx - record[j, VX]) * dx + (vy - record[j, VY]) * dy) * slope
         change += rho * swept
         thrust = (pressure + record[j, P]) * specific * volume * slope
         ax -= thrust * dx
         ay -= thrust * dy
-        bx += brake * (vx - ghost[j, 0])
-        by += brake * (vy - ghost[j, 1])
     return ax, ay, bx, by, change

@@ -101,6 +101,7 @@ class Flow:
         """Rates of the initial state, from which the first step goes on."""
         layer = self.layer
         self.table, self.choices, self.plain = table(self.law.fluids), self.choose(), self.simple()
+        self.bare = self.plain and not (self.surveyed or self.law.beta or self.law.gravity[0])
         if self.law.images:
             walls = layer.x[layer.fluid :]
             layer.facing[layer.fluid :] = facing(walls, tuple(self.lower), tuple(self.upper))
@@ -152,7 +153,7 @@ class Flow:
         self.pace = float(
             pressurise(
                 layer.x, layer.v, layer.mass, layer.predicted, layer.material, layer.length, self.table, law.cut,
-                layer.pressure, layer.record,
+                law.varied, layer.pressure, layer.record,
             ) ** 0.5
         )  # fmt: skip
         self.show_walls(step, ratio)
@@ -182,21 +183,25 @@ class Flow:
         """The pass over pairs, by the fastest kernel that knows all of the law;  half : of the step that ends, s."""
         layer, law, pairs = self.layer, self.law, self.pairs
         where = (layer.fluid, pairs.start, self.split, pairs.partner, layer.record, layer.ghost)
-        how = (
-            law.smoothing.kind, law.smoothing.length, *law.gravity, law.alpha, law.beta, law.softening,
-            2.0 * law.diffusion * law.smoothing.length, law.sticky,
-        )  # fmt: skip
-        if self.plain:
-            matrix, slant = (layer.matrix if self.surveyed else None), (self.slant if self.surveyed else None)
+        kind, h, alpha, softening = law.smoothing.kind, law.smoothing.length, law.alpha, law.softening
+        gx, gy, delta = *law.gravity, 2.0 * law.diffusion * h
+        if self.bare:
             plain_rates(
-                *where, layer.material, matrix, slant, layer.drift, layer.mass, self.table, self.choices,
-                layer.acceleration, layer.rate, layer.power, *how, *pairs.period, half,
+                *where, layer.material, None, None, layer.drift, layer.mass, self.table, self.choices,
+                layer.acceleration, layer.rate, layer.power, kind, h, None, gy, alpha, None, softening, delta,
+                law.calm, law.sticky, *pairs.period, half,
+            )  # fmt: skip
+        elif self.plain:
+            plain_rates(
+                *where, layer.material, layer.matrix, self.slant, layer.drift, layer.mass, self.table, self.choices,
+                layer.acceleration, layer.rate, layer.power, kind, h, gx, gy, alpha, law.beta, softening, delta,
+                law.calm, law.sticky, *pairs.period, half,
             )  # fmt: skip
         else:
             rates(
                 *where, layer.facing, layer.material, layer.length, layer.matrix, self.slant, layer.drift, layer.mass,
-                self.table, self.choices, layer.acceleration, layer.rate, layer.smoothed, layer.power, *how, law.xsph,
-                *pairs.period, half,
+                self.table, self.choices, layer.acceleration, layer.rate, layer.smoothed, layer.power, kind, h, gx, gy,
+                alpha, law.beta, softening, delta, law.calm, law.sticky, law.xsph, *pairs.period, half,
             )  # fmt: skip
 
     def pull(self) -> None:
@@ -231,7 +236,7 @@ class Flow:
         split_rows(layer.fluid, pairs.start, pairs.partner, self.split)
         pressurise(
             layer.x, layer.v, layer.mass, layer.density, layer.material, layer.length, self.table, law.cut,
-            layer.pressure, layer.record,
+            law.varied, layer.pressure, layer.record,
         )  # fmt: skip
         self.take_pressure()
         self.wall_density[:] = law.state.density_at(layer.pressure[layer.fluid :])

@@ -158,7 +158,7 @@ def pull_interface(
     kind, h, period_x, period_y,
 ):  # fmt: skip
     """Adds -(σ/ρ_i) Σ V_j κ_j (m_j - m_i) (L_i + L_j)/2 ∇_i W to ``acceleration`` (fluid, 2) m/s²; overwrites its power
-    in ``power`` (fluid, 6) W/m.
+    in ``power`` (fluid, 6) W/m, if it has rows.
 
     middle: κ;  matrix: L, see Layer, used if ``corrected``, as for pressures;  tension σ, N/m;  mass (n,) kg/m;
     v (n, 2) m/s;  the rest: as `colours`.
@@ -186,4 +186,5 @@ def pull_interface(
         ay *= tension / record[i, RHO]
         acceleration[i, 0] += ax
         acceleration[i, 1] += ay
-        power[i, BY_TENSION] = mass[i] * (ax * v[i, 0] + ay * v[i, 1])
+        if power.shape[0] > 0:
+            power[i, BY_TENSION] = mass[i] * (ax * v[i, 0] + ay * v[i, 1])

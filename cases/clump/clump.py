@@ -44,12 +44,14 @@ def by_strips() -> tuple[float, float, float]:
     second moment about that (m⁴): integrals over strips across the line, between the ends and the crossing."""
 
     def half(x: float) -> float:
+        """Half the length of the strip at ``x``, m."""
         return math.sqrt(max(LARGE**2 - x**2, SMALL**2 - (x - APART) ** 2, 0.0))
 
     meet = (APART**2 + LARGE**2 - SMALL**2) / (2.0 * APART)
     parts = ((-LARGE, meet), (meet, APART + SMALL))
 
     def over(weight: int) -> float:
+        """Integral over all strips: area, first moment or polar second moment, by ``weight`` 0, 1 or 2."""
         kinds = (lambda x: 2.0 * half(x), lambda x: 2.0 * x * half(x),
                  lambda x: 2.0 * (x**2 * half(x) + half(x) ** 3 / 3.0))  # fmt: skip
         return sum(float(quad(kinds[weight], *part, epsabs=1e-18, epsrel=1e-12)[0]) for part in parts)

@@ -64,6 +64,7 @@ def lattice(folder: Path, time: float, like: Field | None = None, step: float = 
     rows = slice(field.u.shape[0] - ny * n, None)
 
     def mean(values: Array) -> Array:
+        """Means over the cells of each square."""
         return np.asarray(values[rows, : nx * n].reshape(ny, n, nx, n).mean((1, 3)))
 
     share = mean((~field.solid).astype(float))

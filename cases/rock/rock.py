@@ -216,6 +216,7 @@ def film(made: Trial, stem: Path) -> Path:
     """The sample and its emissions, moment by moment."""
 
     def images() -> list[NDArray[np.uint8]]:
+        """Every second shot: stress, cracks and emissions so far."""
         found = []
         for moment in range(1, len(made.shots), 2):
             figure, (left, right) = stage(2, 10.0, 4.0)

@@ -23,7 +23,7 @@ COLOURS = ("#c8553d", "#c99a2e", "#3f7f4f")
 
 
 OVERFLOW = Levee(
-    land=5.0, river=3.0, plain=1.6, crest=0.3, rising=0.8, low=0.8, high=1.12, end=6.5
+    land=5.0, river=3.0, plain=1.6, crest=0.3, rising=0.8, low=0.8, high=1.12, end=7.5
 )  # fmt: skip
 """A levee flat enough to stand, and a river that rises over its crest."""
 SLID = (
@@ -63,7 +63,7 @@ def frames(given: Levee, every: float = 0.05) -> Iterator[NDArray[np.uint8]]:
 def main() -> int:
     """Measure, say, draw; 1 if a row of expected.toml is missed."""
     given = options(
-        __doc__ or "", HERE, rows=(int, 12, "particles over the height"), stiffness=(float, 0.5e6, "E, Pa"),
+        __doc__ or "", HERE, rows=(int, 16, "particles over the height"), stiffness=(float, 0.5e6, "E, Pa"),
         film=(bool, False, "film of it"), overflow=(bool, False, "another: the river over a levee that stands"),
     )  # fmt: skip
     levee = replace(OVERFLOW if given.overflow else Levee(), rows=given.rows, stiffness=given.stiffness)

@@ -30,6 +30,7 @@ def collapsing(size: int | None, dtype: Dtype, **numerics: Any) -> Work:
     flow = flow_of(column_scene(1.0 / across, tank=(4.0, 3.0), column=(1.0, 2.0), pressure="released", **numerics))
 
     def steps() -> None:
+        """The steps that are timed."""
         for _ in range(STEPS):
             flow.advance()
 
@@ -60,6 +61,7 @@ def bench_seepage(size: int | None, threads: int, dtype: Dtype) -> Work:
     count = both.water.layer.fluid + both.water.skeleton.count
 
     def steps() -> None:
+        """The steps that are timed."""
         for _ in range(STEPS):
             both.advance()
 
@@ -80,6 +82,7 @@ def bench_soil(size: int | None, threads: int, dtype: Dtype) -> Work:
     flow = in_tank(x, geostatic(high - x[:, 1], material), (0.6, 0.15), spacing, material)
 
     def steps() -> None:
+        """The steps that are timed."""
         for _ in range(STEPS):
             flow.advance()
 

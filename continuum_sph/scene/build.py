@@ -54,6 +54,7 @@ def law_of(scene: Scene) -> Law:
         softening=numerics.softening,
         diffusion=numerics.density_diffusion,
         noise=NAMES.index(numerics.diffusion_of),
+        calm=scene.calm,
         xsph=numerics.xsph,
         shifting=numerics.shifting,
         corrected=numerics.gradient == "corrected",
@@ -140,6 +141,8 @@ def flow_of(scene: Scene) -> Flow:
         density=rho,
         material=material,
     )
+    if scene.output.energy:
+        layer.keep_book()
     margin = layers * spacing
     pairs = PairList(
         layer.count,

@@ -31,6 +31,7 @@ CLOSED = 0.01  # of the energy at the start, by which its book may be off
 def driven(model: Simulation, end: float, judged: bool = False) -> str | Judged:
     """Take ``model`` to ``end`` (s) and say what became of it; Unstable where it leaves sense.  ``judged``: by how far
     water has run at JUDGED and by its book of energies."""
+    model.flow.layer.keep_book()
     start = book(model.flow)["energy balance"]
     fastest, way = 0.0, None
     while model.time < end:
@@ -123,6 +124,7 @@ def spun(tension: str, shifting: float) -> Callable[[], str]:
     def run() -> str:
         """A quarter turn: least pressure, how far it reaches, energies."""
         flow = trials.spinning_square(24, cut=tension == "cut", shifting=shifting)
+        flow.layer.keep_book()
         layer, start, pull = flow.layer, book(flow)["energy balance"], 0.0
         while flow.time < 0.5 * np.pi:  # a quarter turn
             flow.advance()

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.energy import book
+from continuum_sph.energy import book, held
 from continuum_sph.law import RULES
 from continuum_sph.scene.bubble import bubble
 from continuum_sph.scene.build import flow_of, water_of
@@ -92,7 +92,7 @@ class Simulation:
         inside = self.inside()
         at = x[inside] if inside.any() else np.zeros((1, 2))
         speed2 = (v * v).sum(axis=1)
-        energy = book(self.flow)
+        energy = book(self.flow) if layer.booked else held(self.flow)
         return {
             "time (s)": self.time,
             "step (s)": self.flow.next_step,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from collections.abc import Mapping
+from typing import Any, ClassVar, Literal
 
 import pydantic
 
@@ -103,7 +104,9 @@ class Numerics(Section):
     density_filter (eq. 27), xsph, and neither density diffusion nor shifting nor corrected gradients.
 
     diffusion_of : what the density diffusion takes for noise, the departure from "hydrostatic" density, from a "linear"
-    field, or every difference ("plain");  density_filter : steps between filters, 0 never.
+    field, or every difference ("plain");  noise_floor : over the pressure under the deepest water; noise below it
+    diffuses the more slowly the weaker it is, with 0 all of it at the pace of sound, and water at rest creeps;
+    density_filter : steps between filters, 0 never.
     xsph moves particles with the smoothed velocity but continuity with their own: volume is lost where they differ.
     """
 
@@ -115,6 +118,7 @@ class Numerics(Section):
     softening: float = quantity("", 0.1, ge=1e-6, le=10, help="epsilon of eq. 36")
     density_diffusion: float = quantity("", 0.1, ge=0, le=0.2, help="delta of the density diffusion")
     diffusion_of: Literal["hydrostatic", "linear", "plain"] = "hydrostatic"
+    noise_floor: float = quantity("", 1e-3, ge=0, le=1, help="noise over the water's weight; below it diffuses slowly")
     density_filter: int = pydantic.Field(0, ge=0, le=1_000_000, description="steps between density filters (eq. 27)")
     gradient: Literal["plain", "corrected"] = "plain"
     shifting: float = quantity("", 0.0, ge=0, le=4, help="strength of particle shifting, about 1")
@@ -137,10 +141,13 @@ class Output(Section):
     snapshot_interval: float = quantity("s", ge=1e-9, le=1e9, help="time between snapshots (frames of the film)")
     series_interval: float = quantity("s", ge=1e-9, le=1e9, help="time between rows of series.csv")
     checkpoint_seconds: float = quantity("s", 30.0, ge=1e-3, le=1e9, help="wall-clock time between checkpoints")
+    energy: bool = pydantic.Field(False, description="energy book of the water, as columns of series.csv")
 
 
 class Scene(Section):
     """A tank with water, soil, or both."""
+
+    elsewhere: ClassVar[Mapping[str, str]] = {"domain": "porescale"}
 
     title: str = ""
     gravity: float = quantity("m/s^2", GRAVITY, ge=0, le=1e6, help="acceleration of free fall, downwards")
@@ -180,6 +187,12 @@ class Scene(Section):
         return given if given is not None else CALM_MACH * self.fall_speed
 
     @property
+    def calm(self) -> float:
+        """Speed of sound waves whose pressure is the noise floor, m/s."""
+        pressure = 0.5 * self.numerics.noise_floor * self.fall_speed**2  # over the density of the water
+        return pressure / self.sound_speed if pressure > 0.0 else 0.0
+
+    @property
     def inner(self) -> tuple[float, float]:
         """Inner width and height of the tank, m, in whole spacings, from which those given may differ by round-off."""
         spacing = self.numerics.spacing
@@ -199,6 +212,8 @@ class Scene(Section):
             faults += self.pile.faults(*self.inner, spacing)
             if self.soil is None:
                 faults.append(Fault("pile", "given", "needs soil beside it", repair="add [soil]"))
+        if self.output.energy and not (self.water.column or self.reservoir):
+            faults.append(Fault("output.energy", True, "is of water, of which there is none", repair="leave it out"))
         if self.reservoir and self.soil is None:
             faults.append(Fault("reservoir", "given", "needs soil beside it", repair="add [soil]"))
         if self.air is not None and (self.soil is None or not (self.water.column or self.reservoir)):

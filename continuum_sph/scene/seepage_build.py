@@ -109,6 +109,8 @@ def seepage_of(scene: Scene) -> Seepage:
     mass[present : len(x)] = 0.0
     layer = Layer(len(x), np.concatenate((x, walls)), np.concatenate((v, np.zeros_like(walls))), mass, rho)
     layer.material[wet:present] = AIR if scene.air else 0
+    if scene.output.energy:
+        layer.keep_book()
     box = (-margin, -margin), (width + margin, top)
     overlap = Overlap(len(x), skeleton.count, law.smoothing.length, skin, *box)
     pairs = PairList(layer.count, skin, *box, full=True)

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from continuum_sph.scene.air_build import AIR as GAS
 from continuum_sph.scene.air_build import air_rows
+from continuum_sph.scene.exit_gradient import NAME as EXIT
+from continuum_sph.scene.exit_gradient import exit_gradient
 from continuum_sph.scene.health import refuse_no_numbers, stepped
 from continuum_sph.scene.instruments import Cloud, discharge, tables
 from continuum_sph.scene.model import REPAIR, Simulation
@@ -98,6 +100,9 @@ class SeepageSimulation:
             row[f"{pool.name} level (m)"] = pool.level
             row[f"{pool.name} let in (kg/m)"] = pool.let_in
             row[f"{pool.name} let out (kg/m)"] = pool.let_out
+        if self.scene.pile and self.scene.gravity > 0.0:
+            wall = self.scene.pile.wall(self.scene.numerics.spacing)
+            row[EXIT] = exit_gradient(wall, flow, self.scene.water.density * self.scene.gravity)
         inside &= flow.layer.material[: flow.layer.fluid] == 0
         row["water in pores (kg/m)"] = float(flow.layer.mass[: flow.layer.fluid][inside].sum())
         return row | (air_rows(flow) if self.scene.air else {})

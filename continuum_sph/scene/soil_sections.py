@@ -54,8 +54,8 @@ class SoilNumerics(Section):
     damping: float = quantity("", 0.2, ge=0, le=4, help="alpha of the damping")
     damping_of: Literal["zig-zags", "approach"] = "zig-zags"
     damping_viscosity: float | None = quantity("m^2/s", None, ge=0, le=1e6, help="alpha c h, in place of damping")
-    stress_diffusion: float = quantity("", 100.0, ge=0, le=1000, help="diffusion of stress per shear strain")
-    restless_diffusion: float = quantity("", 0.0, ge=0, le=1, help="diffusion of stress by sound: soil creeps")
+    stress_diffusion: float = quantity("", 100.0, ge=0, le=1000, help="diffusion of stress and volume per shear strain")
+    restless_diffusion: float = quantity("", 0.0, ge=0, le=1, help="the same by sound: soil creeps")
     parting: float = quantity("", 4.0, ge=0, le=20, help="how fast particles too near part, per shear strain")
     repulsion: float = quantity("", 10.0, ge=0, le=100, help="what keeps soil that bears tension from clumping")
     settle: float = quantity("s", 0.0, ge=0, le=1e6, help="time at the start while motion is braked")

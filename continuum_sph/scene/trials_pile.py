@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.pile import Pile
+from continuum_sph.scene.exit_gradient import reach, steepness
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.seepage_model import SeepageSimulation
 from continuum_sph.scene.trials_seepage_steady import Face, flux, held_ground
@@ -20,6 +21,7 @@ Floats = NDArray[np.float64]
 WATER, GRAINS = 1000.0, 2650.0  # kg/m³
 FREELY = 4.0  # of the rise that elasticity explains: the rest is flow of soil that yields
 BARELY = 0.01  # i_c s, by which a head that is held rises all the same
+GONE = 0.1  # of s: ground that has risen that far has failed, whether or not it comes to rest there
 STIFF = 10.0  # K_w/(n M) of the water: what soil squeezes out is not stored
 
 
@@ -161,12 +163,12 @@ class Heave:
         return next((head for _, head, rise, _ in self.course() if rise > times * self.elastic), float("nan"))
 
     def stands(self, head: float, seconds: float = 2.2) -> bool:
-        """Whether ground under a ``head`` (over i_c s) that is held for so many ``seconds`` comes to rest: the prism's
-        surface rises less in the last third of them than in the one before."""
+        """Whether ground under a ``head`` (over i_c s) that is held for so many ``seconds`` comes to rest, and not
+        far: the prism's surface rises less in their last third than in the one before, or than elasticity explains."""
         held = replace(self, first=head, last=head + BARELY, rate=BARELY / seconds)
         time, _, rise = np.array([row[:3] for row in held.course(seconds / 60.0)]).T
         before, then, now = np.interp(self.calm + seconds * np.array([1.0, 2.0, 3.0]) / 3.0, time, rise)
-        return bool(now - then < then - before)
+        return bool(now - then < max(then - before, self.elastic) and now < GONE)
 
 
 @dataclass(frozen=True)
@@ -196,7 +198,6 @@ class Around:
         band = (x[:, 1] > 1.0 - 6.0 * spacing) & (x[:, 1] < 1.0 - 2.0 * spacing)
         out, down = x[:, 0] > right, x[:, 0] < left
         through = (volume * q[:, 1])[band & out].sum() - (volume * q[:, 1])[band & down].sum()
-        column = out & (x[:, 0] < right + spacing) & (x[:, 1] > 1.0 - max(3.0 * spacing, 0.6 * self.share))
-        depth, head = 1.0 - x[column, 1], both.water.layer.pressure[: len(x)][column] / (WATER * GRAVITY)
-        steepness = float(np.linalg.lstsq(np.column_stack((depth, depth**3)), head)[0][0])
-        return 0.5 * float(through) / (4.0 * spacing * k), steepness
+        column = out & (x[:, 0] < right + spacing) & (x[:, 1] > 1.0 - reach(self.share, spacing))
+        head = both.water.layer.pressure[: len(x)][column] / (WATER * GRAVITY)
+        return 0.5 * float(through) / (4.0 * spacing * k), steepness(1.0 - x[column, 1], head)

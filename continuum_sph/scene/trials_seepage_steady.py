@@ -15,6 +15,7 @@ from continuum_sph.fluids import Fluid
 from continuum_sph.law import Law
 from continuum_sph.layers import VX, VY, Layer
 from continuum_sph.pile import PartedList, Pile
+from continuum_sph.scene.exit_gradient import reach, steepness
 from continuum_sph.scene.trials_soil import RATIO, SKIN
 from continuum_sph.seepage import Drain, Frame, PoreFlow, Resistance, Seepage
 from continuum_sph.seepage.overlap import Overlap
@@ -147,8 +148,6 @@ class SheetPile:
         x, q, volume = flux(both)
         band = (x[:, 1] > 1.0 - 6.0 * spacing) & (x[:, 1] < 1.0 - 2.0 * spacing)
         through = float((volume * q[:, 1])[band].sum()) / (4.0 * spacing)
-        # Along the pile the head is odd in depth, i d + c d³ + …, down to some way before its tip.
-        column = (x[:, 0] < spacing) & (x[:, 1] > 1.0 - max(3.0 * spacing, 0.6 * self.share))
-        depth, head = 1.0 - x[column, 1], both.water.layer.pressure[: len(x)][column] / (WATER * GRAVITY)
-        steepness = float(np.linalg.lstsq(np.column_stack((depth, depth**3)), head)[0][0])
-        return through / self.permeability, steepness, both
+        column = (x[:, 0] < spacing) & (x[:, 1] > 1.0 - reach(self.share, spacing))
+        head = both.water.layer.pressure[: len(x)][column] / (WATER * GRAVITY)
+        return through / self.permeability, steepness(1.0 - x[column, 1], head), both

@@ -3,7 +3,8 @@
 Kinetic and potential energy go into the work of stress on the soil (what it stores and what friction turns into heat),
 the damping of zig-zags and particles stopped at a wall's surface.  Two entries come from nowhere: `parting` moves
 particles without a force, up as well as down, and walls, which are images of the soil before them, do a little work.
-What is left is that of the steps in time: (ω Δt)²/8 of what moves, ω up to 2 c/h, Δt 0.25 h/c.
+Volume that particles exchange is no energy: it only says whose share of the work comes next.  What is left is that of
+the steps in time: (ω Δt)²/8 of what moves, ω up to 2 c/h, Δt 0.25 h/c.
 """
 
 from __future__ import annotations
@@ -31,9 +32,9 @@ class Book:
     """Moves a flow step by step and books its energies, J/m: ``turned`` over by name, and ``start`` of both kinds."""
 
     def __init__(self, flow: SoilFlow) -> None:
-        self.flow, n = flow, flow.soil.soil
+        self.flow, soil = flow, flow.soil
         self.turned = dict.fromkeys(ENTRIES, 0.0)
-        self.bare = np.zeros((n, 2)), np.zeros((n, 4)), np.zeros((n, 2))
+        self.bare = np.zeros_like(soil.acceleration), np.zeros_like(soil.spread), np.zeros_like(soil.drift)
         self.start = self.mechanical()
 
     def mechanical(self) -> float:

@@ -269,6 +269,7 @@ def published_fronts() -> dict[str, Floats]:
     rows = list(csv.reader(line for line in text.splitlines() if not line.startswith("#")))[1:]
 
     def series(name: str) -> Floats:
+        """One experiment, (k, 2)."""
         return np.array([[float(t), float(x)] for s, t, x in rows if s == name])
 
     first, second = (series(name) for name in KOSHIZUKA_OKA)

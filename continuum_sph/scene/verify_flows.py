@@ -86,6 +86,7 @@ def energy_growth(seconds: float, heat_kept: bool = False) -> tuple[float, float
     """
     scene = trials.column_scene(0.05, tank=(4.0, 3.0), column=(1.0, 2.0), pressure="released")
     flow = flow_of(scene)
+    flow.layer.keep_book()
     first = book(flow)
     scale, least, growth, drift = first["total energy"], np.inf, 0.0, 0.0
     while flow.time < seconds:

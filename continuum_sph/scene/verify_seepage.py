@@ -21,7 +21,6 @@ from continuum_sph.scene.trials_seepage import (
     saturated_box,
     upward,
 )
-from continuum_sph.scene.trials_seepage_steady import SheetPile
 from continuum_sph.seepage import Seepage
 from continuum_sph.soil import SoilFlow
 from continuum_sph.soil.state import YY
@@ -205,40 +204,6 @@ def boiling_row() -> Measured:
     """Gradient over i_c at which upward flow takes the soil's weight."""
     found, _, _ = boiling()
     return Measured(1.0, found, abs(found - 1.0))
-
-
-PILE_ROWS = {0.25: 32, 0.5: 24, 0.75: 24}
-"""Particles over T by s/T: the short pile has the fewest beside it."""
-
-
-@functools.cache
-def pile(share: float, rows: int) -> tuple[float, float]:
-    """(q/(k h), i_E T/h) under a sheet pile to the depth ``share`` T, over what they are exactly."""
-    given = SheetPile(share, rows)
-    discharge, gradient, _ = given.run(100 * rows)
-    return discharge / given.discharge, gradient / given.exit_gradient
-
-
-def pile_row(share: float) -> None:
-    """Add the row of a pile of one depth."""
-
-    @VALIDATIONS.row(
-        f"continuum.sheet_pile_{100 * share:.0f}",
-        source="conformal mapping: q/(kh) = K'(m)/2K(m), i_E = πh/(4KmT), m = sin(πs/2T) (Harr 1962)",
-        because="the tip lies between wall and open particles, uncertain to half a spacing of 1/32 or 1/24 T, q by "
-        "1.9 % of itself; kernels 1.3 spacings wide round off the tip's root; held to 3 %, and 8 % for the "
-        "gradient, scaled to that",
-        tolerance=0.03,
-        slow=True,
-    )
-    def row() -> Measured:
-        """q and i_E over their exact values, 32 particles over T under the short pile, 24 else."""
-        q, gradient = pile(share, PILE_ROWS[share])
-        return Measured([1.0, 1.0], [q, gradient], max(abs(q - 1.0), abs(gradient - 1.0) * 3.0 / 8.0))
-
-
-for depth in PILE_ROWS:
-    pile_row(depth)
 
 
 SINKING = Infiltration()

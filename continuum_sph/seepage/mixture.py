@@ -109,8 +109,8 @@ def blend(fluid, start, split, partner, record, home, pores, h, period_x, period
 
 @parallel_kernel
 def part_forces(fluid, mass, acceleration, gx, gy, pores, rate, power, thrust):
-    """Divides ``rate`` (fluid,) and ``power`` (fluid, 4) by n; overwrites the last two columns of ``thrust``
-    (fluid, 4), N/m: force of the whole volume over the grains' weight.
+    """Divides ``rate`` (fluid,) and ``power`` (fluid, 4), if it has rows, by n; overwrites the last two columns of
+    ``thrust`` (fluid, 4), N/m: force of the whole volume over the grains' weight.
 
     acceleration (fluid, 2) m/s² of the water, with gravity (gx, gy), which acts on each layer by itself;  mass
     (fluid…,) kg/m, of water.
@@ -123,8 +123,9 @@ def part_forces(fluid, mass, acceleration, gx, gy, pores, rate, power, thrust):
         if solid > 0.0:
             open_ = 1.0 / porosity
             rate[i] *= open_
-            for k in range(4):
-                power[i, k] *= open_
+            if power.shape[0] > 0:
+                for k in range(4):
+                    power[i, k] *= open_
             whole = mass[i] * (1.0 - porosity) / (porosity * solid)
             thrust[i, 2] = whole * (acceleration[i, 0] - gx)
             thrust[i, 3] = whole * (acceleration[i, 1] - gy)

@@ -18,14 +18,19 @@ from continuum_sph.rates import split_rows
 from continuum_sph.soil.divergence import accelerate
 from continuum_sph.soil.gradient import velocity_gradients
 from continuum_sph.soil.law import RULES, SoilLaw
-from continuum_sph.soil.material import TENSION, table
+from continuum_sph.soil.material import DENSITY, TENSION, table
 from continuum_sph.soil.motion import kick, kick_drift
 from continuum_sph.soil.state import Soil
 from continuum_sph.soil.stress import deform
 from continuum_sph.soil.tension import hold_apart
 from continuum_sph.soil.walls import place_walls, show_walls
 from continuum_sph.stopped import no_step
+from porescale.ground.check import Fault, InputError
 from porescale.particles import PairList
+
+LONGER = 2.0
+"""Times the step that diffusion was bounded for, how long it may last: one that is longer yet after a short step, or
+the first, would exchange more volume than there is (`SoilLaw.most`)."""
 
 
 @dataclass
@@ -35,7 +40,8 @@ class SoilFlow:
     step : steps done;  time, next_step : s;  limited : steps that each of `law.RULES` limited, rule : the one that
     limits the next;  limit : longest step that other layers allow, s;  stopped : times a particle was stopped at
     ``lower`` or ``upper`` (2,) m, infinite unless set;  pace : largest c/h, 1/s;  swiftest : largest speed, m/s;
-    before_force : called before accelerations, to overwrite ``soil.force``.
+    strained : the last step, s, for which the diffusion that is under way was bounded;  before_force : called before
+    accelerations, to overwrite ``soil.force``.
     """
 
     soil: Soil
@@ -51,17 +57,32 @@ class SoilFlow:
     stopped: int = 0
     pace: float = 0.0
     swiftest: float = 0.0
+    strained: float = 0.0
 
     def __post_init__(self) -> None:
         soil = self.soil
         soil.length[:] = self.law.smoothing.length
         self.pairs.adaptive = True
         self.table = table(self.law.materials)
+        self.refuse_other_sizes()
         self.pulling = self.law.repulsion > 0.0 and bool((self.table[:, TENSION] > 0.0).any())
         self.split = np.zeros(soil.count, np.int64)
         self.lower, self.upper = np.full(2, -np.inf), np.full(2, np.inf)
         # Walls do not meet each other.
         self.pairs.group = np.where(np.arange(soil.count) < soil.soil, -1, 0).astype(np.int32)
+
+    def refuse_other_sizes(self) -> None:
+        """InputError when particles do not all stand for spacing² at the start, as their exchange of volume needs."""
+        soil, n, wanted = self.soil, self.soil.soil, self.law.spacing**2
+        found = soil.mass[:n] / self.table[soil.material[:n], DENSITY]
+        wrong = np.flatnonzero(~np.isclose(found, wanted, rtol=1e-9, atol=0.0))
+        if wrong.size:
+            at = int(wrong[0])
+            fault = Fault(
+                f"soil.mass[{at}]", float(soil.mass[at]), "is not its material's density times spacing²", "kg/m",
+                f"{wanted * soil.mass[at] / found[at]:.6g}",
+            )  # fmt: skip
+            raise InputError(fault)
 
     def start(self) -> None:
         """Accelerations of the initial state, from which the first step goes on."""
@@ -102,8 +123,9 @@ class SoilFlow:
         )  # fmt: skip
         quickest = deform(
             soil.density, soil.stress, soil.material, self.table, soil.matrix, soil.spread, soil.opening, soil.plastic,
-            soil.record, step, -1.0 if law.printed_spin else 1.0, law.most,
+            soil.record, step, min(step, LONGER * self.strained), -1.0 if law.printed_spin else 1.0, law.most,
         )  # fmt: skip
+        self.strained = step
         self.pace = float(quickest) ** 0.5 / law.smoothing.length
 
     def push(self) -> None:
@@ -163,6 +185,7 @@ class SoilFlow:
             "stopped": self.stopped,
             "pace": self.pace,
             "swiftest": self.swiftest,
+            "strained": self.strained,
         }
 
     def restore(self, state: dict[str, Any]) -> None:
@@ -174,3 +197,4 @@ class SoilFlow:
         self.step, self.time, self.next_step = state["step"], state["time"], state["next_step"]
         self.limit, self.limited, self.rule = state["limit"], list(state["limited"]), state["rule"]
         self.stopped, self.pace, self.swiftest = state["stopped"], state["pace"], state["swiftest"]
+        self.strained = state["strained"]

@@ -6,7 +6,10 @@ from dataclasses import dataclass
 
 from continuum_sph.smoothing import Smoothing
 from continuum_sph.soil.material import Material
+from porescale.ground.check import Fault, InputError
 
+FALL = 7.0
+"""2 · 2π W(0) h² of Wendland C2: what a zig-zag from particle to particle falls by at most, over χ and shear strain."""
 RULES = ("sound", "acceleration", "other layers")
 
 
@@ -17,11 +20,11 @@ class SoilLaw:
     smoothing : kernel and h;  spacing : of the particles, m;  materials : by the numbers that particles carry;
     gravity : (x, y) m/s²;  damping : α, of the part of velocity differences that is not linear in place, or with
     ``printed_damping`` of all of it between particles that approach (eq. 36);  corrected : gradients exact for linear
-    fields;  diffusion : χ of stress, per shear strain, see `divergence`;  restless : the same per passage of sound
-    through h, which never rests (for comparison);  apart : A, how fast particles nearer than a spacing part, per shear
-    strain;  repulsion : A of `tension`, where soil bears tension;  drag : 1/s, of all motion until ``settle`` (s), so
-    that a start finds its equilibrium;  printed_spin : turn stress as eq. 38 has it, the wrong way;  courant : the 0.25
-    of eq. 49.
+    fields;  diffusion : χ of stress and volume, per shear strain, see `divergence`;  restless : the same per passage of
+    sound through h, which never rests (for comparison);  apart : A, how fast particles nearer than a spacing part, per
+    shear strain;  repulsion : A of `tension`, where soil bears tension;  drag : 1/s, of all motion until ``settle``
+    (s), so that a start finds its equilibrium;  printed_spin : turn stress as eq. 38 has it, the wrong way;  courant :
+    the 0.25 of eq. 49.
     """
 
     smoothing: Smoothing
@@ -40,14 +43,26 @@ class SoilLaw:
     printed_spin: bool = False
     courant: float = 0.25
 
+    def __post_init__(self) -> None:
+        """InputError when diffusion at the pace of sound takes more of a zig-zag in a step than there is."""
+        most = 1.0 / (FALL * self.courant)
+        if self.restless > most:
+            key = "soil.numerics.restless_diffusion"
+            repair = "or lower numerics.courant"
+            raise InputError(Fault(key, self.restless, "swings ever wider", "", f"<= {most:.3g}", repair))
+
     @property
     def most(self) -> float:
-        """Shear strain of one step that diffusion follows.
+        """Shear strain of one step that diffusion, and parting with it, follows.
 
         A zig-zag from particle to particle falls by up to 2 · 2π W(0) h² χ = 7 χ times that (W(0) = 7/4πh² of Wendland
-        C2), and would swing ever wider beyond 2: σ_zz does, which no strength bounds.  It may vanish in a step.
+        C2, the spline has less), and would swing ever wider beyond 2: σ_zz does, which no strength bounds.  It may
+        vanish in a step.  Of a particle's volume half at most is then exchanged, spacing² Σ -(1/r) W' being the
+        integral 2π W(0): volumes stay between those around, so above zero, up to twice the lattice's particles in a
+        place, and calm down up to four times.  What diffuses by sound is part of it.
         """
-        return 1.0 / (7.0 * self.diffusion) if self.diffusion > 0.0 else float("inf")
+        left = 1.0 - FALL * self.courant * self.restless
+        return max(0.0, left) / (FALL * self.diffusion) if self.diffusion > 0.0 else float("inf")
 
     def limits(self, acceleration: float, pace: float, others: float) -> tuple[float, float, float]:
         """Steps allowed by sound, acceleration (m/s²) and other layers (s), s: eq. 49.

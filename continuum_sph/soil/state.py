@@ -12,8 +12,8 @@ Floats = NDArray[np.float64]
 X, Y, VX, VY, VOLUME, MASS, QUICK, SHEARING, TXX, TXY, TYX, TYY, GXX, GXY, GYX, GYY = range(16)
 """Columns of a record, two cache lines: m, m, m/s, m/s, m², kg/m, c/ρ in m⁴/(kg s), shear strain rate in 1/s; σ·K, Pa
 (xy: row x, column y); velocity gradient ∂v_x/∂x, ∂v_x/∂y, ∂v_y/∂x, ∂v_y/∂y, 1/s."""
-XX, YY, XY, ZZ = range(4)
-"""Columns of a stress, Pa, compression positive."""
+XX, YY, XY, ZZ, GROWN = range(5)
+"""Columns of a stress, Pa, compression positive; and, of what diffuses, that of the volume, m²/s."""
 
 
 @dataclass
@@ -37,7 +37,7 @@ class Soil:
     force: Floats = field(init=False)  # (soil, 2) N/m, of other layers
     acceleration: Floats = field(init=False)  # (soil, 2) m/s²
     drift: Floats = field(init=False)  # (soil, 2) m/s, what keeps particles apart adds to the velocity of moving
-    spread: Floats = field(init=False)  # (soil, 4) Pa/s, stress diffusion
+    spread: Floats = field(init=False)  # (soil, 5) Pa/s and m²/s, diffusion of stress and of volume
     opening: Floats = field(init=False)
     plastic: Floats = field(init=False)
     record: Floats = field(init=False)  # (n, 16) all that a pair reads of a partner
@@ -54,7 +54,7 @@ class Soil:
         if not len(self.material):
             self.material = np.zeros(n, np.int64)
         self.force, self.acceleration, self.drift = (np.zeros((self.soil, 2)) for _ in range(3))
-        self.spread = np.zeros((self.soil, 4))
+        self.spread = np.zeros((self.soil, 5))
         self.opening, self.plastic = np.zeros(self.soil), np.zeros(self.soil)
         self.record, self.facing, self.length = np.zeros((n, 16)), np.zeros((n, 4)), np.zeros(n)
         self.matrix = np.tile([1.0, 0.0, 1.0, 0.0, 0.0], (self.soil, 1))

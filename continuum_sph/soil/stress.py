@@ -2,7 +2,8 @@
 
 Gradients come from the positions at the end of a step and the velocities of its middle, G' = ∂v½/∂x(t + Δt).  Those of
 the middle are G = G' (1 - Δt/2 G')⁻¹, and skew for every rigid turning, where G' is off by the strain Δt ω²/2: a block
-turned by 90° would strain itself.  Density: ρ' = ρ det(1 - Δt G'), exact for uniform G'.
+turned by 90° would strain itself.  Density: ρ' = ρ det(1 - Δt G'), exact for uniform G', and less by the volume that
+diffused to a particle, see `divergence`.
 
 What pushes is T = σ K + t J, t = rest σ : J (1 - M)/tr M, so that Σ V σ : G is the work of T in the plain sums for
 any velocities: see `gradient` for J and rest.  Rigid turning takes no work, and forces no angular momentum.
@@ -15,6 +16,7 @@ import numpy as np
 from continuum_sph.soil.material import AREA, SHEAR, softening
 from continuum_sph.soil.plasticity import new_stress
 from continuum_sph.soil.state import (
+    GROWN,
     GXX,
     GXY,
     GYX,
@@ -25,6 +27,7 @@ from continuum_sph.soil.state import (
     TXY,
     TYX,
     TYY,
+    VOLUME,
     XX,
     XY,
     YY,
@@ -34,13 +37,13 @@ from porescale.ground.jit import parallel_kernel, prange
 
 
 @parallel_kernel
-def deform(density, stress, material, table, matrix, spread, opening, plastic, record, step, spin, most):
+def deform(density, stress, material, table, matrix, spread, opening, plastic, record, step, spreading, spin, most):
     """Overwrites, of soil, ``density`` (soil,) kg/m³, ``stress`` (n, 4) Pa, ``opening``, ``plastic`` (soil,) and in
     ``record`` (n, 16) c/ρ, shear strain rate and σ·K.
 
-    material, table, matrix: see Soil;  spread (soil, 4) Pa/s: stress diffusion of `accelerate`;  step, s;  spin:
-    1, or -1 to turn stress as eq. 38 is printed;  most: shear strain of a step that `accelerate` sees.  Returns the
-    largest c², m²/s²; a maximum is exact in any order.
+    material, table, matrix: see Soil;  spread (soil, 5) Pa/s and m²/s: diffusion of stress and volume of `accelerate`,
+    which lasts for ``spreading``, s;  step, s;  spin: 1, or -1 to turn stress as eq. 38 is printed;  most: shear strain
+    of a step that `accelerate` sees.  Returns the largest c², m²/s²; a maximum is exact in any order.
     """
     quickest = 0.0
     for i in prange(density.shape[0]):
@@ -58,11 +61,12 @@ def deform(density, stress, material, table, matrix, spread, opening, plastic, r
         strain_xy = 0.5 * (gxy + gyx)
         turn_xy = 0.5 * spin * (gxy - gyx)
         xx, yy, xy, zz, opened, flow = new_stress(
-            stress[i, XX] + step * spread[i, XX], stress[i, YY] + step * spread[i, YY],
-            stress[i, XY] + step * spread[i, XY], stress[i, ZZ] + step * spread[i, ZZ],
+            stress[i, XX] + spreading * spread[i, XX], stress[i, YY] + spreading * spread[i, YY],
+            stress[i, XY] + spreading * spread[i, XY], stress[i, ZZ] + spreading * spread[i, ZZ],
             gxx, strain_xy + turn_xy, strain_xy - turn_xy, gyy, step, opening[i], row,
         )  # fmt: skip
-        density[i] *= (1.0 - step * axx) * (1.0 - step * ayy) - step * step * axy * ayx
+        shrunk = (1.0 - step * axx) * (1.0 - step * ayy) - step * step * axy * ayx
+        density[i] *= shrunk * record[i, VOLUME] / (record[i, VOLUME] + spreading * spread[i, GROWN])
         stress[i, XX] = xx
         stress[i, YY] = yy
         stress[i, XY] = xy

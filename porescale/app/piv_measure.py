@@ -81,6 +81,7 @@ def measure(
     rows = whole_rows(film) if pixel is not None else 0
 
     def finished(vectors: Vectors) -> Field:
+        """Vectors as a field of the whole picture, in pixels, or in m and m/s where their scales are known."""
         field = in_pixels(vectors, corner(film))
         return field if pixel is None or seconds is None else in_metres(field, rows, pixel, seconds * step)
 
@@ -93,6 +94,7 @@ def measure(
     fields = (finished(it) for it in found)
 
     def span(shape: tuple[int, ...]) -> tuple[float, ...]:
+        """Where a picture of a shape lies, in the units of the fields."""
         return _span(shape, corner(film), rows, pixel)
 
     zero = 0.0 if time_ is None else quantity("--time", time_, "s")

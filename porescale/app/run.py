@@ -49,6 +49,7 @@ def drive(
     from porescale.scene.cost import remember
 
     def after(finished: Path) -> None:
+        """Leave the pictures, and the permeability of the bed if there is one."""
         show(finished)
         write_permeability(open_run(finished), finished)
 

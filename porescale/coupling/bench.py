@@ -52,6 +52,7 @@ def plain(side: int, dtype: Dtype) -> Callable[[int], None]:
     fluid.set_flow(0.01, 0.005)
 
     def run(steps: int) -> None:
+        """So many steps of the fluid alone."""
         for _ in range(steps):
             fluid.advance()
 

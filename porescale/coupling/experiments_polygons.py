@@ -205,6 +205,7 @@ def momentum_error(steps: int, ratio: float = 2.0, g: float = -1e-5, *, inside: 
     size = float(np.sum(discs.mass[:, None] * np.abs(discs.velocity)))
 
     def book() -> Array:
+        """Momentum of all (2,), lattice units; unless ``inside`` without what fills polygons and moves with them."""
         return np.array(coupled.momentum() - (0.0 if inside else polygons.momentum(coupled.scales.step)))
 
     first, per_step, worst = book(), coupled.weight.sum(axis=0), 0.0

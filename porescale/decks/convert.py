@@ -144,6 +144,7 @@ def _renumbered(deck: Deck, order: dict[str, list[Body]], bonds: list[Row], forc
         return [first[id(body)] + k for body in deck.bodies for k in range(sizes(body))]
 
     def corners(body: Body) -> int:
+        """How many points a body has: discs, or corners of its segments."""
         return len(body.discs) or len(from_ends(np.array(body.segments).reshape(-1, 2, 2), 1.0, 1.0).corners)
 
     points, segments = places(corners), places(lambda body: len(body.segments))

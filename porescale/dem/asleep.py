@@ -74,7 +74,7 @@ class Sleep:
         self._looked = grains.steps  # steps of the system at the last look
         self._surfaces = self._surfaces_of(grains)
         self._part: Part | None = None  # as the sets of sleepers and the list were when it was made
-        self._builds = -1
+        self._builds = self._looks = -1
         self._deep = np.zeros(0, np.int64)  # sleepers whom nobody who moves is listed with
         self._loads = np.zeros((0, 3)), np.zeros((0, 2)), np.zeros((0, 2))  # of those on the surfaces
 
@@ -160,13 +160,13 @@ class Sleep:
     def _part_now(self, grains: Grains, dt: float) -> bool:
         """Whether anybody sleeps; then the part is up to date, and nobody within is out of balance."""
         while self._some:
-            looked_at = grains._stale
             pairs = grains.current_pairs()
             if self._part is None or self._builds != pairs.builds:
                 self._divide(grains, dt)
                 self._builds = pairs.builds
-            elif looked_at:
+            elif self._looks != pairs.looks:  # by this step, or by who looked at the list since the last
                 np.take(pairs.mark, self._part.index, axis=0, out=self._part.anchor, mode="clip")
+            self._looks = pairs.looks
             d = grains.discs
             if not disturbed(
                 self._deep, self.balance, grains.external_force, grains.external_torque, d.radius, self.allowed,

@@ -66,6 +66,7 @@ def bench_dem(size: int | None, threads: int, dtype: Dtype) -> Work:
     dt = grains.stable_step()
 
     def run() -> None:
+        """The steps, with a new list of neighbours midway."""
         grains.step(dt, weights, count=STEPS // 2)
         grains.pairs.build(grains.discs.position, grains.discs.radius)
         grains.step(dt, weights, count=STEPS // 2)

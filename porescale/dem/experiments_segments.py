@@ -107,6 +107,7 @@ def mixed_cloud(friction: float = 0.5, rule: str = "outline", seed: int = 3, pac
         law = Linear(STIFFNESS)
 
     def thrown(at: Array) -> dict[str, Any]:
+        """Velocity, m/s, and spin, rad/s, of a body at ``at``, m: towards the middle, and by dice."""
         speed = pace * (-40.0 * at + rng.normal(0.0, 1.0, 2))
         return {"velocity": (float(speed[0]), float(speed[1])), "spin": float(pace * rng.normal(0.0, 100.0))}
 

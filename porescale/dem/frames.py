@@ -174,6 +174,7 @@ def _crossing(at: Array) -> tuple[int, int] | None:
     """Numbers of two sides of a polygon (k, 2) m, by their first corners, that cross; None if none do."""
 
     def left(a: Array, b: Array, c: Array) -> float:
+        """Twice the area of the triangle a, b, c, m²: > 0 where c lies left of the way from a to b."""
         return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
 
     count = len(at)

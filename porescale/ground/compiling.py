@@ -146,6 +146,7 @@ def teach_sum_by_halves(total: Callable[..., Any], count: int) -> None:
     vector_total: Any = intrinsic(vector)
 
     def choose(array: Any, first: Any) -> Any:
+        """``total`` in kernels: the vector additions."""
         return lambda array, first: vector_total(array, first)
 
     overload(total, strict=False, jit_options=_INLINED)(choose)

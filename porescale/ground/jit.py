@@ -136,15 +136,18 @@ def by_law(signature: F) -> Any:
     bodies: dict[type, Any] = {}
 
     def chosen(*arguments: Any) -> Any:
+        """The body for the type of the last argument, on these arguments."""
         return bodies[type(arguments[-1])](*arguments)
 
     def plain(*arguments: Any) -> Any:
+        """The same in plain Python."""
         return bodies[type(arguments[-1])].py_func(*arguments)
 
     def of(*laws: type) -> Callable[[F], F]:
         """Take the decorated function as body for ``laws``; returns it compiled."""
 
         def add(body: F) -> F:
+            """Compile ``body`` unless it is a kernel, and keep it for the laws."""
             compiled = body if hasattr(body, "py_func") else inline(body)
             bodies.update(dict.fromkeys(laws, compiled))
             return compiled
@@ -164,6 +167,7 @@ def by_precision(build: Callable[[type], Any]) -> Any:
     constants = {32: build(np.float32), 64: build(np.float64)}
 
     def chosen(number: Any) -> Any:
+        """The constants of the precision of ``number``."""
         return constants[8 * np.dtype(type(number)).itemsize]
 
     vars(chosen).update(__name__=build.__name__, __doc__=build.__doc__)

@@ -80,9 +80,12 @@ def _operator(keys: tuple[Callable[..., Any], ...], code: Callable[..., Any], op
     for operation in keys:
 
         class Template(AbstractTemplate):
+            """The operator on vectors, as numba is told of it."""
+
             key: Any = operation
 
             def generic(self, arguments: Any, _: Any) -> Any:
+                """Signature where a vector is among the arguments; None leaves them to others."""
                 if len(arguments) == operands and lanes in arguments:
                     return signature(lanes, *[lanes] * operands)
                 return None
@@ -103,15 +106,18 @@ def _function(plain: Any, code: Callable[..., Any], scalar: Any) -> None:
     count = plain.__code__.co_argcount
 
     def made(*_: Any) -> Any:
+        """Signature and code for vectors alone."""
         return lanes(*[lanes] * count), lambda context, builder, _, values: code(builder, *values)
 
     one: Any = intrinsic(lambda typing, a: made())
     two: Any = intrinsic(lambda typing, a, b: made())
 
     def choose_one(a: Any) -> Any:
+        """The function of one argument, by its type."""
         return (lambda a: one(a)) if a == lanes else scalar
 
     def choose_two(a: Any, b: Any) -> Any:
+        """The function of two arguments, by their types."""
         return (lambda a, b: two(a, b)) if lanes in (a, b) else scalar
 
     overload(plain, strict=False, jit_options=INLINED)(choose_one if count == 1 else choose_two)
@@ -289,6 +295,7 @@ def _numbers(builder: Any, listed: Any, first: Any, end: Any, other: Any, before
     """
 
     def known(at: Any) -> Any:
+        """The number listed at a place, counted from ``before``."""
         return builder.sub(builder.sext(builder.load(builder.gep(listed, [at])), COUNT), before)
 
     places = [builder.add(first, COUNT(lane)) for lane in range(LANES)]
@@ -342,6 +349,7 @@ def teach_rows(take: Callable[..., Any], columns: int) -> None:
     taken: Any = intrinsic(vectors)
 
     def choose(record: Any, row: Any, first: Any, end: Any, other: Any, column: Any = 0, before: Any = 0) -> Any:
+        """``take`` in kernels: the loads of vectors."""
         return lambda record, row, first, end, other, column=0, before=0: taken(
             record, row, first, end, other, column, before
         )

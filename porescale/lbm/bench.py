@@ -46,6 +46,7 @@ def bench_lbm(size: int | None, threads: int, dtype: Dtype) -> Work:
     steps = steps_of(side**2)
 
     def run() -> None:
+        """The steps."""
         for _ in range(steps):
             fluid.advance()
 
@@ -65,6 +66,7 @@ def bench_operators(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
         law = choose(operator, RELAXATION_TIME, (0.0, 0.0), dtype, smagorinsky=smagorinsky)
 
         def run() -> None:
+            """The steps, with the operator."""
             fluid.law = law
             for _ in range(steps):
                 fluid.advance()

@@ -85,6 +85,7 @@ def eddy_channel(
     s = np.abs(np.arange(height) + 0.5 - height / 2)
 
     def integral(s: Array) -> Array:
+        """Integral over s of the shear rate at a distance ``s`` from the axis, lattice units."""
         return ((nu**2 + 4 * square * force * s) ** 1.5 / (6 * square * force) - nu * s) / (2 * square)
 
     exact = integral(np.array(height / 2)) - integral(s)

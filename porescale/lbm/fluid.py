@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from porescale.lbm.collision.choose import choose
+from porescale.lbm.collision.choose import choose, lean
 from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
 from porescale.lbm.equilibrium import equilibrium
 from porescale.lbm.moments import moment_fields
@@ -77,7 +77,7 @@ class Fluid:
         parity = self.step % 2
         if parity:
             self._exchange(+1.0)
-        cells(self.populations, parity, *extra, self.law)
+        cells(self.populations, parity, *extra, lean(self.law) if cells is sweep else self.law)
         if parity:
             self._exchange(-1.0)
         self.rim.close(self._flat, parity, (self.law.fx, self.law.fy))

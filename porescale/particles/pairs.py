@@ -77,7 +77,7 @@ class PairList:
         self.tilt = 0.0
         self.adaptive, self.most, self.lasted = False, self.skin, 0  # m, largest skin;  updates since the last build
         self.group: NDArray[np.int32] | None = None
-        self.builds = 0
+        self.builds = self.looks = 0  # of the list; at how far points have gone since
         self.anchor: Floats = np.zeros((count, 2))
         self._anchor_reach: Floats = np.zeros(count)
         self.mark: Floats = np.zeros((count, 2))
@@ -185,6 +185,7 @@ class PairList:
     def _look_again(self, x: Floats, reach: Floats, room: float) -> None:
         """The list holds until some point is ``room`` (m) from where it is now."""
         self.mark[:], self._mark_reach[:], self.room = x, reach, room
+        self.looks += 1
 
     def build(self, x: Floats, reach: Floats) -> None:
         """List the pairs of ``x`` (n, 2) m with ``reach`` (n,) m now; data of pairs listed before is kept.

@@ -141,6 +141,7 @@ def quintic(size: int = 48) -> float:
     y, x = np.mgrid[:size, :size] / size
 
     def value(x: Array, y: Array) -> Array:
+        """The polynomial at x, y."""
         return np.asarray((x - 0.3) ** 5 - 2 * x * x * y**3 + y**5 - x * y + 0.5)
 
     shift = np.random.default_rng(0).uniform(-0.5, 0.5, (2, size, size)).astype(np.float32)

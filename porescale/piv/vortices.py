@@ -61,6 +61,7 @@ def gammas(field: Field, reach: int = REACH) -> tuple[Array, Array]:
     hand = 1.0 if field.upwards else -1.0  # with y down the cross product counts with the clock
 
     def around(it: Array, j: int, i: int) -> Array:
+        """Values of the neighbours j rows and i columns away, of all points (ny, nx)."""
         return it[reach + j : reach + j + ny, reach + i : reach + i + nx]
 
     # Missing neighbours count as still: along a wall all the flow passes on one side, and nothing turns.

@@ -13,10 +13,10 @@ from porescale.ground.check import Fault, InputError, Unstable
 from porescale.runs import card as cards
 from porescale.runs import snapshots
 from porescale.runs.atomic import clean, owned, refuse_shared
-from porescale.runs.checkpoint import read_header
 from porescale.runs.model import Model, variable_step
 from porescale.runs.progress import Watch
 from porescale.runs.record import CHECKPOINT, Gone, Record, refuse_changes
+from porescale.runs.resume import refuse_another, standing
 from porescale.runs.schedule import SLACK, Schedule, positive
 from porescale.runs.stop import Interrupted, StopRequest, polite_stop
 
@@ -233,13 +233,15 @@ def _record_due(run: _Run, record: Record) -> bool:
 
 def _already(folder: Path, run: _Run) -> Outcome | None:
     """The outcome of a finished run; InputError when it is unfinished but beyond ``duration``."""
-    header = read_header(folder / CHECKPOINT)
-    step, time = int(header["step"]), float(header["time"])
+    reached = standing(folder)
+    step, time = reached.step, reached.time
     if not run.ended(step, time):
         return None
-    if cards.read_card(folder).get("outcome") == cards.FINISHED:
+    card = cards.read_card(folder)
+    if card.get("outcome") == cards.FINISHED:
+        refuse_another(folder, reached, card)
         count = len(snapshots.catalogue(folder))
-        return Outcome(folder, "already finished", step, time, float(header["seconds"]), count, 0.0)
+        return Outcome(folder, "already finished", step, time, reached.seconds, count, 0.0)
     past = step > run.last_step if run.step_seconds is not None else False
     if past:
         problem = f"the run is already at t = {time:.6g} s"

@@ -18,14 +18,15 @@ from porescale.ground.check import Fault, InputError, PorescaleError
 from porescale.ground.machine import peak_bytes
 from porescale.runs import card as cards
 from porescale.runs import snapshots
-from porescale.runs.checkpoint import read_checkpoint, read_header, write_checkpoint
+from porescale.runs.checkpoint import write_checkpoint
 from porescale.runs.cost import Cost
 from porescale.runs.model import Model, tables_of
+from porescale.runs.resume import CHECKPOINT as CHECKPOINT
+from porescale.runs.resume import standing, take_up
 from porescale.runs.schedule import Schedule
 from porescale.runs.series import NAME as SERIES
-from porescale.runs.series import Series
+from porescale.runs.series import Series, refuse_shorter
 
-CHECKPOINT = "checkpoint.h5"
 MADE_LATER = (
     "final.png", "montage.png", "streamlines.png", "vorticity.png", "stream_function.png", "film.mp4", "film.webm",
     "profile.csv", "lines.csv", "permeability.csv", "packing.csv", "chains.png", "coordination.png", "rose.png",
@@ -87,26 +88,22 @@ class Record:
 
     @classmethod
     def resumed(cls, folder: Path, given: dict[str, Any], model: Model, schedules: dict[str, Schedule]) -> Record:
-        """Go on from the checkpoint: the model, the schedules and the files as they were then."""
-        content = read_checkpoint(folder / CHECKPOINT)
-        card, now = cards.read_card(folder), cards.circumstances()
+        """Go on from the checkpoint: the model, the schedules and the files as they were then.
+
+        InputError, and nothing touched, where checkpoint or rows are not those of such a run.
+        """
+        card = cards.read_card(folder)
+        saved = take_up(folder, model, schedules)
+        refuse_shorter(folder / SERIES, saved.series_bytes)
+        for name, size in saved.table_bytes.items():
+            refuse_shorter(_table(folder, name), size)
+        now = cards.circumstances()
         changed = cards.changed_circumstances(card, now)
         card |= cards.plain(given)
-        try:
-            model.restore(content["state"])
-            meta = content["record"]
-            keep = int(meta["series_bytes"])
-            tables = {name: int(size) for name, size in meta.get("table_bytes", {}).items()}
-            extra = meta["snapshot_step"] != meta["last_snapshot_step"]
-        except (KeyError, ValueError, TypeError, IndexError) as error:
-            reason = f"does not fit this model ({' '.join(str(error).split())[:120]})"
-            repair = "start the run anew"
-            raise InputError(Fault("checkpoint", str(folder / CHECKPOINT), reason, repair=repair)) from error
-        for name, schedule in schedules.items():
-            schedule.restore(content["schedules"][name], model.time)
+        extra = saved.snapshot_step != saved.last_snapshot_step
         snapshots.trim(folder, model.step - 1 if extra else model.step)
         snapshots.assemble(folder)
-        card["seconds"] = content["seconds"]
+        card["seconds"] = saved.standing.seconds
         card["resumed"] = [
             *card.get("resumed", []),
             {"at": cards.now(), "step": model.step, "time": model.time, **now},
@@ -117,11 +114,11 @@ class Record:
         card.update(outcome=cards.RUNNING, ended=None)
         card.pop("problem", None)
         cards.write_card(folder, card)
-        record = cls(folder, card, keep, tables)
-        record.row_step = record.scheduled_row_step = int(meta["row_step"])
-        record.snapshot_step = record.scheduled_snapshot_step = int(meta["snapshot_step"])
+        record = cls(folder, card, saved.series_bytes, saved.table_bytes)
+        record.row_step = record.scheduled_row_step = saved.row_step
+        record.snapshot_step = record.scheduled_snapshot_step = saved.snapshot_step
         record.saved_step, record.saved_time = model.step, model.time
-        record.cost = Cost.restored(content.get("cost", {}))
+        record.cost = saved.cost
         return record
 
     def seconds(self) -> float:
@@ -258,10 +255,10 @@ def _refuse_to_lose(folder: Path) -> None:
     """InputError when ``folder`` holds an unfinished run worth keeping."""
     try:
         outcome = cards.read_card(folder).get("outcome")
-        header = read_header(folder / CHECKPOINT)
+        reached = standing(folder)
     except InputError:  # nothing there that could be resumed
         return
-    if outcome in ABANDONED and header["seconds"] > WORTH_KEEPING:
-        problem = f"holds an unfinished run of {header['seconds']:.0f} s, saved at t = {header['time']:.4g} s"
+    if outcome in ABANDONED and reached.seconds > WORTH_KEEPING:
+        problem = f"holds an unfinished run of {reached.seconds:.0f} s, saved at t = {reached.time:.4g} s"
         repair = "resume it (--resume), replace it (--overwrite), or name another folder"
         raise InputError(Fault("run folder", str(folder), problem, repair=repair))

@@ -26,16 +26,7 @@ class Series:
     def __init__(self, path: Path, keep: int = 0) -> None:
         """Go on in ``path`` after its first ``keep`` bytes; 0 starts anew.  InputError when it is shorter."""
         self.path = Path(path)
-        size = self.path.stat().st_size if self.path.exists() else 0
-        if size < keep:
-            raise InputError(
-                Fault(
-                    "series",
-                    str(path),
-                    f"{size} bytes, the checkpoint knows {keep}",
-                    repair="start the run anew",
-                )
-            )
+        refuse_shorter(self.path, keep)
         mode = "r+b" if keep else "wb"
         self._file: IO[bytes] = open(self.path, mode)  # noqa: SIM115  (stays open)
         self._file.truncate(keep)
@@ -66,6 +57,14 @@ class Series:
     def _write(self, line: bytes) -> None:
         self.length += self._file.write(line)
         self._file.flush()
+
+
+def refuse_shorter(path: Path, keep: int) -> None:
+    """InputError unless the file has ``keep`` bytes or more."""
+    size = path.stat().st_size if path.exists() else 0
+    if size < keep:
+        problem = f"has {size} bytes, the checkpoint knows {keep}"
+        raise InputError(Fault("series", str(path), problem, repair="start the run anew"))
 
 
 def _plain(value: float) -> float | int:

@@ -40,10 +40,12 @@ def polite_stop() -> Iterator[StopRequest]:
     before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
 
     def restore() -> None:
+        """Signals mean again what they did before."""
         for number, handler in before.items():
             signal.signal(number, handler if handler is not None else signal.SIG_DFL)
 
     def ask(number: int, frame: FrameType | None) -> None:
+        """Note the first signal; a second one ends the process as it would have without this."""
         request.asked = True
         restore()
 

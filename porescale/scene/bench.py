@@ -57,6 +57,7 @@ def bench_column(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
     assert coupled
 
     def contacts() -> None:
+        """All the contact steps of STEPS steps, without the lattice."""
         step = simulation.step_seconds / coupled.contact_steps
         for _ in range(STEPS):
             coupled.grains.step(step, coupled.force, coupled.torque, coupled.contact_steps)

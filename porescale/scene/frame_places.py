@@ -208,6 +208,7 @@ def _cross(one: Array, other: Array) -> bool:
     """Whether a side of (s, 2, 2) m crosses one of (k, 2, 2) m."""
 
     def left(a: Any, b: Any, c: Any) -> Any:
+        """Twice the areas of the triangles a, b, c, m²: > 0 where c lies left of the way from a to b."""
         return (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (c[..., 0] - a[..., 0])
 
     a, b = one[:, None, 0], one[:, None, 1]

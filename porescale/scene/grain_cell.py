@@ -102,6 +102,7 @@ def strain(scene: Scene, grains: Grains) -> None:
     assert it
 
     def told(name: str) -> Schedule | None:
+        """The course of a rate or stress over time; None where the scene names none."""
         course: Course | None = getattr(it, name)
         return course.schedule if course else None
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 import pydantic
 
@@ -150,6 +150,8 @@ class Gate(Section):
 
 class Scene(Section):
     """A scene: box, time, output, and the parts it needs."""
+
+    elsewhere: ClassVar[Mapping[str, str]] = {"tank": "continuum-sph"}
 
     title: str = ""
     gravity: tuple[float, float] = quantity("m/s^2", (0.0, -GRAVITY), ge=-1e6, le=1e6, help="acceleration of free fall")

@@ -6,8 +6,9 @@ import errno
 import os
 import sys
 from collections.abc import Sequence
+from typing import Any, get_args
 
-from cyclopts import App, CycloptsError, Parameter
+from cyclopts import App, CycloptsError, Parameter, Token, convert
 
 from porescale.ground.check import InputError, PorescaleError
 from porescale.workbench.commands import bench, check, new, run, show, study, sweep, verify
@@ -26,7 +27,7 @@ def application(package: Package) -> App:
         name=package.name,
         help=package.summary,
         version=package.version,
-        default_parameter=Parameter(negative=()),
+        default_parameter=Parameter(negative=(), converter=_whole),
         result_action="return_value",
         suppress_keyboard_interrupt=False,
         print_error=False,
@@ -36,6 +37,15 @@ def application(package: Package) -> App:
         app.command(part.command(package))
     app.command(study.command(package))
     return app
+
+
+def _whole(kind: Any, tokens: Sequence[Token]) -> Any:
+    """What the words of an option say; ValueError for 1.5 where a whole number is asked, which would be rounded."""
+    if int in (kind, *get_args(kind)):
+        for token in tokens:
+            if "." in token.value:
+                raise ValueError(f'"{token.value}" is no whole number')
+    return convert(kind, tokens)
 
 
 def main(app: App, tokens: Sequence[str] | None = None) -> int:

@@ -28,6 +28,8 @@ __all__ = [
 ]
 
 Dtype = Literal["float32", "float64"]
+LARGEST = 10_000_000
+"""Size that may be asked for: of discs some 10 GiB, of cells along a side more than any machine holds."""
 
 
 @dataclass(frozen=True)
@@ -96,6 +98,7 @@ class Benchmarks:
         assert name not in self._known, f"two benchmarks named {name}"
 
         def register(prepare: Prepare) -> Prepare:
+            """Keep ``prepare`` under the name; returns it."""
             self._known[name] = prepare
             return prepare
 
@@ -126,8 +129,8 @@ class Benchmarks:
         from porescale.ground.jit import set_threads
 
         chosen = choose(names, self._known, "benchmark")
-        if size is not None and size < 1:
-            raise InputError(Fault("--size", size, "is out of range", "", ">= 1"))
+        if size is not None and not 1 <= size <= LARGEST:
+            raise InputError(Fault("--size", size, "is out of range", "", f"1 to {LARGEST}"))
         self.remarks = []
         return self._rows(chosen, size, set_threads(threads), dtype, min_seconds)
 

@@ -108,6 +108,7 @@ def endure(it: Endurance, steps: int, say: Say = lambda text: None) -> list[Line
     seconds = time.perf_counter() - begun
 
     def line(name: str, values: list[float], allowed: float, because: str, first: int = it.settles) -> Line:
+        """The verdict on one quantity: how far its values leave the first that counts, against ``allowed``."""
         counted = values[first:]
         off = max(abs(value - counted[0]) for value in counted)
         return Line(it.name, name, steps, at, values, off, allowed, because, off <= allowed, round(seconds, 3))

@@ -110,8 +110,13 @@ def settings_of(table: Mapping[str, Any]) -> tuple[str, ...]:
 def _of_csv(path: Path) -> Iterator[Point]:
     try:
         lines = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise InputError(Fault(str(path), None, f"cannot be read as CSV ({error})")) from None
+    except OSError as error:
+        raise InputError(Fault("table", None, f"cannot be read ({error.strerror})")) from None
+    except UnicodeDecodeError as error:
+        at = error.object[: error.start].count(b"\n") + 1
+        raise InputError(Fault(f"line {at}", None, "is not UTF-8 text", repair="save it as UTF-8")) from None
+    except csv.Error as error:
+        raise InputError(Fault("table", None, f"is no CSV ({error})")) from None
     head = [name.strip() for name in lines[0]] if lines else []
     if len(set(head)) < len(head) or not all(head):
         raise InputError(Fault("line 1", ", ".join(head), "is not a name for every column, each once"))
@@ -126,7 +131,7 @@ def _of_csv(path: Path) -> Iterator[Point]:
 
 
 def _of_toml(path: Path) -> Iterator[Point]:
-    table = scene_file.read(scene_file.find(path))
+    table = scene_file.read(path)
     unknown = table.keys() - {"point", "vary"}
     if unknown:
         raise InputError(Fault(min(unknown), None, "is unknown", repair="write [[point]] tables, or [vary]"))

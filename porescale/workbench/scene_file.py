@@ -24,13 +24,20 @@ def find(path: Path) -> Path:
     except OSError as error:  # a name too long, a folder that may not be looked into
         raise InputError(Fault("SCENE", problem=f"cannot be read ({error.strerror})", repair="name another")) from None
     looked = f"looked for the file {file}" if folder else f"looked for a file or folder {path}"
-    raise InputError(
-        Fault(
-            str(path),
-            problem="no scene here",
-            repair=f"{looked}; give a TOML file or a folder with {SCENE_FILE}",
-        )
-    )
+    meant = [str(it) for it in (path.parent / f"{name}.toml" for name in (path.name, path.stem)) if is_file(it)]
+    if not folder and meant:
+        repair = f"did you mean {meant[0]}?"
+    else:
+        repair = f"{looked}; give a TOML file or a folder with {SCENE_FILE}"
+    raise InputError(Fault(str(path), problem="no scene here", repair=repair))
+
+
+def is_file(path: Path) -> bool:
+    """Whether there is a file, as far as one can see."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
 
 
 def name_of(file: Path) -> str:
@@ -66,7 +73,7 @@ def read(file: Path) -> dict[str, Any]:
     except ValueError as error:  # a number of thousands of digits
         raise InputError(Fault("TOML", problem=str(error).partition(";")[0], file=str(file))) from None
     except OSError as error:
-        raise InputError(Fault(str(file), problem=f"cannot be read ({error.strerror})")) from None
+        raise InputError(Fault("TOML", problem=f"cannot be read ({error.strerror})", file=str(file))) from None
 
 
 def _deeper(table: Any, levels: int) -> bool:

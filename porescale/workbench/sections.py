@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Generic, TypeVar, get_args
+from typing import Any, ClassVar, Generic, TypeVar, get_args
 
 import pydantic
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -38,6 +38,9 @@ class Section(BaseModel):
 
     A validator may raise `Refused` or an `InputError` with faults whose keys are relative to its section.
     """
+
+    elsewhere: ClassVar[Mapping[str, str]] = {}
+    """Of a scene: sections that it has not and every scene of another program has, and that program."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=True)
 
@@ -115,6 +118,7 @@ def open_scene(
     """`load`, with what a command needs to know besides.  Later wins: scene, quality level, overrides."""
     file = scene_file.find(Path(path))
     table = scene_file.read(file)
+    _refuse_another(scene_type, table, file)
     levels, level, faults = _levels(table, quality)
     base = {name: value for name, value in table.items() if name not in ("quality", "quality_default")}
     written = scene_file.merge(base, levels[level]) if level else base
@@ -134,6 +138,16 @@ def open_scene(
     if faults or scene is None:
         raise InputError(faults).in_file(str(file))
     return Opened(scene, file, scene_file.name_of(file), level, tuple(levels), tuple(overrides))
+
+
+def _refuse_another(scene_type: type[Section], table: Mapping[str, Any], file: Path) -> None:
+    """InputError, one line in place of one for every section, where a scene is another program's."""
+    own = {name for name, field in scene_type.model_fields.items() if field.is_required()}
+    if not own <= table.keys():
+        for section, program in scene_type.elsewhere.items():
+            if section in table:
+                problem, repair = f"is a section of scenes of {program}", f"{program} check {file}"
+                raise InputError(Fault(section, problem=problem, repair=repair, file=str(file)))
 
 
 def _with_settings(

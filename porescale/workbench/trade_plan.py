@@ -175,7 +175,7 @@ class Plan(Section):
 def read_plan(scene: Path, given: Path | None) -> tuple[Plan, Path]:
     """The plan in ``given``, else in trade.toml beside the scene file; and its file.  InputError with all faults."""
     file = given if given is not None else scene.parent / NAME
-    if not file.is_file():
+    if not scene_file.is_file(file):
         repair = f"write one: [[quantity]], [[knob]], [reference]; see the other cases' {NAME}"
         raise InputError(Fault(str(file), None, "is no file", repair=repair))
     return validate(Plan, scene_file.read(file), file=str(file)), file

@@ -105,6 +105,7 @@ class Validations:
         assert because, "a tolerance has a reason"
 
         def register(measure: Callable[[], Measured]) -> Callable[[], Measured]:
+            """Keep ``measure`` as the validation; returns it."""
             self._known[name] = Validation(name, source, because, tolerance, slow, measure)
             return measure
 

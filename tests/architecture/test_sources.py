@@ -10,8 +10,6 @@ import pytest
 from sources import ROOT, Source, functions, is_kernel, read, sources, written
 
 LONGEST = 400
-PLAIN = 5
-"""Lines of a function within another that says by itself what it does."""
 UNFINISHED = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b")
 JIT = "porescale.ground.jit"
 COMPILING = ("porescale.ground.compiling", "porescale.ground.lanes_code")
@@ -39,14 +37,19 @@ def undocumented(source: Source) -> Iterator[str]:
 
 
 def undocumented_within(source: Source) -> Iterator[str]:
-    """Functions within functions, but for kernels, that do not say what they do and are too long to show it."""
-    for owner in functions(source.tree):
-        if is_kernel(owner):
-            continue
-        for node in functions(owner):
-            length = (node.end_lineno or node.lineno) - node.lineno + 1
-            if length > PLAIN and not ast.get_docstring(node):
-                yield f"{source.at(node)}: {owner.name}.{node.name}"
+    """Functions and classes within functions, but for kernels, that do not say what they are for."""
+
+    def look(node: ast.AST, within: bool) -> Iterator[str]:
+        """Those below a node; ``within`` : it lies in a function."""
+        for child in ast.iter_child_nodes(node):
+            function = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef)
+            named = (function or isinstance(child, ast.ClassDef)) and not child.name.startswith("__")
+            if within and named and not ast.get_docstring(child):
+                yield f"{source.at(child)}: {child.name}"
+            if not function or not is_kernel(child):
+                yield from look(child, within or function)
+
+    yield from look(source.tree, False)
 
 
 def unannotated(source: Source) -> Iterator[str]:
@@ -128,6 +131,11 @@ def test_packages_are(check: Callable[[Source], Iterator[str]]) -> None:
     assert [fault for source in sources() for fault in check(source)] == []
 
 
+@pytest.mark.parametrize("check", [undocumented, undocumented_within], ids=lambda check: check.__name__)
+def test_scripts_of_cases_are(check: Callable[[Source], Iterator[str]]) -> None:
+    assert [fault for source in sources(folders=("cases",)) for fault in check(source)] == []
+
+
 @pytest.mark.parametrize("check", [too_long, skipped], ids=lambda check: check.__name__)
 def test_tests_are_not(check: Callable[[Source], Iterator[str]]) -> None:
     assert [fault for source in sources(folders=("tests", "cases")) for fault in check(source)] == []
@@ -148,7 +156,9 @@ BAD = [
     (undocumented, DOC + "class A:\n    '''A.'''\n    def f(self): pass"),
     (undocumented, DOC + "@inline\ndef _f(x): return x"),
     (undocumented, DOC + "if x:\n    def f(): pass"),
-    (undocumented_within, "def f():\n    def g():\n" + "        h()\n" * PLAIN),
+    (undocumented_within, "def f():\n    def g(): pass"),
+    (undocumented_within, "class A:\n    def f(self):\n        with x:\n            def _g(): pass"),
+    (undocumented_within, "def f():\n    class A:\n        'A.'\n        def g(self): pass"),
     (unannotated, "def f(x) -> None: ..."),
     (unannotated, "def f(x: int): ..."),
     (unannotated, "def f(*x, y: int) -> None: ..."),
@@ -172,9 +182,10 @@ GOOD = [
     (undocumented, ""),
     (undocumented, DOC + "def _f(): pass\nclass _A:\n    def f(self): pass"),
     (undocumented, DOC + "def f():\n    '''F.'''\n    def g(): pass"),
-    (undocumented_within, "def f():\n    def g():\n        'G.'\n" + "        h()\n" * PLAIN),
-    (undocumented_within, "def f():\n    def g():\n" + "        h()\n" * (PLAIN - 1)),
-    (undocumented_within, "@kernel\ndef f():\n    def g():\n" + "        h()\n" * PLAIN),
+    (undocumented_within, "def f(): pass\nclass A:\n    def f(self): pass"),
+    (undocumented_within, "def f():\n    def g(): 'G.'\n    return lambda: g()"),
+    (undocumented_within, "def f():\n    class A:\n        'A.'\n        def __bool__(self): pass"),
+    (undocumented_within, "@kernel\ndef f():\n    def g(): pass"),
     (unannotated, "def f(x: int, *y: int, **z: int) -> None: ..."),
     (unannotated, "class A:\n    def f(self) -> None: ...\n    @classmethod\n    def g(cls) -> None: ..."),
     (unannotated, "@kernel\ndef f(x):\n    def g(y): return y\n    return g(x)"),

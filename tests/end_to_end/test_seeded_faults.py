@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,11 +10,10 @@ import pytest
 from continuum_sph.scene.model import Simulation as Continuum
 from continuum_sph.scene.sections import Scene as Tank
 from porescale import build
-from porescale.runs.drive import CHECK_EVERY
 from porescale.scene.simulation import Simulation
 from porescale.workbench.sections import validate
 from tests.reference.scenes import column
-from tests.reference.seeded import INF, NAN, found, put, times
+from tests.reference.seeded import INF, NAN, Running, put, running, times
 
 TANK = {
     "tank": {"width": 0.4, "height": 0.3},
@@ -27,21 +24,15 @@ TANK = {
 
 
 @pytest.fixture(scope="module")
-def running() -> tuple[Simulation, dict[str, Any]]:
-    """The column while its gate lifts and grains slide, and its state."""
-    simulation = build(column())
-    simulation.advance(80)
-    simulation.check()
-    return simulation, copy.deepcopy(simulation.state())
+def lifting() -> Running:
+    """The column while its gate lifts and grains slide."""
+    return running(build(column()), 80)
 
 
 @pytest.fixture(scope="module")
-def flowing() -> tuple[Continuum, dict[str, Any]]:
-    """A collapsing column of water, and its state."""
-    simulation = Continuum(validate(Tank, TANK))
-    simulation.advance(60)
-    simulation.check()
-    return simulation, copy.deepcopy(simulation.state())
+def flowing() -> Running:
+    """A collapsing column of water."""
+    return running(Continuum(validate(Tank, TANK)), 60)
 
 
 def onto(one: int, other: int, share: float) -> Callable[[Simulation], None]:
@@ -119,29 +110,19 @@ WATER_FAULTS: dict[str, Callable[[Continuum], None]] = {
 
 
 @pytest.mark.parametrize("name", FAULTS)
-def test_a_fault_among_grains_and_water_is_found(running, name):
-    simulation, state = running
-    simulation.restore(copy.deepcopy(state))
-    FAULTS[name](simulation)
-    assert 0 <= found(simulation) <= CHECK_EVERY
+def test_a_fault_among_grains_and_water_is_found(lifting, name):
+    lifting.finds(FAULTS[name])
 
 
 @pytest.mark.parametrize("name", WATER_FAULTS)
 def test_a_fault_in_a_layer_is_found(flowing, name):
-    simulation, state = flowing
-    simulation.restore(copy.deepcopy(state))
-    WATER_FAULTS[name](simulation)
-    assert 0 <= found(simulation) <= CHECK_EVERY
+    flowing.finds(WATER_FAULTS[name])
 
 
 def test_there_are_sixty_of_them():
     assert len(FAULTS) + len(WATER_FAULTS) >= 60
 
 
-def test_nothing_is_found_where_nothing_is_wrong(running, flowing):  # the twin that must not fail
-    for simulation, state in (running, flowing):
-        simulation.restore(copy.deepcopy(state))
-        assert found(simulation) == -1
-        for _ in range(5):
-            simulation.advance(CHECK_EVERY)
-            simulation.check()
+def test_nothing_is_found_where_nothing_is_wrong(lifting, flowing):  # the twin that must not fail
+    for sound in (lifting, flowing):
+        sound.finds_nothing(6)

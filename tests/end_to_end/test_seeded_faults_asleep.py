@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
 
 from porescale import build
-from porescale.runs.drive import CHECK_EVERY
 from porescale.scene.sections import Scene
 from porescale.scene.simulation import Simulation
 from porescale.workbench.sections import validate
 from tests.reference.killing import ASLEEP
 from tests.reference.scenes import column, grain
-from tests.reference.seeded import INF, NAN, found, put, times
+from tests.reference.seeded import INF, NAN, Running, put, running, times
 
 pytestmark = pytest.mark.slow
 SQUARES = {
@@ -29,23 +26,18 @@ SQUARES = {
 
 
 @pytest.fixture(scope="module")
-def sleeping() -> tuple[Simulation, dict[str, Any]]:
-    """Grains that sleep while another sinks towards them, and their state."""
-    simulation = build(validate(Scene, ASLEEP))
-    simulation.advance(400)
-    simulation.check()
-    assert simulation.grains.sleep.count > 10
-    return simulation, copy.deepcopy(simulation.state())
+def sleeping() -> Running:
+    """Grains that sleep while another sinks towards them."""
+    made = running(build(validate(Scene, ASLEEP)), 400)
+    assert made.simulation.grains.sleep.count > 10
+    return made
 
 
 @pytest.fixture(scope="module")
-def sinking() -> tuple[Simulation, dict[str, Any]]:
-    """Two squares and a grain that sink, and their state."""
+def sinking() -> Running:
+    """Two squares and a grain that sink."""
     water = {"gate": None, "grains__packing": None, "domain__top": "wall"}
-    simulation = build(column(**water, polygon=[SQUARES], grains__grain=[grain(0.008, 0.005)]))
-    simulation.advance(60)
-    simulation.check()
-    return simulation, copy.deepcopy(simulation.state())
+    return running(build(column(**water, polygon=[SQUARES], grains__grain=[grain(0.008, 0.005)])), 60)
 
 
 def onto(one: int, other: int) -> Callable[[Simulation], None]:
@@ -101,26 +93,19 @@ POLYGONS: dict[str, Callable[[Simulation], None]] = {
 
 @pytest.mark.parametrize("name", SLEEPERS)
 def test_a_fault_among_sleepers_is_found(sleeping, name):
-    simulation, state = sleeping
-    simulation.restore(copy.deepcopy(state))
+    simulation = sleeping.simulation
     weight, radius = simulation.coupled.weight.copy(), simulation.grains.discs.radius.copy()
-    SLEEPERS[name](simulation)
     try:
-        assert 0 <= found(simulation) <= CHECK_EVERY
-    finally:
+        sleeping.finds(SLEEPERS[name])
+    finally:  # what no state holds
         simulation.coupled.weight[:], simulation.grains.discs.radius[:] = weight, radius
 
 
 @pytest.mark.parametrize("name", POLYGONS)
 def test_a_fault_among_polygons_is_found(sinking, name):
-    simulation, state = sinking
-    simulation.restore(copy.deepcopy(state))
-    POLYGONS[name](simulation)
-    assert 0 <= found(simulation) <= CHECK_EVERY
+    sinking.finds(POLYGONS[name])
 
 
 def test_nothing_is_found_where_nothing_is_wrong(sleeping, sinking):  # the twin that must not fail
-    for simulation, state in (sleeping, sinking):
-        simulation.restore(copy.deepcopy(state))
-        for _ in range(5):
-            assert found(simulation) == -1
+    for sound in (sleeping, sinking):
+        sound.finds_nothing(5)

@@ -47,12 +47,6 @@ y = 0.2
 [[level]]
 name = "left"
 x = 0.2
-[numerics]
-spacing = 0.03
-smoothing_ratio = 2
-shifting = 0
-tension = "cut"
-artificial_viscosity = 0.1
 [time]
 end = 0.6
 [output]
@@ -79,12 +73,6 @@ permeability = "1 cm/s"
 elastic = true
 [[soil.body]]
 outline = [[0, 0], [0.3, 0], [0.3, 0.6], [0, 0.6]]
-[numerics]
-spacing = 0.03
-smoothing_ratio = 2
-shifting = 0
-tension = "cut"
-artificial_viscosity = 0.1
 [time]
 end = 0.1
 [output]
@@ -118,7 +106,16 @@ snapshot_interval = 0.05
 series_interval = 0.01
 """
 
-SCENES = {"pile": PILE, "air": AIR, "bubble": TWO_FLUIDS}
+SEEPING = """\
+[numerics]
+spacing = 0.03
+smoothing_ratio = 2
+shifting = 0
+tension = "cut"
+artificial_viscosity = 0.1
+"""
+
+SCENES = {"pile": PILE + SEEPING, "air": AIR + SEEPING, "bubble": TWO_FLUIDS}
 
 
 def put(table: dict[str, Any], key: str, value: object) -> None:

@@ -3,8 +3,9 @@
 A run's process says through shared memory what it does, and how often it began that.  The dice choose a phase, which of
 its beginnings, and how long after it SIGKILL comes; then what lies in the folder is read, and the run is resumed, or
 killed while it resumes.  In the end it must be, to the bit, the run that nobody killed.  Processes are forked from one
-that has the kernels; a share of them (--cold) starts from nothing, without kernels or packings kept from before.  Every
-fifth run makes pictures and film, which take longer than all else.
+that has the kernels; a share of them (--cold) starts without packings and with few kernels kept from before, at first
+with none, and is killed above all while it compiles a kernel or keeps one.  Every fifth run makes pictures and film,
+which take longer than all else.
 SIGINT and SIGTERM come in the same way (--stops): for them it is said how long a saved run takes to end.
 """
 
@@ -39,10 +40,13 @@ from tests.reference.same_run import differences
 from tests.reference.scenes import COLUMN, grain, table, write
 
 PHASES = ("starting", "building", "first steps", "stepping", "row", "snapshot", "checkpoint", "joining", "pictures",
-          "ending")  # fmt: skip
+          "ending", "compiling", "keeping a kernel")  # fmt: skip
+COLD = ("starting", "compiling", "compiling", "compiling", "keeping a kernel", "keeping a kernel")
+"""What is killed of a process without kernels: the more often, the longer it takes or the more it can spoil."""
 ROOT = Path(__file__).resolve().parents[2]
-PATIENCE = 240.0
-"""Seconds after which a child that neither ends nor begins what is waited for counts as hanging."""
+PATIENCE, COLD_PATIENCE = 240.0, 1800.0
+"""Seconds after which a child that neither ends nor begins what is waited for counts as hanging: one that has the
+kernels, and one that has not."""
 LOOK = 5e-4
 """Seconds between looks at what a child does."""
 
@@ -121,6 +125,8 @@ def marked(marks: Marks, name: str, real: Callable[..., Any]) -> Callable[..., A
 
 def run(package_name: str, words: list[str], marks: Marks, pictured: bool = True) -> int:
     """Exit code of a command line, which says what it does."""
+    from numba.core import caching, dispatcher
+
     from porescale.runs import record, snapshots
     from porescale.workbench.application import application, main
 
@@ -144,7 +150,8 @@ def run(package_name: str, words: list[str], marks: Marks, pictured: bool = True
         return package.drive(*args, **named)
 
     hooks = [(record.Record, "row", "row"), (record.Record, "snapshot", "snapshot"), (record.Record, "save",
-             "checkpoint"), (snapshots, "assemble", "joining")]  # fmt: skip
+             "checkpoint"), (snapshots, "assemble", "joining"), (dispatcher._FunctionCompiler, "compile", "compiling"),
+             (caching.IndexDataCacheFile, "save", "keeping a kernel")]  # fmt: skip
     patches = [patch.object(where, name, marked(marks, phase, getattr(where, name))) for where, name, phase in hooks]
     for each in patches:
         each.start()
@@ -163,11 +170,12 @@ def _package(name: str) -> Any:
 
 @dataclass
 class Child:
-    """A process that runs a scene into ``folder``, resuming if there is a run."""
+    """A process that runs a scene into ``folder``, resuming if there is a run.  patience : PATIENCE of its kind."""
 
     number: int
     marks: Marks
     began: float
+    patience: float = PATIENCE
 
     def ended(self) -> int | None:
         """Its exit code, -n if signal n ended it; None while it runs."""
@@ -183,7 +191,7 @@ class Child:
         while self.marks.begun(phase) < nth:
             if os.waitid(os.P_PID, self.number, os.WEXITED | os.WNOHANG | os.WNOWAIT):
                 return False
-            if time.monotonic() - self.began > PATIENCE:
+            if time.monotonic() - self.began > self.patience:
                 os.kill(self.number, signal.SIGKILL)
                 raise AssertionError(f"a run hangs while {PHASES[self.marks.now()]}")
             time.sleep(LOOK)
@@ -234,11 +242,10 @@ class Campaign:
                     "sys.exit(run(sys.argv[1], sys.argv[3:], Marks(Path(sys.argv[2]))))")  # fmt: skip
             given = os.environ | {"NUMBA_CACHE_DIR": str(cold / "kernels"), "XDG_CACHE_HOME": str(cold)}
             command = [sys.executable, "-c", code, self.package, str(self.place / "marks"), *words]
-            started = subprocess.Popen(
-                command, cwd=ROOT, env=given, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-            )
+            with (self.place / "said").open("ab") as said:
+                started = subprocess.Popen(command, cwd=ROOT, env=given, stdout=subprocess.DEVNULL, stderr=said)
             started.returncode = 0  # waited for by number
-            return Child(started.pid, self.marks, began)
+            return Child(started.pid, self.marks, began, COLD_PATIENCE)
         number = os.fork()
         if number == 0:
             code = 1
@@ -254,17 +261,29 @@ class Campaign:
         left, checkpoint = 1.0, folder / "checkpoint.h5"
         if checkpoint.exists():
             left = 1.0 - read_header(checkpoint)["step"] / self.steps
-        known = [k for k, name in enumerate(PHASES) if name != "pictures" or self.pictured]
+        known = [0, *(k for k in range(1, len(PHASES)) if self.often[k] and (PHASES[k] != "pictures" or self.pictured))]
         phase = self.dice.choice(known)
         nth = self.dice.randint(1, max(1, int(left * self.often[phase]))) if phase else 0
         longest = {"starting": 0.5, "building": 0.2, "first steps": 2.0, "pictures": 3.0}.get(PHASES[phase], 0.03)
         return phase, nth, self.dice.uniform(0.0, longest)
 
+    def forget(self, cold: Path) -> None:
+        """Remove a share of the kernels, and what else was kept."""
+        share = self.dice.random()
+        for kept in sorted((cold / "kernels").rglob("*.nbi")):
+            if self.dice.random() < share:
+                kept.unlink()
+        shutil.rmtree(cold / "porescale", ignore_errors=True)
+
+    def aim_cold(self) -> tuple[int, int, float]:
+        """The same for a process that has no kernels but those that its forerunners kept."""
+        phase = PHASES.index(self.dice.choice(COLD))
+        longest = {"starting": 4.0, "compiling": 2.0}.get(PHASES[phase], 0.004)
+        return phase, self.dice.randint(1, 6) if phase else 0, self.dice.uniform(0.0, longest)
+
     def kill(self, folder: Path, cold: Path | None = None) -> str | None:
         """Kill a run; what it was doing, None if it had ended before."""
-        phase, nth, later = self.aim(folder)
-        if cold is not None:
-            phase, nth, later = 0, 0, self.dice.uniform(0.0, 25.0)
+        phase, nth, later = self.aim(folder) if cold is None else self.aim_cold()
         child = self.child(folder, cold)
         child.wait_for(phase, nth)
         time.sleep(later)
@@ -274,12 +293,14 @@ class Campaign:
         assert code in (0, -signal.SIGKILL), f"a run ended by itself with {code} while {doing}"
         return doing if code else None
 
-    def round(self, number: int, cold: Path | None = None) -> None:
-        """A run killed one to sixteen times, then resumed to its end."""
+    def round(self, number: int, most: int, cold: Path | None = None) -> None:
+        """A run killed one to sixteen times, at most ``most``, then resumed to its end."""
         folder = self.place / f"run{number}"
         shutil.rmtree(folder, ignore_errors=True)
+        if cold is not None:
+            self.forget(cold)
         self.pictured = self.dice.random() < 0.2 or cold is not None
-        for _ in range(self.dice.randint(1, 4 if cold else 16)):
+        for _ in range(min(most, self.dice.randint(1, 16))):
             doing = self.kill(folder, cold)
             if doing is None:
                 break
@@ -335,7 +356,7 @@ def main() -> int:
             < asked.cold * (count + 1) / asked.kills
         ):
             cold = (asked.out / "cold").resolve()
-        it.round(number, cold)
+        it.round(number, asked.kills - count, cold)
         number += 1
         count = sum(sum(each.kills.values()) for each in all_of.values())
         done = {name: {"kills": dict(each.kills), "resumed to the same bits": each.finals}

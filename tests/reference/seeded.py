@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 from porescale.ground.check import Unstable
@@ -55,3 +57,36 @@ def found(simulation: Any) -> int:
     assert error.where
     assert error.cause
     return int(simulation.step) - begun
+
+
+@dataclass(frozen=True)
+class Running:
+    """A sound simulation, and the state that it goes back to before every fault."""
+
+    simulation: Any
+    state: dict[str, Any]
+
+    def anew(self) -> Any:
+        """The simulation as it was, looked at as a run looks that goes on."""
+        self.simulation.restore(copy.deepcopy(self.state))
+        self.simulation.check()
+        return self.simulation
+
+    def finds(self, fault: Callable[[Any], None]) -> None:
+        """AssertionError unless the fault is found in time."""
+        simulation = self.anew()
+        fault(simulation)
+        assert 0 <= found(simulation) <= CHECK_EVERY
+
+    def finds_nothing(self, times: int) -> None:
+        """AssertionError where something is found, asked ``times`` times, though nothing is wrong."""
+        simulation = self.anew()
+        for _ in range(times):
+            assert found(simulation) == -1
+
+
+def running(simulation: Any, steps: int) -> Running:
+    """A simulation after so many ``steps``."""
+    simulation.advance(steps)
+    simulation.check()
+    return Running(simulation, copy.deepcopy(simulation.state()))

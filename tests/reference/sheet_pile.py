@@ -70,3 +70,28 @@ def bounds(share: float, reach: float, cells: int):
         under = 0.5 * (h[base, half : half + wide] + h[base - 1, half : half + wide]).mean()
         found.append((1.0 / under, 1.0 / (2.0 * h[-1, half] * count * share)))
     return 2.0 * np.array(found[1]) - np.array(found[0])
+
+
+def weakest_prism(share: float, reach: float, cells: int, friction: float = 30.0):
+    """(h/(i_c s), width over s) of the prism by a sheet down to its tip that first has lost its weight and the friction
+    along its outer face, of soil that presses there no harder than yield lets it, K_a = (1 - sin φ)/(1 + sin φ), over
+    all widths up to s (the way of Tanaka & Verruijt 1999);  friction : φ, degrees.
+
+    The pile is smooth; the upright stress beside the prism is i_c y - h(y), y the depth, and not below nothing.
+    """
+    h = heads(cells, round(reach * cells), 0, round(share * cells))
+    deep, half = round(share * cells), h.shape[1] // 2
+    base = cells - deep
+    sine, y = np.sin(np.radians(friction)), np.arange(deep) + 0.5
+    rubbing = (1.0 - sine) / (1.0 + sine) * np.tan(np.radians(friction))
+    under = 0.5 * (h[base, half:] + h[base - 1, half:])
+    found = []
+    for wide in range(1, deep + 1):
+        beside = 0.5 * (h[base:, half + wide - 1] + h[base:, half + wide])[::-1]
+        lift, low, high = under[:wide].sum() * cells, 0.0, 10.0 * share  # head over i_c
+        for _ in range(50):
+            head = 0.5 * (low + high)
+            held = wide * deep + rubbing * np.maximum(0.0, y - head * cells * beside).sum()
+            low, high = (low, head) if head * lift > held else (head, high)
+        found.append((low / share, wide / deep))
+    return min(found)

@@ -63,6 +63,44 @@ def test_another_operator_rate_or_force_is_told_apart(operator, smagorinsky, wro
     assert np.abs(found - expected).max() > 1e4 * round_off(np.float64)
 
 
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_fluid_that_nothing_drives_computes_no_force_and_has_the_same_bits(dtype):
+    from porescale.lbm.collision.choose import lean
+    from porescale.lbm.collision.trt import FreeTrt, Trt
+    from porescale.lbm.stream import sweep
+
+    law = choose("trt", 0.7, (0.0, 0.0), dtype)
+    assert (type(law), type(lean(law))) == (Trt, FreeTrt)
+    driven = choose("trt", 0.7, (0.0, 1e-9), dtype)
+    assert lean(driven) is driven
+    start = (dense.random_populations(6, 37)[ORDER] - WEIGHTS).astype(dtype)
+    found = []
+    for one in (law, lean(law)):
+        f = np.zeros((9, 8, 39), dtype)
+        f[:, 1:-1, 1:-1] = start
+        sweep(f, 0, one)
+        found.append(f + dtype(0.0))  # -0 is 0
+    assert found[0].tobytes() == found[1].tobytes()
+    sweep(f, 0, driven._replace(fy=dtype(1e-3)))  # the twin: a force is seen
+    assert f.tobytes() != found[0].tobytes()
+
+
+def test_fluid_that_nothing_drives_as_plain_python(monkeypatch):
+    from porescale.lbm.collision import law as shared
+    from porescale.lbm.collision import trt
+
+    for module, name in ((trt, "even_part"), (trt, "relax_by"), (trt, "odd_rate_here"), (shared, "collide"),
+                         (shared, "half_force"), (shared, "shear_rate"), (shared, "moments")):  # fmt: skip
+        monkeypatch.setattr(module, name, getattr(module, name).py_func)
+    f = dense.random_populations(1, 5)
+    rows = list((f[ORDER] - WEIGHTS)[:, 0])
+    shared.collide_row.py_func(*rows, 0, 5, trt.FreeTrt(1 / 0.7, 0.0, 0.0, 0.2))
+    out = np.empty(f.shape)
+    out[ORDER] = np.array(rows)[OPPOSITE][:, None] + WEIGHTS
+    expected = dense.collided("trt", f, 0.7, (0.0, 0.0), 0.2, 0.0)
+    np.testing.assert_allclose(out, expected, rtol=0, atol=round_off(np.float64))
+
+
 @pytest.mark.parametrize("operator", OPERATORS)
 def test_a_collision_keeps_mass_and_adds_the_force_to_momentum(operator):
     f = dense.random_populations(4, 8)

@@ -6,60 +6,108 @@ import json
 import shutil
 import tarfile
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 
+from continuum_sph.scene.sections import Scene as Ground
 from porescale.ground.card import read_card
 from porescale.ground.check import InputError
 from porescale.runs.checkpoint import read_checkpoint, read_header
 from porescale.runs.open_run import open_run
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import load, scene_as_dict, validate
+from porescale.workbench.sections import Section, load, scene_as_dict, validate
+from tests.reference.spoiled import renumbered
 from tests.reference.toy_model import run_toy
 
 SAMPLES = Path(__file__).resolve().parents[1] / "samples"
 
 
-@pytest.fixture(scope="module")
-def kept(tmp_path_factory) -> Path:
-    """The run folder of format 1 that is kept, as it was written: three grains settle in a box of 12 x 16 cells."""
-    folder = tmp_path_factory.mktemp("kept")
-    with tarfile.open(SAMPLES / "run_format_1.tar.xz") as packed:
+@dataclass(frozen=True)
+class Kept:
+    """A run folder that is kept as it was written, and what the version that wrote it read there.
+
+    cloud : one of its clouds;  table : a table, one of its columns and the last number there;  last : last numbers of
+    the series;  at : place of a point at the end, m;  state : parts of the checkpoint's.
+    """
+
+    package: str
+    scene: type[Section]
+    name: str
+    steps: list[int]
+    times: list[float]
+    cloud: str
+    last: dict[str, float]
+    at: tuple[int, list[float]]
+    state: list[str]
+    table: tuple[str, str, float] | None = None
+
+
+KEPT = {
+    "porescale": Kept(  # three grains settle in a box of 12 x 16 cells
+        "porescale", Scene, "run_format_1", [0, 100, 200], [0.0, 0.004, 0.008], "grains",
+        {"time (s)": 0.008, "front (m)": 0.0020515794892186725},
+        (2, [0.0012017152318223414, 0.0021507761085947175]), ["coupled", "mass", "step", "watch"],
+    ),
+    "continuum-sph": Kept(  # water stands on soil and seeps into it
+        "continuum-sph", Ground, "continuum_run_format_1", [0, 109, 217],
+        [0.0, 0.010064542922531037, 0.020036750588892146], "soil",
+        {"mean height (m)": 0.14814649501748745, "soil: stress across over upright ()": 0.4326588524773842,
+         "heat of drag (J/m)": 8.587332447798112e-06},
+        (7, [0.18750095205989464, 0.012495709808497782]), ["next_step", "soil", "water"],
+        ("probes", "deep pressure (Pa)", 1970.5443310824335),
+    ),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module", params=KEPT)
+def sample(request, tmp_path_factory) -> tuple[Kept, Path]:
+    """A kept run of format 1 and its folder."""
+    kept, folder = KEPT[request.param], tmp_path_factory.mktemp("kept")
+    with tarfile.open(SAMPLES / f"{kept.name}.tar.xz") as packed:
         packed.extractall(folder, filter="data")
-    return folder / "run"
+    return kept, folder / "run"
 
 
 @pytest.fixture
-def copy(kept, tmp_path) -> Path:
-    return Path(shutil.copytree(kept, tmp_path / "run"))
+def copy(sample, tmp_path) -> Path:
+    return Path(shutil.copytree(sample[1], tmp_path / "run"))
 
 
-def test_a_kept_run_is_read_to_the_last_digit(kept):
-    # Numbers as the version that wrote the folder read them.
-    run = open_run(kept)
-    assert run.name == "run_format_1"
-    assert run.steps.tolist() == [0, 100, 200]
-    assert run.times.tolist() == [0.0, 0.004, 0.008]
-    assert run.series["time (s)"].tolist() == [k * 1e-3 for k in range(9)]
-    assert run.series["front (m)"][-1] == 0.0020515794892186725
-    last = run.snapshot(-1)
-    assert last.clouds["grains"].position[2].tolist() == [0.0012017152318223414, 0.0021507761085947175]
-    fields = last.grids["fields"]
+def test_a_kept_run_is_read_to_the_last_digit(sample):
+    kept, folder = sample
+    run = open_run(folder)
+    assert run.name == kept.name
+    assert run.steps.tolist() == kept.steps
+    assert run.times.tolist() == kept.times
+    assert {name: run.series[name][-1] for name in kept.last} == kept.last
+    number, place = kept.at
+    assert run.snapshot(-1).clouds[kept.cloud].position[number].tolist() == place
+    state = read_checkpoint(folder / "checkpoint.h5")
+    assert (state["step"], sorted(state["state"])) == (kept.steps[-1], kept.state)
+    if kept.table:
+        table, column, value = kept.table
+        assert run.table(table)[column][-1] == value
+
+
+def test_fields_of_a_kept_run_are_read_to_the_last_digit(tmp_path):
+    with tarfile.open(SAMPLES / "run_format_1.tar.xz") as packed:
+        packed.extractall(tmp_path, filter="data")
+    fields = open_run(tmp_path / "run").snapshot(-1).grids["fields"]
     assert fields.shape == (16, 12)
     assert fields.spacing == (2e-4, 2e-4)
     assert fields.cells["velocity"][..., 1].min() == np.float32(-0.00882512703537941)
-    state = read_checkpoint(kept / "checkpoint.h5")
-    assert (state["step"], sorted(state["state"])) == (200, ["coupled", "mass", "step", "watch"])
 
 
-def test_the_scene_on_a_kept_card_is_still_a_scene(kept):
-    card = read_card(kept, "porescale")
+def test_the_scene_on_a_kept_card_is_still_a_scene(sample):
+    kept, folder = sample
+    card = read_card(folder, kept.package)
     assert card["format"] == 1
-    made = scene_as_dict(validate(Scene, card["scene"]))
-    assert made == scene_as_dict(load(kept / "scene.toml", Scene))
+    made = scene_as_dict(validate(kept.scene, card["scene"]))
+    assert made == scene_as_dict(load(folder / "scene.toml", kept.scene))
 
 
 def test_a_card_without_a_format_is_of_the_first(copy):
@@ -75,23 +123,20 @@ def card_of(folder: Path, number: object) -> None:
 
 
 def checkpoint_of(folder: Path, number: object) -> None:
-    with h5py.File(folder / "checkpoint.h5", "r+") as file:
-        tree = json.loads(file["tree"][...].tobytes())
-        del file["tree"]
-        text = json.dumps({**tree, "format": number})
-        file.create_dataset("tree", data=np.frombuffer(text.encode(), np.uint8), fletcher32=True, chunks=True)
+    renumbered(folder / "checkpoint.h5", number)
 
 
 def snapshots_of(folder: Path, number: object) -> None:
-    with h5py.File(folder / "grains.vtkhdf", "r+") as file:
-        file["porescale"].attrs["format"] = number
+    for part in folder.glob("*.vtkhdf"):
+        with h5py.File(part, "r+") as file:
+            file["porescale"].attrs["format"] = number
 
 
 PARTS: dict[str, tuple[Callable[[Path, object], None], Callable[[Path], object]]] = {
     "card.json": (card_of, open_run),
     "checkpoint.h5": (checkpoint_of, lambda folder: read_checkpoint(folder / "checkpoint.h5")),
     "checkpoint.h5 ": (checkpoint_of, lambda folder: read_header(folder / "checkpoint.h5")),
-    "grains.vtkhdf": (snapshots_of, lambda folder: open_run(folder).snapshot(0)),
+    ".vtkhdf": (snapshots_of, lambda folder: open_run(folder).snapshot(0)),
 }
 
 

@@ -33,6 +33,7 @@ def column(walls="slip", particles="pressure", end=1.0, **numerics):
 def stirred(**choices):
     """A box without walls, disordered, with other choices than its own."""
     flow = trials.open_box(12, seed=3)
+    flow.layer.keep_book()
     flow.law = replace(flow.law, **choices)
     flow.start()
     return flow

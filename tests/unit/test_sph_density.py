@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from continuum_sph import law as laws
-from continuum_sph.density import diffusion
+from continuum_sph.density import diffusion, haste_of, pace
 from continuum_sph.eos import Tait
 from continuum_sph.fluids import Fluid
 from continuum_sph.law import Law
 from continuum_sph.scene.build import flow_of
+from continuum_sph.scene.endurance import still
+from continuum_sph.scene.model import Simulation
 from continuum_sph.scene.trials import column_scene
 from continuum_sph.smoothing import CUBIC, WENDLAND, Smoothing, kernel_slope
 
@@ -113,3 +115,68 @@ def test_water_rests_under_the_strongest_diffusion():
 def test_water_flies_off_at_the_step_of_sound_alone(monkeypatch):  # the twin that must fail
     monkeypatch.setattr(laws, "CALMED", np.inf)
     assert not fastest_at_rest() < 0.1
+
+
+def share(approach, calm):
+    """Pace of a pair over that of sound."""
+    return float(pace.py_func(approach, *haste_of.py_func(calm, H)))
+
+
+def test_densities_diffuse_at_the_pace_at_which_pairs_close():
+    # From noise that counts on, at a distance of h, as published; a tenth as fast a tenth as quickly; nothing at rest.
+    assert share(0.0, 1e-3) == 0.0
+    assert share(1e-3 * H, 1e-3) == share(-1e-3 * H, 1e-3) == share(1.0, 1e-3) == 1.0
+    assert share(1e-4 * H, 1e-3) == share(-1e-4 * H, 1e-3) == pytest.approx(0.1)
+
+
+def test_without_a_floor_of_noise_all_diffuses_as_published():  # the twin that must fail
+    assert share(0.0, 0.0) == share(1e-9, 0.0) == 1.0
+
+
+def test_noise_counts_from_a_share_of_the_weight_of_the_water():
+    # Sound of a pressure p' moves at p'/(ρ c0), c0 = 10 √(2 g H) if not said: 1e-3 g H/c0.
+    scene = column_scene(SPACING, tank=(0.5, 1.2), column=(0.5, DEPTH))
+    assert flow_of(scene).law.calm == pytest.approx(1e-3 * GRAVITY * DEPTH / (200.0 * GRAVITY * DEPTH) ** 0.5)
+    assert flow_of(column_scene(SPACING, tank=(0.5, 1.2), column=(0.5, DEPTH), noise_floor=0.0)).law.calm == 0.0
+
+
+def at_rest(**numerics):
+    """Largest rate of density of a column that stands still, densities off by up to a hundredth, kg/(m³ s)."""
+    flow = flow_of(column_scene(SPACING, tank=(0.5, 1.2), column=(0.5, DEPTH), **numerics))
+    flow.layer.predicted[:] *= 1.0 + 0.01 * np.random.default_rng(1).random(flow.layer.fluid)
+    flow.evaluate(0.0, 0.0)
+    return float(np.abs(flow.layer.rate).max())
+
+
+@pytest.mark.parametrize("diffusion_of", ["hydrostatic", "linear", "plain"])
+def test_water_that_does_not_move_keeps_its_densities(diffusion_of):
+    assert at_rest(diffusion_of=diffusion_of) == 0.0
+
+
+@pytest.mark.parametrize("diffusion_of", ["hydrostatic", "linear", "plain"])
+def test_at_the_pace_of_sound_it_does_not(diffusion_of):  # the twin that must fail
+    # A hundredth of the shortest wave's rate, 2 δ c0/h 3.5, of a hundredth of 1000 kg/m³.
+    assert at_rest(diffusion_of=diffusion_of, noise_floor=0.0) > 0.01 * 0.7 * WATER.sound_speed / H * 10.0
+
+
+def creep(**numerics):
+    """Height that still water gains or loses from step 100 000, when the lattice has settled, to 150 000, m."""
+    water = Simulation(still(**numerics))
+    water.advance(100_000)
+    settled = water.series()["mean height (m)"]
+    water.advance(50_000)
+    return abs(water.series()["mean height (m)"] - settled)
+
+
+STAYS = 1e-3 * DEPTH * 50_000 / 1e6
+"""A thousandth of the depth in a million steps."""
+
+
+@pytest.mark.slow
+def test_still_water_does_not_creep():
+    assert creep() < STAYS
+
+
+@pytest.mark.slow
+def test_still_water_creeps_at_the_pace_of_sound():  # the twin that must fail
+    assert creep(noise_floor=0.0) > STAYS

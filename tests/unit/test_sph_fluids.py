@@ -26,7 +26,7 @@ def scene(walls="slip", numerics=None, **inclusion):
             "inclusion": {"law": "liquid", "density": 100.0, "disc": [{"x": 0.5, "y": 0.4, "radius": 0.2}]} | inclusion,
             "numerics": {"spacing": 0.05, "gradient": "corrected", "shifting": 2.0} | (numerics or {}),
             "time": {"end": 1.0},
-            "output": {"snapshot_interval": 0.1, "series_interval": 0.1},
+            "output": {"snapshot_interval": 0.1, "series_interval": 0.1, "energy": True},
         },
     )
 
@@ -68,6 +68,7 @@ def test_tension_swaps_sides_with_the_numbers_of_the_fluids():
 
 def test_the_book_of_a_drop_at_rest_closes_with_the_work_of_its_tension():
     flow = trials_fluids.drop(20, 0.25, stretch=1.2)
+    flow.layer.keep_book()
     first = book(flow)
     for _ in range(200):
         flow.advance()

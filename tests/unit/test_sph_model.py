@@ -255,7 +255,7 @@ def test_a_density_extrapolated_below_zero_stops_at_the_least():
     pressure, record, places = np.zeros(2), np.zeros((2, 8)), np.zeros((2, 2))
     pace = pressurise.py_func(
         places, places, np.full(2, 0.1), rho, np.zeros(2, np.int64), np.full(2, 0.013), table((fluid,)), False,
-        pressure, record,
+        False, pressure, record,
     )  # fmt: skip
     assert record[1, RHO] == 800.0
     assert record[1, VOLUME] == 0.1 / 800.0

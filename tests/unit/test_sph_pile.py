@@ -5,6 +5,7 @@ import pytest
 from pydantic import ValidationError
 
 from continuum_sph.pile import FREE, LEFT, RIGHT, UNDER, PartedList, Pile, hold_back, part, side_of
+from continuum_sph.scene.exit_gradient import NAME, beside
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.seepage_model import SeepageSimulation
 from continuum_sph.smoothing import CUBIC, kernel_value
@@ -145,8 +146,41 @@ def test_a_run_beside_a_pile_goes_on_bit_for_bit():
     ):
         assert np.array_equal(one.x, other.x)
         assert np.array_equal(one.v, other.v)
+    assert np.isfinite(first.series()[NAME])
 
 
 def test_a_pile_stands_in_soil():
     with pytest.raises(ValidationError, match="pile"):
         scene(soil=None)
+
+
+def field(level=0.8, slope=0.7, left=0.0):
+    """Places and heads of water about PILE in ground up to 0.6: i d + c d³ under open water on its right, ``left`` · d
+    on its left."""
+    water = square_lattice((0.0, 0.0), (1.5, 1.0), SPACING)
+    depth = np.maximum(0.0, 0.6 - water[:, 1])
+    head = np.where(water[:, 0] > PILE.x, level + slope * depth + 3.0 * depth**3, level - left * depth)
+    return water, head, square_lattice((0.0, 0.0), (1.5, 0.6), SPACING)
+
+
+def test_the_exit_gradient_is_the_first_term_of_the_head_along_the_pile():
+    deep = Pile.instead_of(0.75, 0.1, SPACING, rough=False)  # 5 rows beside it, 3 of them fitted
+    water, head, soil = field()
+    assert beside(deep, water, head, soil) == pytest.approx(0.7, rel=1e-12)
+    assert beside(deep, water, head, soil) != pytest.approx(
+        beside(deep, water, head, soil + np.array([0.0, SPACING])), rel=0.05
+    )
+
+
+def test_it_is_that_of_the_side_where_water_rises():
+    deep = Pile.instead_of(0.75, 0.1, SPACING, rough=False)
+    water, head, soil = field(slope=-0.2, left=-0.4)
+    assert beside(deep, water, head, soil) == pytest.approx(0.4, rel=1e-12)
+
+
+def test_dry_ground_gives_the_head_at_its_surface_and_ground_that_is_gone_gives_none():
+    deep = Pile.instead_of(0.75, 0.1, SPACING, rough=False)
+    water, head, soil = field(level=0.6)
+    under = water[:, 1] < 0.6
+    assert beside(deep, water[under], head[under], soil) == pytest.approx(0.7, rel=1e-12)
+    assert np.isnan(beside(deep, water, head, soil[:0]))

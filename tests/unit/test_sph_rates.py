@@ -18,9 +18,8 @@ def both(flow, fast):
     """(acceleration, rate, power) by `plain_rates`, compiled or plain, and by `rates`."""
     layer, law, pairs = flow.layer, flow.law, flow.pairs
     where = (layer.fluid, pairs.start, flow.split, pairs.partner, layer.record, layer.ghost)
-    how = (law.smoothing.kind, law.smoothing.length, *law.gravity, law.alpha, law.beta, law.softening)
-    how += (2.0 * law.diffusion * law.smoothing.length, law.sticky)
-    surveyed = (layer.matrix, flow.slant) if flow.surveyed else (None, None)
+    kind, h, (gx, gy), delta = law.smoothing.kind, law.smoothing.length, law.gravity, 2.0 * law.diffusion
+    surveyed = (None, None) if flow.bare else (layer.matrix, flow.slant)
     found = []
     for name in ("fast", "all"):
         acceleration, rate = np.zeros((layer.fluid, 2)), np.zeros(layer.fluid)
@@ -28,12 +27,14 @@ def both(flow, fast):
         if name == "fast":
             fast(
                 *where, layer.material, *surveyed, layer.drift, layer.mass, flow.table, flow.choices,
-                acceleration, rate, power, *how, *pairs.period, 1e-3,
+                acceleration, rate, power, kind, h, None if flow.bare else gx, gy, law.alpha,
+                None if flow.bare else law.beta, law.softening, delta * h, law.calm, law.sticky, *pairs.period, 1e-3,
             )  # fmt: skip
         else:
             rates(
                 *where, layer.facing, layer.material, layer.length, layer.matrix, flow.slant, layer.drift, layer.mass,
-                flow.table, flow.choices, acceleration, rate, smoothed, power, *how, law.xsph, *pairs.period, 1e-3,
+                flow.table, flow.choices, acceleration, rate, smoothed, power, kind, h, gx, gy, law.alpha, law.beta,
+                law.softening, delta * h, law.calm, law.sticky, law.xsph, *pairs.period, 1e-3,
             )  # fmt: skip
         found.append((acceleration, rate, power))
     return found
@@ -62,7 +63,7 @@ def walled(walls, **numerics):
 def test_fast_sums_are_the_slow_ones(flow, compiled, monkeypatch):
     fast = plain_rates if compiled else plain_rates.py_func
     if not compiled:  # what it calls as plain Python too: compiled functions take vectors only from kernels
-        for name in ("artificial", "laminar", "slope_shape", "slope_scale"):
+        for name in ("artificial", "haste_of", "laminar", "pace", "slope_shape", "slope_scale"):
             monkeypatch.setattr(rates_plain, name, getattr(rates_plain, name).py_func)
     # Round-off: 30 terms of some ten operations each, none more than a hundred times the largest sum.
     for quick, slow in zip(*both(flow, fast), strict=True):

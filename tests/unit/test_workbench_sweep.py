@@ -91,7 +91,7 @@ def test_names_are_folders_anywhere_and_differ():
         ("t.csv", "a,a\n1,2\n", "line 1"),
         ("t.csv", "a,b\n1\n", "line 2: has 1 cells"),
         ("t.csv", "a\n", "points: are none"),
-        ("t.csv", "a\n\xff", "cannot be read as CSV"),
+        ("t.csv", "a\n\xff", "is not UTF-8 text"),
         ("t.toml", "pont = 1", "pont: is unknown"),
         ("t.toml", "point = 1", "point: is not a list of tables"),
         ("t.toml", "[vary]\na = 1", "is not a list of values"),

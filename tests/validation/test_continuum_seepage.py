@@ -9,7 +9,6 @@ import pytest
 
 from continuum_sph.scene import verify_seepage
 from continuum_sph.scene.trials_seepage import realised_modulus
-from continuum_sph.scene.trials_seepage_steady import SheetPile
 from continuum_sph.scene.validations import VALIDATIONS
 from continuum_sph.scene.verify_seepage import LAYER
 from continuum_sph.seepage import Resistance, exchange, pores
@@ -94,12 +93,6 @@ def test_drag_in_explicit_steps_makes_energy_out_of_nothing(monkeypatch):
     monkeypatch.setattr(pores, "brake", exchange.brake.py_func)
     with pytest.raises(ValueError, match="position"):
         verify_seepage.growth_of_energy.__wrapped__(1e-7)
-
-
-@pytest.mark.slow
-def test_water_does_not_pass_a_pile_of_half_the_depth_as_easily():
-    found = verify_seepage.pile(0.25, 16)[0] * SheetPile(0.25).discharge
-    assert abs(found / SheetPile(0.5).discharge - 1.0) > tolerance("continuum.sheet_pile_50")
 
 
 @pytest.mark.slow

@@ -7,9 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.scene.trials_levee import FAR, PARTS, Levee
+from continuum_sph.scene.trials_levee import FAR, GRAINS, PARTS, Levee
 from continuum_sph.scene.validations import VALIDATIONS
 from continuum_sph.scene.verify_levee import QUICK, STIFFER, gone
+from continuum_sph.soil import SoilFlow
+from continuum_sph.soil.state import GROWN
+
+SLID = Levee(rows=8, end=3.2)
+"""Until its soil has slid to the end of the land."""
+STRAIN = 2.0 * (0.014 + 0.012 + 0.005)
+"""Soil rests on γ'H, a strain of γ'H/M = 0.014; what slides at 2 m/s and is stopped adds ρv²/M = 0.012; each particle
+strains as unevenly as it is sheared, and diffusion leaves 1/χ of that, 0.005, of either sign; twice the sum where all
+meet."""
 
 
 def course(given):
@@ -41,6 +50,35 @@ def test_a_saturated_slope_flatter_than_its_limit_stays():  # the twin that must
     assert rows[:, 1 : 1 + len(PARTS)].max() < 0.5 * FAR
 
 
+def densities(given):
+    """(least, largest) density of a particle over its first, of the whole course."""
+    found = [(rho.min(), rho.max()) for _, model in given.course(0.1) for rho in [model.both.ground.soil.density]]
+    least, most = np.array(found).T
+    return least.min() / (GRAINS * (1.0 - given.porosity)), most.max() / (GRAINS * (1.0 - given.porosity))
+
+
+@pytest.mark.slow
+def test_soil_that_slides_far_keeps_its_density():
+    # What pulls at soil opens it, and only diffusion closes it again: twice as much downwards.
+    least, most = densities(SLID)
+    assert most < 1.0 + STRAIN
+    assert least > 1.0 - 2.0 * STRAIN
+
+
+@pytest.mark.slow
+def test_without_diffusion_of_volume_it_is_squeezed_without_end(monkeypatch):  # the twin that must fail
+    push = SoilFlow.push
+
+    def kept(self):
+        push(self)
+        self.soil.spread[:, GROWN] = 0.0
+
+    monkeypatch.setattr(SoilFlow, "push", kept)
+    least, most = densities(SLID)
+    assert most > 1.0 + 10.0 * STRAIN
+    assert least < 1.0 - 4.0 * STRAIN
+
+
 def test_the_parts_lie_one_above_the_other_on_the_land_side():
     given = Levee(rows=8)
     _, top, _, toe = given.corners
@@ -51,6 +89,15 @@ def test_the_parts_lie_one_above_the_other_on_the_land_side():
     heights = [x[part, 1].mean() for part in parts.values()]
     assert heights == sorted(heights)
     assert not np.logical_and.reduce(list(parts.values())).any()
+
+
+def test_damping_and_what_diffusion_leaves_do_not_change_with_stiffness():
+    soft, stiff = Levee(), Levee(stiffness=2e6)
+    eps = float(np.finfo(float).eps)  # three roundings each
+    assert stiff.damping * stiff.modulus**0.5 == pytest.approx(soft.damping * soft.modulus**0.5, rel=6 * eps)
+    assert stiff.stiffness / stiff.diffusion == pytest.approx(soft.stiffness / soft.diffusion, rel=6 * eps)
+    told = stiff.table()["soil"]["numerics"]
+    assert (told["damping"], told["stress_diffusion"]) == (stiff.damping, stiff.diffusion)
 
 
 def test_what_never_moved_has_no_time():

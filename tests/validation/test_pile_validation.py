@@ -9,8 +9,19 @@ import pytest
 from continuum_sph.scene.trials_pile import Around
 from continuum_sph.scene.trials_seepage_steady import SheetPile
 from continuum_sph.scene.validations import VALIDATIONS
-from continuum_sph.scene.verify_pile import AROUND, BOUNDS, HEADS, NARROW, QUICK
-from tests.reference.sheet_pile import around, bounds, seen
+from continuum_sph.scene.verify_pile import (
+    AROUND,
+    BOUNDS,
+    CALM,
+    HEADS,
+    HELD,
+    NARROW,
+    QUICK,
+    RISING,
+    one_side,
+    rising,
+)
+from tests.reference.sheet_pile import around, bounds, seen, weakest_prism
 
 ROW = VALIDATIONS["continuum.heave_behind_pile"]
 MIDDLE = 0.5 * sum(BOUNDS[QUICK.share])
@@ -71,3 +82,48 @@ def test_heavier_grains_stand_a_head_that_others_do_not():  # the twin that must
     heavy = replace(QUICK, grains=3200.0)
     assert heavy.stands(HEADS[1] * QUICK.critical / heavy.critical)
     assert not QUICK.stands(HEADS[1])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("share", [0.25, 0.75])
+def test_heavier_grains_stand_all_that_others_might(share):  # the twin that must fail
+    # Grains of 3200 kg/m³ under the i_c of quartz still stand at the upper of the two bounds.
+    heavy = replace(HELD[share], grains=3200.0)
+    assert heavy.stands(NARROW[share][1] * QUICK.critical / heavy.critical, seconds=1.0)
+
+
+WEAKEST = {0.25: 2.54, 0.5: 2.56, 0.75: 2.65}
+"""h/(i_c s) of the least of all prisms with friction in ground that ends 1 T beside the pile; about s/10 wide."""
+
+
+def test_the_weakest_prism_is_narrow_and_that_of_terzaghi_no_lower_bound_of_it():
+    # Linear in the size of cells, of which there are 80 and 160 over T; what is left goes as their square.
+    for share, known in WEAKEST.items():
+        (coarse, wide), (fine, _) = (weakest_prism(share, 1.0, cells) for cells in (80, 160))
+        assert 2.0 * fine - coarse == pytest.approx(known, abs=5e-3 + (coarse - fine) ** 2)
+        assert wide < 0.2
+        assert known < NARROW[share][0]
+
+
+def test_without_friction_the_narrowest_prism_is_the_weakest():  # the twin that must fail
+    assert weakest_prism(0.5, 1.0, 40, friction=0.0)[1] < weakest_prism(0.5, 1.0, 40)[1]
+    assert weakest_prism(0.5, 1.0, 40, friction=0.0)[0] < WEAKEST[0.5] - 0.1
+
+
+def test_exit_gradients_known_of_runs_are_those_of_finite_volumes():
+    for given, known in RISING.items():
+        assert around(given.share, given.rows, given.reach)[1] == pytest.approx(known, abs=2e-4)
+
+
+@pytest.mark.slow
+def test_the_exit_gradient_of_a_pile_two_rows_deeper_is_refused():  # the twin that must fail
+    row = VALIDATIONS["continuum.exit_gradient_in_a_run"]
+    deeper = replace(CALM, share=CALM.share + 2.0 / CALM.rows)
+    read = rising.__wrapped__(deeper, RISING[CALM])
+    assert abs(read - 1.0) > row.tolerance
+
+
+@pytest.mark.slow
+def test_water_does_not_pass_a_pile_of_half_the_depth_as_easily():  # the twin that must fail
+    found = one_side(0.25, 16)[0] * SheetPile(0.25).discharge
+    assert abs(found / SheetPile(0.5).discharge - 1.0) > VALIDATIONS["continuum.sheet_pile_50"].tolerance

@@ -68,6 +68,13 @@ def test_stress_diffused_by_sound_lets_level_ground_creep():
     assert verify_soil.rest(1.0, restless=0.1)[0] > 5.0 * tolerance("continuum.soil_at_rest_stays")
 
 
+def test_soil_that_slides_without_exchanging_volume_is_squeezed_without_end():
+    # 1.03, 1.18, 2.6 times the density after 0.4, 1.2, 2 s
+    assert verify_soil.departure(seconds=1.2, exchanged=False) > 10.0 * tolerance(
+        "continuum.soil_that_slides_keeps_its_density"
+    )
+
+
 @pytest.mark.slow
 def test_a_slope_beyond_its_limit_fails():
     assert verify_soil.slope(33.0, 2.0) > 100.0 * tolerance("continuum.soil_slope_below_its_limit_stays")

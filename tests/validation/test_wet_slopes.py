@@ -5,9 +5,14 @@ from __future__ import annotations
 import pytest
 
 from continuum_sph.scene import verify_soil_wet
+from continuum_sph.scene.seepage_model import SeepageSimulation
 from continuum_sph.scene.trials_soil_wet import WetSlope
 from continuum_sph.scene.validations import VALIDATIONS
 from continuum_sph.scene.verify_soil_wet import SEEPING, STILL
+from tests.reference import continuum_cases
+from tests.reference.continuum_cases import missed
+
+STEEP = "soil.body=[{outline=[[0,0],[2.2,0],[2.2,0.2],[1.224,0.2],[0.3,0.8],[0,0.8]]}]"  # 33 degrees
 
 
 def tolerance(name):
@@ -46,3 +51,18 @@ def test_permeability_that_does_not_follow_porosity_is_told_apart():
     for porosity, wanted in zip(verify_soil_wet.CHANGED, exact, strict=True):
         found = verify_soil_wet.passed("constant", porosity)
         assert abs(found / wanted - 1.0) > 10.0 * tolerance("continuum.permeability_follows_porosity")
+
+
+def series(*settings):
+    """Columns of the case's series, two seconds after it settled."""
+    return continuum_cases.series(SeepageSimulation, 200, "submerged_slope", "time.end=5", *settings)
+
+
+@pytest.mark.slow
+def test_a_slope_under_water_does_as_its_case_says():
+    assert missed("submerged_slope", series()) == []
+
+
+@pytest.mark.slow
+def test_a_steep_slope_under_water_does_not_rest():  # the twin that must fail
+    assert "nothing creeps" in missed("submerged_slope", series(STEEP))

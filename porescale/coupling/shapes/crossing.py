@@ -91,6 +91,7 @@ def side_links(fluid: Fluid) -> SideLinks:
         size.append(6 * WEIGHTS[OPPOSITE[link.out]])
 
     def pairs(values: list[Any], dtype: Any) -> NDArray[Any]:
+        """Values in twos: (k, 2)."""
         return np.array(values, dtype).reshape(-1, 2)
 
     which = np.array(number, np.int64)

@@ -177,6 +177,7 @@ class Hertz:
             raise InputError(Fault("contact.law", f"{self} and {other}", "differ in kind or release"))
 
         def mean(key: str) -> float:
+            """Mean of a number of both laws."""
             return float(0.5 * (getattr(self, key) + getattr(other, key)))
 
         return Hertz(
@@ -220,9 +221,11 @@ class Hertz:
         half = 0.5 * end
 
         def rising(z: float) -> float:
+            """Integrand from touch to midway, in z = (2 q/end)^(4/5), in which it has no singularity."""
             return float(measure(half * z**1.25) ** -0.2 * half * z**0.25)
 
         def falling(z: float) -> float:
+            """The same from the end back to midway."""
             return float(measure(end - half * z**1.25) ** -0.2 * half * z**0.25)
 
         from scipy.integrate import quad  # takes longer to import than a scene to be judged

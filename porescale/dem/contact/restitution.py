@@ -50,6 +50,7 @@ def ratio_from_restitution(restitution: float, release: str) -> float:
     highest = 1.0 + math.exp(0.5 * wanted)
 
     def excess(h: float) -> float:
+        """What the phase of ``h`` is above that wanted; 0 at the root."""
         return h * contact_phase(h, release) - wanted
 
     from scipy.optimize import brentq  # takes longer to import than a scene to be judged

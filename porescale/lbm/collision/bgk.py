@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.lbm.collision.law import collide, collide_in_shares, shear_rate
+from porescale.lbm.collision.law import collide, collide_in_shares, half_force, half_of_force, shear_rate
 from porescale.lbm.collision.smagorinsky import eddy_version
 from porescale.lbm.collision.trt import relax_halves, relax_shares
 
@@ -22,6 +22,7 @@ class Bgk(NamedTuple):
 
 
 EddyBgk = eddy_version(Bgk)
+half_force.of(Bgk, EddyBgk)(half_of_force)
 
 
 @shear_rate.of(Bgk)

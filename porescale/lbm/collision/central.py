@@ -14,7 +14,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.lbm.collision.law import collide, collide_in_shares, collide_then_add, numbers, shear_rate
+from porescale.lbm.collision.law import (
+    collide,
+    collide_in_shares,
+    collide_then_add,
+    half_force,
+    half_of_force,
+    numbers,
+    shear_rate,
+)
 from porescale.lbm.collision.smagorinsky import eddy_version
 
 
@@ -27,6 +35,7 @@ class Central(NamedTuple):
 
 
 EddyCentral = eddy_version(Central)
+half_force.of(Central, EddyCentral)(half_of_force)
 collide_in_shares.of(Central, EddyCentral)(collide_then_add)
 
 

@@ -58,6 +58,18 @@ def stress(f1, f2, f3, f4, f5, f6, f7, f8, third, jx, jy, ux, uy):
 
 
 @by_law
+def half_force(law):
+    """Half the body force density: (hx, hy)."""
+
+
+@inline
+def half_of_force(law):
+    """``half_force`` of a law that may have one."""
+    half = numbers(law.rate).half
+    return half * law.fx, half * law.fy
+
+
+@by_law
 def shear_rate(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, law):
     """Rate at which the shear stress of this cell relaxes: 1/tau, or less with an eddy viscosity."""
 
@@ -116,7 +128,7 @@ def collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, first, last, law):
     Not checked: that density stays positive.
     """
     c = numbers(law.rate)
-    hx, hy = c.half * law.fx, c.half * law.fy
+    hx, hy = half_force(law)
     # Cut to the range first: an index that might be negative keeps the loop from being vectorised.
     a0, a1, a2, a3, a4 = a0[first:last], a1[first:last], a2[first:last], a3[first:last], a4[first:last]
     a5, a6, a7, a8 = a5[first:last], a6[first:last], a7[first:last], a8[first:last]

@@ -17,7 +17,15 @@ from typing import NamedTuple
 import numpy as np
 
 from porescale.ground.jit import inline
-from porescale.lbm.collision.law import collide, collide_in_shares, collide_then_add, numbers, shear_rate
+from porescale.lbm.collision.law import (
+    collide,
+    collide_in_shares,
+    collide_then_add,
+    half_force,
+    half_of_force,
+    numbers,
+    shear_rate,
+)
 from porescale.lbm.collision.smagorinsky import eddy_version
 
 ENERGY_RATE = 1.64
@@ -38,6 +46,7 @@ class Mrt(NamedTuple):
 
 
 EddyMrt = eddy_version(Mrt)
+half_force.of(Mrt, EddyMrt)(half_of_force)
 collide_in_shares.of(Mrt, EddyMrt)(collide_then_add)
 
 

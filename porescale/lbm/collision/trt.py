@@ -10,7 +10,14 @@ from typing import NamedTuple
 import numpy as np
 
 from porescale.ground.jit import inline
-from porescale.lbm.collision.law import collide, collide_in_shares, numbers, shear_rate
+from porescale.lbm.collision.law import (
+    collide,
+    collide_in_shares,
+    half_force,
+    half_of_force,
+    numbers,
+    shear_rate,
+)
 from porescale.lbm.collision.smagorinsky import eddy_version
 
 MAGIC_MIDWAY_WALL = 3 / 16
@@ -25,7 +32,17 @@ class Trt(NamedTuple):
     magic: np.floating
 
 
+class FreeTrt(NamedTuple):
+    """The same without a body force: fx and fy are 0, and what they would add is not computed."""
+
+    rate: np.floating
+    fx: np.floating
+    fy: np.floating
+    magic: np.floating
+
+
 EddyTrt = eddy_version(Trt)
+half_force.of(Trt, EddyTrt)(half_of_force)
 
 
 def odd_rate(relaxation_time: float, magic: float) -> float:
@@ -33,7 +50,14 @@ def odd_rate(relaxation_time: float, magic: float) -> float:
     return 1 / (0.5 + magic / (relaxation_time - 0.5))
 
 
-@shear_rate.of(Trt)
+@half_force.of(FreeTrt)
+def _no_force(law):
+    """None: adding -0 changes nothing, which compilers know."""
+    none = -numbers(law.rate).zero
+    return none, none
+
+
+@shear_rate.of(Trt, FreeTrt)
 def _molecular(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, law):
     """Rate of the molecular viscosity, the same everywhere."""
     return law.rate
@@ -51,6 +75,14 @@ def odd_rate_here(rate, law):
 def _collide(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, law):
     """Each half relaxes with its own rate."""
     return relax_halves(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, odd_rate_here(rate, law), law)
+
+
+@collide.of(FreeTrt)
+def _collide_free(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, law):
+    """The same of fluid that nothing drives."""
+    odd = odd_rate_here(rate, law)
+    q, xx, yy, xy = even_part(d, jx, jy, ux, uy, rate)
+    return relax_by(f0, f1, f2, f3, f4, f5, f6, f7, f8, rate, odd, q, xx, yy, xy, odd * jx, odd * jy)
 
 
 @collide_in_shares.of(Trt, EddyTrt)
@@ -95,19 +127,35 @@ def relax_shares(
 
 @inline
 def relax_to(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, even, se, odd, mx, my, law):
-    """Populations that lose shares ``even`` and ``odd`` of their halves.
-
-    The even half of direction c gains w (q + cx² xx + cy² yy + cx cy xy), ``even`` times equilibrium and ``se`` times
-    the forcing; the odd one 3 w (cx mx + cy my).
-    """
+    """``relax_by`` with ``even`` times equilibrium and ``se`` times the forcing as the even half's gain."""
     c, fx, fy = numbers(even), law.fx, law.fy
-    half = c.half
     jxx = jx * ux
     jyy = jy * uy
     q = even * (d - c.c15 * (jxx + jyy)) - c.three * se * (ux * fx + uy * fy)
     xx = c.c45 * even * jxx + c.nine * se * ux * fx
     yy = c.c45 * even * jyy + c.nine * se * uy * fy
     xy = c.nine * (even * jx * uy + se * (ux * fy + uy * fx))
+    return relax_by(f0, f1, f2, f3, f4, f5, f6, f7, f8, even, odd, q, xx, yy, xy, mx, my)
+
+
+@inline
+def even_part(d, jx, jy, ux, uy, even):
+    """q, xx, yy, xy of ``even`` times equilibrium."""
+    c = numbers(even)
+    jxx = jx * ux
+    jyy = jy * uy
+    q = even * (d - c.c15 * (jxx + jyy))
+    return q, c.c45 * even * jxx, c.c45 * even * jyy, c.nine * (even * jx * uy)
+
+
+@inline
+def relax_by(f0, f1, f2, f3, f4, f5, f6, f7, f8, even, odd, q, xx, yy, xy, mx, my):
+    """Populations that lose shares ``even`` and ``odd`` of their halves.
+
+    The even half of direction c gains w (q + cx² xx + cy² yy + cx cy xy), the odd one 3 w (cx mx + cy my).
+    """
+    c = numbers(even)
+    half = c.half
     w1, w2 = c.w1, c.w2
     t1, t2 = c.three * w1, c.three * w2
     he = half * even

@@ -62,6 +62,7 @@ def command(package: Package) -> Callable[..., int]:
         if chosen is not None:
             card["picked"] = chosen.as_dict()
         begun = time.perf_counter()
+        package.report(opened.scene)  # what contradicts itself is refused
         use_threads(threads)  # which brings numba along: after all that may be wrong
         model = package.build(opened.scene)
         outcome = package.drive(model, folder, opened.scene, card=card, resume=resume, quiet=quiet, overwrite=overwrite)

@@ -1,0 +1,123 @@
+"""Going on from a checkpoint: all that it holds is judged before anything of the run is touched.
+
+A checkpoint may be cut, spoilt, of another scene, another program or a later version, or a file that is none: each is
+an InputError of one line, and the run folder stays as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from porescale.ground.check import Fault, InputError, Unstable
+from porescale.runs.checkpoint import read_checkpoint, read_header
+from porescale.runs.cost import Cost
+from porescale.runs.model import Model
+from porescale.runs.schedule import Schedule
+
+CHECKPOINT = "checkpoint.h5"
+MISFITS = (KeyError, ValueError, TypeError, IndexError, AttributeError, OverflowError, AssertionError)
+"""What a model may raise that is given another one's state."""
+
+
+@dataclass(frozen=True)
+class Standing:
+    """How far the run of a checkpoint is: ``step``, ``time`` (s), and wall-clock ``seconds`` that it took."""
+
+    step: int
+    time: float
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Saved:
+    """What a checkpoint knows of the run's files.
+
+    series_bytes, table_bytes : length of the scheduled rows;  row_step, snapshot_step : of the last scheduled ones;
+    last_snapshot_step : of the last one, which may be there only because the run ended.
+    """
+
+    standing: Standing
+    cost: Cost
+    series_bytes: int
+    table_bytes: dict[str, int]
+    row_step: int
+    snapshot_step: int
+    last_snapshot_step: int
+
+
+def standing(folder: Path) -> Standing:
+    """That of the run in ``folder``, whatever the size of its state.  InputError where its checkpoint is none."""
+    try:
+        return _standing(read_header(folder / CHECKPOINT))
+    except MISFITS as error:
+        raise _misfit(folder, "holds no state of a run", error) from error
+
+
+def refuse_another(folder: Path, reached: Standing, card: Mapping[str, Any]) -> None:
+    """InputError where a checkpoint stands at another step than the ``card`` of a run that came to its end."""
+    if card.get("step") != reached.step:
+        error = ValueError(f"step {reached.step}, the run ended at {card.get('step')}")
+        raise _misfit(folder, "is not this run's", error)
+
+
+def take_up(folder: Path, model: Model, schedules: Mapping[str, Schedule]) -> Saved:
+    """Set ``model`` and ``schedules`` to where the checkpoint in ``folder`` left them.
+
+    InputError where the checkpoint is not that of such a model, or of a state that makes no sense.
+    """
+    content = read_checkpoint(folder / CHECKPOINT)
+    try:
+        meta = content["record"]
+        saved = Saved(
+            _standing(content),
+            Cost.restored(content.get("cost", {})),
+            int(meta["series_bytes"]),
+            {str(name): int(size) for name, size in meta.get("table_bytes", {}).items()},
+            int(meta["row_step"]),
+            int(meta["snapshot_step"]),
+            int(meta["last_snapshot_step"]),
+        )
+        model.restore(content["state"])
+        for name, schedule in schedules.items():
+            schedule.restore(content["schedules"][name], model.time)
+        other = _other(model.state(), content["state"])
+        if other:
+            raise ValueError(other)
+    except (*MISFITS, InputError) as error:
+        raise _misfit(folder, "does not fit this model", error) from error
+    try:
+        model.check()
+    except Unstable as error:
+        raise _misfit(folder, "holds no sound state", error) from error
+    return saved
+
+
+def _standing(content: Mapping[str, Any]) -> Standing:
+    return Standing(int(content["step"]), float(content["time"]), float(content["seconds"]))
+
+
+def _other(own: Any, given: Any, place: str = "") -> str:
+    """Where a state taken up is of another shape or kind than the one that was given; "" where it is nowhere.
+
+    Numpy fills an array with a smaller one, or with numbers of another kind, without a word.
+    """
+    if isinstance(own, dict) and isinstance(given, dict):
+        keys: Collection[str] = own.keys() & given.keys()
+        found = (_other(own[key], given[key], f"{place}.{key}" if place else key) for key in sorted(keys))
+        return next(filter(None, found), "")
+    if not isinstance(own, np.ndarray):
+        return ""
+    if not isinstance(given, np.ndarray) or own.shape != given.shape:
+        return f"{place}: {np.shape(given)} in place of {own.shape}"
+    return f"{place}: {given.dtype} in place of {own.dtype}" if own.dtype.kind != given.dtype.kind else ""
+
+
+def _misfit(folder: Path, problem: str, error: Exception) -> InputError:
+    reason = " ".join(str(error).split())[:120]
+    repair = "start the run anew, or take the checkpoint from a backup"
+    return InputError(Fault("checkpoint", str(folder / CHECKPOINT), f"{problem} ({reason})", repair=repair))

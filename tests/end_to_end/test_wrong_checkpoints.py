@@ -1,0 +1,201 @@
+"""A checkpoint that is cut, spoilt, of another version, scene or program is refused in one line; the run stays."""
+
+from __future__ import annotations
+
+import copy
+import shutil
+import tarfile
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+
+from porescale.runs.checkpoint import read_checkpoint, read_header, write_checkpoint
+from tests.reference.programs import KINDS, Program, program
+from tests.reference.same_run import differences
+from tests.reference.spoiled import renumbered
+
+OTHERS = {"column": "tank", "asleep": "column", "tank": None, "seeping": "tank", "soil": "tank"}
+"""Whose checkpoint each is given: another program's, or another model's of the same one; None: that of the kept run."""
+KEPT = Path(__file__).resolve().parents[1] / "samples" / "run_format_1.tar.xz"
+NAMES = ["tank", *(pytest.param(name, marks=pytest.mark.slow) for name in KINDS if name != "tank")]
+"""Quick is what has few kernels, which other tests compile anyway."""
+
+
+@dataclass(frozen=True)
+class Half:
+    """A run that is to go on: what runs it, its folder, and one of a run without a break."""
+
+    one: Program
+    folder: Path
+    untouched: Path
+
+
+@pytest.fixture(scope="module")
+def halves(tmp_path_factory) -> Callable[[str], Half]:
+    """Makes a run half done, once for each scene."""
+    known: dict[str, Half] = {}
+
+    def make(name: str) -> Half:
+        if name not in known:
+            one = program(name, tmp_path_factory.mktemp(name))
+            made = Half(one, one.place / "run", one.place / "untouched")
+            assert one.run(made.folder, "--set", f"time.end={0.5 * one.values['time']['end']}") == 0
+            assert one.run(made.untouched) == 0
+            known[name] = made
+        return known[name]
+
+    return make
+
+
+def cut(left: float) -> Callable[[Path], None]:
+    """Leaves a share of the file."""
+    return lambda file: file.write_bytes(file.read_bytes()[: int(left * file.stat().st_size)])
+
+
+def flip(name: str) -> Callable[[Path], None]:
+    """Turns a bit round in the middle of a dataset, the largest array where none is named."""
+
+    def spoil(file: Path) -> None:
+        with h5py.File(file) as opened:
+            arrays = list(opened["arrays"].values())
+            found = opened[name] if name else max(arrays, key=lambda it: it.size * it.dtype.itemsize)
+            piece = found.id.get_chunk_info(0)
+        content = bytearray(file.read_bytes())
+        content[piece.byte_offset + piece.size // 2] ^= 4
+        file.write_bytes(content)
+
+    return spoil
+
+
+def changed(change: Callable[[dict[str, Any]], object]) -> Callable[[Path], None]:
+    """A whole file that says something else."""
+
+    def spoil(file: Path) -> None:
+        content = copy.deepcopy(read_checkpoint(file))
+        change(content)
+        write_checkpoint(file, content)
+
+    return spoil
+
+
+def arrays(part: dict[str, Any]) -> Iterator[tuple[dict[str, Any], str]]:
+    """Where arrays of numbers are in a state: the tables that hold them and their names."""
+    for key, value in part.items():
+        if isinstance(value, dict):
+            yield from arrays(value)
+        elif isinstance(value, np.ndarray) and value.dtype.kind == "f":
+            yield part, key
+
+
+def replaced(by: Callable[[np.ndarray], np.ndarray], every: bool = False) -> Callable[[Path], None]:
+    """The largest array of the state, or ``every`` one, is another."""
+
+    def change(content: dict[str, Any]) -> None:
+        found = sorted(arrays(content["state"]), key=lambda it: it[0][it[1]].size)
+        for part, key in found if every else found[-1:]:
+            part[key] = by(part[key])
+
+    return changed(change)
+
+
+def folder(file: Path) -> None:
+    file.unlink()
+    file.mkdir()
+
+
+def another(name: str, halves: Callable[[str], Half], place: Path) -> Path:
+    """The folder of a run whose checkpoint is not that of ``name``."""
+    other = OTHERS[name]
+    if other is not None:
+        return halves(other).folder
+    with tarfile.open(KEPT) as packed:
+        packed.extractall(place, filter="data")
+    return place / "run"
+
+
+WAYS: dict[str, Callable[[Path], object]] = {
+    "nothing in it": cut(0.0),
+    "cut to a half": cut(0.5),
+    "cut by a byte": cut(1.0 - 1e-9),
+    "a bit of the state": flip(""),
+    "a bit of the tree": flip("tree"),
+    "a newer version": lambda file: renumbered(file, 2),
+    "no version": lambda file: renumbered(file, None),
+    "a text": lambda file: file.write_text("# nothing here\n"),
+    "noise": lambda file: file.write_bytes(np.random.default_rng(1).bytes(4000)),
+    "a folder": folder,
+    "a run's card": lambda file: shutil.copy(file.with_name("card.json"), file),
+    "a snapshot": lambda file: shutil.copy(next(file.parent.glob("*.vtkhdf")), file),
+    "a list": lambda file: write_checkpoint(file, [1, 2]),  # type: ignore[arg-type]
+    "another table": lambda file: write_checkpoint(file, {"x": np.arange(3.0)}),
+    "no state": changed(lambda content: content.pop("state")),
+    "a state of nothing": changed(lambda content: content.update(state={})),
+    "a word for a state": changed(lambda content: content.update(state="fine")),
+    "no record": changed(lambda content: content.pop("record")),
+    "no seconds": changed(lambda content: content.pop("seconds")),
+    "no schedules": changed(lambda content: content.update(schedules={})),
+    "rows that were never written": changed(lambda content: content["record"].update(series_bytes=1 << 40)),
+    "words for steps": changed(lambda content: content.update(step="many")),
+    "an array of one": replaced(lambda it: it.reshape(-1)[:1]),
+    "a longer array": replaced(lambda it: np.concatenate((it, it))),
+    "an array of words": replaced(lambda it: np.full(it.shape, "one")),
+    "an array of truths": replaced(lambda it: np.ones(it.shape, bool)),
+    "no number in it": replaced(lambda it: np.full_like(it, np.nan), every=True),
+}
+
+
+def files(place: Path) -> dict[Path, bytes]:
+    return {path: path.read_bytes() for path in sorted(place.rglob("*")) if path.is_file() and path.name != ".lock"}
+
+
+def refused(half: Half, run: Path, capsys: pytest.CaptureFixture[str]) -> str:
+    """The one line that a run says which does not go on, and leaves all as it is."""
+    before = files(run)
+    capsys.readouterr()
+    code = half.one.run(run, "--resume")
+    lines = [line for line in capsys.readouterr().err.splitlines() if not line.startswith("warning: ")]
+    assert (code, len(lines)) == (2, 1), (code, lines)
+    assert files(run) == before
+    return lines[0]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_wrong_checkpoint_is_one_line_and_nothing_is_lost(tmp_path, capsys, halves, name):
+    half = halves(name)
+    other = another(name, halves, tmp_path / "other")
+    of_another = {"another run's": lambda file: shutil.copy(other / file.name, file)}
+    for way, spoil in (WAYS | of_another).items():
+        run = Path(shutil.copytree(half.folder, tmp_path / "run"))
+        spoil(run / "checkpoint.h5")
+        try:
+            said = refused(half, run, capsys)
+        except BaseException as error:
+            error.add_note(way)
+            raise
+        assert "checkpoint" in said, (way, said)
+        assert str(run) in said, (way, said)
+        assert len(said) < 500, (way, said)
+        shutil.rmtree(run)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_sound_one_goes_on_to_the_same_bits(tmp_path, halves, name):  # the twin that must not fail
+    half = halves(name)
+    run = Path(shutil.copytree(half.folder, tmp_path / "run"))
+    assert 0 < read_header(run / "checkpoint.h5")["time"] < 0.75 * half.one.values["time"]["end"]
+    assert differences(run, half.untouched) != []
+    assert half.one.run(run, "--resume") == 0
+    assert differences(run, half.untouched) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["column", "tank"])
+def test_a_run_of_the_other_program_is_named(tmp_path, capsys, halves, name):
+    run = Path(shutil.copytree(another(name, halves, tmp_path / "other"), tmp_path / "run"))
+    said = refused(halves(name), run, capsys)
+    assert "holds a run of" in said

@@ -1,0 +1,82 @@
+"""Scenes of both programs, run in this process from their command lines: what holds of one must hold of the other."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+from continuum_sph.app import PACKAGE as CONTINUUM
+from porescale.app.main import PACKAGE as PORESCALE
+from porescale.ground import jit
+from porescale.workbench.application import application, main
+from tests.reference.killing import SCENES
+from tests.reference.scenes import write
+
+PACKAGES = {"porescale": PORESCALE, "continuum_sph": CONTINUUM}
+SOIL: dict[str, Any] = {
+    "tank": {"width": 0.3, "height": 0.2},
+    "soil": {"stiffness": 1e6, "body": [{"outline": [[0, 0], [0.1, 0], [0.1, 0.1], [0, 0.1]]}]},
+    "numerics": {"spacing": 0.01}, "time": {"end": 0.02},
+    "output": {"snapshot_interval": 0.005, "series_interval": 0.001},
+}  # fmt: skip
+KINDS = {**SCENES, "soil": ("continuum_sph", SOIL)}
+"""Package and scene: grains behind a gate in water, awake and asleep; water, ground, and ground with water in it."""
+
+
+@dataclass(frozen=True)
+class Program:
+    """What runs a scene of KINDS, which lies in ``place``."""
+
+    name: str
+    place: Path
+
+    @property
+    def scene(self) -> Path:
+        """Its file."""
+        return self.place / "scene.toml"
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """What the file says."""
+        return KINDS[self.name][1]
+
+    def run(self, folder: Path, *words: object, happens: Callable[[], object] | None = None, at: float = 0.5) -> int:
+        """Exit code of a run into ``folder``, without pictures.
+
+        happens : is called once, after the first step later than a share ``at`` of the whole time.
+        """
+        package, before = PACKAGES[KINDS[self.name][0]], jit.threads()
+        late = at * float(self.values["time"]["end"])
+
+        def build(scene: Any) -> Any:
+            """A model that does so."""
+            model = package.build(scene)
+            advance, waiting = model.advance, [happens]
+
+            def steps(count: int) -> None:
+                """Its own steps."""
+                advance(count)
+                if waiting and model.time > late:
+                    waiting.pop()()
+
+            if happens is not None:
+                model.advance = steps
+            return model
+
+        given = ["run", self.scene, "--out", folder, "--quiet", *words]
+        given += [] if "--threads" in words else ["--threads", 1]
+        try:
+            with patch.object(sys.modules[package.show.__module__], "show", lambda folder: []):
+                return main(application(replace(package, build=build)), [str(word) for word in given])
+        finally:
+            jit.set_threads(before)
+
+
+def program(name: str, place: Path) -> Program:
+    """Writes the scene's file into ``place``."""
+    write(place / "scene.toml", KINDS[name][1])
+    return Program(name, place)
