@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import shutil
-import tarfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -113,8 +112,7 @@ def another(name: str, halves: Callable[[str], Half], place: Path) -> Path:
     other = OTHERS[name]
     if other is not None:
         return halves(other).folder
-    with tarfile.open(KEPT) as packed:
-        packed.extractall(place, filter="data")
+    shutil.unpack_archive(KEPT, place)
     return place / "run"
 
 
