@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 import signal
-import subprocess
 import sys
 from pathlib import Path
 
@@ -19,6 +18,7 @@ from porescale.runs.checkpoint import read_checkpoint
 from porescale.scene.simulation import Simulation
 from tests.reference.same_run import differences
 from tests.reference.scenes import COLUMN, grain, table, write
+from tests.reference.waiting import done
 
 ROOT = Path(__file__).resolve().parents[2]
 TABLE1 = ROOT / "cases" / "column_collapse_table1"
@@ -49,11 +49,11 @@ def test_check_of_table_1_names_the_implied_viscosity(ends):
 
 def test_python_m_porescale_is_the_same_command():
     words = [sys.executable, "-m", "porescale", "check", str(TABLE1)]
-    done = subprocess.run(words, capture_output=True, text=True, check=False, cwd=ROOT)
-    assert done.returncode == 2
-    assert "the others (spacing, step, relaxation_time) imply 1e-05 m^2/s" in done.stderr
-    assert "Traceback" not in done.stderr
-    assert done.stdout == ""
+    ended = done(words, cwd=ROOT)
+    assert ended.returncode == 2
+    assert "the others (spacing, step, relaxation_time) imply 1e-05 m^2/s" in ended.stderr
+    assert "Traceback" not in ended.stderr
+    assert ended.stdout == ""
 
 
 def test_check_prints_what_a_scene_implies_and_builds_nothing(scene, porescale, capsys, tmp_path, monkeypatch):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import select
 import signal
 import subprocess
 import sys
@@ -15,6 +16,7 @@ from porescale import build, load, open_run
 from porescale.runs.checkpoint import read_checkpoint
 from tests.reference.same_run import contents, differences, state_of
 from tests.reference.scenes import STEPS
+from tests.reference.waiting import done, kill, running, talked, until
 
 ROOT = Path(__file__).resolve().parents[2]
 KILLED = """
@@ -60,7 +62,7 @@ GATE = (55, 500)
 def killed(last: int, *words: object) -> int:
     """Exit code of the command line ``words`` in a process that kills itself after ``last`` steps."""
     command = [sys.executable, "-c", KILLED, str(last), *map(str, words)]
-    return subprocess.run(command, cwd=ROOT, capture_output=True, check=False).returncode
+    return done(command, cwd=ROOT).returncode
 
 
 def sliding(scene: Path, state: dict) -> int:
@@ -111,7 +113,7 @@ def test_killed_five_times_it_ends_bit_for_bit_as_untouched(folder, scene, tmp_p
     assert slid > 0
     assert differences(folder, out) != []
     resumed = [sys.executable, "-m", "porescale", "run", str(scene), "--out", str(out), "--resume", "--quiet"]
-    subprocess.run([*resumed, "--threads", "1"], cwd=ROOT, check=True, capture_output=True)
+    assert done([*resumed, "--threads", "1"], cwd=ROOT).returncode == 0
     assert differences(folder, out) == []
     assert len(open_run(out).card["resumed"]) == 5
     names = {path.name for path in folder.iterdir()}
@@ -127,16 +129,16 @@ def killed_by_the_clock(delay: float, checkpoint: Path, *words: object) -> int:
     """Exit code of the command line ``words`` in a process killed ``delay`` seconds after its first new checkpoint,
     however long that takes on a busy machine."""
     command = [sys.executable, "-c", SLOWED, *map(str, words)]
-    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
-        assert process.stdout is not None
+    with running(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert until(process, lambda: select.select([process.stdout], [], [], 0.0)[0])
         assert process.stdout.readline() == b"first step\n"
         before = written(checkpoint)
-        while written(checkpoint) == before:
-            assert process.poll() is None
-            time.sleep(0.005)
+        assert until(process, lambda: written(checkpoint) != before)
         time.sleep(delay)
-        process.kill()
-        return process.wait()
+        assert process.poll() is None
+        kill(process)
+        talked(process)
+        return process.returncode
 
 
 def test_killed_at_any_moment_it_ends_bit_for_bit_as_untouched(folder, scene, tmp_path):
@@ -151,7 +153,7 @@ def test_killed_at_any_moment_it_ends_bit_for_bit_as_untouched(folder, scene, tm
         assert all(np.isfinite(it.clouds["grains"].position).all() for it in open_run(out).snapshots())
     assert 0 < reached[0] < reached[1] < STEPS
     resumed = [sys.executable, "-m", "porescale", "run", str(scene), "--out", str(out), "--resume", "--quiet"]
-    subprocess.run([*resumed, "--threads", "1"], cwd=ROOT, check=True, capture_output=True)
+    assert done([*resumed, "--threads", "1"], cwd=ROOT).returncode == 0
     assert differences(folder, out) == []
     assert not list(out.rglob(".*writing*"))  # what was half written is gone
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-import subprocess
 import sys
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import pytest
 
 from tests.reference import decks
 from tests.reference.same_run import differences
+from tests.reference.waiting import done
 
 ROOT = Path(__file__).resolve().parents[2]
 CHILD = """
@@ -39,7 +39,7 @@ STEPS, TOUCH = 1200, 830
 def deck(last: int, *words: object) -> int:
     """Exit code of ``porescale demseg run`` with ``words``."""
     command = [sys.executable, "-c", CHILD, str(last), "demseg", "run", *map(str, words), "--quiet", "--threads", "1"]
-    return subprocess.run(command, cwd=ROOT, capture_output=True, check=False).returncode
+    return done(command, cwd=ROOT).returncode
 
 
 @pytest.fixture(scope="module")

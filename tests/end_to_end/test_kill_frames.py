@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-import subprocess
 import sys
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from porescale.runs.open_run import open_run
 from porescale.runs.series import read_series
 from tests.reference.same_run import differences
 from tests.reference.scenes import write
+from tests.reference.waiting import done
 
 ROOT = Path(__file__).resolve().parents[2]
 CHILD = """
@@ -55,7 +55,7 @@ SCENE = {
 def run(last: int, *words: object) -> int:
     """Exit code of ``porescale run`` with ``words``."""
     command = [sys.executable, "-c", CHILD, str(last), "run", *map(str, words), "--quiet", "--threads", "1"]
-    return subprocess.run(command, cwd=ROOT, capture_output=True, check=False).returncode
+    return done(command, cwd=ROOT).returncode
 
 
 @pytest.fixture(scope="module")

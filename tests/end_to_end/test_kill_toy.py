@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import random
 import signal
 import subprocess
@@ -17,29 +16,35 @@ from porescale.runs.checkpoint import read_checkpoint
 from porescale.runs.open_run import open_run
 from tests.reference.same_run import contents
 from tests.reference.toy_model import run_toy
+from tests.reference.waiting import done, kill, running, talked, until
 
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def toy(folder: Path, *options: str) -> subprocess.Popen[bytes]:
-    """The toy as a process of its own."""
-    words = [sys.executable, "-m", "tests.reference.toy_model", str(folder), *options]
-    return subprocess.Popen(words, cwd=ROOT, stderr=subprocess.PIPE)
+def words(folder: Path, *options: str) -> list[str]:
+    """The toy's command line, as a process of its own."""
+    return [sys.executable, "-m", "tests.reference.toy_model", str(folder), *options]
 
 
-def kill_in_the_middle(process: subprocess.Popen[bytes], folder: Path, delay: float) -> None:
-    """SIGKILL ``delay`` seconds after the run has got further (importing takes most of the time)."""
+def size(series: Path) -> int:
+    return series.stat().st_size if series.exists() else 0
+
+
+def killed_in_the_middle(folder: Path, delay: float, *options: str) -> int:
+    """Exit code of a run killed ``delay`` seconds after it has got further (importing takes most of the time)."""
     series = folder / "series.csv"
-    size = series.stat().st_size if series.exists() else 0
-    while process.poll() is None:
-        moved = series.exists() and series.stat().st_size > size
-        if moved and (any(folder.glob("parts/0*")) or any(folder.glob("*.vtkhdf"))):
-            break
-        time.sleep(0.002)
-    time.sleep(delay)
-    if process.poll() is None:
-        os.kill(process.pid, signal.SIGKILL)
-    process.communicate()
+    before = size(series)
+
+    def moved() -> bool:
+        return size(series) > before and (any(folder.glob("parts/0*")) or any(folder.glob("*.vtkhdf")))
+
+    with running(words(folder, *options), cwd=ROOT) as process:
+        until(process, moved)
+        time.sleep(delay)
+        if process.poll() is None:
+            kill(process)
+        talked(process)
+        return process.returncode
 
 
 def assert_same(one: Path, other: Path) -> None:
@@ -59,24 +64,20 @@ def assert_same(one: Path, other: Path) -> None:
 def test_a_run_killed_again_and_again_ends_as_the_untouched_one(tmp_path, varying):
     options = ("--varying",) if varying else ()
     untouched, killed = tmp_path / "untouched", tmp_path / "killed"
-    process = toy(untouched, *options)
-    _, said = process.communicate()
-    assert process.returncode == 0, said.decode()
+    first = done(words(untouched, *options), cwd=ROOT)
+    assert first.returncode == 0, first.stderr
     dice = random.Random(varying)
     ends = []
     for number in range(2):
         resume = ("--resume",) if number else ()
-        process = toy(killed, "--pause", "0.002", *resume, *options)
-        kill_in_the_middle(process, killed, dice.uniform(0.0, 0.15))
-        ends.append(process.returncode)
+        ends.append(killed_in_the_middle(killed, dice.uniform(0.0, 0.15), "--pause", "0.002", *resume, *options))
         run = open_run(killed)
         assert len(run) >= 1
         for snapshot in run.snapshots():
             assert np.isfinite(snapshot.grids["fields"].cells["velocity"]).all()
     assert -signal.SIGKILL in ends
-    last = toy(killed, "--resume", *options)
-    _, said = last.communicate()
-    assert last.returncode == 0, said.decode()
+    last = done(words(killed, "--resume", *options), cwd=ROOT)
+    assert last.returncode == 0, last.stderr
     assert_same(untouched, killed)
     assert not (killed / "parts").exists()
     assert not list(killed.glob(".*writing*"))
@@ -85,11 +86,10 @@ def test_a_run_killed_again_and_again_ends_as_the_untouched_one(tmp_path, varyin
 def test_a_polite_stop_saves_and_says_so(tmp_path):
     untouched, stopped = tmp_path / "untouched", tmp_path / "stopped"
     run_toy(untouched, duration=0.2)
-    process = toy(stopped, "--pause", "0.002")
-    while not ((stopped / "series.csv").exists() and (stopped / "series.csv").stat().st_size):
-        time.sleep(0.005)
-    process.send_signal(signal.SIGINT)
-    _, said = process.communicate()
+    with running(words(stopped, "--pause", "0.002"), cwd=ROOT, stderr=subprocess.PIPE) as process:
+        assert until(process, lambda: size(stopped / "series.csv"))
+        process.send_signal(signal.SIGINT)
+        _, said = talked(process)
     assert process.returncode == 130
     assert b"resume to continue" in said
     assert len(said.strip().splitlines()) == 1

@@ -5,13 +5,13 @@ from __future__ import annotations
 import datetime
 import json
 import os
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from tests.reference.killing import SCENES
+from tests.reference.killing import COLD_PATIENCE, SCENES
+from tests.reference.waiting import done
 
 ROOT = Path(__file__).resolve().parents[2]
 SEED = int(os.environ.get("PORESCALE_SEED", datetime.date.today().toordinal()))
@@ -20,9 +20,9 @@ SEED = int(os.environ.get("PORESCALE_SEED", datetime.date.today().toordinal()))
 
 def killed(place: Path, *words: object) -> dict:
     """What a campaign of kills counted.  In a process of its own: one that has started threads must not fork."""
-    command = [sys.executable, "-m", "tests.reference.killing", *map(str, words), "--seed", SEED, "--out", place]
-    done = subprocess.run([*map(str, command)], cwd=ROOT, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, f"seed {SEED}: {done.stderr[-2000:]}"
+    command = [sys.executable, "-m", "tests.reference.killing", *words, "--seed", SEED, "--out", place]
+    ended = done(command, 2 * COLD_PATIENCE, cwd=ROOT)  # a child that hangs is told of earlier
+    assert ended.returncode == 0, f"seed {SEED}: {ended.stderr[-2000:]}"
     return json.loads((place / "kills.json").read_text())
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from tests.reference.waiting import done
 
 ROOT = Path(__file__).resolve().parents[2]
 FIRST = {
@@ -28,11 +29,9 @@ sys.exit(code)
 def asked(package: str, *words: object) -> tuple[int, bool, list[str]]:
     """Exit code of a command line, whether numba was imported, and the lines on stderr."""
     text = SCRIPT.format(first=FIRST[package])
-    done = subprocess.run(
-        [sys.executable, "-c", text, *map(str, words)], cwd=ROOT, capture_output=True, text=True, check=False
-    )
-    assert "Traceback" not in done.stderr, done.stderr
-    return done.returncode, done.stdout.splitlines()[-1] == "True", done.stderr.splitlines()
+    ended = done([sys.executable, "-c", text, *words], cwd=ROOT)
+    assert "Traceback" not in ended.stderr, ended.stderr
+    return ended.returncode, ended.stdout.splitlines()[-1] == "True", ended.stderr.splitlines()
 
 
 @pytest.mark.parametrize("package", FIRST)

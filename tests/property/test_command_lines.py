@@ -16,6 +16,7 @@ from porescale.app.main import commands
 from porescale.ground import jit
 from porescale.workbench.application import application, main
 from tests.reference.command_lines import Line, made
+from tests.reference.waiting import done
 
 ROOT = Path(__file__).resolve().parents[2]
 LINES = int(os.environ.get("PORESCALE_LINES", "40"))
@@ -63,10 +64,8 @@ def as_process(line: Line, folder: Path) -> tuple[int, str]:
     """The same as a process of its own."""
     words = [sys.executable, "-m", line.package, *line.words]
     path = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(
-        words, cwd=folder, env=path, capture_output=True, timeout=PATIENCE, check=False, stdin=subprocess.DEVNULL
-    )
-    return done.returncode, done.stderr.decode("utf-8", "replace")
+    ended = done(words, PATIENCE, cwd=folder, env=path, stdin=subprocess.DEVNULL, errors="replace")
+    return ended.returncode, ended.stderr
 
 
 def judged(line: Line, code: int, said: str) -> None:

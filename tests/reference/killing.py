@@ -12,6 +12,7 @@ SIGINT and SIGTERM come in the same way (--stops): for them it is said how long 
 from __future__ import annotations
 
 import argparse
+import faulthandler
 import json
 import mmap
 import os
@@ -38,6 +39,7 @@ from porescale.workbench.sections import load
 from tests.reference.failing_disk import whole
 from tests.reference.same_run import differences
 from tests.reference.scenes import COLUMN, grain, table, write
+from tests.reference.waiting import ended, given_up
 
 PHASES = ("starting", "building", "first steps", "stepping", "row", "snapshot", "checkpoint", "joining", "pictures",
           "ending", "compiling", "keeping a kernel")  # fmt: skip
@@ -170,21 +172,20 @@ def _package(name: str) -> Any:
 
 @dataclass
 class Child:
-    """A process that runs a scene into ``folder``, resuming if there is a run.  patience : PATIENCE of its kind."""
+    """A process that runs a scene into ``folder``, resuming if there is a run.
+
+    patience : PATIENCE of its kind;  said : the file of what it says
+    """
 
     number: int
     marks: Marks
     began: float
+    said: Path
     patience: float = PATIENCE
 
-    def ended(self) -> int | None:
-        """Its exit code, -n if signal n ended it; None while it runs."""
-        done, status = os.waitpid(self.number, os.WNOHANG)
-        return os.waitstatus_to_exitcode(status) if done else None
-
     def wait(self) -> int:
-        """Its exit code."""
-        return os.waitstatus_to_exitcode(os.waitpid(self.number, 0)[1])
+        """Its exit code, -n if signal n ended it."""
+        return ended(self.number, self.patience, self.said, LOOK)
 
     def wait_for(self, phase: int, nth: int) -> bool:
         """Whether ``phase`` was begun ``nth`` times before the process ended."""
@@ -192,8 +193,8 @@ class Child:
             if os.waitid(os.P_PID, self.number, os.WEXITED | os.WNOHANG | os.WNOWAIT):
                 return False
             if time.monotonic() - self.began > self.patience:
-                os.kill(self.number, signal.SIGKILL)
-                raise AssertionError(f"a run hangs while {PHASES[self.marks.now()]}")
+                words = given_up(self.number, self.said)
+                raise AssertionError(f"a run hangs while {PHASES[self.marks.now()]}: {words}")
             time.sleep(LOOK)
         return True
 
@@ -236,25 +237,30 @@ class Campaign:
     def child(self, folder: Path, cold: Path | None = None) -> Child:
         """A process that runs the scene into ``folder``.  cold : a folder of kernels and packings for it alone."""
         self.marks.clear()
-        words, began = self.words(folder), time.monotonic()
+        words, began, said = self.words(folder), time.monotonic(), self.place / "said"
         if cold is not None:
             code = ("import sys; from pathlib import Path; from tests.reference.killing import Marks, run; "
                     "sys.exit(run(sys.argv[1], sys.argv[3:], Marks(Path(sys.argv[2]))))")  # fmt: skip
-            given = os.environ | {"NUMBA_CACHE_DIR": str(cold / "kernels"), "XDG_CACHE_HOME": str(cold)}
+            given = os.environ | {
+                "NUMBA_CACHE_DIR": str(cold / "kernels"),
+                "XDG_CACHE_HOME": str(cold),
+                "PYTHONFAULTHANDLER": "1",
+            }
             command = [sys.executable, "-c", code, self.package, str(self.place / "marks"), *words]
-            with (self.place / "said").open("ab") as said:
-                started = subprocess.Popen(command, cwd=ROOT, env=given, stdout=subprocess.DEVNULL, stderr=said)
+            with said.open("ab") as file:
+                started = subprocess.Popen(command, cwd=ROOT, env=given, stdout=subprocess.DEVNULL, stderr=file)
             started.returncode = 0  # waited for by number
-            return Child(started.pid, self.marks, began, COLD_PATIENCE)
+            return Child(started.pid, self.marks, began, said, COLD_PATIENCE)
         number = os.fork()
         if number == 0:
             code = 1
             try:
-                os.dup2(os.open(self.place / "said", os.O_WRONLY | os.O_CREAT | os.O_APPEND), 2)
+                os.dup2(os.open(said, os.O_WRONLY | os.O_CREAT | os.O_APPEND), 2)
+                faulthandler.enable()
                 code = run(self.package, words, self.marks, self.pictured)
             finally:
                 os._exit(code)
-        return Child(number, self.marks, began)
+        return Child(number, self.marks, began, said)
 
     def aim(self, folder: Path) -> tuple[int, int, float]:
         """A phase, which of its beginnings, of those that are left, and seconds after that."""

@@ -1,0 +1,118 @@
+"""Waiting for other processes, but not for ever: one that hangs says where, is killed, and the test fails.
+
+A Python process that has faulthandler enabled prints the stacks of its threads on SIGABRT, also from within compiled
+code and while it waits for a lock.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+PATIENCE = 600.0
+"""Seconds after which a child counts as hanging.  None takes more than a minute or two, compiling included."""
+LOOK = 2e-3
+"""Seconds between looks at a child that was forked."""
+LAST_WORDS = 5.0
+"""Seconds that a child has for printing its stacks."""
+WORDS = 8000
+"""Characters of what a child said that are shown."""
+
+
+class Hung(AssertionError):
+    """A child neither ended nor did what was waited for."""
+
+
+def done(command: Sequence[object], patience: float = PATIENCE, **named: Any) -> subprocess.CompletedProcess[str]:
+    """``subprocess.run`` of a Python program, what it says kept as text; Hung, with its stacks, after ``patience`` s.
+
+    Whatever it has started itself is killed with it.
+    """
+    with running(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **named) as process:
+        said, cried = talked(process, patience)
+        return subprocess.CompletedProcess(process.args, process.returncode, said, cried)
+
+
+@contextmanager
+def running(command: Sequence[object], **named: Any) -> Iterator[subprocess.Popen[Any]]:
+    """A process of its own group with faulthandler enabled; killed with all that it started when left."""
+    env = {**named.pop("env", os.environ), "PYTHONFAULTHANDLER": "1"}
+    process = subprocess.Popen([*map(str, command)], env=env, start_new_session=True, **named)
+    try:
+        yield process
+    finally:
+        if process.poll() is None:
+            kill(process)
+        process.wait()
+        for pipe in (process.stdin, process.stdout, process.stderr):
+            if pipe is not None:
+                pipe.close()
+
+
+def talked(process: subprocess.Popen[Any], patience: float = PATIENCE) -> tuple[Any, Any]:
+    """``process.communicate()``; Hung after ``patience`` s."""
+    try:
+        return process.communicate(timeout=patience)
+    except subprocess.TimeoutExpired:
+        process.send_signal(signal.SIGABRT)
+    try:
+        said = process.communicate(timeout=LAST_WORDS)
+    except subprocess.TimeoutExpired:
+        kill(process)
+        said = process.communicate()
+    kill(process)
+    raise Hung(f"{process.args} hung for {patience:g} s: {''.join(map(_text, said))[-WORDS:]}")
+
+
+def until(process: subprocess.Popen[Any], happens: Callable[[], object], patience: float = PATIENCE) -> bool:
+    """Wait until something happens or ``process`` has ended; whether it happened.  Hung after ``patience`` s."""
+    began = time.monotonic()
+    while not happens():
+        if process.poll() is not None:
+            return bool(happens())
+        if time.monotonic() - began > patience:
+            talked(process, 0.0)
+        time.sleep(LOOK)
+    return True
+
+
+def kill(process: subprocess.Popen[Any]) -> None:
+    """SIGKILL to a process of `running` and to what it started."""
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
+
+
+def ended(number: int, patience: float = PATIENCE, said: Path | None = None, look: float = LOOK) -> int:
+    """Exit code of child ``number``, -n if signal n ended it; Hung after ``patience`` s.
+
+    said : the file in which it has faulthandler enabled, and says what else it says
+    """
+    began = time.monotonic()
+    while time.monotonic() - began < patience:
+        found, status = os.waitpid(number, os.WNOHANG)
+        if found:
+            return os.waitstatus_to_exitcode(status)
+        time.sleep(look)
+    raise Hung(f"process {number} hung for {patience:g} s: {given_up(number, said)}")
+
+
+def given_up(number: int, said: Path | None = None) -> str:
+    """Last words of child ``number``, which is made to print its stacks to file ``said`` and is killed."""
+    os.kill(number, signal.SIGABRT)
+    began = time.monotonic()
+    while time.monotonic() - began < LAST_WORDS and not os.waitpid(number, os.WNOHANG)[0]:
+        time.sleep(LOOK)
+    with suppress(ProcessLookupError, ChildProcessError):
+        os.kill(number, signal.SIGKILL)
+        os.waitpid(number, 0)
+    return said.read_text(errors="replace")[-WORDS:] if said is not None and said.exists() else ""
+
+
+def _text(said: Any) -> str:
+    return said.decode("utf-8", "replace") if isinstance(said, bytes) else said or ""
