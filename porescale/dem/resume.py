@@ -78,3 +78,4 @@ def restore(grains: Grains, state: dict[str, Any]) -> None:
     grains.steps, grains._time = int(state["steps"]), float(state["time"])
     grains._steps_of_dt = int(state["steps_of_dt"])
     grains.last_dt, grains._stale = float(state["last_dt"]), bool(state["stale"])
+    grains.standing = None

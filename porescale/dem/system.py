@@ -1,6 +1,4 @@
-"""A system of grains: discs, their law, the walls and plates around them, and the list of pairs, stepped
-together.
-"""
+"""A system of grains: discs, their law, walls and plates around them, and the list of pairs, stepped together."""
 
 from __future__ import annotations
 
@@ -12,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from porescale.dem import resume
+from porescale.dem.at_rest import Standing, standing, stood
 from porescale.dem.bonds import BondList, beside
 from porescale.dem.cell import Still, Straining, period_of
 from porescale.dem.contact.law import BOOK, COLUMNS, KernelLaw, memory_of
@@ -49,9 +48,8 @@ class Grains:
     Positions are not wrapped on periodic sides.  The first step starts from velocities half a step back;
     for a start from rest that is the same.  ``steps`` and ``time`` count contact steps and seconds.
     Arrays: wall_force (w, 2), plate_force (p, 2) N/m of the last step, wall_moment (w,) N m/m about the walls' points,
-    wall_spring (w, n, s), plate_spring (p, n, s) m,
-    the springs: tangential and, with rolling resistance, rolling;  rectangles (m, 6): see rectangle.py, with
-    rectangle_force (m, 2), rectangle_spring (m, n, s); see ``set_rectangles``;
+    wall_spring (w, n, s), plate_spring (p, n, s) m, the springs: tangential and, with rolling resistance, rolling;
+    rectangles (m, 6): see rectangle.py and ``set_rectangles``, with rectangle_force (m, 2), rectangle_spring (m, n, s);
     held (n, 3): not 0 where x, y, rotation of a disc is held, see ``hold``;  withheld (n, 3) N/m, N/m, N m/m: force
     and torque that held components did not follow, mean over the last call of ``step``;  both (0, 3) till first used.
     """
@@ -91,19 +89,18 @@ class Grains:
         self.set_law(law, wall_law)
         self._load_walls()
         self.plate_force = np.zeros((len(self.plates), 2))
-        self.external_force = np.zeros((count, 2))
-        self.external_torque = np.zeros(count)
+        self.external_force, self.external_torque = np.zeros((count, 2)), np.zeros(count)
         self.held, self.withheld = np.zeros((0, 3), np.uint8), np.zeros((0, 3))
         self.reach: Array | None = None  # of the pair list, m, where it is more than the radii
         self.touching = np.zeros(count, np.int64)
-        self.steps, self.last_dt = 0, 0.0
+        self.steps, self.last_count, self.last_dt = 0, 0, 0.0  # last_count: steps of the last call
         self._time, self._steps_of_dt = 0.0, 0  # seconds before dt last changed, steps since
         self._health = Health(len(self.plates), count)
         self.segments: SegmentList | None = None  # see frames.framed
         self.bonds: BondList | None = None  # see bonds.bond
         self.sleep: Sleep | None = None  # see asleep.py
         self._still = Still(*box.period)
-        self.last_count = 0  # steps of the last call
+        self.standing: Standing | None = None  # where nothing can move, see at_rest.py
         self._stale = True  # the pair list must be looked at before the next step
 
     def set_law(self, law: Law | Materials, wall_law: Law | None = None) -> None:
@@ -262,6 +259,8 @@ class Grains:
         drag (1/s): background damping, for settling only.  Raises Unstable when the list must be rebuilt and a position
         is no number.  No array is allocated, but a rebuild may grow the list's buffers.
         """
+        if self.standing and stood(self, self.standing, dt, external_force, external_torque, count, drag):
+            return
         for own, given in ((self.external_force, external_force), (self.external_torque, external_torque)):
             if given is not own:
                 own[:] = 0.0 if given is None else given
@@ -309,6 +308,7 @@ class Grains:
                 self._steering.start(self._time, self._steps_of_dt)
         if len(self.held):
             self.withheld /= count
+            self.standing = standing(self, drag)
 
     def hold(self, disc: int | slice | Array, x: bool = True, y: bool = True, rotation: bool = True) -> None:
         """Hold these components of the velocity of discs (index, slice or mask) from now on, and let the others go.
@@ -362,7 +362,7 @@ class Grains:
             self.pairs.update(self.discs.position, reach)
         if self.segments is not None:
             self.segments.update()
-        self._stale = False
+        self._stale, self.standing = False, None
 
     def plate(self, name: str) -> int:
         """Index of the plate called ``name``; raises InputError when there is none."""

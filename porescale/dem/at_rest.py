@@ -1,0 +1,117 @@
+"""Discs that are all held and at rest, and touch nothing: nothing can move, and what holds them bears what acts on
+them from outside.  Their contact steps change nothing else, and are left out.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.dem.cell import image
+from porescale.ground.jit import kernel
+
+if TYPE_CHECKING:
+    from porescale.dem.system import Grains
+
+Array = NDArray[np.float64]
+
+
+class Standing(NamedTuple):
+    """What a system was when a step in full left it as it was: positions (n, 2) m, the walls, step (s), drag (1/s)."""
+
+    position: Array
+    walls: Array
+    dt: float
+    drag: float
+
+
+@kernel
+def resting(held, velocity, spin):
+    """Whether all discs are held (n, 3) altogether, with no velocity (n, 2) m/s and spin (n,) rad/s."""
+    for i in range(spin.shape[0]):
+        if not (held[i, 0] and held[i, 1] and held[i, 2]):
+            return False
+        if not (velocity[i, 0] == 0.0 and velocity[i, 1] == 0.0 and spin[i] == 0.0):
+            return False
+    return True
+
+
+@kernel
+def clear(position, radius, start, partner, walls, cell):
+    """Whether no listed pair touches, and no disc a wall (w, 4 or wider): as in forces.py and walls.py."""
+    for i in range(radius.shape[0]):
+        for k in range(start[i], start[i + 1]):
+            j = partner[k]
+            dx, dy = image(position[j, 0] - position[i, 0], position[j, 1] - position[i, 1], cell)
+            if not dx * dx + dy * dy >= (radius[i] + radius[j]) * (radius[i] + radius[j]):
+                return False
+        for w in range(walls.shape[0]):
+            distance = (position[i, 0] - walls[w, 0]) * walls[w, 2] + (position[i, 1] - walls[w, 1]) * walls[w, 3]
+            if not radius[i] - distance <= 0.0:
+                return False
+    return True
+
+
+@kernel
+def bear(count, held, position, velocity, spin, stood, force, torque, external_force, external_torque, withheld):
+    """Whether all discs are held and at rest where they ``stood`` (n, 2) m; if so, what ``count`` steps of them write.
+
+    force (n, 2) N/m, torque (n,) N m/m: from outside, copied to external_force and external_torque;  withheld (n, 3):
+    overwritten with the mean over the steps, rounded as they round it.  Returning False, it writes nothing.
+    """
+    for i in range(spin.shape[0]):
+        if not (held[i, 0] and held[i, 1] and held[i, 2]):
+            return False
+        if not (velocity[i, 0] == 0.0 and velocity[i, 1] == 0.0 and spin[i] == 0.0):
+            return False
+        if not (position[i, 0] == stood[i, 0] and position[i, 1] == stood[i, 1]):
+            return False
+    for i in range(spin.shape[0]):
+        external_force[i, 0], external_force[i, 1], external_torque[i] = force[i, 0], force[i, 1], torque[i]
+        fx, fy, moment = 0.0, 0.0, 0.0
+        for _ in range(count):
+            fx += force[i, 0]
+            fy += force[i, 1]
+            moment += torque[i]
+        withheld[i, 0], withheld[i, 1], withheld[i, 2] = fx / count, fy / count, moment / count
+    return True
+
+
+def others_are_about(grains: Grains) -> bool:
+    """Whether a step does more than discs and walls: plates, rectangles, bodies, bonds, sleep or an energy book."""
+    others = grains._steering, grains.segments, grains.bonds, grains.sleep, grains.book
+    return bool(len(grains.plates) or len(grains.rectangles) or any(other is not None for other in others))
+
+
+def standing(grains: Grains, drag: float) -> Standing | None:
+    """What ``grains`` are right after a step in full, if another would leave them so; None if something may change."""
+    d, pairs = grains.discs, grains.pairs
+    if grains._stale or others_are_about(grains) or not resting(grains.held, d.velocity, d.spin):
+        return None
+    if not clear(d.position, d.radius, pairs.start, pairs.partner, grains.walls, grains.cell):
+        return None
+    return Standing(d.position.copy(), grains.walls, grains.last_dt, drag)
+
+
+def stood(
+    grains: Grains, last: Standing, dt: float, force: Array | None, torque: Array | None, count: int, drag: float
+) -> bool:
+    """Do ``count`` contact steps, arguments as in Grains.step, if all stands as it did ``last``; else False, and
+    nothing is done.
+    """
+    if force is None or torque is None or force.shape != last.position.shape or torque.shape != force.shape[:1]:
+        return False
+    if last.walls is not grains.walls or (dt, drag) != last[2:] or not count > 0 or others_are_about(grains):
+        return False
+    d = grains.discs
+    if not bear(
+        count, grains.held, d.position, d.velocity, d.spin, last.position, force, torque, grains.external_force,
+        grains.external_torque, grains.withheld,
+    ):  # fmt: skip
+        return False
+    grains.steps += count
+    grains._steps_of_dt += count
+    grains.last_count = count
+    return True
