@@ -2,7 +2,7 @@
 
 They are what `study parts` holds a column of water against: the step of `step.py` with Wendland's kernel, γ = 7,
 artificial viscosity without β, hydrostatic density diffusion, and no book of energies.  Sums run in the order of
-`rates_plain`; the pair list is the one that everybody has.
+`rates`; the pair list is the one that everybody has.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def plain_walls(fluid, start, split, partner, record, h, g):
 def plain_pairs(
     fluid, start, split, partner, record, acceleration, rate, h, g, alpha, softening, delta, calm, sound, mu
 ):
-    """Overwrites ``acceleration`` (fluid, 2) and ``rate`` (fluid,), as `rates_plain.plain_rates`;  g: downwards."""
+    """Overwrites ``acceleration`` (fluid, 2) and ``rate`` (fluid,), as `rates.rates`;  g: downwards."""
     scale = -8.75 / (np.pi * h * h * h * h)
     inverse, soft, half_g = 1.0 / h, softening * h * h, 0.5 * g
     haste, restless = haste_of(calm, h)
@@ -133,7 +133,8 @@ class PlainColumn:
 
     def __init__(self, flow: Flow) -> None:
         layer, law, own = flow.layer, flow.law, flow.pairs
-        assert flow.simple()
+        assert len(law.fluids) == 1
+        assert not any((law.images, law.varied, law.xsph, law.fluids[0].cohesion, law.gravity[0], flow.layer.booked))
         assert law.smoothing.kind == WENDLAND
         assert law.noise == HYDROSTATIC
         assert not any((law.sticky, law.corrected, law.shifting, law.beta, law.cut, law.filter_every))

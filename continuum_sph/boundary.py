@@ -56,7 +56,8 @@ def load_walls(
 
     Overwrites the rows of ``record`` (n, 8) and ``ghost`` (n, 2) of those that have fluid for partners, and all of
     their ``pressure`` (n,);  ghost: 2 v_wall - mean fluid velocity: the average of fluid and ghost is then the wall's
-    velocity at the wall.  Their volume stays mass/density0, the square of the spacing, as that of fluid at the start.
+    velocity at the wall;  None where no wall holds the fluid.  Their volume stays mass/density0, the square of the
+    spacing, as that of fluid at the start.
     """
     for w in prange(fluid, x.shape[0]):
         if start[w] == split[w]:
@@ -73,8 +74,9 @@ def load_walls(
         record[w, RHO] = density0
         record[w, P] = p
         record[w, VOLUME] = mass[w] / density0
-        ghost[w, 0] = 2.0 * v[w, 0] - ux
-        ghost[w, 1] = 2.0 * v[w, 1] - uy
+        if ghost is not None:
+            ghost[w, 0] = 2.0 * v[w, 0] - ux
+            ghost[w, 1] = 2.0 * v[w, 1] - uy
 
 
 def tank_walls(

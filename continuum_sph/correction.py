@@ -11,10 +11,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from continuum_sph.fluids import alike
 from continuum_sph.layers import RHO, VOLUME, X, Y
 from continuum_sph.smoothing import kernel_slope, kernel_value, slope_scale, slope_shape
 from porescale.ground.jit import inline, parallel_kernel, prange
-from porescale.ground.lanes import LANES, nearest, nothing, root, take_rows, total
+from porescale.ground.lanes import LANES, nearest, nothing, root, take_rows, take_two, total
 from porescale.particles.cells import minimum_image
 
 NONE, FULL = 0.5, 0.8  # a level surface has 0.49 in its first row and 0.90 in its second
@@ -39,20 +40,24 @@ def inverse(xx, xy, yy):
 
 @parallel_kernel
 def surroundings(
-    fluid, start, split, partner, record, material, mixed, matrix, crowd, slant, kind, h, spacing, period_x, period_y
+    fluid, start, split, partner, record, traits, matrix, crowd, slant, kind, h, spacing, period_x, period_y
 ):  # fmt: skip
     """Overwrites, of fluid particles, ``matrix`` (n, 4), L and the trace of M;  ``crowd`` (n, 2) 1/m,
     Σ {1 + R (W/W(spacing))⁴} V ∇W, which points away from where particles crowd;  ``slant`` (n, 2) kg/m⁴, gradient of
     density within the material, exact for linear fields.
 
-    start, split, partner: full list, walls from ``split[i]`` on;  record: see Layer;  mixed: whether ``material`` (n,)
-    tells two fluids apart;  kind, h: smoothing;  spacing of the particles, m;  periods, m or 0.
+    start, split, partner: full list, walls from ``split[i]`` on;  record: see Layer;  traits: of `rates`, None of one
+    fluid;  kind, h: smoothing;  spacing of the particles, m;  periods, m or 0, or both None.  Where crowd or slant is
+    not wanted it is None.
     """
     inverse_h = 1.0 / h
     scale = slope_scale(kind, h)
     whole = 1.0 / kernel_value(kind, spacing * inverse_h, h)
-    turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
-    turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
+    turns_x = 0.0
+    turns_y = 0.0
+    if period_x is not None:
+        turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
+        turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
     for i in prange(fluid):
         xi = record[i, X]
         yi = record[i, Y]
@@ -60,48 +65,65 @@ def surroundings(
         mxx = nothing()
         mxy = nothing()
         myy = nothing()
+        nxx = nothing()
+        nxy = nothing()
+        nyy = nothing()
         ax = nothing()
         ay = nothing()
         bx = nothing()
         by = nothing()
         first = start[i]
-        if not mixed:
-            while first < split[i]:  # a particle stands for the missing end of its row, at no distance from itself
-                xj, yj, _, _, rho_j, _, volume, _ = take_rows(record, partner, first, split[i], i)
-                first += LANES
-                dx = xi - xj
-                dy = yi - yj
+        while first < split[i]:  # a particle stands for the missing end of its row, at no distance from itself
+            xj, yj, _, _, rho_j, _, volume, _ = take_rows(record, partner, first, split[i], i)
+            dx = xi - xj
+            dy = yi - yj
+            if period_x is not None:
                 dx -= period_x * nearest(dx * turns_x)
                 dy -= period_y * nearest(dy * turns_y)
-                q = root(dx * dx + dy * dy) * inverse_h
-                part = volume * scale * slope_shape(kind, q)
-                px = part * dx
-                py = part * dy
-                mxx += px * dx
-                mxy += px * dy
-                myy += py * dy
+            q = root(dx * dx + dy * dy) * inverse_h
+            part = volume * scale * slope_shape(kind, q)
+            px = part * dx
+            py = part * dy
+            mxx += px * dx
+            mxy += px * dy
+            myy += py * dy
+            if crowd is not None:
                 ratio = kernel_value(kind, q, h) * whole
                 ratio *= ratio
                 weight = 1.0 + CLUMP * ratio * ratio
                 ax += weight * px
                 ay += weight * py
+            if slant is not None:
+                if traits is not None:
+                    material_j, _ = take_two(traits, partner, first, split[i], i)
+                    same = alike(traits[i, 0], material_j)
+                    px *= same
+                    py *= same
+                    nxx += px * dx
+                    nxy += px * dy
+                    nyy += py * dy
                 bx += (rho_j - rho) * px
                 by += (rho_j - rho) * py
-            first = split[i]
+            first += LANES
         xx = -total(mxx)
         xy = -total(mxy)
         yy = -total(myy)
-        oxx = xx
-        oxy = xy
-        oyy = yy
+        if slant is not None:
+            if traits is not None:
+                lxx, lxy, lyy = inverse(-total(nxx), -total(nxy), -total(nyy))
+            else:
+                lxx, lxy, lyy = inverse(xx, xy, yy)
+            slant[i, 0] = lxx * total(bx) + lxy * total(by)
+            slant[i, 1] = lxy * total(bx) + lyy * total(by)
         cx = total(ax)
         cy = total(ay)
-        rx = total(bx)
-        ry = total(by)
-        for k in range(np.uint64(first), np.uint64(start[i + 1])):
+        for k in range(np.uint64(split[i]), np.uint64(start[i + 1])):
             j = np.uint64(partner[k])
-            dx = minimum_image(xi - record[j, X], period_x)
-            dy = minimum_image(yi - record[j, Y], period_y)
+            dx = xi - record[j, X]
+            dy = yi - record[j, Y]
+            if period_x is not None:
+                dx = minimum_image(dx, period_x)
+                dy = minimum_image(dy, period_y)
             q = np.sqrt(dx * dx + dy * dy) * inverse_h
             part = record[j, VOLUME] * kernel_slope(kind, q, h)
             px = part * dx
@@ -109,25 +131,17 @@ def surroundings(
             xx -= px * dx
             xy -= px * dy
             yy -= py * dy
-            ratio = kernel_value(kind, q, h) * whole
-            ratio *= ratio
-            weight = 1.0 + CLUMP * ratio * ratio
-            cx += weight * px
-            cy += weight * py
-            if j < fluid and material[j] == material[i]:
-                oxx -= px * dx
-                oxy -= px * dy
-                oyy -= py * dy
-                step = record[j, RHO] - rho
-                rx += step * px
-                ry += step * py
+            if crowd is not None:
+                ratio = kernel_value(kind, q, h) * whole
+                ratio *= ratio
+                weight = 1.0 + CLUMP * ratio * ratio
+                cx += weight * px
+                cy += weight * py
         lxx, lxy, lyy = inverse(xx, xy, yy)
         matrix[i, 0] = lxx
         matrix[i, 1] = lxy
         matrix[i, 2] = lyy
         matrix[i, TRACE] = xx + yy
-        crowd[i, 0] = cx
-        crowd[i, 1] = cy
-        lxx, lxy, lyy = inverse(oxx, oxy, oyy)
-        slant[i, 0] = lxx * rx + lxy * ry
-        slant[i, 1] = lxy * rx + lyy * ry
+        if crowd is not None:
+            crowd[i, 0] = cx
+            crowd[i, 1] = cy

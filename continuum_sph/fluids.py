@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.eos import Gas, Tait
+from porescale.ground.jit import inline
+from porescale.ground.lanes import greater, lesser
 
 Floats = NDArray[np.float64]
 
@@ -56,3 +58,9 @@ class Fluid:
 def table(fluids: tuple[Fluid, ...]) -> Floats:
     """The table of all fluids, (m, 9)."""
     return np.array([fluid.row() for fluid in fluids])
+
+
+@inline
+def alike(number, other):
+    """1 where particles have fluids of one number, else 0, so that sums need no branch; the numbers as floats."""
+    return 1.0 - lesser(greater(number - other, other - number), 1.0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 from continuum_sph.eos import Gas, Tait
 from continuum_sph.fluids import Fluid
@@ -83,6 +84,22 @@ class Law:
             default=0.0,
         )
 
+    @cached_property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """What `limits` knows before a step: number of the first bound, least c/h (1/s), third and fourth bound (s)."""
+        h, infinite = self.smoothing.length, math.inf
+        thickest = max(fluid.viscosity / fluid.state.density for fluid in self.fluids)
+        if len(self.fluids) > 1:
+            thickest *= STIFFER
+        lightest = min(fluid.state.density for fluid in self.fluids)
+        spread = 2.0 * self.diffusion * ALTERNATING
+        return (
+            min(self.courant, CALMED / spread) if spread > 0.0 else self.courant,
+            self.interface_speed / h,
+            0.125 * h * h / thickest if thickest > 0.0 else infinite,
+            0.25 * (lightest * h**3 / (2.0 * math.pi * self.tension)) ** 0.5 if self.tension > 0.0 else infinite,
+        )
+
     def limits(self, acceleration: float, pace: float) -> tuple[float, float, float, float]:
         """Steps allowed by sound, acceleration (m/s²), viscosity and capillary waves, s: eq. 49, h²/ν in the third.
 
@@ -90,17 +107,11 @@ class Law:
         Kothe & Zemach 1992);  ``pace``: the largest c/h, 1/s.  The diffusion of density goes by sound, too, and allows
         2/(49 δ) in place of 0.25, less where δ > 0.163.
         """
-        h, infinite = self.smoothing.length, float("inf")
-        pace = max(pace, self.interface_speed / h)
-        thickest = max(fluid.viscosity / fluid.state.density for fluid in self.fluids)
-        if len(self.fluids) > 1:
-            thickest *= STIFFER
-        lightest = min(fluid.state.density for fluid in self.fluids)
-        spread = 2.0 * self.diffusion * ALTERNATING
-        courant = min(self.courant, CALMED / spread) if spread > 0.0 else self.courant
+        courant, least, viscous, capillary = self.bounds
+        pace = max(pace, least)
         return (
-            courant / pace if pace > 0.0 else infinite,
-            self.courant * (h / acceleration) ** 0.5 if acceleration > 0.0 else infinite,
-            0.125 * h * h / thickest if thickest > 0.0 else infinite,
-            0.25 * (lightest * h**3 / (2.0 * math.pi * self.tension)) ** 0.5 if self.tension > 0.0 else infinite,
+            courant / pace if pace > 0.0 else math.inf,
+            self.courant * (self.smoothing.length / acceleration) ** 0.5 if acceleration > 0.0 else math.inf,
+            viscous,
+            capillary,
         )

@@ -42,6 +42,8 @@ class Layer:
     drift: Floats = field(init=False)  # (fluid, 2) m/s, what shifting adds
     ghost: Floats = field(init=False)  # (n, 2) m/s, velocity that makes fluid at a wall stick (rows of walls)
     length: Floats = field(init=False)  # (n,) m, smoothing lengths, set by the flow
+    traits: Floats = field(init=False)  # (fluid, 2) number and viscosity (Pa s) of the fluid, for pairs of several
+    girths: Floats = field(init=False)  # (n, 2) `length`, for pairs where it varies, and nothing
     matrix: Floats = field(init=False)  # (n, 4) xx, xy, yy of the gradient correction, and how closed in: `correction`
     facing: Floats = field(init=False)  # (n, 4) of walls: nearest point of the surface, normal into the fluid
     power: Floats = field(init=False)  # (fluid, 6) W/m, see VISCOUS, …, STOPPED; (0, 6) without `keep_book`
@@ -61,6 +63,7 @@ class Layer:
         self.rate, self.rate_before = np.zeros(self.fluid), np.zeros(self.fluid)
         self.predicted, self.pressure = np.zeros(self.fluid), np.zeros(n)
         self.record, self.ghost = np.zeros((n, 8)), np.zeros((n, 2))
+        self.traits, self.girths = np.zeros((0, 2)), np.zeros((0, 2))
         self.length, self.facing = np.zeros(n), np.zeros((n, 4))
         self.matrix = np.tile([1.0, 0.0, 1.0, 2.0], (n, 1))
         self.power, self.energy = np.zeros((0, 6)), np.zeros((0, 6))

@@ -9,24 +9,25 @@ kinetic and compressive energy balance pair by pair.
 
 Every particle gathers from its full row of partners: each pair is computed twice, nothing is scattered, so threads
 never meet and the sums have one order.  Forces of a pair are opposite but for the rounding of the division by mass.
+A row of partners is taken several at a time (`porescale.ground.lanes`); a particle stands for the missing end of its
+own row and adds nothing, being at no distance from itself and moving as it does.  Factors that all partners share
+multiply the sums.
+
+What a scene does not ask for is None among the arguments.  The pass is compiled for what there is, and kept on disk,
+each kind by itself: it holds no branch, load or sum of anything else.
 """
 
 from __future__ import annotations
 
-import numpy as np
-
 from continuum_sph.artificial_viscosity import artificial
-from continuum_sph.boundary_paper import image
-from continuum_sph.density import HYDROSTATIC, LINEAR, continuity, diffusion, haste_of, pace
-from continuum_sph.fluids import COHESION, SOUND, VISCOSITY
-from continuum_sph.layers import BY_SHIFTING, BY_WALLS, DIFFUSIVE, RHO, STIFF, VISCOUS, VOLUME, VX, VY, P, X, Y
+from continuum_sph.density import HYDROSTATIC, LINEAR, haste_of, pace
+from continuum_sph.fluids import COHESION, SOUND, VISCOSITY, alike
+from continuum_sph.layers import BY_SHIFTING, BY_WALLS, DIFFUSIVE, RHO, STIFF, VISCOUS, VX, VY, P, X, Y
+from continuum_sph.rates_walls import walls_push
 from continuum_sph.smoothing import kernel_value, slope_scale, slope_shape
-from continuum_sph.viscosity import between, central, laminar
+from continuum_sph.viscosity import laminar, mutual
 from porescale.ground.jit import parallel_kernel, prange
-from porescale.particles.cells import minimum_image
-
-NOISE, IMAGED, SHIFTED, CORRECTED, VARIED = range(5)
-"""Entries of choices, see `rates`."""
+from porescale.ground.lanes import LANES, nearest, nothing, root, take_four, take_rows, take_two, total
 
 
 @parallel_kernel
@@ -41,33 +42,39 @@ def split_rows(fluid, start, partner, split):
 
 @parallel_kernel
 def rates(
-    fluid, start, split, partner, record, ghost, facing, material, length, matrix, slant, drift, mass, table, choices,
+    fluid, start, split, partner, record, traits, girths, ghost, facing, material, matrix, slant, drift, mass, table,
     acceleration, rate, smoothed, power,
-    kind, h, gx, gy, alpha, beta, softening, delta, calm, sticky, smoothing, period_x, period_y, half,
+    kind, h, gx, gy, alpha, beta, softening, delta, calm, noise, cohesive, smoothing, period_x, period_y, half,
 ):  # fmt: skip
     """Overwrites ``acceleration`` (fluid, 2) m/s², ``rate`` (fluid,) kg/(m³ s), ``smoothed`` (fluid, 2) m/s and the
-    columns of ``power`` (fluid, 6) W/m but for BY_TENSION, unless it has no rows.
+    columns of ``power`` (fluid, 6) W/m but for BY_TENSION.
 
-    start, split, partner: full pair list, wall partners of row i from ``split[i]`` on;  record, ghost, facing,
-    material, length, matrix, drift: see Layer;  slant: of `surroundings`;  mass (n,) kg/m;  table (m, 9): the fluids;
-    choices: what is NOISE, IMAGED, SHIFTED, CORRECTED, VARIED;  kind, h: smoothing;  gx, gy gravity,
-    m/s²;  alpha, beta, softening: artificial viscosity;  delta 2 δ h of the density diffusion, m, and
-    calm, m/s, of `haste_of`;  sticky: walls hold the fluid, else they let it slip;  smoothing: XSPH's ε, for
-    Σ (m_j/ρ̄)(v_j - v_i) W (eq. 53 with the sign that smooths);  periods, m or 0;  half: of the step that ends here, s.
-    Two fluids rub along the line of centres, one as eq. 34 has it (`viscosity`).
+    start, split, partner: full pair list, wall partners of row i from ``split[i]`` on;  record: see Layer;  table
+    (m, 9): the fluids;  kind, h: smoothing;  gy gravity, m/s²;  alpha, softening: artificial viscosity;  delta 2 δ h of
+    the density diffusion, m, calm, m/s, of `haste_of`, and noise, what diffusion takes for noise;  half: of the step
+    that ends here, s.  None where a scene has no
 
-    NOISE: what density diffusion takes for noise;  IMAGED: walls of the paper;  SHIFTED: density is that of the place
-    that a particle's ``drift`` takes it to;  CORRECTED: gradients by ``matrix``;  VARIED: h by ``length`` (eq. 7).
+    second fluid: ``traits`` (fluid, 2), number of the fluid and μ, Pa s: two fluids rub along the line of centres, one
+    as eq. 34 has it (`viscosity`);  h of its own for each particle: ``girths`` (n, 2), h, m, in the first (eq. 7);
+    walls that hold: ``material`` (n,), 0 for wall particles that do, and ``ghost``, see Layer, which walls of the paper
+    need not;  walls of the paper: ``facing``, see Layer;  corrected gradients: ``matrix``, see Layer;  noise about a
+    linear field, nor shifting: ``slant`` of `surroundings`;  shifting: ``drift`` (fluid, 2) m/s, to whose place the
+    density belongs;  book: ``power`` and, without cohesion, ``mass`` (n,) kg/m;  cohesion: ``cohesive``;  XSPH:
+    ``smoothed`` and ``smoothing``, its ε, for Σ (m_j/ρ̄)(v_j - v_i) W (eq. 53 with the sign that smooths);  gravity
+    sideways: ``gx``, m/s²;  β of artificial viscosity: ``beta``;  periods: ``period_x`` and ``period_y``, m or 0.
     """
-    wraps = period_x > 0.0 or period_y > 0.0
-    mixed = table.shape[0] > 1
-    noise = choices[NOISE]
-    imaged = choices[IMAGED] > 0
-    shifted = choices[SHIFTED] > 0
-    corrected = choices[CORRECTED] > 0
-    varied = choices[VARIED] > 0
-    booked = power.shape[0] > 0
+    linear = noise == LINEAR
     haste, restless = haste_of(calm, h)
+    level = 0.5 if noise == HYDROSTATIC else 0.0
+    lift_x = level * gx if gx is not None else 0.0
+    lift_y = level * gy
+    turns_x = 0.0
+    turns_y = 0.0
+    if period_x is not None:
+        turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
+        turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
+    scale_h = slope_scale(kind, h)
+    inverse_h = 1.0 / h
     for i in prange(fluid):
         xi = record[i, X]
         yi = record[i, Y]
@@ -75,151 +82,129 @@ def rates(
         vyi = record[i, VY]
         rho = record[i, RHO]
         own = record[i, P]
-        stiff_i = record[i, STIFF]
+        stiff = record[i, STIFF]
         specific = 1.0 / rho
-        own_material = material[i]
-        own_viscosity = table[own_material, VISCOSITY]
+        own_material = 0
+        if traits is not None:
+            own_material = int(traits[i, 0])
+        viscosity = table[own_material, VISCOSITY]
         sound = table[own_material, SOUND]
-        strength = delta * sound
-        pull = 2.0 * table[own_material, COHESION] / (mass[i] * mass[i])
-        viscosity = own_viscosity
-        hij = h
-        inverse = 1.0 / h
-        scale = slope_scale(kind, h)
-        lxx = 1.0
-        lxy = 0.0
-        lyy = 1.0
-        ax = 0.0
-        ay = 0.0
-        bx = 0.0
-        by = 0.0
-        change = 0.0
-        spread = 0.0
-        sx = 0.0
-        sy = 0.0
-        # Unsigned indices: the compiler then needs no code for negative ones.
-        for k in range(np.uint64(start[i]), np.uint64(split[i])):
-            j = np.uint64(partner[k])
-            dx = xi - record[j, X]
-            dy = yi - record[j, Y]
-            if wraps:
-                dx = minimum_image(dx, period_x)
-                dy = minimum_image(dy, period_y)
-            vx = vxi - record[j, VX]
-            vy = vyi - record[j, VY]
+        friction = laminar(viscosity, 1.0, specific, 1.0)
+        if cohesive is not None:
+            pull = 2.0 * table[own_material, COHESION] / (mass[i] * mass[i])
+        ax = nothing()
+        ay = nothing()
+        bx = nothing()
+        by = nothing()
+        sx = nothing()
+        sy = nothing()
+        change = nothing()
+        spread = nothing()
+        k = start[i]
+        while k < split[i]:
+            xj, yj, vxj, vyj, rho_j, pressure_j, volume, stiff_j = take_rows(record, partner, k, split[i], i)
+            dx = xi - xj
+            dy = yi - yj
+            if period_x is not None:
+                dx -= period_x * nearest(dx * turns_x)
+                dy -= period_y * nearest(dy * turns_y)
+            vx = vxi - vxj
+            vy = vyi - vyj
             distance2 = dx * dx + dy * dy
-            if varied:
-                hij = 0.5 * (length[i] + length[j])
-                inverse = 1.0 / hij
-                scale = slope_scale(kind, hij)
-            q = np.sqrt(distance2) * inverse
-            slope = scale * slope_shape(kind, q)
-            rho_j = record[j, RHO]
-            volume = record[j, VOLUME]
-            same = True
-            if mixed:
-                same = material[j] == own_material
-                viscosity = between(own_viscosity, table[material[j], VISCOSITY])
+            if girths is not None:
+                girth, _ = take_two(girths, partner, k, split[i], i)
+                width = 0.5 * (girths[i, 0] + girth)
+                inverse = 1.0 / width
+                scale = slope_scale(kind, width)
+            else:
+                width = h
+                inverse = inverse_h
+                scale = scale_h
+            q = root(distance2) * inverse
+            part = volume * scale * slope_shape(kind, q)
             approach = vx * dx + vy * dy
-            tx = dx
-            ty = dy
-            braking = slope
-            if corrected:
-                lxx = 0.5 * (matrix[i, 0] + matrix[j, 0])
-                lxy = 0.5 * (matrix[i, 1] + matrix[j, 1])
-                lyy = 0.5 * (matrix[i, 2] + matrix[j, 2])
-                tx = lxx * dx + lxy * dy
-                ty = lxy * dx + lyy * dy
-                braking = 0.5 * (lxx + lyy) * slope
-            change += continuity(rho, volume, vx * tx + vy * ty, slope)
-            if same:
-                expected = 0.0
-                if noise == HYDROSTATIC:
-                    expected = -0.5 * (stiff_i + record[j, STIFF]) * (gx * dx + gy * dy)
-                elif noise == LINEAR:
-                    expected = -0.5 * ((slant[i, 0] + slant[j, 0]) * dx + (slant[i, 1] + slant[j, 1]) * dy)
-                spread += diffusion(rho, rho_j, expected, volume, slope, strength * pace(approach, haste, restless))
+            spreading = part * pace(approach, haste, restless)
+            if traits is not None:
+                material_j, viscosity_j = take_two(traits, partner, k, split[i], i)
+                same = alike(traits[i, 0], material_j)
+                spreading *= same
+            lift = lift_y * dy
+            if gx is not None:
+                lift += lift_x * dx
+            spread += (rho - rho_j - (stiff + stiff_j) * lift) * spreading
+            if slant is not None and linear:
+                sideways, up = take_two(slant, partner, k, split[i], i)
+                spread -= 0.5 * ((slant[i, 0] + sideways) * dx + (slant[i, 1] + up) * dy) * spreading
+            thrust = (own + pressure_j) * specific
+            if cohesive is not None:
+                if traits is not None:
+                    thrust -= pull * same * rho_j
+                else:
+                    thrust -= pull * rho_j
             both = rho + rho_j
-            partner_mass = rho_j * volume
-            thrust = (own + record[j, P]) * specific * volume
-            if same:
-                thrust -= pull * partner_mass
-            thrust *= slope
-            ax -= thrust * tx
-            ay -= thrust * ty
-            damp = artificial(alpha, beta, sound, hij, softening, approach, distance2, both) * partner_mass * slope
-            brake = laminar(viscosity, volume, specific, braking)
-            if mixed:
-                damp -= central(brake, approach, distance2)
-                brake = 0.0
-            bx += brake * vx - damp * dx
-            by += brake * vy - damp * dy
-            if smoothing > 0.0:
-                weight = smoothing * 2.0 * partner_mass / both * kernel_value(kind, q, hij)
+            damp = artificial(alpha, beta, sound, width, softening, approach, distance2, both) * rho_j
+            if matrix is not None:
+                mxx, mxy, myy, _ = take_four(matrix, partner, k, split[i], i)
+                mxx = 0.5 * (matrix[i, 0] + mxx)
+                mxy = 0.5 * (matrix[i, 1] + mxy)
+                myy = 0.5 * (matrix[i, 2] + myy)
+                tx = mxx * dx + mxy * dy
+                ty = mxy * dx + myy * dy
+                change += (vx * tx + vy * ty) * part
+                thrust *= part
+                ax -= thrust * tx
+                ay -= thrust * ty
+                braking = 0.5 * (mxx + myy) * part
+                push = damp * part
+            else:
+                change += approach * part
+                braking = part
+                push = (thrust + damp) * part
+            if traits is not None:
+                rub = mutual(viscosity, viscosity_j, specific, approach, distance2) * braking
+                ax -= (push - rub) * dx
+                ay -= (push - rub) * dy
+                if power is not None:
+                    bx -= (damp * part - rub) * dx
+                    by -= (damp * part - rub) * dy
+            else:
+                brake = friction * braking
+                ax += brake * vx - push * dx
+                ay += brake * vy - push * dy
+                if power is not None:
+                    bx += brake * vx - damp * part * dx
+                    by += brake * vy - damp * part * dy
+            if smoothing is not None:
+                weight = rho_j * volume / both * kernel_value(kind, q, width)
                 sx -= weight * vx
                 sy -= weight * vy
-        swept = 0.0
-        pushed_x = 0.0
-        pushed_y = 0.0
-        for k in range(np.uint64(split[i]), np.uint64(start[i + 1])):
-            j = np.uint64(partner[k])
-            dx = xi - record[j, X]
-            dy = yi - record[j, Y]
-            if wraps:
-                dx = minimum_image(dx, period_x)
-                dy = minimum_image(dy, period_y)
-            if varied:
-                hij = 0.5 * (length[i] + length[j])
-                inverse = 1.0 / hij
-                scale = slope_scale(kind, hij)
-            distance2 = dx * dx + dy * dy
-            slope = scale * slope_shape(kind, np.sqrt(distance2) * inverse)
-            volume = record[j, VOLUME]
-            vx = vxi - record[j, VX]
-            vy = vyi - record[j, VY]
-            ux = vxi - ghost[j, 0]
-            uy = vyi - ghost[j, 1]
-            if imaged:
-                vx, vy = image(
-                    record[j, X] + dx, record[j, Y] + dy, vx, vy, record[j, X], record[j, Y], facing[j], sticky
-                )
-                ux = vx
-                uy = vy
-            tx = dx
-            ty = dy
-            braking = slope
-            if corrected:
-                tx = matrix[i, 0] * dx + matrix[i, 1] * dy
-                ty = matrix[i, 1] * dx + matrix[i, 2] * dy
-                braking = 0.5 * (matrix[i, 0] + matrix[i, 2]) * slope
-            swept += rho * volume * (vx * tx + vy * ty) * slope
-            thrust = (own + record[j, P]) * specific * volume * slope
-            brake = laminar(own_viscosity, volume, specific, braking) if sticky and material[j] == 0 else 0.0
-            pushed_x -= thrust * tx
-            pushed_y -= thrust * ty
-            if mixed:
-                along = central(brake, ux * dx + uy * dy, distance2)
-                ux = along * dx
-                uy = along * dy
-                brake = 1.0
-            bx += brake * ux
-            by += brake * uy
+            k += LANES
+        pushed_x, pushed_y, held_x, held_y, swept = walls_push(
+            i, split[i], start[i + 1], partner, record, traits, girths, ghost, facing, material, matrix, vxi, vyi, rho,
+            own, viscosity, kind, h, scale_h, period_x, period_y,
+        )  # fmt: skip
+        diffused = delta * sound * total(spread)
+        acceleration[i, 0] = total(ax) + pushed_x + held_x
+        if gx is not None:
+            acceleration[i, 0] += gx
+        acceleration[i, 1] = total(ay) + pushed_y + held_y + gy
         moved = 0.0
         lifted = 0.0
-        if shifted:
+        if drift is not None:
             moved = drift[i, 0] * slant[i, 0] + drift[i, 1] * slant[i, 1]
-            lifted = gx * drift[i, 0] + gy * drift[i, 1]
-        acceleration[i, 0] = ax + pushed_x + bx + gx
-        acceleration[i, 1] = ay + pushed_y + by + gy
-        rate[i] = change + swept + moved + spread
-        smoothed[i, 0] = sx
-        smoothed[i, 1] = sy
-        if booked:
+            lifted = gy * drift[i, 1]
+            if gx is not None:
+                lifted += gx * drift[i, 0]
+        rate[i] = rho * total(change) + swept + moved + diffused
+        if smoothing is not None:
+            smoothed[i, 0] = 2.0 * smoothing * total(sx)
+            smoothed[i, 1] = 2.0 * smoothing * total(sy)
+        if power is not None:
             # What these do to speeds they do at the step's end, and what they do to densities at its middle.
             vxi += half * acceleration[i, 0]
             vyi += half * acceleration[i, 1]
-            work = mass[i] * specific * specific * (own - half * rho / stiff_i * rate[i])
-            power[i, VISCOUS] = -mass[i] * (bx * vxi + by * vyi)
-            power[i, DIFFUSIVE] = -work * spread
+            work = mass[i] * specific * specific * (own - half * rho / stiff * rate[i])
+            power[i, VISCOUS] = -mass[i] * ((total(bx) + held_x) * vxi + (total(by) + held_y) * vyi)
+            power[i, DIFFUSIVE] = -work * diffused
             power[i, BY_WALLS] = work * swept + mass[i] * (pushed_x * vxi + pushed_y * vyi)
             power[i, BY_SHIFTING] = work * moved - mass[i] * lifted

@@ -43,12 +43,15 @@ def shift(
 
     start, split, partner: full list, walls from ``split[i]`` on;  material, table: the particles' fluids;  matrix,
     crowd: of `surroundings`;  strength 2 h s U, m²/s;  most: longest shifting velocity, m/s;  kind, h: smoothing;
-    periods, m or 0.
+    periods, m or 0, or both None.
     """
     steep = slope_scale(kind, h)
     inverse_h = 1.0 / h
-    turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
-    turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
+    turns_x = 0.0
+    turns_y = 0.0
+    if period_x is not None:
+        turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
+        turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
     for i in prange(fluid):
         drift[i, 0] = 0.0
         drift[i, 1] = 0.0
@@ -67,8 +70,9 @@ def shift(
             k += LANES
             dx = record[i, X] - xj
             dy = record[i, Y] - yj
-            dx -= period_x * nearest(dx * turns_x)
-            dy -= period_y * nearest(dy * turns_y)
+            if period_x is not None:
+                dx -= period_x * nearest(dx * turns_x)
+                dy -= period_y * nearest(dy * turns_y)
             part = volume * steep * slope_shape(kind, root(dx * dx + dy * dy) * inverse_h)
             falls_x += part * (trace - closed) * dx
             falls_y += part * (trace - closed) * dy

@@ -34,7 +34,6 @@ from continuum_sph.law import RULES, Law
 from continuum_sph.layers import Layer
 from continuum_sph.motion import kick, kick_drift, pressurise
 from continuum_sph.rates import rates, split_rows
-from continuum_sph.rates_plain import plain_rates
 from continuum_sph.shifting import MOST, QUIET, shift
 from continuum_sph.stopped import no_step
 from continuum_sph.surface_tension import colours, curvatures, middle_curvatures, normals, pull_interface
@@ -70,7 +69,7 @@ class Flow:
         layer, count = self.layer, self.layer.count
         layer.length[:] = self.law.smoothing.length
         self.pairs.adaptive = True
-        self.split = np.zeros(count, np.int64)
+        self.split, self.together = np.zeros(count, np.int64), False
         self.lower, self.upper = np.full(2, -np.inf), np.full(2, np.inf)
         walls = count - layer.fluid
         self.wall_density = np.full(walls, self.law.state.density)
@@ -81,27 +80,38 @@ class Flow:
         self.colour, self.normal = np.zeros(layer.fluid), np.zeros((layer.fluid, 3))
         self.curvature, self.middle = np.zeros(layer.fluid), np.zeros(layer.fluid)
 
-    def choose(self) -> NDArray[np.int64]:
-        """The choices of `rates`."""
-        law = self.law
-        return np.array([law.noise, law.images, law.shifting > 0.0, law.corrected, law.varied], np.int64)
-
-    def simple(self) -> bool:
-        """Whether `plain_rates` knows all of the law."""
-        law = self.law
-        return len(law.fluids) == 1 and law.fluids[0].cohesion == law.xsph == 0.0 and not (law.images or law.varied)
+    def choose(self) -> None:
+        """What kernels take: the arrays of what the law asks for, None in place of the others."""
+        layer, law = self.layer, self.law
+        self.table = table(law.fluids)
+        several, shifted, xsph = len(law.fluids) > 1, law.shifting > 0.0, law.xsph > 0.0
+        if several:
+            layer.traits = np.zeros((layer.fluid, 2))
+        if law.varied:
+            layer.girths = np.column_stack((layer.length, np.zeros(layer.count)))
+        linear = law.noise == LINEAR and law.diffusion > 0.0
+        self.surveyed = law.corrected or shifted or linear
+        around, along = self.pairs.period
+        wraps = max(around, along) > 0.0
+        self.period: tuple[float | None, float | None] = (around, along) if wraps else (None, None)
+        self.of_fluids = (layer.material if several else None, layer.length, self.table)
+        self.of_pairs = (layer.traits if several else None, layer.girths if law.varied else None)
+        self.moving = (layer.smoothed if xsph else None, layer.drift if shifted else None)
+        self.crowded = (self.crowd if shifted else None, self.slant if shifted or linear else None)
+        ghost = layer.ghost if law.sticky and not law.images else None
+        self.walled = (ghost, layer.facing if law.images else None, layer.material if law.sticky else None)
+        self.cohesive = True if any(fluid.cohesion for fluid in law.fluids) else None
 
     @property
-    def surveyed(self) -> bool:
-        """Whether a choice needs the moments of neighbourhoods."""
-        law = self.law
-        return law.corrected or law.shifting > 0.0 or (law.noise == LINEAR and law.diffusion > 0.0)
+    def book(self) -> tuple[Floats | None, Floats | None]:
+        """Power and energy, if a book is kept."""
+        layer = self.layer
+        return (layer.power, layer.energy) if layer.booked else (None, None)
 
     def start(self) -> None:
         """Rates of the initial state, from which the first step goes on."""
         layer = self.layer
-        self.table, self.choices, self.plain = table(self.law.fluids), self.choose(), self.simple()
-        self.bare = self.plain and not (self.surveyed or self.law.beta or self.law.gravity[0])
+        self.choose()
         if self.law.images:
             walls = layer.x[layer.fluid :]
             layer.facing[layer.fluid :] = facing(walls, tuple(self.lower), tuple(self.upper))
@@ -117,8 +127,9 @@ class Flow:
 
     def advance(self) -> None:
         """One step."""
-        step = self.next_step
+        step, self.together = self.next_step, True
         self.evaluate(step, self.begin(step))
+        self.together = False
         self.end(step)
 
     def begin(self, step: float) -> float:
@@ -126,11 +137,15 @@ class Flow:
         layer = self.layer
         # Rates belong to mid-steps: distance from the last to this one over that between the last two.
         ratio = (step + self.last_steps[0]) / (self.last_steps[0] + self.last_steps[1])
-        self.stopped += kick_drift(
-            layer.x, layer.v, layer.acceleration, layer.smoothed, layer.drift, layer.density, layer.rate,
-            layer.rate_before, layer.predicted, layer.mass, layer.energy, 0.5 * step, step, ratio,
+        stopped, pace = kick_drift(
+            layer.x, layer.v, layer.acceleration, *self.moving, layer.density, layer.rate, layer.rate_before,
+            layer.predicted, layer.mass, *self.of_fluids, self.law.cut, layer.pressure,
+            layer.record if self.together else None, *self.of_pairs, self.book[1], 0.5 * step, step, ratio,
             self.lower, self.upper,
         )  # fmt: skip
+        self.stopped += stopped
+        if self.together:
+            self.pace = float(pace) ** 0.5
         layer.rate, layer.rate_before = layer.rate_before, layer.rate
         return ratio
 
@@ -146,21 +161,16 @@ class Flow:
 
     def evaluate(self, step: float, ratio: float) -> None:
         """Accelerations and density rates at the predicted densities, a ``step`` (s) on;  ratio: as in `kick_drift`."""
+        if not self.together:  # else the drift has done it
+            self.pressurise(self.layer.predicted)
         layer, law, pairs = self.layer, self.law, self.pairs
         h, kind, fluid = law.smoothing.length, law.smoothing.kind, layer.fluid
-        if pairs.update(layer.x, layer.length):
-            split_rows(fluid, pairs.start, pairs.partner, self.split)
-        self.pace = float(
-            pressurise(
-                layer.x, layer.v, layer.mass, layer.predicted, layer.material, layer.length, self.table, law.cut,
-                law.varied, layer.pressure, layer.record,
-            ) ** 0.5
-        )  # fmt: skip
+        self.list_pairs()
         self.show_walls(step, ratio)
+        where = (fluid, pairs.start, self.split, pairs.partner, layer.record)
         if self.surveyed:
             surroundings(
-                fluid, pairs.start, self.split, pairs.partner, layer.record, layer.material, len(law.fluids) > 1,
-                layer.matrix, self.crowd, self.slant, kind, h, law.spacing, *pairs.period,
+                *where, self.of_pairs[0], layer.matrix, *self.crowded, kind, h, law.spacing, *self.period
             )  # fmt: skip
         self.sum_pairs(0.5 * step)
         if law.tension > 0.0:
@@ -168,41 +178,42 @@ class Flow:
         if law.images:
             self.wall_rate, self.wall_rate_before = self.wall_rate_before, self.wall_rate
             wall_rates(
-                fluid, pairs.start, self.split, pairs.partner, layer.record, layer.facing, law.sticky,
-                self.wall_density, self.wall_rate, step, kind, h, *pairs.period,
+                *where, layer.facing, law.sticky, self.wall_density, self.wall_rate, step, kind, h, *pairs.period
             )  # fmt: skip
         if law.shifting > 0.0:
             quiet = QUIET * law.state.sound_speed if len(law.fluids) == 1 else 0.0
             urge = max(0.0, self.swiftest - quiet)
             shift(
-                fluid, pairs.start, self.split, pairs.partner, layer.record, layer.material, self.table, layer.matrix,
-                self.crowd, layer.drift, kind, h, 2.0 * h * law.shifting * urge, MOST * urge, *pairs.period,
+                *where, layer.material, self.table, layer.matrix, self.crowd, layer.drift, kind, h,
+                2.0 * h * law.shifting * urge, MOST * urge, *self.period,
             )  # fmt: skip
 
     def sum_pairs(self, half: float) -> None:
-        """The pass over pairs, by the fastest kernel that knows all of the law;  half : of the step that ends, s."""
+        """The pass over pairs from records as they are, at the end of a step of twice ``half`` (s)."""
         layer, law, pairs = self.layer, self.law, self.pairs
-        where = (layer.fluid, pairs.start, self.split, pairs.partner, layer.record, layer.ghost)
-        kind, h, alpha, softening = law.smoothing.kind, law.smoothing.length, law.alpha, law.softening
-        gx, gy, delta = *law.gravity, 2.0 * law.diffusion * h
-        if self.bare:
-            plain_rates(
-                *where, layer.material, None, None, layer.drift, layer.mass, self.table, self.choices,
-                layer.acceleration, layer.rate, layer.power, kind, h, None, gy, alpha, None, softening, delta,
-                law.calm, law.sticky, *pairs.period, half,
-            )  # fmt: skip
-        elif self.plain:
-            plain_rates(
-                *where, layer.material, layer.matrix, self.slant, layer.drift, layer.mass, self.table, self.choices,
-                layer.acceleration, layer.rate, layer.power, kind, h, gx, gy, alpha, law.beta, softening, delta,
-                law.calm, law.sticky, *pairs.period, half,
-            )  # fmt: skip
-        else:
-            rates(
-                *where, layer.facing, layer.material, layer.length, layer.matrix, self.slant, layer.drift, layer.mass,
-                self.table, self.choices, layer.acceleration, layer.rate, layer.smoothed, layer.power, kind, h, gx, gy,
-                alpha, law.beta, softening, delta, law.calm, law.sticky, law.xsph, *pairs.period, half,
-            )  # fmt: skip
+        (gx, gy), power, h = law.gravity, self.book[0], law.smoothing.length
+        rates(
+            layer.fluid, pairs.start, self.split, pairs.partner, layer.record, *self.of_pairs, *self.walled,
+            layer.matrix if law.corrected else None, self.crowded[1], self.moving[1],
+            layer.mass if layer.booked or self.cohesive else None, self.table, layer.acceleration, layer.rate,
+            self.moving[0], power, law.smoothing.kind, h, gx or None, gy, law.alpha, law.beta or None, law.softening,
+            2.0 * law.diffusion * h, law.calm, law.noise, self.cohesive, law.xsph or None, *self.period, half,
+        )  # fmt: skip
+
+    def pressurise(self, density: Floats) -> None:
+        """Pressures of the fluid from a ``density`` (fluid,) kg/m³."""
+        layer = self.layer
+        pace = pressurise(
+            layer.x, layer.v, layer.mass, density, *self.of_fluids, self.law.cut, layer.pressure, layer.record,
+            *self.of_pairs,
+        )  # fmt: skip
+        self.pace = float(pace) ** 0.5
+
+    def list_pairs(self) -> None:
+        """Bring the list of pairs to where particles are."""
+        layer, pairs = self.layer, self.pairs
+        if pairs.update(layer.x, layer.length):
+            split_rows(layer.fluid, pairs.start, pairs.partner, self.split)
 
     def pull(self) -> None:
         """Surface tension between two fluids."""
@@ -231,13 +242,9 @@ class Flow:
 
     def wet_walls(self) -> None:
         """Start boundary particles with the pressure of the fluid before them: the paper starts at ρ0 everywhere."""
-        layer, law, pairs = self.layer, self.law, self.pairs
-        pairs.update(layer.x, layer.length)
-        split_rows(layer.fluid, pairs.start, pairs.partner, self.split)
-        pressurise(
-            layer.x, layer.v, layer.mass, layer.density, layer.material, layer.length, self.table, law.cut,
-            law.varied, layer.pressure, layer.record,
-        )  # fmt: skip
+        layer, law = self.layer, self.law
+        self.list_pairs()
+        self.pressurise(layer.density)
         self.take_pressure()
         self.wall_density[:] = law.state.density_at(layer.pressure[layer.fluid :])
 
@@ -246,21 +253,21 @@ class Flow:
         layer, law, pairs = self.layer, self.law, self.pairs
         load_walls(
             layer.fluid, pairs.start, self.split, pairs.partner, layer.x, layer.v, layer.mass, layer.record,
-            layer.pressure, layer.ghost, law.smoothing.kind, law.smoothing.length, *law.gravity,
-            law.state.density, *pairs.period,
+            layer.pressure, layer.ghost if law.sticky else None, law.smoothing.kind, law.smoothing.length,
+            *law.gravity, law.state.density, *pairs.period,
         )  # fmt: skip
 
     def finish(self, step: float) -> None:
         """Second half of a ``step`` (s), and length of the next from the largest |a| and c/h."""
         layer, law = self.layer, self.law
         hardest, swiftest = kick(
-            layer.v, layer.acceleration, layer.density, layer.rate, layer.material, layer.length, self.table,
-            layer.power, layer.energy, 0.5 * step, step, law.varied,
+            layer.v, layer.acceleration, layer.density, layer.rate, *self.of_fluids[:2], self.of_pairs[1], self.table,
+            *self.book, 0.5 * step, step,
         )  # fmt: skip
         self.swiftest = float(swiftest) ** 0.5
         limits = law.limits(float(hardest) ** 0.5, self.pace)
-        self.rule = int(np.argmin(limits))
-        self.next_step = limits[self.rule]
+        self.next_step = min(limits)
+        self.rule = limits.index(self.next_step)
         if not 0.0 < self.next_step < np.inf:
             raise no_step(
                 self.next_step, RULES[self.rule], layer.x, layer.acceleration, layer.density, self.step, self.time,

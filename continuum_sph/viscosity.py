@@ -14,19 +14,13 @@ has which stress: Colagrossi et al., Phys. Rev. E 84 (2011) 026705.
 from __future__ import annotations
 
 from porescale.ground.jit import inline
+from porescale.ground.lanes import greater
 
 CENTRAL = 4.0
 """Friction along the line of centres over eq. 34's in all directions: 2(2 + 2) for 2, in the plane."""
 STIFFER = 3.0
 """How much faster it calms the shortest wave, along it: 2.4 to 2.8 times for h of 1 to 1.8 spacings, rounded up."""
 COINCIDENT = 1e-300  # m²: two particles in one place have no line of centres, and no approach
-
-
-@inline
-def between(viscosity_i, viscosity_j):
-    """Viscosity (Pa s) that two particles share: 2 μ_i μ_j/(μ_i + μ_j), 0 if both have none."""
-    both = viscosity_i + viscosity_j
-    return 2.0 * viscosity_i * viscosity_j / both if both > 0.0 else 0.0
 
 
 @inline
@@ -45,4 +39,14 @@ def central(brake, approach, distance2):
 
     brake 1/s;  approach v_ij · x_ij, m²/s;  distance2 r², m².
     """
-    return CENTRAL * brake * approach / max(distance2, COINCIDENT)
+    return CENTRAL * brake * approach / greater(distance2, COINCIDENT)
+
+
+@inline
+def mutual(viscosity_i, viscosity_j, specific_i, approach, distance2):
+    """Factor of V_j x_ij (1/r) dW/dr, 1/(m⁴ s²): `central` of `laminar` with the viscosity that two particles share.
+
+    That is 2 μ_i μ_j/(μ_i + μ_j), 0 if one has none.  The rest: as there.  One division.
+    """
+    above = 4.0 * CENTRAL * viscosity_i * specific_i * viscosity_j * approach
+    return above / greater((viscosity_i + viscosity_j) * distance2, COINCIDENT)

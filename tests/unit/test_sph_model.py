@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph import correction, shifting, step
+from continuum_sph import correction, rates, shifting, step
 from continuum_sph.boundary import tank_walls
 from continuum_sph.eos import Tait
 from continuum_sph.fluids import Fluid, table
@@ -234,10 +234,10 @@ def test_pass_over_pairs_as_plain_python(monkeypatch):
     compiled, plain = made(), made()
     for name in ("kick_drift", "pressurise", "kick", "load_walls", "rates", "split_rows", "surroundings", "shift"):
         monkeypatch.setattr(step, name, getattr(step, name).py_func)
-    for module, name in ((correction, "slope_shape"), (correction, "kernel_value"), (shifting, "slope_shape")):
-        monkeypatch.setattr(
-            module, name, getattr(module, name).py_func
-        )  # compiled, they take vectors from kernels only
+    for module in (correction, rates, shifting):  # compiled, they take vectors from kernels only
+        for name in ("artificial", "haste_of", "kernel_value", "laminar", "pace", "slope_scale", "slope_shape"):
+            if hasattr(module, name):
+                monkeypatch.setattr(module, name, getattr(module, name).py_func)
     plain.advance(2)
     monkeypatch.undo()
     compiled.advance(2)
@@ -254,8 +254,8 @@ def test_a_density_extrapolated_below_zero_stops_at_the_least():
     rho = np.array([1000.0, 800.0 - 3.0 * 7e6 * 5e-5])
     pressure, record, places = np.zeros(2), np.zeros((2, 8)), np.zeros((2, 2))
     pace = pressurise.py_func(
-        places, places, np.full(2, 0.1), rho, np.zeros(2, np.int64), np.full(2, 0.013), table((fluid,)), False,
-        False, pressure, record,
+        places, places, np.full(2, 0.1), rho, None, np.full(2, 0.013), table((fluid,)), False, pressure, record,
+        None, None,
     )  # fmt: skip
     assert record[1, RHO] == 800.0
     assert record[1, VOLUME] == 0.1 / 800.0
