@@ -11,7 +11,7 @@ from porescale.coupling.load import take_row
 from porescale.coupling.solid.law import collide_beside, force_share, is_soft, rates, taken
 from porescale.coupling.weighting import weight
 from porescale.ground.jit import inline, parallel_kernel, part, prange, thread
-from porescale.lbm.collision.law import collide_row, moments, numbers, shear_rate
+from porescale.lbm.collision.law import collide_row, half_force, moments, numbers, shear_rate
 from porescale.lbm.stream import slots
 
 AT_ONCE = 512
@@ -62,7 +62,8 @@ def collide_saturated_row(
     even, kept = part(weights[2], 0, n), part(weights[3], 0, n)
     weigh_row(s, sx, sy, inverse, b, even, kept, weighting, solid)
     c = numbers(law.rate)
-    one, half = c.one, c.half
+    one = c.one
+    half_x, half_y = half_force(law)
     soft = is_soft(solid)
     for x in range(s.shape[0]):
         f0, f1, f2, f3, f4 = a0[x], a1[x], a2[x], a3[x], a4[x]
@@ -74,14 +75,13 @@ def collide_saturated_row(
         e, vx, vy = min(one, s[x]), sx[x], sy[x]
         if soft:
             theta = st[x] * share
-            slip_x = (jx + half * law.fx) * lightness - vx
-            slip_y = (jy + half * law.fy) * lightness - vy
+            slip_x = (jx + half_x) * lightness - vx
+            slip_y = (jy + half_y) * lightness - vy
             held = weight(e, theta, slip_x, slip_y, weighting)
             evenly, remaining = rates(e, held, theta, slip_x, slip_y, solid)
             st[x] = np.sqrt(slip_x * slip_x + slip_y * slip_y)
-        acting = half * force_share(held, solid)
-        hx = acting * law.fx
-        hy = acting * law.fy
+        acting = force_share(held, solid)
+        hx, hy = acting * half_x, acting * half_y
         kx, ky = jx + hx, jy + hy
         ux, uy = kx * lightness, ky * lightness
         rate = shear_rate(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, kx, ky, ux, uy, law)

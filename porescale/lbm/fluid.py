@@ -77,7 +77,7 @@ class Fluid:
         parity = self.step % 2
         if parity:
             self._exchange(+1.0)
-        cells(self.populations, parity, *extra, lean(self.law) if cells is sweep else self.law)
+        cells(self.populations, parity, *extra, lean(self.law))
         if parity:
             self._exchange(-1.0)
         self.rim.close(self._flat, parity, (self.law.fx, self.law.fy))

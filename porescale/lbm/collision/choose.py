@@ -52,11 +52,7 @@ def choose(
 
 
 def lean(law: Any) -> Any:
-    """The law of the same numbers that computes nothing of a body force that is not there, where there is one.
-
-    For fluid alone.  Sweeps with bodies gain nothing by it (measured: a collapse took a seventh longer), and each takes
-    half a minute to compile.
-    """
+    """The law of the same numbers that computes nothing of a body force that is not there, where there is one."""
     return FreeTrt(*law) if isinstance(law, Trt) and not (law.fx or law.fy) else law
 
 

@@ -96,6 +96,20 @@ def _collide_in_shares(
     )  # fmt: skip
 
 
+@collide_in_shares.of(FreeTrt)
+def _collide_free_in_shares(
+    f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, even, odd, kept, px, py, law,
+):  # fmt: skip
+    """The same of fluid that nothing drives."""
+    c, own = numbers(rate), odd_rate_here(rate, law)
+    q, xx, yy, xy = even_part(d, jx, jy, ux, uy, even * rate)
+    lost = c.one - kept - odd * (c.one - own)
+    return relax_by(
+        f0, f1, f2, f3, f4, f5, f6, f7, f8, even * rate, lost, q, xx, yy, xy, odd * (own * jx) + px,
+        odd * (own * jy) + py,
+    )  # fmt: skip
+
+
 @inline
 def relax_halves(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, even, odd, law):
     """The nine collided populations for rates ``even`` and ``odd`` of the two halves of each pair.
