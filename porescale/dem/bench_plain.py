@@ -78,17 +78,17 @@ def rub(push, slip, spring, dt, kt, ct, mu):
 
 @kernel
 def rough_steps(
-    count, dt, k, c, kt, ct, mu, position, angle, velocity, spin, radius, mass, inertia, force, torque, weight, start,
-    partner, carried, anchor, limit, walls, wall_spring,
+    count, dt, k, c, kt, ct, mu, position, angle, velocity, spin, radius, mass, inertia, force, torque, weight, turning,
+    start, partner, carried, anchor, limit, walls, wall_spring,
 ):  # fmt: skip
     """Steps with friction; stops after one in which a disc left the list.  Returns steps done.
 
-    kt N/m, ct N s/m, mu; carried (p, 1), wall_spring (w, n, 1) m; the rest as in smooth_steps.  Overwrites the state of
-    discs and springs.
+    kt N/m, ct N s/m, mu; turning (n,) N m/m from outside; carried (p, 1), wall_spring (w, n, 1) m; the rest as in
+    smooth_steps.  Overwrites the state of discs and springs.
     """
     for step in range(count):
         force[:, :] = weight
-        torque[:] = 0.0
+        torque[:] = turning
         for i in range(radius.shape[0]):
             fx, fy, moment = 0.0, 0.0, 0.0
             for n in range(start[i], start[i + 1]):
@@ -147,13 +147,15 @@ def rough_steps(
 class PlainDiscs:
     """The discs of ``grains`` under ``weight`` (n, 2) N/m in steps of ``dt`` (s), by the smallest kernel for their law.
 
-    They go on from where they are now, with a list of their own; ``grains`` stays as it is.  discs: as Discs.state.
+    They go on from where they are now, with a list of their own; ``grains`` stays as it is.  discs: as Discs.state;
+    turning (n,) N m/m: from outside, where there is friction; both loads may be overwritten between steps.
     """
 
     def __init__(self, grains: Grains, weight: Array, dt: float) -> None:
         assert isinstance(grains.law, Linear)
         assert grains.material is None
-        self.discs, self._weight, self._dt, self._walls = grains.discs.state(), weight, dt, grains.walls.copy()
+        self.discs, self.weight, self._dt, self._walls = grains.discs.state(), weight, dt, grains.walls.copy()
+        self.turning = np.zeros(grains.discs.count)
         self._law = tuple(float(value) for value in grains.contact.table[0, 0, :5])
         own, box = grains.current_pairs(), grains.box
         self.pairs = PairList(grains.discs.count, own.skin, box.lower, box.upper, carried=1)
@@ -173,10 +175,10 @@ class PlainDiscs:
         if mu > 0.0:
             return int(rough_steps(
                 count, self._dt, kn, cn, kt, ct, mu, d["position"], d["angle"], d["velocity"], d["spin"], d["radius"],
-                d["mass"], d["inertia"], d["force"], d["torque"], self._weight, listed.start, listed.partner,
-                listed.carried, listed.anchor, self._limit, self._walls, self._spring,
+                d["mass"], d["inertia"], d["force"], d["torque"], self.weight, self.turning, listed.start,
+                listed.partner, listed.carried, listed.anchor, self._limit, self._walls, self._spring,
             ))  # fmt: skip
         return int(smooth_steps(
-            count, self._dt, kn, cn, d["position"], d["velocity"], d["radius"], d["mass"], d["force"], self._weight,
+            count, self._dt, kn, cn, d["position"], d["velocity"], d["radius"], d["mass"], d["force"], self.weight,
             listed.start, listed.partner, listed.anchor, self._limit, self._walls,
         ))  # fmt: skip

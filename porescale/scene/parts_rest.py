@@ -8,13 +8,17 @@ it), though a look at all cells costs but a share of a step.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
+from porescale.coupling.bench_plain import PlainWet
 from porescale.lbm.bench_plain import largest_of_rows
 from porescale.scene.build import build
 from porescale.scene.parts import Table, built, nothing_moves, parts_of, scene, water, without
 from porescale.scene.sections import Scene
-from porescale.workbench.parts import Built, Kind, Kinds
+from porescale.scene.simulation import Simulation
+from porescale.workbench.parts import SMALLEST, Built, Kind, Kinds
 
 PILE = (0.03, 0.02)
 """Width and height, m: some 300 grains, 10 cells each."""
@@ -57,9 +61,17 @@ def looking() -> Built:
     return Built(made, parts_of(it), made.fluid.nx * made.fluid.ny, look, made.advance)
 
 
+def smallest(made: Simulation) -> Callable[[int], object]:
+    """The smallest kernels with the same discs in the same water."""
+    assert made.coupled
+    return PlainWet(made.coupled).advance
+
+
 KINDS = Kinds([
-    Kind("moving grains in water", "cell", "the same grains, held",
-         lambda: built(wet(), "cell", nothing_moves), steps=10, because="1.16 to 1.39 from run to run"),
+    Kind("moving grains in water", "cell", SMALLEST, lambda: built(wet(), "cell", smallest), steps=10,
+         because="grains at any place of any box: coverage, rows and loads that know periodic sides and threads"),
+    Kind("grains that may move", "cell", "the same grains, held", lambda: built(wet(), "cell", nothing_moves),
+         steps=10),
     Kind("sleep under water", "grain", "pile under water", sleeping, steps=10,
          because="contact steps of the pile are saved, those of the fluid are not; 0.84 to 0.97 from run to run"),
     Kind("a look for water at rest", "cell", "water only", looking,

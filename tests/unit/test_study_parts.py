@@ -7,6 +7,8 @@ import pytest
 
 from continuum_sph.bench_plain import PlainColumn
 from continuum_sph.scene.parts import scene, started
+from porescale.coupling.bench_plain import PlainWet
+from porescale.coupling.experiments import immersed
 from porescale.dem.bench_plain import PlainDiscs
 from porescale.dem.contact.linear import Linear
 from porescale.dem.experiments_sleep import heap
@@ -46,6 +48,43 @@ def test_the_smallest_discs_do_what_grains_do(law):
     # Forces are sums of terms k x that cancel: eps k x/m dt² a step, 2e-16 5e5 1e-2/8e-3 1e-10, and twice summed.
     allowed = 2.2e-16 * 5e5 * 1e-2 / grains.discs.mass.min() * dt**2 * steps**2
     assert np.abs(twin.discs["position"] - grains.discs.position).max() < allowed
+
+
+def falling():
+    """A dozen discs that fall through each other onto the floor of a closed box, in water they stir."""
+    radius = np.array([4.0, 3.5, 4.5, 3.8, 4.9, 4.2] * 2)
+    places = [(8.0 + 11.0 * (n % 6) + 1.3 * (n // 6), 4.8 + 9.6 * (n // 6) + 0.2 * (n % 3)) for n in range(12)]
+    velocity = [(0.004 * (-1) ** n, -0.006) for n in range(12)]
+    return immersed(
+        (76, 40), places, radius, 3.0, velocity, spin=0.001, relaxation_time=0.8, sides=("wall", "wall"), ratio=0.8,
+        acceleration=(0.0, -2e-5),
+    )  # fmt: skip
+
+
+def test_the_smallest_kernels_do_what_moving_discs_in_water_do():
+    coupled = falling()
+    for _ in range(2):
+        coupled.advance()
+    twin, other = PlainWet(coupled), PlainWet(coupled)
+    other.water.even *= 1.0 + 1e-9  # the twin that must fail
+    start, steps, touched = coupled.grains.discs.position.copy(), 40, 0
+    for _ in range(steps):
+        coupled.advance()
+        touched += int(np.count_nonzero(coupled.contact_load()))
+    twin.advance(steps)
+    other.advance(steps)
+    assert touched > 0
+    assert np.abs(coupled.grains.discs.position - start).max() > 0.1
+    found = coupled.fluid.populations[:, 1:-1, 1:-1]
+    # A cell makes some twenty roundings of terms below 0.02 a step.  Loads are sums over a hundred cells, but of discs
+    # with masses above a hundred: velocities err no more, and positions by that times the steps and their own rounding.
+    allowed = steps * 20 * 2.2e-16 * 0.02
+    assert np.abs(found).max() > 1e-3
+    assert np.abs(twin.water.populations[:, 1:-1, 1:-1] - found).max() < allowed
+    assert np.abs(twin.dry.discs["velocity"] - coupled.grains.discs.velocity).max() < allowed
+    assert np.abs(twin.dry.discs["position"] - coupled.grains.discs.position).max() < steps * allowed + 64 * 2.2e-16
+    assert np.abs(twin.dry.discs["spin"] - coupled.grains.discs.spin).max() < allowed
+    assert np.abs(other.water.populations[:, 1:-1, 1:-1] - found).max() > allowed
 
 
 @pytest.mark.slow
