@@ -82,6 +82,13 @@ def drive(
     )
 
 
+def judge(folder: Path, card: dict[str, Any]) -> None:
+    """InputError where the run in ``folder`` cannot be gone on with as ``card`` asks."""
+    from porescale.runs.drive import refuse_resume
+
+    refuse_resume(folder, card)
+
+
 def report(scene: Scene) -> Report:
     """Every derived number of a scene; raises InputError with all refusals."""
     from continuum_sph.scene.report import report as scene_report
@@ -208,6 +215,7 @@ PACKAGE = Package(
     extremes=extremes,
     endurance=endurance,
     parts=parts,
+    judge=judge,
 )
 
 

@@ -51,6 +51,7 @@ def run(
     from porescale.decks.build import Options
     from porescale.decks.deck import read_deck
     from porescale.decks.run import DeckRun, card_of
+    from porescale.runs.drive import refuse_resume
 
     if rod is not None and not rod > 0.0:
         raise InputError(Fault("--rod", rod, "is out of range", allowed="> 0"))
@@ -61,8 +62,11 @@ def run(
     name = folder.resolve().name
     where = out or Path("runs") / name
     refuse_folder(where, PACKAGE, resume=resume, overwrite=overwrite)
+    scene = card_of(deck, options)
+    if resume:
+        refuse_resume(where, {"package": PACKAGE, "name": name, "scene": scene})
     use_threads(threads)
-    model, scene = DeckRun(deck, options, folder), card_of(deck, options)
+    model = DeckRun(deck, options, folder)
     outcome = drive_deck(model, where, name, scene, resume=resume, overwrite=overwrite, quiet=quiet)
     if not quiet:
         print(summary("porescale", name, where, outcome).rsplit("\n", 1)[0])

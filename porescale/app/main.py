@@ -25,6 +25,7 @@ PACKAGE = Package(
     stability=study.stability,
     endurance=study.endurance,
     parts=study.parts,
+    judge=run.judge,
     also={demseg.PACKAGE: demseg.show},
     features=study.features,
 )

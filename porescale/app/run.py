@@ -71,6 +71,13 @@ def drive(
     return outcome
 
 
+def judge(folder: Path, card: dict[str, Any]) -> None:
+    """InputError where the run in ``folder`` cannot be gone on with as ``card`` asks."""
+    from porescale.runs.drive import refuse_resume
+
+    refuse_resume(folder, card)
+
+
 def table(folder: Path, name: str) -> dict[str, Array]:
     """Columns of a table of the run in ``folder``, "series" for series.csv; {} when there is none."""
     from porescale.runs.series import read_series

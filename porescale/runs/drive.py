@@ -13,6 +13,7 @@ from porescale.ground.check import Fault, InputError, Unstable
 from porescale.runs import card as cards
 from porescale.runs import snapshots
 from porescale.runs.atomic import clean, owned, refuse_shared
+from porescale.runs.judge import judge
 from porescale.runs.model import Model, variable_step
 from porescale.runs.progress import Watch
 from porescale.runs.record import CHECKPOINT, Gone, Record, refuse_changes
@@ -104,6 +105,17 @@ def drive(
             record = Record.fresh(folder, card, overwrite=overwrite)
         with Watch(name, model.time, duration, quiet=quiet) as watch:
             return _watched(run, record, watch, after)
+
+
+def refuse_resume(folder: Path, card: dict[str, Any], free: Collection[str] = cards.FREE) -> None:
+    """InputError where the run in ``folder`` cannot be gone on with, of which ``card`` asks for (as of `drive`).
+
+    What can be said without a model, which may take long to build: whether it is this scene's, and whether its
+    checkpoint is one and makes sense.  Nothing where there is no checkpoint yet.
+    """
+    if (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists():
+        refuse_changes(folder, card, free)
+        judge(folder)
 
 
 @dataclass

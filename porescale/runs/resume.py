@@ -6,20 +6,19 @@ an InputError of one line, and the run folder stays as it is.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from porescale.ground.check import Fault, InputError, Unstable
+from porescale.ground.check import InputError, Unstable
 from porescale.runs.checkpoint import read_checkpoint, read_header
 from porescale.runs.cost import Cost
+from porescale.runs.judge import CHECKPOINT as CHECKPOINT
+from porescale.runs.judge import misfit, other, senseless
 from porescale.runs.model import Model
 from porescale.runs.schedule import Schedule
 
-CHECKPOINT = "checkpoint.h5"
 MISFITS = (KeyError, ValueError, TypeError, IndexError, AttributeError, OverflowError, AssertionError)
 """What a model may raise that is given another one's state."""
 
@@ -55,14 +54,14 @@ def standing(folder: Path) -> Standing:
     try:
         return _standing(read_header(folder / CHECKPOINT))
     except MISFITS as error:
-        raise _misfit(folder, "holds no state of a run", error) from error
+        raise misfit(folder, "holds no state of a run", error) from error
 
 
 def refuse_another(folder: Path, reached: Standing, card: Mapping[str, Any]) -> None:
     """InputError where a checkpoint stands at another step than the ``card`` of a run that came to its end."""
     if card.get("step") != reached.step:
         error = ValueError(f"step {reached.step}, the run ended at {card.get('step')}")
-        raise _misfit(folder, "is not this run's", error)
+        raise misfit(folder, "is not this run's", error)
 
 
 def take_up(folder: Path, model: Model, schedules: Mapping[str, Schedule]) -> Saved:
@@ -82,42 +81,20 @@ def take_up(folder: Path, model: Model, schedules: Mapping[str, Schedule]) -> Sa
             int(meta["snapshot_step"]),
             int(meta["last_snapshot_step"]),
         )
+        wrong = senseless(content["state"]) or other(model.state(), content["state"])
+        if wrong:
+            raise ValueError(wrong)
         model.restore(content["state"])
         for name, schedule in schedules.items():
             schedule.restore(content["schedules"][name], model.time)
-        other = _other(model.state(), content["state"])
-        if other:
-            raise ValueError(other)
     except (*MISFITS, InputError) as error:
-        raise _misfit(folder, "does not fit this model", error) from error
+        raise misfit(folder, "does not fit this model", error) from error
     try:
         model.check()
     except Unstable as error:
-        raise _misfit(folder, "holds no sound state", error) from error
+        raise misfit(folder, "holds no sound state", error) from error
     return saved
 
 
 def _standing(content: Mapping[str, Any]) -> Standing:
     return Standing(int(content["step"]), float(content["time"]), float(content["seconds"]))
-
-
-def _other(own: Any, given: Any, place: str = "") -> str:
-    """Where a state taken up is of another shape or kind than the one that was given; "" where it is nowhere.
-
-    Numpy fills an array with a smaller one, or with numbers of another kind, without a word.
-    """
-    if isinstance(own, dict) and isinstance(given, dict):
-        keys: Collection[str] = own.keys() & given.keys()
-        found = (_other(own[key], given[key], f"{place}.{key}" if place else key) for key in sorted(keys))
-        return next(filter(None, found), "")
-    if not isinstance(own, np.ndarray):
-        return ""
-    if not isinstance(given, np.ndarray) or own.shape != given.shape:
-        return f"{place}: {np.shape(given)} in place of {own.shape}"
-    return f"{place}: {given.dtype} in place of {own.dtype}" if own.dtype.kind != given.dtype.kind else ""
-
-
-def _misfit(folder: Path, problem: str, error: Exception) -> InputError:
-    reason = " ".join(str(error).split())[:120]
-    repair = "start the run anew, or take the checkpoint from a backup"
-    return InputError(Fault("checkpoint", str(folder / CHECKPOINT), f"{problem} ({reason})", repair=repair))

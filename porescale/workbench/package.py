@@ -83,7 +83,8 @@ class Package:
     also : the same as show for runs of other commands, by what their cards call them;
     validations, benchmarks : give the registers;  stability : that of the flows of a stability map, extremes : what
     `study extremes` tries, endurance : what `study endurance` runs, parts : what `study parts` measures, None if there
-    is none;  features : what trade studies make of a run folder at a time (None: its last snapshot), by name, None if
+    is none;  judge : InputError where the run in a folder cannot be gone on with as a card asks, None if only a model
+    can say;  features : what trade studies make of a run folder at a time (None: its last snapshot), by name, None if
     there is nothing.
     """
 
@@ -103,5 +104,6 @@ class Package:
     extremes: Callable[[], Extremes] | None = None
     endurance: Callable[[], Endurances] | None = None
     parts: Callable[[], Kinds] | None = None
+    judge: Callable[[Path, dict[str, Any]], None] | None = None
     also: Mapping[str, Callable[[Path], Iterable[Path]]] = field(default_factory=dict)
     features: Callable[[], Mapping[str, Callable[[Path, float | None], NDArray[Any]]]] | None = None

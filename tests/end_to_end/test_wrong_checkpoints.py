@@ -18,7 +18,8 @@ from tests.reference.programs import KINDS, Program, program
 from tests.reference.same_run import differences
 from tests.reference.spoiled import renumbered
 
-OTHERS = {"column": "tank", "asleep": "column", "tank": None, "seeping": "tank", "soil": "tank"}
+OTHERS = {"column": "tank", "asleep": "column", "tank": None, "seeping": "tank", "soil": "tank",
+          "bubble": "tank", "air": "seeping"}  # fmt: skip
 """Whose checkpoint each is given: another program's, or another model's of the same one; None: that of the kept run."""
 KEPT = Path(__file__).resolve().parents[1] / "samples" / "run_format_1.tar.xz"
 NAMES = ["tank", *(pytest.param(name, marks=pytest.mark.slow) for name in KINDS if name != "tank")]
@@ -102,6 +103,26 @@ def replaced(by: Callable[[np.ndarray], np.ndarray], every: bool = False) -> Cal
     return changed(change)
 
 
+def lists(part: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """The lists of neighbours of a state."""
+    if "partner" in part:
+        yield part
+    for value in part.values():
+        if isinstance(value, dict):
+            yield from lists(value)
+
+
+def listed(change: Callable[[dict[str, Any]], object]) -> Callable[[Path], None]:
+    """A list of neighbours is another; its checksums are right."""
+    return changed(lambda content: [change(rows) for rows in lists(content["state"])])
+
+
+def put(rows: dict[str, Any], name: str, value: int, at: int = -1) -> None:
+    """Writes into a list."""
+    assert rows[name].flags.writeable
+    rows[name][at] = value
+
+
 def folder(file: Path) -> None:
     file.unlink()
     file.mkdir()
@@ -143,6 +164,21 @@ WAYS: dict[str, Callable[[Path], object]] = {
     "a longer array": replaced(lambda it: np.concatenate((it, it))),
     "an array of words": replaced(lambda it: np.full(it.shape, "one")),
     "an array of truths": replaced(lambda it: np.ones(it.shape, bool)),
+    "a neighbour that is none": listed(lambda rows: put(rows, "partner", -1)),
+    "a neighbour beyond all": listed(lambda rows: put(rows, "partner", len(rows["start"]) - 1)),
+    "a neighbour far beyond all": listed(lambda rows: put(rows, "partner", 1 << 30)),
+    "rows of neighbours that end too late": listed(lambda rows: put(rows, "start", 1 << 40)),
+    "rows of neighbours that begin too late": listed(lambda rows: put(rows, "start", 1, 0)),
+    "rows of neighbours that go back": listed(lambda rows: put(rows, "start", -7, len(rows["start"]) // 2)),
+    "rows of fewer points": listed(lambda rows: rows.update(start=rows["start"][[0, -1]])),
+    "neighbours that are broken numbers": listed(lambda rows: rows.update(partner=rows["partner"] + 0.5)),
+    "neighbours of too many bits": listed(lambda rows: rows.update(partner=rows["partner"].astype(np.int64))),
+    "neighbours in a square": listed(lambda rows: rows.update(partner=rows["partner"][:, None])),
+    "neighbours that are a word": listed(lambda rows: rows.update(partner="all")),
+    "a table that is a number": changed(lambda content: content["state"].update(dict.fromkeys(content["state"], 1))),
+    "numbers of half the bits": replaced(lambda it: it.astype(np.float32)),
+    "one row more": replaced(lambda it: np.concatenate((it, it[:1]))),
+    "axes exchanged": replaced(lambda it: np.ascontiguousarray(np.moveaxis(it, -1, 0))),
     "no number in it": replaced(lambda it: np.full_like(it, np.nan), every=True),
 }
 
@@ -151,11 +187,11 @@ def files(place: Path) -> dict[Path, bytes]:
     return {path: path.read_bytes() for path in sorted(place.rglob("*")) if path.is_file() and path.name != ".lock"}
 
 
-def refused(half: Half, run: Path, capsys: pytest.CaptureFixture[str]) -> str:
-    """The one line that a run says which does not go on, and leaves all as it is."""
+def refused(half: Half, run: Path, capsys: pytest.CaptureFixture[str], builds: bool = True) -> str:
+    """The one line that a run says which does not go on, and leaves all as it is.  builds: whether it may build."""
     before = files(run)
     capsys.readouterr()
-    code = half.one.run(run, "--resume")
+    code = half.one.run(run, "--resume", builds=builds)
     lines = [line for line in capsys.readouterr().err.splitlines() if not line.startswith("warning: ")]
     assert (code, len(lines)) == (2, 1), (code, lines)
     assert files(run) == before
@@ -189,6 +225,16 @@ def test_a_sound_one_goes_on_to_the_same_bits(tmp_path, halves, name):  # the tw
     assert differences(run, half.untouched) != []
     assert half.one.run(run, "--resume") == 0
     assert differences(run, half.untouched) == []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_wrong_one_is_refused_before_a_model_is_built(tmp_path, capsys, halves, name):
+    half = halves(name)
+    run = Path(shutil.copytree(half.folder, tmp_path / "run"))
+    for way in ("a neighbour far beyond all", "a bit of the state", "no state", "words for steps", "no number in it"):
+        shutil.copy(half.folder / "checkpoint.h5", run)
+        WAYS[way](run / "checkpoint.h5")
+        assert "checkpoint" in refused(half, run, capsys, builds=False)
 
 
 @pytest.mark.slow

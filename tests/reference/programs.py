@@ -23,8 +23,30 @@ SOIL: dict[str, Any] = {
     "numerics": {"spacing": 0.01}, "time": {"end": 0.02},
     "output": {"snapshot_interval": 0.005, "series_interval": 0.001},
 }  # fmt: skip
-KINDS = {**SCENES, "soil": ("continuum_sph", SOIL)}
-"""Package and scene: grains behind a gate in water, awake and asleep; water, ground, and ground with water in it."""
+BUBBLE: dict[str, Any] = {
+    "tank": {"width": 0.4, "height": 0.5},
+    "water": {"viscosity": 1e-3, "sound_speed": 26.5, "column": [{"width": 0.4, "height": 0.4}]},
+    "inclusion": {"density": 1.2, "viscosity": 1.8e-5, "surface_tension": 6.0,
+                  "disc": [{"x": 0.2, "y": 0.16, "radius": 0.08}]},
+    "numerics": {"spacing": 0.02, "artificial_viscosity": 0.05, "gradient": "plain", "shifting": 1.0},
+    "time": {"end": 0.02}, "output": {"snapshot_interval": 0.005, "series_interval": 0.001, "energy": True},
+}  # fmt: skip
+AIR: dict[str, Any] = {
+    "tank": {"width": 0.16, "height": 0.44, "lid": False},
+    "water": {"sound_speed": 42.0, "pressure": "hydrostatic",
+              "column": [{"bottom": 0.2, "width": 0.16, "height": 0.2}]},
+    "air": {"density": 20.0, "pressure": 5000.0},
+    "soil": {"density": 1590.0, "porosity": 0.4, "stiffness": 3e5, "permeability": 0.05, "stress": "geostatic",
+             "body": [{"outline": [[0, 0], [0.16, 0], [0.16, 0.2], [0, 0.2]]}]},
+    "numerics": {"spacing": 0.02, "artificial_viscosity": 0.1, "shifting": 1.0, "gradient": "corrected",
+                 "tension": "cut"},
+    "time": {"end": 0.02}, "output": {"snapshot_interval": 0.005, "series_interval": 0.001},
+}  # fmt: skip
+KINDS = {
+    **SCENES, "soil": ("continuum_sph", SOIL), "bubble": ("continuum_sph", BUBBLE), "air": ("continuum_sph", AIR)
+}  # fmt: skip
+"""Package and scene: grains behind a gate in water, awake and asleep; water, ground, and ground with water in it; gas
+in water, and in ground."""
 
 
 @dataclass(frozen=True)
@@ -44,16 +66,21 @@ class Program:
         """What the file says."""
         return KINDS[self.name][1]
 
-    def run(self, folder: Path, *words: object, happens: Callable[[], object] | None = None, at: float = 0.5) -> int:
+    def run(
+        self, folder: Path, *words: object, happens: Callable[[], object] | None = None, at: float = 0.5,
+        fault: Callable[[Any], object] = lambda model: None, builds: bool = True,
+    ) -> int:  # fmt: skip
         """Exit code of a run into ``folder``, without pictures.
 
-        happens : is called once, after the first step later than a share ``at`` of the whole time.
+        happens : is called once, after the first step later than a share ``at`` of the whole time, and then ``fault``
+        with the model;  builds : False where it must end before a model is built.
         """
         package, before = PACKAGES[KINDS[self.name][0]], jit.threads()
         late = at * float(self.values["time"]["end"])
 
         def build(scene: Any) -> Any:
             """A model that does so."""
+            assert builds, "a model is built"
             model = package.build(scene)
             advance, waiting = model.advance, [happens]
 
@@ -62,6 +89,7 @@ class Program:
                 advance(count)
                 if waiting and model.time > late:
                     waiting.pop()()
+                    fault(model)
 
             if happens is not None:
                 model.advance = steps

@@ -63,6 +63,8 @@ def command(package: Package) -> Callable[..., int]:
             card["picked"] = chosen.as_dict()
         begun = time.perf_counter()
         package.report(opened.scene)  # what contradicts itself is refused
+        if resume and package.judge is not None:
+            package.judge(folder, card)
         use_threads(threads)  # which brings numba along: after all that may be wrong
         model = package.build(opened.scene)
         outcome = package.drive(model, folder, opened.scene, card=card, resume=resume, quiet=quiet, overwrite=overwrite)
