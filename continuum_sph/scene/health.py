@@ -8,12 +8,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from continuum_sph.stopped import no_step
 from porescale.ground.check import Unstable
 
 Floats = NDArray[np.float64]
 
 FARTHER = 2.0
 """Ways of the fastest particle that another may have come: shifting and smoothed velocities add to its own."""
+
+LONGER = 2.0
+"""Times what its rules allow, how long the next step may be: twice 0.25 h/c is the last that sound is stable at, ω Δt
+about 0.7 (`continuum_sph.step`); exact limits are of densities at mid-step, which a check does not know."""
 
 
 def stepped(advance: Callable[[], object], step: int, time: float, repair: str) -> None:
@@ -50,6 +55,29 @@ def refuse_one_place(x: Floats, there: NDArray[np.int64], step: int, time: float
         at, other = int(a[same.argmax()]), int(b[same.argmax()])
         where = f"particle {at} at ({x[at, 0]:.4g}, {x[at, 1]:.4g}) m, and {other} there, too"
         raise Unstable(where, "distance", 0.0, "m", step, time, repair)
+
+
+def refuse_beyond(
+    values: Floats, least: Floats | float, most: Floats | float, name: str, unit: str, of: NDArray[np.int64], x: Floats,
+    step: int, time: float, repair: str,
+) -> None:  # fmt: skip
+    """Unstable at the first of ``values`` (m,) that is not within [``least``, ``most``]; they are those of the
+    particles ``of`` (m,) of ``x`` (n, 2) m."""
+    wrong = ~((values >= least) & (values <= most))
+    if wrong.any():
+        at = int(of[wrong.argmax()])
+        where = f"particle {at} at ({x[at, 0]:.4g}, {x[at, 1]:.4g}) m"
+        raise Unstable(where, name, float(values[wrong.argmax()]), unit, step, time, repair)
+
+
+def refuse_step(
+    seconds: float, limits: Sequence[float], rules: Sequence[str], x: Floats, acceleration: Floats, density: Floats,
+    step: int, time: float, repair: str,
+) -> None:  # fmt: skip
+    """Unstable when a next step of ``seconds`` is none, or longer than the ``rules`` allow by their ``limits``, s."""
+    if not 0.0 < seconds <= LONGER * min(limits):
+        rule = rules[int(np.argmin(limits))]
+        raise no_step(seconds, rule, x, acceleration, density, step, time, repair)
 
 
 class Leaps:

@@ -11,15 +11,21 @@ from continuum_sph.energy import book, held
 from continuum_sph.law import RULES
 from continuum_sph.scene.bubble import bubble
 from continuum_sph.scene.build import flow_of, water_of
-from continuum_sph.scene.health import Leaps, refuse_no_numbers, refuse_one_place, stepped
+from continuum_sph.scene.health import (
+    Leaps,
+    refuse_beyond,
+    refuse_no_numbers,
+    refuse_one_place,
+    refuse_step,
+    stepped,
+)
+from continuum_sph.scene.health_fluids import bounds, swiftest_sound
 from continuum_sph.scene.instruments import Cloud, tables
 from continuum_sph.scene.sections import Scene
 from continuum_sph.step import Flow
-from porescale.ground.check import Unstable
 from porescale.runs.model import Cloud as Points
 from porescale.runs.model import Snapshot
 
-DENSEST = 1.3  # of ρ0: Tait pressures of half B and more; sound at Mach 0.1 needs 1.01, the hardest impacts 1.15
 REPAIR = "lower numerics.courant, or raise numerics.artificial_viscosity or water.sound_speed"
 
 
@@ -56,33 +62,32 @@ class Simulation:
         return inside
 
     def check(self) -> None:
-        """Raise Unstable when a particle is nowhere or where none could have come to, or water in the tank is faster
-        than sound or too dense to mean anything.
+        """Raise Unstable when a particle is nowhere, where none could have come to or where another is, when a fluid in
+        the tank is faster than sound or of a density that means nothing, or the next step is longer than it may be.
         """
-        layer, tait = self.flow.layer, water_of(self.scene)
+        flow, layer, law, now = self.flow, self.flow.layer, self.flow.law, (self.step, self.time, REPAIR)
         n = layer.fluid
         recorded = {
             "position": ("m", layer.x[:n]), "velocity": ("m/s", layer.v[:n]), "density": ("kg/m³", layer.density),
             "mass": ("kg/m", layer.mass[:n]), "pressure": ("Pa", layer.pressure[:n]), "energy": ("J/m", layer.energy),
+            "acceleration": ("m/s²", layer.acceleration), "smoothing length": ("m", layer.length[:n]),
         }  # fmt: skip
-        refuse_no_numbers(recorded, self.step, self.time, REPAIR)
-        self.leaps.check(layer.x[:n], layer.mass[:n], self.step, self.time, REPAIR)
-        inside = np.flatnonzero(self.inside() & (layer.material[: layer.fluid] == 0))
-        refuse_one_place(layer.x, inside, self.step, self.time, REPAIR)
+        refuse_no_numbers(recorded, *now)
+        self.leaps.check(layer.x[:n], layer.mass[:n], *now)
+        refuse_beyond(layer.mass[:n], 0.0, np.inf, "mass", "kg/m", np.arange(n), layer.x, *now)
+        inside = np.flatnonzero(self.inside())
+        refuse_one_place(layer.x, inside, *now)
         speed = np.hypot(layer.v[inside, 0], layer.v[inside, 1])
-        ratio = layer.density[inside] / tait.density
-        for values, limit, name, unit, scale in (
-            (speed, tait.sound_speed, "speed", "m/s", 1.0),
-            (ratio, DENSEST, "density", "kg/m³", tait.density),
-        ):
-            bad = np.flatnonzero(~((values >= 0.0) & (values <= limit)))
-            if bad.size:
-                at = inside[bad[0]]
-                raise Unstable(
-                    f"particle {at} at ({layer.x[at, 0]:.4g}, {layer.x[at, 1]:.4g}) m", name,
-                    float(values[bad[0]]) * scale, unit, self.step, self.time,
-                    REPAIR,
-                )  # fmt: skip
+        thin, dense, swift = (values[layer.material[inside]] for values in bounds(law.fluids))
+        refuse_beyond(speed, 0.0, swift, "speed", "m/s", inside, layer.x, *now)
+        refuse_beyond(layer.density[inside], thin, dense, "density", "kg/m³", inside, layer.x, *now)
+        for rate in (layer.rate, layer.rate_before):  # a step on it is within bounds still
+            most = (dense - thin) / flow.next_step if flow.next_step > 0.0 else np.inf
+            refuse_beyond(np.abs(rate[inside]), 0.0, most, "density rate", "kg/(m³ s)", inside, layer.x, *now)
+        hardest = float(np.hypot(*layer.acceleration.T).max(initial=0.0))
+        sound = swiftest_sound(law.fluids, layer.material[:n], layer.density)
+        limits = law.limits(hardest, float((sound / layer.length[:n]).max(initial=0.0)))
+        refuse_step(flow.next_step, limits, RULES, layer.x, layer.acceleration, layer.density, *now)
 
     def series(self) -> dict[str, float]:
         """One row: where the water is, its energies, and how the step was chosen."""

@@ -11,7 +11,7 @@ from continuum_sph.scene.air_build import AIR as GAS
 from continuum_sph.scene.air_build import air_rows
 from continuum_sph.scene.exit_gradient import NAME as EXIT
 from continuum_sph.scene.exit_gradient import exit_gradient
-from continuum_sph.scene.health import refuse_no_numbers, stepped
+from continuum_sph.scene.health import refuse_no_numbers, refuse_step, stepped
 from continuum_sph.scene.instruments import Cloud, discharge, tables
 from continuum_sph.scene.model import REPAIR, Simulation
 from continuum_sph.scene.phreatic import NAME, phreatic_row
@@ -80,6 +80,11 @@ class SeepageSimulation:
             raise Unstable(
                 f"particle {at}", "porosity about", float(flow.porosity[at]), "", self.step, self.time, REPAIR
             )
+        ground, layer = self.both.ground, flow.layer
+        limits, rules = (flow.next_step, ground.next_step, self.both.bound), ("water", "soil", "sound of both")
+        refuse_step(
+            self.both.next_step, limits, rules, layer.x, layer.acceleration, layer.density, self.step, self.time, REPAIR
+        )
         for pool in self.both.supply.reservoirs if self.both.supply else ():
             if not pool.bottom - HIGHER <= pool.level <= self.scene.tank.height * (1.0 + HIGHER):
                 raise Unstable(

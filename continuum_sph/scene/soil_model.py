@@ -7,16 +7,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.scene.health import Leaps, refuse_no_numbers, stepped
+from continuum_sph.scene.health import (
+    Leaps,
+    refuse_beyond,
+    refuse_no_numbers,
+    refuse_one_place,
+    refuse_step,
+    stepped,
+)
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil_build import soil_flow
 from continuum_sph.soil import SoilFlow, porosity
 from continuum_sph.soil.law import RULES
 from continuum_sph.soil.state import XX, XY, YY, ZZ
-from porescale.ground.check import Unstable
 from porescale.runs.model import Cloud, Snapshot
 
 REPAIR = "raise soil.stiffness or soil.numerics.damping, or lower numerics.courant"
+LEAST = float(np.finfo(np.float64).tiny)  # of what is above zero
 DEEPEST = 0.5  # of a porosity at the start, left when soil is pressed together beyond sense
 
 
@@ -55,31 +62,33 @@ class SoilSimulation:
             self.counted = True
 
     def check(self) -> None:
-        """Raise Unstable when soil is nowhere or where none could have come to, faster than its own sound or denser
-        than its grains.
+        """Raise Unstable when soil is nowhere or where none could have come to, where another is, faster than its
+        own sound, denser than its grains, under a stress that no blow makes, or when the next step is longer than it
+        may be.
         """
-        soil, n = self.flow.soil, self.flow.soil.soil
+        flow, soil, n, now = self.flow, self.flow.soil, self.flow.soil.soil, (self.step, self.time, REPAIR)
         recorded = {
             "position": ("m", soil.x[:n]), "velocity": ("m/s", soil.v[:n]), "density": ("kg/m³", soil.density),
             "mass": ("kg/m", soil.mass[:n]), "stress": ("Pa", soil.stress[:n]), "plastic strain": ("", soil.plastic),
-            "opening": ("", soil.opening),
+            "opening": ("", soil.opening), "acceleration": ("m/s²", soil.acceleration),
         }  # fmt: skip
-        refuse_no_numbers(recorded, self.step, self.time, REPAIR, "soil particle")
-        self.leaps.check(soil.x[:n], soil.mass[:n], self.step, self.time, REPAIR)
-        speed = np.hypot(soil.v[:n, 0], soil.v[:n, 1])
-        sound = self.flow.pace * self.flow.law.smoothing.length
-        left = porosity(soil.density, soil.material[:n], self.flow.table)
-        for values, wrong, name, unit in (
-            (speed, ~(speed <= sound), "speed", "m/s"),
-            (left, ~(left > -DEEPEST), "porosity", ""),
+        refuse_no_numbers(recorded, *now, "soil particle")
+        self.leaps.check(soil.x[:n], soil.mass[:n], *now)
+        refuse_one_place(soil.x, np.arange(n), *now)
+        sound = flow.pace * flow.law.smoothing.length
+        for values, least, most, name, unit in (
+            (soil.mass[:n], LEAST, np.inf, "mass", "kg/m"),
+            (soil.density, LEAST, np.inf, "density", "kg/m³"),
+            (porosity(soil.density, soil.material[:n], flow.table), -DEEPEST, 1.0, "porosity", ""),
+            (np.hypot(soil.v[:n, 0], soil.v[:n, 1]), 0.0, sound, "speed", "m/s"),
+            # A blow at the speed of sound is one of ρ c², the stress of a strain of one.
+            (np.abs(soil.stress[:n]).max(axis=1), 0.0, soil.density * sound * sound, "stress", "Pa"),
+            (soil.plastic, 0.0, np.inf, "plastic strain", ""),
+            (soil.opening, 0.0, np.inf, "opening", ""),
         ):
-            bad = np.flatnonzero(wrong)
-            if bad.size:
-                at = bad[0]
-                raise Unstable(
-                    f"particle {at} at ({soil.x[at, 0]:.4g}, {soil.x[at, 1]:.4g}) m", name, float(values[at]), unit,
-                    self.step, self.time, REPAIR,
-                )  # fmt: skip
+            refuse_beyond(values, least, most, name, unit, np.arange(n), soil.x, *now)
+        limits = flow.law.limits(float(np.hypot(*soil.acceleration.T).max(initial=0.0)), flow.pace, flow.limit)
+        refuse_step(flow.next_step, limits, RULES, soil.x, soil.acceleration, soil.density, *now)
 
     def displacement(self) -> NDArray[np.float64]:
         """How far each particle has come since the start, or since it settled, (soil,) m."""

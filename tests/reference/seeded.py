@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import copy
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
+
+import pytest
 
 from porescale.ground.check import Unstable
 from porescale.runs.drive import CHECK_EVERY
@@ -77,6 +80,18 @@ class Running:
         simulation = self.anew()
         fault(simulation)
         assert 0 <= found(simulation) <= CHECK_EVERY
+
+    def names(self, fault: Callable[[Any], None], quantity: str, particle: int) -> None:
+        """AssertionError unless the fault is found at once and said to be of that ``quantity`` of that ``particle``."""
+        simulation = self.anew()
+        fault(simulation)
+        with pytest.raises(Unstable) as caught:
+            simulation.check()
+        error = caught.value
+        assert (error.quantity, error.step, error.time) == (quantity, simulation.step, simulation.time)
+        assert re.search(rf"particle {particle}\b", error.where), error.where
+        assert f"at step {simulation.step} " in str(error)
+        assert error.cause
 
     def finds_nothing(self, times: int) -> None:
         """AssertionError where something is found, asked ``times`` times, though nothing is wrong."""

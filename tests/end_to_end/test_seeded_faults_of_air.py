@@ -1,0 +1,123 @@
+"""Faults put into air trapped in soil below water: found within a hundred steps and before they are recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.seepage_model import SeepageSimulation
+from continuum_sph.seepage.mixture import POROSITY
+from porescale.workbench.sections import load
+from tests.reference.seeded import INF, NAN, Running, put, running, times
+
+pytestmark = pytest.mark.slow
+CASE = Path(__file__).resolve().parents[2] / "cases" / "trapped_air"
+BOOKED = ("output.energy=true",)
+
+
+@pytest.fixture(scope="module")
+def sinking() -> Running:
+    """Water that sinks into soil full of air."""
+    return running(SeepageSimulation(load(CASE, Scene, overrides=BOOKED)), 100)
+
+
+def air(simulation: SeepageSimulation) -> list[int]:
+    """Particles of air."""
+    layer = simulation.both.water.layer
+    return [int(k) for k in (layer.material[: layer.fluid] == 1).nonzero()[0]]
+
+
+def at(name: str, index: tuple[int, ...], value: float) -> Callable[[SeepageSimulation], None]:
+    """Writes ``value`` into an array of the layer, of one particle of air."""
+
+    def fault(simulation: SeepageSimulation) -> None:
+        own = air(simulation)
+        put(f"both.water.layer.{name}", (own[len(own) // 2], *index), value)(simulation)
+
+    return fault
+
+
+def all_of(name: str, factor: float) -> Callable[[SeepageSimulation], None]:
+    """Multiplies what is there of all air."""
+
+    def fault(simulation: SeepageSimulation) -> None:
+        times(f"both.water.layer.{name}", air(simulation), factor)(simulation)
+
+    return fault
+
+
+def crowd(count: int) -> Callable[[SeepageSimulation], None]:
+    """So many particles of air are put into one place."""
+
+    def fault(simulation: SeepageSimulation) -> None:
+        own, x = air(simulation)[:count], simulation.both.water.layer.x
+        x[own] = x[own[0]]
+
+    return fault
+
+
+def step(factor: float) -> Callable[[SeepageSimulation], None]:
+    """The next step takes ``factor`` times as long."""
+
+    def fault(simulation: SeepageSimulation) -> None:
+        simulation.both.next_step *= factor
+
+    return fault
+
+
+def lost(simulation: SeepageSimulation) -> None:
+    """Nobody knows how much room there is about a particle of air."""
+    simulation.both.water.pores[POROSITY, air(simulation)[0]] = NAN
+
+
+SAND, WATER = "soil.flow.soil.", "both.water.layer."
+FAULTS: dict[str, Callable[[SeepageSimulation], None]] = {
+    **{f"air {name} {value:g}": at(name, index, value) for name, index, value in (
+        ("x", (0,), NAN), ("x", (1,), INF), ("v", (0,), NAN), ("v", (1,), INF), ("v", (0,), 1e3), ("v", (1,), -1e4),
+        ("density", (), NAN), ("density", (), INF), ("density", (), 0.0), ("density", (), -1.0), ("density", (), 5e3),
+        ("mass", (), NAN), ("mass", (), -1.0), ("acceleration", (0,), NAN), ("acceleration", (1,), 1e9),
+        ("rate_before", (), NAN), ("pressure", (), NAN), ("energy", (0,), NAN), ("drift", (0,), NAN),
+        ("length", (), NAN))},
+    "air a hundred times as dense": all_of("density", 100.0),
+    "air of no density": all_of("density", 1e-6),
+    "air of negative mass": all_of("mass", -1.0),
+    "air of a thousand times the mass": all_of("mass", 1e3),
+    "air thrown up": at("x", (1,), 5.0),
+    "air thrown through the wall": at("x", (0,), -1.0),
+    "air thrown through the floor": at("x", (1,), -1.0),
+    "air: two in one place": crowd(2),
+    "air: ten in one place": crowd(10),
+    "porosity about air nan": lost,
+    **{f"water {name} {value:g}": put(f"{WATER}{name}", index, value) for name, index, value in (
+        ("x", (20, 0), NAN), ("v", (20, 0), 1e3), ("density", 20, NAN), ("density", 20, -1.0), ("mass", 20, NAN),
+        ("mass", 20, -1.0))},
+    **{f"soil {name} {value:g}": put(f"{SAND}{name}", index, value) for name, index, value in (
+        ("x", (20, 0), NAN), ("stress", (20, 1), NAN), ("stress", (20, 1), 1e12), ("density", 20, -1.0),
+        ("v", (20, 0), 1e3))},
+    **{f"step times {factor:g}": step(factor) for factor in (100.0, 1e4, NAN, -1.0, 0.0)},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_fault_in_trapped_air_is_found(sinking, name):
+    sinking.finds(FAULTS[name])
+
+
+NAMED = {
+    "air x nan": "position", "air v 1000": "speed", "air density -1": "density", "air density 0": "density",
+    "air density 5000": "density", "air mass -1": "mass", "air pressure nan": "pressure", "air energy nan": "energy",
+    "air thrown up": "way since the last look",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_what_is_wrong_is_named(sinking, name):
+    own = air(sinking.simulation)
+    sinking.names(FAULTS[name], NAMED[name], own[len(own) // 2])
+
+
+def test_nothing_is_found_where_nothing_is_wrong(sinking):  # the twin that must not fail
+    sinking.finds_nothing(10)

@@ -1,0 +1,92 @@
+"""Faults put into dry soil that slides: found within a hundred steps, named, and before they are recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.soil_model import SoilSimulation
+from tests.reference.programs import SOIL
+from tests.reference.seeded import INF, NAN, Running, put, running, times
+
+AT = 50
+"""The particle that most faults are put at: within the pile, on its way down."""
+
+
+@pytest.fixture(scope="module")
+def sliding() -> Running:
+    """A pile of sand that runs out."""
+    return running(SoilSimulation(Scene.model_validate(SOIL)), 100)
+
+
+def crowd(count: int) -> Callable[[SoilSimulation], None]:
+    """So many particles of soil are put into one place."""
+
+    def fault(simulation: SoilSimulation) -> None:
+        x = simulation.flow.soil.x
+        x[AT : AT + count] = x[AT]
+
+    return fault
+
+
+def near(simulation: SoilSimulation) -> None:
+    """Particles of soil are drawn to a tenth of the distance that they have from one of them."""
+    x = simulation.flow.soil.x
+    x[40:60] = x[AT] + 0.1 * (x[40:60] - x[AT])
+
+
+def step(factor: float) -> Callable[[SoilSimulation], None]:
+    """The next step takes ``factor`` times as long."""
+
+    def fault(simulation: SoilSimulation) -> None:
+        simulation.flow.next_step *= factor
+
+    return fault
+
+
+SAND = "flow.soil."
+FAULTS: dict[str, Callable[[SoilSimulation], None]] = {
+    **{f"{name} {value:g}": put(f"{SAND}{name}", at, value) for name, at, value in (
+        ("x", (AT, 0), NAN), ("x", (AT, 1), INF), ("v", (AT, 0), NAN), ("v", (AT, 1), INF), ("v", (AT, 0), 1e3),
+        ("v", (AT, 1), -1e4), ("density", AT, NAN), ("density", AT, INF), ("density", AT, 0.0), ("density", AT, -1.0),
+        ("density", AT, -1600.0), ("density", AT, 1.0), ("density", AT, 5e3), ("mass", AT, NAN), ("mass", AT, -1.0),
+        ("mass", AT, 0.0), ("acceleration", (AT, 0), NAN), ("acceleration", (AT, 1), 1e9), ("drift", (AT, 0), NAN),
+        ("drift", (AT, 0), 1e3), ("force", (AT, 0), NAN), ("spread", (AT, 0), NAN), ("plastic", AT, NAN),
+        ("opening", AT, NAN), ("opening", AT, -2.0), ("length", AT, NAN))},
+    **{f"stress {k} {value:g}": put(f"{SAND}stress", (AT, k), value) for k in range(4) for value in (NAN, 1e12)},
+    "stress inf": put(f"{SAND}stress", (AT, 1), INF),
+    "stress pulls": put(f"{SAND}stress", (AT, 1), -1e9),
+    "mass times a hundred": times(f"{SAND}mass", AT, 100.0),
+    **{f"thrown {where}": put(f"{SAND}x", (AT, axis), value) for where, axis, value in (
+        ("up", 1, 3.0), ("through the wall", 0, -1.0), ("through the floor", 1, -1.0), ("aside", 0, 0.28))},
+    "two in one place": crowd(2),
+    "twenty in one place": crowd(20),
+    "twenty drawn together": near,
+    **{f"step times {factor:g}": step(factor) for factor in (100.0, 1e4, NAN, -1.0, 0.0)},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_fault_in_dry_soil_is_found(sliding, name):
+    sliding.finds(FAULTS[name])
+
+
+NAMED = {
+    "x nan": "position", "v inf": "velocity", "v 1000": "speed", "density nan": "density", "density -1": "density",
+    "density 5000": "porosity", "mass -1": "mass", "mass 0": "mass", "acceleration nan": "acceleration",
+    "plastic nan": "plastic strain", "opening -2": "opening", "stress 0 nan": "stress", "stress 2 1e+12": "stress",
+    "stress pulls": "stress", "thrown up": "way since the last look",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_what_is_wrong_is_named(sliding, name):
+    sliding.names(FAULTS[name], NAMED[name], AT)
+
+
+def test_nothing_is_found_where_nothing_is_wrong(sliding):  # the twin that must not fail
+    sliding.finds_nothing(10)
+    assert np.isfinite(sliding.simulation.flow.soil.stress).all()
