@@ -55,13 +55,32 @@ def test_at_half_the_critical_step_energy_runs_away():
     assert unbalanced(trace(folder, long)) > row["tolerance"]
 
 
-def test_a_floor_deeper_down_is_met_later():
-    folder = CASES / "demseg_disc"
-    deck = replace(finer(read_deck(folder), 1), nstep=2200, nprn1=2200)
-    deep = replace(deck, domain=(-10.0, 10.0, -1.0, 10.0))
+@pytest.mark.parametrize(
+    "name", ["disc", *(pytest.param(name, marks=pytest.mark.slow) for name in ("segment", "triangle"))]
+)
+def test_a_floor_deeper_down_is_met_later(name):
+    folder = CASES / f"demseg_{name}"
+    deck = read_deck(folder)
+    steps = 2200 if name == "disc" else 5000
+    deck = replace(finer(deck, 1), nstep=steps, nprn1=steps)
+    left, right, floor, top = deck.domain
+    deep = replace(deck, domain=(left, right, floor - 1.0, top))
     row = next(row for row in expected(folder) if row["name"] == "first touch")
     assert abs(first_touch(trace(folder, deck)) - row["value"]) <= row["tolerance"]
     assert abs(first_touch(trace(folder, deep)) - row["value"]) > row["tolerance"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("share", "missing"), [(1.0, set()), (0.9, {"discs", "void ratio"})])
+def test_another_void_ratio_is_another_number_of_discs(share, missing):  # the second is the twin that must fail
+    folder = CASES / "demseg_repose"
+    deck = read_deck(folder)
+    random = replace(deck.random, void_ratio=share * deck.random.void_ratio)
+    made = trace(folder, replace(deck, random=random, nstep=10, nprn1=10, nprn2=10)).model.deck
+    radii = [body.discs[0][0] for body in made.bodies if body.discs]
+    void = 80.0**2 / (math.pi * sum(radius**2 for radius in radii)) - 1.0
+    numbers = {row["name"]: row["value"] for row in expected(folder)} | {"discs": len(radii), "void ratio": void}
+    assert set(missed(folder, numbers)) == missing
 
 
 @pytest.mark.slow
