@@ -16,7 +16,7 @@ def artificial(alpha, beta, sound_speed, length, softening, approach, distance2,
     -m_j Π_ij ∇_i W.  One division: it is what a pair costs most.
     """
     soft = distance2 + softening * length * length
-    per_mass = length * lesser(approach, 0.0) / (soft * density_sum)  # μ/2ρ̄
     if beta is None:
-        return -2.0 * alpha * sound_speed * per_mass
+        return -2.0 * alpha * sound_speed * length * lesser(approach, 0.0) / (soft * density_sum)
+    per_mass = length * lesser(approach, 0.0) / (soft * density_sum)  # μ/2ρ̄
     return 2.0 * (beta * per_mass * density_sum - alpha * sound_speed) * per_mass

@@ -131,10 +131,13 @@ def plain_kick(v, acceleration, density, rate, half, step, thinnest):
 class PlainColumn:
     """The water of ``flow`` by the smallest kernels, from where it is now on, with a list of its own."""
 
+    xsph = False
+
     def __init__(self, flow: Flow) -> None:
         layer, law, own = flow.layer, flow.law, flow.pairs
         assert len(law.fluids) == 1
-        assert not any((law.images, law.varied, law.xsph, law.fluids[0].cohesion, law.gravity[0], flow.layer.booked))
+        assert (law.xsph > 0.0) == self.xsph
+        assert not any((law.images, law.varied, law.fluids[0].cohesion, law.gravity[0], layer.booked))
         assert law.smoothing.kind == WENDLAND
         assert law.noise == HYDROSTATIC
         assert not any((law.sticky, law.corrected, law.shifting, law.beta, law.cut, law.filter_every))

@@ -154,26 +154,27 @@ def rates(
                 thrust *= part
                 ax -= thrust * tx
                 ay -= thrust * ty
+                if power is not None:
+                    bx += thrust * tx
+                    by += thrust * ty
                 braking = 0.5 * (mxx + myy) * part
                 push = damp * part
             else:
                 change += approach * part
                 braking = part
                 push = (thrust + damp) * part
+                if power is not None:
+                    thrust *= part
+                    bx += thrust * dx
+                    by += thrust * dy
             if traits is not None:
                 rub = mutual(viscosity, viscosity_j, specific, approach, distance2) * braking
                 ax -= (push - rub) * dx
                 ay -= (push - rub) * dy
-                if power is not None:
-                    bx -= (damp * part - rub) * dx
-                    by -= (damp * part - rub) * dy
             else:
                 brake = friction * braking
                 ax += brake * vx - push * dx
                 ay += brake * vy - push * dy
-                if power is not None:
-                    bx += brake * vx - damp * part * dx
-                    by += brake * vy - damp * part * dy
             if smoothing is not None:
                 weight = rho_j * volume / both * kernel_value(kind, q, width)
                 sx -= weight * vx
@@ -204,7 +205,9 @@ def rates(
             vxi += half * acceleration[i, 0]
             vyi += half * acceleration[i, 1]
             work = mass[i] * specific * specific * (own - half * rho / stiff * rate[i])
-            power[i, VISCOUS] = -mass[i] * ((total(bx) + held_x) * vxi + (total(by) + held_y) * vyi)
+            rubbed_x = total(ax) + total(bx) + held_x  # all but pressures, whose sums are bx and by
+            rubbed_y = total(ay) + total(by) + held_y
+            power[i, VISCOUS] = -mass[i] * (rubbed_x * vxi + rubbed_y * vyi)
             power[i, DIFFUSIVE] = -work * diffused
             power[i, BY_WALLS] = work * swept + mass[i] * (pushed_x * vxi + pushed_y * vyi)
             power[i, BY_SHIFTING] = work * moved - mass[i] * lifted

@@ -36,7 +36,7 @@ from continuum_sph.motion import kick, kick_drift, pressurise
 from continuum_sph.rates import rates, split_rows
 from continuum_sph.shifting import MOST, QUIET, shift
 from continuum_sph.stopped import no_step
-from continuum_sph.surface_tension import colours, curvatures, middle_curvatures, normals, pull_interface
+from continuum_sph.surface_tension import colours, curvatures, mark, middle_curvatures, normals, pull_interface
 from porescale.particles import PairList
 
 Floats = NDArray[np.float64]
@@ -74,11 +74,7 @@ class Flow:
         walls = count - layer.fluid
         self.wall_density = np.full(walls, self.law.state.density)
         self.wall_rate, self.wall_rate_before = np.zeros(walls), np.zeros(walls)
-        # What `correction` finds, read by others only where a choice needs it.
-        self.crowd, self.slant = np.zeros((count, 2)), np.zeros((count, 2))
-        self.normalised = np.zeros(layer.fluid)
-        self.colour, self.normal = np.zeros(layer.fluid), np.zeros((layer.fluid, 3))
-        self.curvature, self.middle = np.zeros(layer.fluid), np.zeros(layer.fluid)
+        self.marked = False
 
     def choose(self) -> None:
         """What kernels take: the arrays of what the law asks for, None in place of the others."""
@@ -90,6 +86,12 @@ class Flow:
         if law.varied:
             layer.girths = np.column_stack((layer.length, np.zeros(layer.count)))
         linear = law.noise == LINEAR and law.diffusion > 0.0
+        self.crowd, self.slant = (np.zeros((layer.fluid if it else 0, 2)) for it in (shifted, shifted or linear))
+        self.normalised = np.zeros(layer.fluid if law.filter_every else 0)
+        pulled = layer.fluid if law.tension > 0.0 else 0
+        self.beside, self.marked, self.told = np.zeros(pulled, np.int8), False, np.zeros(pulled, np.int64)
+        self.colour, self.normal = np.zeros(pulled), np.zeros((pulled, 3))
+        self.curvature, self.middle = np.zeros(pulled), np.zeros(pulled)
         self.surveyed = law.corrected or shifted or linear
         around, along = self.pairs.period
         wraps = max(around, along) > 0.0
@@ -100,7 +102,17 @@ class Flow:
         self.crowded = (self.crowd if shifted else None, self.slant if shifted or linear else None)
         ghost = layer.ghost if law.sticky and not law.images else None
         self.walled = (ghost, layer.facing if law.images else None, layer.material if law.sticky else None)
-        self.cohesive = True if any(fluid.cohesion for fluid in law.fluids) else None
+        self.count()
+
+    def count(self) -> None:
+        """The numbers that `rates` takes, of the law as it is: it may change on the way."""
+        law, h = self.law, self.law.smoothing.length
+        cohesive = True if any(fluid.cohesion for fluid in law.fluids) else None
+        self.counted, self.weighed = law, self.layer.mass if cohesive else None
+        self.numbers = (
+            law.smoothing.kind, h, law.gravity[0] or None, law.gravity[1], law.alpha, law.beta or None, law.softening,
+            2.0 * law.diffusion * h, law.calm, law.noise, cohesive, law.xsph or None, *self.period,
+        )  # fmt: skip
 
     @property
     def book(self) -> tuple[Floats | None, Floats | None]:
@@ -190,14 +202,14 @@ class Flow:
 
     def sum_pairs(self, half: float) -> None:
         """The pass over pairs from records as they are, at the end of a step of twice ``half`` (s)."""
-        layer, law, pairs = self.layer, self.law, self.pairs
-        (gx, gy), power, h = law.gravity, self.book[0], law.smoothing.length
+        layer, pairs = self.layer, self.pairs
+        if self.law is not self.counted:
+            self.count()
         rates(
             layer.fluid, pairs.start, self.split, pairs.partner, layer.record, *self.of_pairs, *self.walled,
-            layer.matrix if law.corrected else None, self.crowded[1], self.moving[1],
-            layer.mass if layer.booked or self.cohesive else None, self.table, layer.acceleration, layer.rate,
-            self.moving[0], power, law.smoothing.kind, h, gx or None, gy, law.alpha, law.beta or None, law.softening,
-            2.0 * law.diffusion * h, law.calm, law.noise, self.cohesive, law.xsph or None, *self.period, half,
+            layer.matrix if self.law.corrected else None, self.crowded[1], self.moving[1],
+            layer.mass if layer.booked else self.weighed, self.table, layer.acceleration, layer.rate, self.moving[0],
+            self.book[0], *self.numbers, half,
         )  # fmt: skip
 
     def pressurise(self, density: Floats) -> None:
@@ -214,19 +226,23 @@ class Flow:
         layer, pairs = self.layer, self.pairs
         if pairs.update(layer.x, layer.length):
             split_rows(layer.fluid, pairs.start, pairs.partner, self.split)
+            self.marked = False
 
     def pull(self) -> None:
         """Surface tension between two fluids."""
         layer, law, pairs = self.layer, self.law, self.pairs
         where = (layer.fluid, pairs.start, self.split, pairs.partner, layer.record)
         how = (law.smoothing.kind, law.smoothing.length, *pairs.period)
-        colours(*where, layer.material, self.colour, *how)
-        normals(*where, self.colour, self.normal, *how)
+        if not (self.marked and np.array_equal(self.told, layer.material[: layer.fluid])):
+            mark(*where[:4], layer.material, self.beside)
+            self.marked, self.told[:] = True, layer.material[: layer.fluid]
+        colours(*where, layer.material, self.beside, self.colour, *how)
+        normals(*where, self.beside, self.colour, self.normal, *how)
         curvatures(*where, self.normal, self.curvature, *how)
         middle_curvatures(*where, self.normal, self.curvature, self.middle, *how)
         pull_interface(
-            *where, layer.material, self.middle, layer.matrix, law.corrected, law.tension, layer.acceleration,
-            layer.mass, layer.v, layer.power, *how,
+            *where, layer.material, self.beside, self.middle, layer.matrix, law.corrected, law.tension,
+            layer.acceleration, layer.mass, layer.v, self.book[0], *how,
         )  # fmt: skip
 
     def show_walls(self, step: float, ratio: float) -> None:
@@ -305,6 +321,7 @@ class Flow:
         self.layer.restore(state["layer"])
         self.pairs.restore(state["pairs"])
         split_rows(self.layer.fluid, self.pairs.start, self.pairs.partner, self.split)
+        self.marked = False
         walls = state["walls"]
         self.wall_density[:], self.wall_rate[:] = walls["density"], walls["rate"]
         self.wall_rate_before[:] = walls["rate_before"]

@@ -33,13 +33,38 @@ FAINT = 0.02  # of 1/h: gradients below have no direction to rely on; those of a
 
 
 @parallel_kernel
-def colours(fluid, start, split, partner, record, material, colour, kind, h, period_x, period_y):
-    """Overwrites ``colour`` (fluid,), the kernel average of the number of the fluid, 0 or 1.
+def mark(fluid, start, split, partner, material, beside):
+    """Overwrites ``beside`` (fluid,): 2 of particles listed with a partner of another fluid, 1 of other partners of
+    theirs, 0 of all others, for which there is no interface.
 
-    start, split, partner: full list, walls from ``split[i]`` on;  record, material: see Layer;  kind, h: smoothing;
-    periods, m or 0.
+    start, split, partner, material: of `colours`.  Holds for as long as the list does.
     """
     for i in prange(fluid):
+        own = material[i]
+        other = 0
+        for k in range(np.uint64(start[i]), np.uint64(split[i])):
+            other |= material[partner[k]] ^ own
+        beside[i] = 2 if other != 0 else 0
+    for i in prange(fluid):
+        if beside[i] != 0:
+            continue
+        for k in range(np.uint64(start[i]), np.uint64(split[i])):
+            if beside[partner[k]] == 2:
+                beside[i] = 1
+                break
+
+
+@parallel_kernel
+def colours(fluid, start, split, partner, record, material, beside, colour, kind, h, period_x, period_y):
+    """Overwrites ``colour`` (fluid,), the kernel average of the number of the fluid, 0 or 1.
+
+    start, split, partner: full list, walls from ``split[i]`` on;  record, material: see Layer;  beside: of `mark`;
+    kind, h: smoothing;  periods, m or 0.
+    """
+    for i in prange(fluid):
+        if beside[i] != 2:
+            colour[i] = material[i]  # all that it sees is of its own
+            continue
         weight = record[i, VOLUME] * kernel_value(kind, 0.0, h)
         below = weight
         above = weight * material[i]
@@ -54,12 +79,17 @@ def colours(fluid, start, split, partner, record, material, colour, kind, h, per
 
 
 @parallel_kernel
-def normals(fluid, start, split, partner, record, colour, normal, kind, h, period_x, period_y):
+def normals(fluid, start, split, partner, record, beside, colour, normal, kind, h, period_x, period_y):
     """Overwrites ``normal`` (fluid, 3): unit normal of the interface and |∇c|, 1/m; zeros away from it.
 
     ∇c_i = 2 Σ V_j (c_j - c_i) ∇_i W/Σ V_j r |dW/dr|, into fluid 1.  The rest: as `colours`.
     """
     for i in prange(fluid):
+        normal[i, 0] = 0.0
+        normal[i, 1] = 0.0
+        normal[i, 2] = 0.0
+        if beside[i] == 0:
+            continue
         cx = 0.0
         cy = 0.0
         below = 0.0
@@ -78,10 +108,6 @@ def normals(fluid, start, split, partner, record, colour, normal, kind, h, perio
             normal[i, 0] = cx / size
             normal[i, 1] = cy / size
             normal[i, 2] = 2.0 * size / below
-        else:
-            normal[i, 0] = 0.0
-            normal[i, 1] = 0.0
-            normal[i, 2] = 0.0
 
 
 @parallel_kernel
@@ -154,16 +180,20 @@ def middle_curvatures(fluid, start, split, partner, record, normal, curvature, m
 
 @parallel_kernel
 def pull_interface(
-    fluid, start, split, partner, record, material, middle, matrix, corrected, tension, acceleration, mass, v, power,
-    kind, h, period_x, period_y,
+    fluid, start, split, partner, record, material, beside, middle, matrix, corrected, tension, acceleration, mass, v,
+    power, kind, h, period_x, period_y,
 ):  # fmt: skip
     """Adds -(σ/ρ_i) Σ V_j κ_j (m_j - m_i) (L_i + L_j)/2 ∇_i W to ``acceleration`` (fluid, 2) m/s²; overwrites its power
-    in ``power`` (fluid, 6) W/m, if it has rows.
+    in ``power`` (fluid, 6) W/m, None without a book.
 
-    middle: κ;  matrix: L, see Layer, used if ``corrected``, as for pressures;  tension σ, N/m;  mass (n,) kg/m;
-    v (n, 2) m/s;  the rest: as `colours`.
+    beside: of `mark`;  middle: κ;  matrix: L, see Layer, used if ``corrected``, as for pressures;  tension σ, N/m;
+    mass (n,) kg/m;  v (n, 2) m/s;  the rest: as `colours`.
     """
     for i in prange(fluid):
+        if beside[i] != 2:
+            if power is not None:
+                power[i, BY_TENSION] = 0.0
+            continue
         ax = 0.0
         ay = 0.0
         for k in range(np.uint64(start[i]), np.uint64(split[i])):
@@ -186,5 +216,5 @@ def pull_interface(
         ay *= tension / record[i, RHO]
         acceleration[i, 0] += ax
         acceleration[i, 1] += ay
-        if power.shape[0] > 0:
+        if power is not None:
             power[i, BY_TENSION] = mass[i] * (ax * v[i, 0] + ay * v[i, 1])

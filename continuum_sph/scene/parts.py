@@ -1,12 +1,17 @@
-"""Kinds of continuum scenes for `study parts`: a column of water on its way down, and what each choice adds to it."""
+"""Kinds of continuum scenes for `study parts`: a column of water on its way down, and what each choice adds to it; soil
+of the same size, water in it, and air in the lower half of its pores."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from continuum_sph.bench_plain import PlainColumn
+from continuum_sph.bench_plain_xsph import PlainSmoothed
 from continuum_sph.scene.model import Simulation
 from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.seepage_model import SeepageSimulation
+from continuum_sph.scene.soil_model import SoilSimulation
 from porescale.workbench.parts import SMALLEST, Built, Kind, Kinds
 from porescale.workbench.sections import validate
 
@@ -17,7 +22,8 @@ Table = dict[str, Any]
 
 NUMERICS: Table = {"spacing": SPACING}
 COLUMN: Table = {"width": 1.0, "height": 2.0}
-PLAIN = "water only"
+PLAIN, SMOOTHED = "water only", "water with XSPH"
+SOIL, SOAKED = "soil", "soil and water"
 
 
 def scene(numerics: Table | None = None, tank: Table | None = None, **more: Any) -> Scene:
@@ -39,6 +45,7 @@ def parts_of(it: Scene) -> list[str]:
         "corrected gradients": numerics.gradient == "corrected", "shifting": numerics.shifting > 0.0,
         "energy book": it.output.energy, "XSPH": numerics.xsph > 0.0, "walls that hold": it.tank.walls != "slip",
         "walls of images": it.tank.wall_particles == "images", "soil": it.soil is not None,
+        "air": it.air is not None,
     }  # fmt: skip
     return [name for name, there in chosen.items() if there]
 
@@ -62,31 +69,81 @@ def added(name: str, because: str = "", **more: Any) -> Kind:
     return Kind(name, "particle", PLAIN, make, because=because)
 
 
-def alone() -> Built:
-    """Water alone, beside the smallest kernels for it."""
-    it = scene()
+def alone(smallest: type[PlainColumn], **more: Any) -> Built:
+    """Water alone, with ``more`` in its scene, beside the smallest kernels for it."""
+    it = scene(**more)
     made = started(it)
-    return Built(made, parts_of(it), made.flow.layer.fluid, made.advance, PlainColumn(made.flow).advance)
+    return Built(made, parts_of(it), made.flow.layer.fluid, made.advance, smallest(made.flow).advance)
 
 
+def ground(**more: Any) -> Scene:
+    """Soil at rest in a tank, of the size of the column of water."""
+    body = {"outline": [[0, 0], [1, 0], [1, 2], [0, 2]]}
+    table: Table = {
+        "tank": {"width": 1.0, "height": 2.5, "lid": False},
+        "soil": {"density": 1590.0, "porosity": 0.4, "stiffness": 2e6, "permeability": 0.01, "stress": "geostatic",
+                 "sides": "slip", "body": [body]},
+        "numerics": NUMERICS, "time": {"end": 1.0}, "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
+    }  # fmt: skip
+    return validate(Scene, table | more)
+
+
+def settled(it: Scene) -> tuple[SoilSimulation | SeepageSimulation, int]:
+    """The simulation of a scene with soil, on its way, and how many particles it has."""
+    made: SoilSimulation | SeepageSimulation = SeepageSimulation(it) if it.water.column else SoilSimulation(it)
+    made.advance(SETTLING)
+    if isinstance(made, SoilSimulation):
+        return made, made.flow.soil.soil
+    return made, made.both.water.layer.fluid + made.both.water.skeleton.count
+
+
+def soil_beside_water() -> Built:
+    """As many particles of soil as there are of water."""
+    it = ground()
+    made, count = settled(it)
+    return Built(made, parts_of(it), count, made.advance, started(scene()).advance)
+
+
+def in_soil(other: Table, **more: Any) -> Callable[[], Built]:
+    """Soil with more in its pores, beside soil with an ``other``."""
+
+    def make() -> Built:
+        """Both scenes, started."""
+        it = ground(**more)
+        made, count = settled(it)
+        return Built(made, parts_of(it), count, made.advance, settled(ground(**other))[0].advance)
+
+    return make
+
+
+SETTLING, FEWER = 40, 10
+"""Steps before timing, and at a time: those of soil take ten times those of water."""
+WET: Table = {"water": {"pressure": "hydrostatic", "column": [COLUMN]}}
+ABOVE: Table = {"pressure": "hydrostatic", "column": [{"bottom": 1.0, "width": 1.0, "height": 1.0}]}
+UNSATURATED: Table = {"water": ABOVE, "air": {"density": 20.0, "pressure": 5e4}}
 DISC: Table = {"density": 500.0, "law": "liquid", "disc": [{"x": 0.5, "y": 1.0, "radius": 0.2}]}
 BOOK: Table = {"snapshot_interval": 1.0, "series_interval": 1.0, "energy": True}
 SHIFTED: Table = {"gradient": "corrected", "shifting": 2.0}
 
 KINDS = Kinds([
-    Kind(PLAIN, "particle", SMALLEST, alone,
+    Kind(PLAIN, "particle", SMALLEST, lambda: alone(PlainColumn),
          because="kernel by kernel: pressure and friction of a pair summed apart 5 %; what calls hand over 3 %; fluids "
                  "looked up in a table, density and pressure in a kernel of their own 5 %; walls that might move 1 %; "
                  "what Python does between kernels 3 %"),
+    Kind(SMOOTHED, "particle", SMALLEST, lambda: alone(PlainSmoothed, numerics={"xsph": 0.5})),
     added("water only, twice", "a run beside its like: what the method of measuring makes of nothing"),
     added("energy book", output=BOOK),
     added("walls that hold", tank={"walls": "stick"}),
-    added("walls of images", "all choices are made in one pass over pairs, the plain one is a kernel of its own",
+    added("walls of images", "walls have densities of their own, by a sum over their partners",
           tank={"wall_particles": "images"}),
     added("XSPH", numerics={"xsph": 0.5}),
     added("corrected gradients", numerics={"gradient": "corrected"}),
     added("corrected gradients and shifting", numerics=SHIFTED),
     added("second fluid", inclusion=DISC),
-    added("second fluid with surface tension", inclusion=DISC | {"surface_tension": 1.0}),
+    added("second fluid with surface tension", "five passes over what is near the interface",
+          inclusion=DISC | {"surface_tension": 1.0}),
+    Kind(SOIL, "particle", PLAIN, soil_beside_water, FEWER),
+    Kind(SOAKED, "particle", SOIL, in_soil({}, **WET), FEWER, "twice the particles, in three kinds of pairs"),
+    Kind("air in soil", "particle", SOAKED, in_soil(WET, **UNSATURATED), FEWER),
 ])  # fmt: skip
 """What `continuum-sph study parts` measures."""

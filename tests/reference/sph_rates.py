@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from continuum_sph.density import HYDROSTATIC, LINEAR
 from continuum_sph.layers import BY_SHIFTING, BY_WALLS, DIFFUSIVE, RHO, STIFF, VISCOUS, VOLUME, VX, X
 from continuum_sph.layers import P as PRESSURE
 
@@ -54,11 +55,11 @@ def pair_sums(flow, half):
         mean = [0.5 * (one[i] + one[k]) for k in j]
         along = np.array([a @ b for a, b in zip(mean, dx, strict=True)]).reshape(-1, 2)
         change = (rho * volume * (u * along).sum(axis=1) * slope).sum()
-        wanted = [
-            np.zeros(len(j)),
-            -0.5 * (record[i, STIFF] + record[j, STIFF]) * (dx @ g),
-            -0.5 * ((flow.slant[i] + flow.slant[j]) * dx).sum(axis=1),
-        ][law.noise]
+        wanted = np.zeros(len(j))
+        if law.noise == HYDROSTATIC:
+            wanted = -0.5 * (record[i, STIFF] + record[j, STIFF]) * (dx @ g)
+        elif law.noise == LINEAR:
+            wanted = -0.5 * ((flow.slant[i] + flow.slant[j]) * dx).sum(axis=1)
         brisk = np.minimum(1.0, np.abs(approach) / (law.smoothing.length * law.calm)) if law.calm > 0.0 else 1.0
         strength = 2.0 * law.diffusion * law.smoothing.length * fluid.state.sound_speed
         spread = (same * strength * brisk * (rho - record[j, RHO] + wanted) * volume * slope).sum()

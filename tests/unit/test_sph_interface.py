@@ -123,3 +123,20 @@ def test_circularity_of_particles_strewn_over_an_ellipse_is_the_ellipses(wide, h
     # particles makes the rest
     assert np.mean(found) == pytest.approx(exact, rel=0.005)
     assert exact < 0.93 or wide == high
+
+
+def pulled(beside):
+    """Accelerations of a strewn drop whose particles are all taken to lie ``beside`` its interface, None: as marked."""
+    flow = trials_fluids.strewn(24, RADIUS, 1.2, seed=4)
+    if beside is not None:
+        flow.beside[:] = beside
+    flow.sum_pairs(0.0)
+    flow.pull()
+    return flow.layer.acceleration, flow.beside
+
+
+def test_particles_that_see_no_interface_are_left_out_without_a_bit_of_difference():
+    acceleration, beside = pulled(None)
+    assert set(beside) == {0, 1, 2}
+    np.testing.assert_array_equal(acceleration, pulled(2)[0])
+    assert (acceleration != pulled(0)[0]).any()  # the twin that must fail: none is beside it
