@@ -12,10 +12,20 @@ import numpy as np
 
 from porescale.dem.cell import Still, drift, image, note
 from porescale.dem.contact.law import (
+    CN,
+    CR,
+    CT,
+    KN,
+    KR,
+    KT,
+    MU,
+    MUR,
+    RULE,
+    RYIELD,
+    YIELD,
     booked,
     contact,
     holds,
-    material_of,
     moments,
     note_contact,
     note_parting,
@@ -105,31 +115,49 @@ def let_go(i, k, overlap, dx, dy, du, dv, spin_i, spin_j, ri, rj, p, memory, law
 
 
 @inline
-def leave_pair(i, j, k, dx, dy, velocity, spin, radius, carried, law, dt, cell):
+def numbers_of(p):
+    """A row of the law (COLUMNS,) as numbers."""
+    return p[KN], p[CN], p[KT], p[CT], p[MU], p[RULE], p[YIELD], p[KR], p[CR], p[MUR], p[RYIELD]
+
+
+@inline
+def row_between(i, j, shared, table, material):
+    """The law between discs i and j as numbers: ``shared`` where ``material`` is None.
+
+    shared: those of table[0, 0], read once before a loop over pairs; within, the forces that are written might be the
+    table's for all that the compiler knows.
+    """
+    if material is None:
+        return shared
+    return numbers_of(table[material[i], material[j]])
+
+
+@inline
+def leave_pair(i, j, k, dx, dy, velocity, spin, radius, carried, shared, law, dt, cell):
     """Enter into the book, if any, what the springs of a pair (dx, dy) m apart still held that touched a step ago."""
     if booked(law.book) and holds(carried, k, law):
         du, dv = passing(i, j, dx, dy, velocity, cell)
-        p = law.table[material_of(law.material, i), material_of(law.material, j)]
+        p = row_between(i, j, shared, law.table, law.material)
         overlap = radius[i] + radius[j] - np.sqrt(dx * dx + dy * dy)
         let_go(i, k, overlap, dx, dy, du, dv, spin[i], spin[j], radius[i], radius[j], p, carried, law, dt)
 
 
 @inline
-def pair_contact(i, j, k, position, velocity, spin, radius, carried, law, dt, cell):
+def pair_contact(i, j, k, position, velocity, spin, radius, carried, shared, law, dt, cell):
     """Listed pair k of discs i and j: (whether they touch, force on i along x, y N/m, torques on i, j N m/m).
 
-    Arguments as in pair_forces; overwrites row k of ``carried`` and adds to the load of ``cell``.
+    Arguments as in pair_forces and row_between; overwrites row k of ``carried`` and adds to the load of ``cell``.
     """
     ri, rj = radius[i], radius[j]
     dx, dy = image(position[j, 0] - position[i, 0], position[j, 1] - position[i, 1], cell)
     square = dx * dx + dy * dy
     if square >= (ri + rj) * (ri + rj):
-        leave_pair(i, j, k, dx, dy, velocity, spin, radius, carried, law, dt, cell)
+        leave_pair(i, j, k, dx, dy, velocity, spin, radius, carried, shared, law, dt, cell)
         remember(carried, k, 0.0, 0.0, law)
         return False, 0.0, 0.0, 0.0, 0.0
     du, dv = passing(i, j, dx, dy, velocity, cell)
     mass = law.mass[i] * law.mass[j] / (law.mass[i] + law.mass[j])
-    p = law.table[material_of(law.material, i), material_of(law.material, j)]
+    p = row_between(i, j, shared, law.table, law.material)
     overlap = ri + rj - np.sqrt(square)
     gx, gy, moment_i, moment_j = touch(
         i, k, overlap, dx, dy, du, dv, spin[i], spin[j], ri, rj, mass, p, carried, law, dt
@@ -149,12 +177,13 @@ def pair_forces(
     torque (n,) N m/m in the order of the list; overwrites carried (m, 1 or 2): springs, tangential and rolling, m.
     Not checked: two centres in one place give nan, which Grains.check reports.
     """
+    shared = numbers_of(law.table[0, 0])
     for i in range(radius.shape[0]):
         fx, fy, moment = 0.0, 0.0, 0.0
         for k in range(start[i], start[i + 1]):
             j = partner[k]
             met, gx, gy, moment_i, moment_j = pair_contact(
-                i, j, k, position, velocity, spin, radius, carried, law, dt, cell
+                i, j, k, position, velocity, spin, radius, carried, shared, law, dt, cell
             )
             if met:
                 fx += gx

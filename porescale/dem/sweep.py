@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.dem.contact.law import HertzRolling, HertzSliding, LinearRolling, LinearSliding, LinearSmooth
-from porescale.dem.forces import pair_contact, pair_forces, start_forces
+from porescale.dem.forces import numbers_of, pair_contact, pair_forces, start_forces
 from porescale.dem.rectangle import add_rectangle_forces
 from porescale.dem.walls import add_plate_forces, add_wall_forces
 from porescale.ground.jit import by_law, inline, kernel, parallel_kernel, prange, threads
@@ -96,13 +96,13 @@ def list_far(start, partner, far_start, incoming_start, incoming):
 @parallel_kernel
 def far_forces(position, velocity, spin, radius, start, partner, carried, law, dt, cell, far_start, far):
     """Contacts of pairs across blocks: overwrites far (f, 4) and their springs.  Arguments as in pair_forces."""
-    count = radius.shape[0]
+    count, shared = radius.shape[0], numbers_of(law.table[0, 0])
     for b in prange((count + BLOCK - 1) // BLOCK):
         for i in range(b * BLOCK, min((b + 1) * BLOCK, count)):
             q = far_start[i]
             for k in range(start[i + 1] - (far_start[i + 1] - q), start[i + 1]):
                 met, gx, gy, moment_i, moment_j = pair_contact(
-                    i, partner[k], k, position, velocity, spin, radius, carried, law, dt, cell
+                    i, partner[k], k, position, velocity, spin, radius, carried, shared, law, dt, cell
                 )
                 far[q, 0] = gx if met else NOTHING
                 far[q, 1], far[q, 2], far[q, 3] = gy, moment_i, moment_j
@@ -115,7 +115,7 @@ def near_forces(
     cell, far_start, incoming_start, incoming, far,
 ):  # fmt: skip
     """All forces between discs, those across blocks from ``far``: overwrites force (n, 2), torque (n,) and springs."""
-    count = radius.shape[0]
+    count, shared = radius.shape[0], numbers_of(law.table[0, 0])
     for b in prange((count + BLOCK - 1) // BLOCK):
         first, last = b * BLOCK, min((b + 1) * BLOCK, count)
         for j in range(first, last):
@@ -132,7 +132,7 @@ def near_forces(
             for k in range(start[i], start[i + 1] - (far_start[i + 1] - far_start[i])):
                 j = partner[k]
                 met, gx, gy, moment_i, moment_j = pair_contact(
-                    i, j, k, position, velocity, spin, radius, carried, law, dt, cell
+                    i, j, k, position, velocity, spin, radius, carried, shared, law, dt, cell
                 )
                 if met:
                     fx += gx
