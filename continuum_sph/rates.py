@@ -47,7 +47,7 @@ def rates(
     kind, h, gx, gy, alpha, beta, softening, delta, calm, noise, cohesive, smoothing, period_x, period_y, half,
 ):  # fmt: skip
     """Overwrites ``acceleration`` (fluid, 2) m/s², ``rate`` (fluid,) kg/(m³ s), ``smoothed`` (fluid, 2) m/s and the
-    columns of ``power`` (fluid, 6) W/m but for BY_TENSION.
+    columns of ``power`` (fluid, 6) W/m that are its own: BY_SHIFTING only if there is ``drift``.
 
     start, split, partner: full pair list, wall partners of row i from ``split[i]`` on;  record: see Layer;  table
     (m, 9): the fluids;  kind, h: smoothing;  gy gravity, m/s²;  alpha, softening: artificial viscosity;  delta 2 δ h of
@@ -210,4 +210,5 @@ def rates(
             power[i, VISCOUS] = -mass[i] * (rubbed_x * vxi + rubbed_y * vyi)
             power[i, DIFFUSIVE] = -work * diffused
             power[i, BY_WALLS] = work * swept + mass[i] * (pushed_x * vxi + pushed_y * vyi)
-            power[i, BY_SHIFTING] = work * moved - mass[i] * lifted
+            if drift is not None:
+                power[i, BY_SHIFTING] = work * moved - mass[i] * lifted

@@ -127,23 +127,29 @@ SHIFTED: Table = {"gradient": "corrected", "shifting": 2.0}
 
 KINDS = Kinds([
     Kind(PLAIN, "particle", SMALLEST, lambda: alone(PlainColumn),
-         because="kernel by kernel: pressure and friction of a pair summed apart 5 %; what calls hand over 3 %; fluids "
-                 "looked up in a table, density and pressure in a kernel of their own 5 %; walls that might move 1 %; "
-                 "what Python does between kernels 3 %"),
-    Kind(SMOOTHED, "particle", SMALLEST, lambda: alone(PlainSmoothed, numerics={"xsph": 0.5})),
+         because="kernel by kernel: what calls hand over 1.5 %; what Python does between kernels 1.5 %; stops at walls "
+                 "counted, densities and pressures kept for others 1 %; the pass over pairs 1 %"),
+    Kind(SMOOTHED, "particle", SMALLEST, lambda: alone(PlainSmoothed, numerics={"xsph": 0.5}),
+         because="as of water only; the kernel's value apart from its slope 3 %"),
     added("water only, twice", "a run beside its like: what the method of measuring makes of nothing"),
-    added("energy book", output=BOOK),
+    added("energy book", "sums of pressure apart from the rest 8 %, the book's own lines 5 %, taken up 3 %",
+          output=BOOK),
     added("walls that hold", tank={"walls": "stick"}),
-    added("walls of images", "walls have densities of their own, by a sum over their partners",
+    added("walls of images", "walls have densities of their own, by a sum of their own",
           tank={"wall_particles": "images"}),
-    added("XSPH", numerics={"xsph": 0.5}),
-    added("corrected gradients", numerics={"gradient": "corrected"}),
-    added("corrected gradients and shifting", numerics=SHIFTED),
-    added("second fluid", inclusion=DISC),
+    added("XSPH", "a kernel's value, a division and two sums a pair: its smallest kernel has them too",
+          numerics={"xsph": 0.5}),
+    added("corrected gradients", "a pass over pairs before the one that reads what it finds",
+          numerics={"gradient": "corrected"}),
+    added("corrected gradients and shifting", "three passes: moments, with two sums of their own; rates; the surface",
+          numerics=SHIFTED),
+    added("second fluid", "number and viscosity of the partner, a comparison, a division a pair", inclusion=DISC),
     added("second fluid with surface tension", "five passes over what is near the interface",
           inclusion=DISC | {"surface_tension": 1.0}),
-    Kind(SOIL, "particle", PLAIN, soil_beside_water, FEWER),
+    Kind(SOIL, "particle", PLAIN, soil_beside_water, FEWER,
+         "two passes over pairs, gradients of velocity and divergence of stress, and stresses of walls"),
     Kind(SOAKED, "particle", SOIL, in_soil({}, **WET), FEWER, "twice the particles, in three kinds of pairs"),
-    Kind("air in soil", "particle", SOAKED, in_soil(WET, **UNSATURATED), FEWER),
+    Kind("air in soil", "particle", SOAKED, in_soil(WET, **UNSATURATED), FEWER,
+         "a second fluid, and powers of its density"),
 ])  # fmt: skip
 """What `continuum-sph study parts` measures."""
