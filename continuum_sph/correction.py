@@ -42,7 +42,7 @@ def inverse(xx, xy, yy):
 def surroundings(
     fluid, start, split, partner, record, traits, matrix, crowd, slant, kind, h, spacing, period_x, period_y
 ):  # fmt: skip
-    """Overwrites, of fluid particles, ``matrix`` (n, 4), L and the trace of M;  ``crowd`` (n, 2) 1/m,
+    """Overwrites, of fluid particles, ``matrix`` (fluid, 4), L and the trace of M;  ``crowd`` (n, 2) 1/m,
     Σ {1 + R (W/W(spacing))⁴} V ∇W, which points away from where particles crowd;  ``slant`` (n, 2) kg/m⁴, gradient of
     density within the material, exact for linear fields.
 

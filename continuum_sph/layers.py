@@ -23,7 +23,8 @@ class Layer:
     fluid : number of fluid particles, the first rows of every array;
     x (n, 2) m;  v (n, 2) m/s, of walls the wall's own;  mass (n,) kg per metre of depth;
     density (fluid,) kg/m³;  material (n,) number of the particle's fluid, of a wall particle 1 where fluid slips past
-    walls that else hold it;  the rest is made of these: pressure (n,) Pa and what the pass over pairs reads.
+    walls that else hold it;  the rest is made of these: pressure (n,) Pa and what the pass over pairs reads,
+    of which ghost, traits, girths, matrix and facing have no rows unless a flow asks for them.
     """
 
     fluid: int
@@ -44,7 +45,7 @@ class Layer:
     length: Floats = field(init=False)  # (n,) m, smoothing lengths, set by the flow
     traits: Floats = field(init=False)  # (fluid, 2) number and viscosity (Pa s) of the fluid, for pairs of several
     girths: Floats = field(init=False)  # (n, 2) `length`, for pairs where it varies, and nothing
-    matrix: Floats = field(init=False)  # (n, 4) xx, xy, yy of the gradient correction, and how closed in: `correction`
+    matrix: Floats = field(init=False)  # (fluid, 4) xx, xy, yy of the gradient correction, how closed in: `correction`
     facing: Floats = field(init=False)  # (n, 4) of walls: nearest point of the surface, normal into the fluid
     power: Floats = field(init=False)  # (fluid, 6) W/m, see VISCOUS, …, STOPPED; (0, 6) without `keep_book`
     energy: Floats = field(init=False)  # the same summed over time, J/m
@@ -62,10 +63,9 @@ class Layer:
         self.drift = np.zeros((self.fluid, 2))
         self.rate, self.rate_before = np.zeros(self.fluid), np.zeros(self.fluid)
         self.predicted, self.pressure = np.zeros(self.fluid), np.zeros(n)
-        self.record, self.ghost = np.zeros((n, 8)), np.zeros((n, 2))
+        self.record, self.length = np.zeros((n, 8)), np.zeros(n)
         self.traits, self.girths = np.zeros((0, 2)), np.zeros((0, 2))
-        self.length, self.facing = np.zeros(n), np.zeros((n, 4))
-        self.matrix = np.tile([1.0, 0.0, 1.0, 2.0], (n, 1))
+        self.ghost, self.facing, self.matrix = np.zeros((0, 2)), np.zeros((0, 4)), np.zeros((0, 4))
         self.power, self.energy = np.zeros((0, 6)), np.zeros((0, 6))
 
     def keep_book(self) -> None:

@@ -100,8 +100,15 @@ class Flow:
         self.of_pairs = (layer.traits if several else None, layer.girths if law.varied else None)
         self.moving = (layer.smoothed if xsph else None, layer.drift if shifted else None)
         self.crowded = (self.crowd if shifted else None, self.slant if shifted or linear else None)
-        ghost = layer.ghost if law.sticky and not law.images else None
-        self.walled = (ghost, layer.facing if law.images else None, layer.material if law.sticky else None)
+        held = law.sticky and not law.images
+        layer.ghost = np.zeros((layer.count if held else 0, 2))
+        layer.facing = np.zeros((layer.count if law.images else 0, 4))
+        layer.matrix = np.zeros((layer.fluid if self.surveyed else 0, 4))
+        self.walled = (
+            layer.ghost if held else None,
+            layer.facing if law.images else None,
+            layer.material if law.sticky else None,
+        )
         self.count()
 
     def count(self) -> None:
@@ -269,7 +276,7 @@ class Flow:
         layer, law, pairs = self.layer, self.law, self.pairs
         load_walls(
             layer.fluid, pairs.start, self.split, pairs.partner, layer.x, layer.v, layer.mass, layer.record,
-            layer.pressure, layer.ghost if law.sticky else None, law.smoothing.kind, law.smoothing.length,
+            layer.pressure, self.walled[0], law.smoothing.kind, law.smoothing.length,
             *law.gravity, law.state.density, *pairs.period,
         )  # fmt: skip
 

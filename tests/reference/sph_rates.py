@@ -80,7 +80,7 @@ def pair_sums(flow, half):
         dx, u, mine = apart[walls], record[i, VX : VX + 2] - record[walls, VX : VX + 2], one[i]
         r2 = (dx**2).sum(axis=1)
         _, slope = wendland(np.sqrt(r2), h[walls])
-        rubbing = record[i, VX : VX + 2] - layer.ghost[walls]
+        rubbing = record[i, VX : VX + 2] - layer.ghost[walls] if law.sticky and not law.images else u
         if law.images:
             u = rubbing = seen_in_walls(layer, law, record[i, X : X + 2], u, dx, walls)
         volume, along = record[walls, VOLUME], dx @ mine.T
