@@ -251,13 +251,16 @@ def surfaces_of_block(
     to_plates = walls.shape[0]
     to_rectangles = to_plates + plates.shape[0]
     add_wall_forces(x, v, w, r, f, t, walls, wall_laws, wall_spring[:, first:last], partial[b, :to_plates], own, dt)
-    add_plate_forces(
-        x, v, w, r, f, t, plates, plate_laws, plate_spring[:, first:last], partial[b, to_plates:to_rectangles], own, dt
-    )
-    add_rectangle_forces(
-        x, v, w, r, f, t, rectangles, rectangle_laws, rectangle_spring[:, first:last], partial[b, to_rectangles:], own,
-        dt,
-    )  # fmt: skip
+    if plates.shape[0] > 0:
+        add_plate_forces(
+            x, v, w, r, f, t, plates, plate_laws, plate_spring[:, first:last], partial[b, to_plates:to_rectangles], own,
+            dt,
+        )  # fmt: skip
+    if rectangles.shape[0] > 0:
+        add_rectangle_forces(
+            x, v, w, r, f, t, rectangles, rectangle_laws, rectangle_spring[:, first:last], partial[b, to_rectangles:],
+            own, dt,
+        )  # fmt: skip
 
 
 @parallel_kernel
