@@ -24,7 +24,7 @@ from continuum_sph.density import HYDROSTATIC, LINEAR, haste_of, pace
 from continuum_sph.fluids import COHESION, SOUND, VISCOSITY, alike
 from continuum_sph.layers import BY_SHIFTING, BY_WALLS, DIFFUSIVE, RHO, STIFF, VISCOUS, VX, VY, P, X, Y
 from continuum_sph.rates_walls import walls_push
-from continuum_sph.smoothing import kernel_value, slope_scale, slope_shape
+from continuum_sph.smoothing import WENDLAND, slope_scale, slope_shape, value_scale, value_shape
 from continuum_sph.viscosity import laminar, mutual
 from porescale.ground.jit import parallel_kernel, prange
 from porescale.ground.lanes import LANES, nearest, nothing, root, take_four, take_rows, take_two, total
@@ -62,7 +62,11 @@ def rates(
     density belongs;  book: ``power`` and, without cohesion, ``mass`` (n,) kg/m;  cohesion: ``cohesive``;  XSPH:
     ``smoothed`` and ``smoothing``, its ε, for Σ (m_j/ρ̄)(v_j - v_i) W (eq. 53 with the sign that smooths);  gravity
     sideways: ``gx``, m/s²;  β of artificial viscosity: ``beta``;  periods: ``period_x`` and ``period_y``, m or 0.
+    ``kind`` is None for Wendland's kernel where that is to be compiled in.
     """
+    form = WENDLAND
+    if kind is not None:
+        form = kind
     linear = noise == LINEAR
     haste, restless = haste_of(calm, h)
     level = 0.5 if noise == HYDROSTATIC else 0.0
@@ -73,7 +77,7 @@ def rates(
     if period_x is not None:
         turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
         turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
-    scale_h = slope_scale(kind, h)
+    scale_h = slope_scale(form, h)
     inverse_h = 1.0 / h
     for i in prange(fluid):
         xi = record[i, X]
@@ -115,13 +119,13 @@ def rates(
                 girth, _ = take_two(girths, partner, k, split[i], i)
                 width = 0.5 * (girths[i, 0] + girth)
                 inverse = 1.0 / width
-                scale = slope_scale(kind, width)
+                scale = slope_scale(form, width)
             else:
                 width = h
                 inverse = inverse_h
                 scale = scale_h
             q = root(distance2) * inverse
-            part = volume * scale * slope_shape(kind, q)
+            part = volume * scale * slope_shape(form, q)
             approach = vx * dx + vy * dy
             spreading = part * pace(approach, haste, restless)
             if traits is not None:
@@ -176,13 +180,15 @@ def rates(
                 ax += brake * vx - push * dx
                 ay += brake * vy - push * dy
             if smoothing is not None:
-                weight = rho_j * volume / both * kernel_value(kind, q, width)
+                weight = rho_j * volume / both * value_shape(form, q)
+                if girths is not None:
+                    weight *= value_scale(form, width)
                 sx -= weight * vx
                 sy -= weight * vy
             k += LANES
         pushed_x, pushed_y, held_x, held_y, swept = walls_push(
             i, split[i], start[i + 1], partner, record, traits, girths, ghost, facing, material, matrix, vxi, vyi, rho,
-            own, viscosity, kind, h, scale_h, period_x, period_y,
+            own, viscosity, form, h, scale_h, period_x, period_y,
         )  # fmt: skip
         diffused = delta * sound * total(spread)
         acceleration[i, 0] = total(ax) + pushed_x + held_x
@@ -198,8 +204,11 @@ def rates(
                 lifted += gx * drift[i, 0]
         rate[i] = rho * total(change) + swept + moved + diffused
         if smoothing is not None:
-            smoothed[i, 0] = 2.0 * smoothing * total(sx)
-            smoothed[i, 1] = 2.0 * smoothing * total(sy)
+            whole = 2.0 * smoothing
+            if girths is None:
+                whole *= value_scale(form, h)
+            smoothed[i, 0] = whole * total(sx)
+            smoothed[i, 1] = whole * total(sy)
         if power is not None:
             # What these do to speeds they do at the step's end, and what they do to densities at its middle.
             vxi += half * acceleration[i, 0]

@@ -35,6 +35,25 @@ def kernel_value(kind, q, h):
 
 
 @inline
+def value_scale(kind, h):
+    """The part of `kernel_value` that depends on h alone, 1/m², for sums that it multiplies as a whole."""
+    if kind == CUBIC:
+        return 5.0 / (14.0 * np.pi * h * h)
+    return 1.75 / (np.pi * h * h)
+
+
+@inline
+def value_shape(kind, q):
+    """The part of `kernel_value` that depends on q alone."""
+    if kind == CUBIC:
+        outer = greater(2.0 - q, 0.0)
+        inner = greater(1.0 - q, 0.0)
+        return outer * outer * outer - 4.0 * inner * inner * inner
+    rest = greater(1.0 - 0.5 * q, 0.0)
+    return rest * rest * rest * rest * (1.0 + 2.0 * q)
+
+
+@inline
 def slope_scale(kind, h):
     """The part of `kernel_slope` that depends on h alone, 1/m⁴."""
     if kind == CUBIC:

@@ -127,10 +127,10 @@ SHIFTED: Table = {"gradient": "corrected", "shifting": 2.0}
 
 KINDS = Kinds([
     Kind(PLAIN, "particle", SMALLEST, lambda: alone(PlainColumn),
-         because="kernel by kernel: what calls hand over 1.5 %; what Python does between kernels 1.5 %; stops at walls "
-                 "counted, densities and pressures kept for others 1 %; the pass over pairs 1 %"),
+         because="1 to 5 % from process to process: what calls hand over 1.5 %; Python between kernels 1.5 %; stops at "
+                 "walls counted, densities and pressures kept for others 1 %; the pass over pairs 1 %"),
     Kind(SMOOTHED, "particle", SMALLEST, lambda: alone(PlainSmoothed, numerics={"xsph": 0.5}),
-         because="as of water only; the kernel's value apart from its slope 3 %"),
+         because="1 to 5 % from process to process, as of water only"),
     added("water only, twice", "a run beside its like: what the method of measuring makes of nothing"),
     added("energy book", "sums of pressure apart from the rest 8 %, the book's own lines 5 %, taken up 3 %",
           output=BOOK),

@@ -9,7 +9,15 @@ from continuum_sph.artificial_viscosity import artificial
 from continuum_sph.eos import Tait, tait, tait_density
 from continuum_sph.exact import couette, drop_period, poiseuille, released_pressure
 from continuum_sph.scene.verify import LATTICE
-from continuum_sph.smoothing import CUBIC, WENDLAND, Smoothing, kernel_slope, kernel_value
+from continuum_sph.smoothing import (
+    CUBIC,
+    WENDLAND,
+    Smoothing,
+    kernel_slope,
+    kernel_value,
+    value_scale,
+    value_shape,
+)
 from continuum_sph.viscosity import laminar
 
 eps = np.finfo(float).eps
@@ -21,6 +29,14 @@ def paper_spline(s):
     if s < 1.0:
         return scale * (2.0 / 3.0 - s * s + 0.5 * s**3)
     return scale * (2.0 - s) ** 3 / 6.0 if s <= 2.0 else 0.0
+
+
+@pytest.mark.parametrize("kind", [CUBIC, WENDLAND])
+def test_a_kernel_is_its_scale_times_its_shape(kind):
+    for q in np.linspace(0.0, 2.5, 26):  # ten roundings of numbers below 4
+        parts = value_scale(kind, 0.3) * value_shape(kind, q)
+        assert parts == pytest.approx(kernel_value(kind, q, 0.3), abs=40 * eps * value_scale(kind, 0.3))
+    assert value_shape(kind, 1.0) != pytest.approx(value_shape(kind, 1.001), abs=40 * eps)  # the twin that must fail
 
 
 def test_cubic_spline_is_the_papers():

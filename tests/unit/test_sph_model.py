@@ -235,7 +235,16 @@ def test_pass_over_pairs_as_plain_python(monkeypatch):
     for name in ("kick_drift", "pressurise", "kick", "load_walls", "rates", "split_rows", "surroundings", "shift"):
         monkeypatch.setattr(step, name, getattr(step, name).py_func)
     for module in (correction, rates, shifting):  # compiled, they take vectors from kernels only
-        for name in ("artificial", "haste_of", "kernel_value", "laminar", "pace", "slope_scale", "slope_shape"):
+        for name in (
+            "artificial",
+            "haste_of",
+            "kernel_value",
+            "laminar",
+            "pace",
+            "slope_scale",
+            "slope_shape",
+            "value_shape",
+        ):
             if hasattr(module, name):
                 monkeypatch.setattr(module, name, getattr(module, name).py_func)
     plain.advance(2)
