@@ -130,7 +130,7 @@ KINDS = Kinds([
          because="1 to 5 % from process to process: what calls hand over 1.5 %; Python between kernels 1.5 %; stops at "
                  "walls counted, densities and pressures kept for others 1 %; the pass over pairs 1 %"),
     Kind(SMOOTHED, "particle", SMALLEST, lambda: alone(PlainSmoothed, numerics={"xsph": 0.5}),
-         because="1 to 5 % from process to process, as of water only"),
+         because="as of water only, and 3 % in the pass over pairs"),
     added("water only, twice", "a run beside its like: what the method of measuring makes of nothing"),
     added("energy book", "sums of pressure apart from the rest 8 %, the book's own lines 5 %, taken up 3 %",
           output=BOOK),
