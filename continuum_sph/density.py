@@ -37,22 +37,6 @@ NAMES = ("plain", "hydrostatic", "linear")
 
 
 @inline
-def continuity(density_i, volume_j, approach, slope):
-    """dρ_i/dt of one partner, kg/(m³ s): ρ_i V_j v_ij · ∇_i W;  approach v_ij · x_ij, m²/s;  slope (1/r) dW/dr."""
-    return density_i * volume_j * approach * slope
-
-
-@inline
-def diffusion(density_i, density_j, expected, volume_j, slope, strength):
-    """dρ_i/dt of one partner, kg/(m³ s): 2 δ h c0 (ρ_j - ρ_i - expected)(-(1/r) dW/dr) V_j.
-
-    expected : difference ρ_j - ρ_i that is no noise, kg/m³;  strength 2 δ h c0, m²/s.
-    Hydrostatic: dp = ρ g · dx and dp = c² dρ give (ρ/c²) g · (x_j - x_i), with the mean of both ends.
-    """
-    return -strength * (density_j - density_i - expected) * volume_j * slope
-
-
-@inline
 def pace(approach, haste, restless):
     """Share of the speed of sound at which the densities of a pair diffuse: min(1, restless + haste |v_ij · x_ij|).
 
