@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from porescale.workbench.validations import Validations
 
 
+FORMERLY = {"numerics": {"noise_floor": 0.0}}
+"""What was done before keys were there whose defaults do something else: no run changes its physics when resumed."""
+
+
 def scene_type() -> type[Scene]:
     """The type of a continuum scene."""
     from continuum_sph.scene.sections import Scene
@@ -66,6 +70,7 @@ def drive(
 ) -> Outcome:
     """Run the model to the scene's end and write the run folder."""
     from porescale.runs.drive import drive as drive_model
+    from porescale.workbench.older import completing
 
     return drive_model(
         model,
@@ -79,14 +84,16 @@ def drive(
         overwrite=overwrite,
         quiet=quiet,
         after=show,
+        today=completing(scene_type(), card, FORMERLY),
     )
 
 
 def judge(folder: Path, card: dict[str, Any]) -> None:
     """InputError where the run in ``folder`` cannot be gone on with as ``card`` asks."""
     from porescale.runs.drive import refuse_resume
+    from porescale.workbench.older import completing
 
-    refuse_resume(folder, card)
+    refuse_resume(folder, card, today=completing(scene_type(), card, FORMERLY))
 
 
 def report(scene: Scene) -> Report:

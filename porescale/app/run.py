@@ -47,6 +47,7 @@ def drive(
     from porescale.runs.open_run import open_run
     from porescale.scene.bed import write_permeability
     from porescale.scene.cost import remember
+    from porescale.workbench.older import completing
 
     def after(finished: Path) -> None:
         """Leave the pictures, and the permeability of the bed if there is one."""
@@ -66,6 +67,7 @@ def drive(
         overwrite=overwrite,
         quiet=quiet,
         after=after,
+        today=completing(scene_type(), card),
     )
     remember(model.derived, outcome.steps_per_second)
     return outcome
@@ -74,8 +76,9 @@ def drive(
 def judge(folder: Path, card: dict[str, Any]) -> None:
     """InputError where the run in ``folder`` cannot be gone on with as ``card`` asks."""
     from porescale.runs.drive import refuse_resume
+    from porescale.workbench.older import completing
 
-    refuse_resume(folder, card)
+    refuse_resume(folder, card, today=completing(scene_type(), card))
 
 
 def table(folder: Path, name: str) -> dict[str, Array]:

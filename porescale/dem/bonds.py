@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from porescale.dem.cell import image
 from porescale.dem.contact.law import material_of, stiffness
-from porescale.dem.segment_list import no_segments
+from porescale.dem.segment_list import no_segments, refuse_beyond
 from porescale.dem.segments import OUTLINE, Segments, foot, meeting, weight_of
 from porescale.ground.check import Fault, InputError
 from porescale.ground.jit import inline, kernel
@@ -206,9 +206,11 @@ class BondList:
         return {name: getattr(self, name).copy() for name in STATE}
 
     @staticmethod
-    def restored(state: dict[str, Any]) -> BondList:
-        """The bonds of ``state()``."""
+    def restored(state: dict[str, Any], discs: int, segments: int) -> BondList:
+        """The bonds of ``state()`` of so many discs and segments; InputError where one is between others."""
         made = BondList(np.array(state["ends"], np.int64).reshape(-1, 3), np.array(state["back"], float))
+        for sided, count in enumerate((discs, segments)):
+            refuse_beyond("bonds.ends", made.ends[made.ends[:, 2] == sided], discs, count)
         made.whole[:] = state["whole"]
         made.broken[:] = np.reshape(state["broken"], (-1, 3))
         return made

@@ -71,7 +71,8 @@ def restore(grains: Grains, state: dict[str, Any]) -> None:
     grains.pairs.restore(state["pairs"])
     if grains.segments is not None:
         grains.segments.restore(state["segments"])
-    grains.bonds = BondList.restored(state["bonds"]) if "bonds" in state else None
+    known = grains.discs.count, 0 if grains.segments is None else len(grains.segments.ends)
+    grains.bonds = BondList.restored(state["bonds"], *known) if "bonds" in state else None
     if grains.sleep is not None:
         grains.sleep.restore(state["sleep"])
     grains._sweeps.forget()

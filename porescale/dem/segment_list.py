@@ -155,10 +155,12 @@ class SegmentList:
         return {**{name: getattr(self, name).copy() for name in STATE}, "listed": self._listed}
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Go on exactly from ``state()`` of segments made alike."""
+        """Go on exactly from ``state()`` of segments made alike; InputError where it lists what is not there."""
+        for name, others in (("corner", len(self.group)), ("near", len(self.ends))):
+            refuse_beyond(f"segments.{name}", state[name], len(self.group), others)
         for name in STATE:
             setattr(self, name, np.array(state[name], getattr(self, name).dtype))
-        self._listed = int(state["listed"])
+        self._listed = int(state["listed"]) if self._grains.pairs.builds else -1  # with the discs' list, if that is due
         self.arrays = self._pack()
 
 
@@ -167,6 +169,14 @@ def no_segments(grains: Grains) -> Segments:
     none, memory = np.zeros((0, 2), np.int64), np.zeros((0, memory_of(grains.contact)))
     start = np.zeros(grains.discs.count + 1, np.int64)
     return Segments(0, none, start, np.zeros(0, np.int64), none, memory, none, none, memory)
+
+
+def refuse_beyond(name: str, rows: Index, one: int, other: int) -> None:
+    """InputError unless the first two of each of ``rows`` (m, 2 or more) are numbers below ``one`` and ``other``."""
+    for column, count in enumerate((one, other)):
+        wrong = (rows[:, column] < 0) | (rows[:, column] >= count)
+        if wrong.any():
+            raise InputError(Fault(f"state.{name}", int(rows[wrong, column][0]), f"is none of {count}"))
 
 
 def _keys(rows: Index) -> Index:

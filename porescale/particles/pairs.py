@@ -293,9 +293,11 @@ class PairList:
         self.carried[:] = state["carried"]
         self.anchor[:] = state["anchor"]
         self._anchor_reach[:] = state["anchor_reach"]
-        self.builds, self.lasted = int(state["builds"]), int(state["lasted"])
-        self.skin = float(state["skin"])
-        self._look_again(self.anchor, self._anchor_reach, 0.5 * self.skin)  # of states that do not say
+        # Older states do not say their skin: theirs may have been less, so the next update makes the list anew.  Bits
+        # stay: rows are ascending in both, and pairs beyond reach, in which alone the lists differ, bear nothing.
+        self.builds = int(state["builds"]) if "skin" in state else 0
+        self.lasted, self.skin = int(state.get("lasted", 0)), float(state.get("skin", self.skin))
+        self._look_again(self.anchor, self._anchor_reach, 0.5 * self.skin if self.builds else 0.0)  # where none is said
         if "mark" in state:
             mark, reach = (np.asarray(state[name], np.float64) for name in ("mark", "mark_reach"))
             self._look_again(mark, reach, float(state["room"]))

@@ -143,3 +143,12 @@ def changed_keys(old: Any, new: Any, free: Collection[str] = FREE, place: str = 
             found |= changed_keys(old.get(key), new.get(key), free, below)
         return found
     return {} if old == new else {place: (old, new)}
+
+
+def has_key(scene: Any, key: str) -> bool:
+    """Whether a scene has a dotted key, whatever its value; "" is all of it."""
+    for part in key.split(".") if key else ():
+        if not (isinstance(scene, dict) and part in scene):
+            return False
+        scene = scene[part]
+    return True

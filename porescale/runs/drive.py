@@ -16,8 +16,8 @@ from porescale.runs.atomic import clean, owned, refuse_shared
 from porescale.runs.judge import judge
 from porescale.runs.model import Model, variable_step
 from porescale.runs.progress import Watch
-from porescale.runs.record import CHECKPOINT, Gone, Record, refuse_changes
-from porescale.runs.resume import refuse_another, standing
+from porescale.runs.record import CHECKPOINT, Gone, Record, Today, refuse_changes
+from porescale.runs.resume import how_far, refuse_another
 from porescale.runs.schedule import SLACK, Schedule, positive
 from porescale.runs.stop import Interrupted, StopRequest, polite_stop
 
@@ -57,6 +57,7 @@ def drive(
     after: Callable[[Path], object] | None = None,
     meanwhile: Callable[[Path], object] | None = None,
     free: Collection[str] = cards.FREE,
+    today: Today | None = None,
 ) -> Outcome:
     """Advance ``model`` to ``duration`` (s) and write the run folder.
 
@@ -68,8 +69,9 @@ def drive(
 
     resume : go on from the checkpoint, bit for bit as the uninterrupted run; without a checkpoint it starts
     from the beginning, and a finished run is left alone.  The scene must be the same but for keys named in
-    ``free``: the duration may grow, intervals may change (they count from time 0).  Other sources or versions than
-    the run had are warned of on stderr.
+    ``free``: the duration may grow, intervals may change (they count from time 0).  Keys that came after the run are
+    the same where they do nothing that it did not do, as ``today`` tells.  Other sources or versions than the run had
+    are warned of on stderr.
 
     overwrite : replace the run in the folder even if it is unfinished and took long (without: InputError); a
     finished one is replaced anyway, and files that no run makes are left alone.
@@ -94,7 +96,7 @@ def drive(
         name = str(card.get("name") or folder.name)
         resume = resume and (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists()
         if resume:
-            refuse_changes(folder, card, free)
+            refuse_changes(folder, card, free, today)
             done = _already(folder, run)
             if done is not None:
                 text = f"{folder}: finished at t = {done.time:.6g} s, nothing to do"
@@ -107,14 +109,16 @@ def drive(
             return _watched(run, record, watch, after)
 
 
-def refuse_resume(folder: Path, card: dict[str, Any], free: Collection[str] = cards.FREE) -> None:
+def refuse_resume(
+    folder: Path, card: dict[str, Any], free: Collection[str] = cards.FREE, today: Today | None = None
+) -> None:
     """InputError where the run in ``folder`` cannot be gone on with, of which ``card`` asks for (as of `drive`).
 
     What can be said without a model, which may take long to build: whether it is this scene's, and whether its
     checkpoint is one and makes sense.  Nothing where there is no checkpoint yet.
     """
     if (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists():
-        refuse_changes(folder, card, free)
+        refuse_changes(folder, card, free, today)
         judge(folder)
 
 
@@ -245,7 +249,7 @@ def _record_due(run: _Run, record: Record) -> bool:
 
 def _already(folder: Path, run: _Run) -> Outcome | None:
     """The outcome of a finished run; InputError when it is unfinished but beyond ``duration``."""
-    reached = standing(folder)
+    reached = how_far(folder)
     step, time = reached.step, reached.time
     if not run.ended(step, time):
         return None

@@ -26,10 +26,11 @@ PARTS: tuple[tuple[str, type | tuple[type, ...]], ...] = (
 """What a checkpoint is made of."""
 AS_LONG = {
     "carried": "partner", "corner_memory": "corner", "near_memory": "near", "back": "ends", "whole": "ends",
-    "broken": "ends",
+    "broken": "ends", "withheld": "held",
 }  # fmt: skip
-"""Arrays that have a row for every one of another beside them: of pairs, of segments that touch, of bonds."""
-GROWING = frozenset({"partner", "corner", "near", "ends", "held", "withheld", "book_start", *AS_LONG})
+"""Arrays that have a row for every one of another beside them: of pairs, of segments that touch, of bonds, of
+discs that are held."""
+GROWING = frozenset({"partner", "corner", "near", "ends", "held", "book_start", *AS_LONG})
 """Arrays that have other lengths at other times."""
 NOT_YET = frozenset({"broken"})
 """Arrays in which no number means that something has not happened."""
@@ -146,6 +147,9 @@ def _bodies(part: State) -> str:
     start = inner.get("pairs", {}).get("start")
     if isinstance(start, np.ndarray) and start.shape != (count + 1,):
         return f"pairs.start: {len(start)} for {count} discs"
+    rows = part.get("held")
+    if isinstance(rows, np.ndarray) and rows.shape not in ((0, 3), (count, 3)):
+        return f"held: {rows.shape} for none or all of {count} discs"
     for table, name, width in (("segments", "corner", 2), ("segments", "near", 2), ("bonds", "ends", 3)):
         rows = inner.get(table, {}).get(name)
         if rows is None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import sys
 import time as clock
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +22,7 @@ from porescale.runs.checkpoint import write_checkpoint
 from porescale.runs.cost import Cost
 from porescale.runs.model import Model, tables_of
 from porescale.runs.resume import CHECKPOINT as CHECKPOINT
-from porescale.runs.resume import standing, take_up
+from porescale.runs.resume import how_far, take_up
 from porescale.runs.schedule import Schedule
 from porescale.runs.series import NAME as SERIES
 from porescale.runs.series import Series, refuse_shorter
@@ -38,6 +38,8 @@ MADE_LATER = (
 TABLES = "tables"
 """Key of a run card: names of the run's further time series, without suffix."""
 ABANDONED = (cards.RUNNING, cards.INTERRUPTED, cards.FAILED)
+Today = Callable[[Mapping[str, Any]], Mapping[str, Any]]
+"""Completes the scene of an older run with the keys that came after it, at what they were before."""
 WORTH_KEEPING = 60.0
 """An unfinished run that cost more than this many seconds is not overwritten without being asked."""
 
@@ -103,7 +105,7 @@ class Record:
         extra = saved.snapshot_step != saved.last_snapshot_step
         snapshots.trim(folder, model.step - 1 if extra else model.step)
         snapshots.assemble(folder)
-        card["seconds"] = saved.standing.seconds
+        card["seconds"] = saved.reached.seconds
         card["resumed"] = [
             *card.get("resumed", []),
             {"at": cards.now(), "step": model.step, "time": model.time, **now},
@@ -219,13 +221,23 @@ class Record:
         cards.write_card(self.folder, self.card)
 
 
-def refuse_changes(folder: Path, given: dict[str, Any], free: Collection[str]) -> None:
-    """InputError naming every scene key that must not differ from the run in ``folder``; or whose run that is."""
+def refuse_changes(folder: Path, given: dict[str, Any], free: Collection[str], today: Today | None = None) -> None:
+    """InputError naming every scene key that must not differ from the run in ``folder``; or whose run that is.
+
+    Of keys that came after that run it is said what goes on as it did, which ``today`` knows.
+    """
     old, new = cards.read_card(folder, given.get("package"))["scene"], cards.plain(given).get("scene")
+    whole: Any = old
+    if today is not None and isinstance(old, Mapping) and cards.changed_keys(old, new, free):
+        whole = cards.plain(today(old))
     faults = []
-    for key, (was, now) in cards.changed_keys(old, new, free).items():
-        repair = f"resume with {was!r}, or start another run"
-        faults.append(Fault(key or "scene", now if now is not None else "absent", f"was {was!r}", repair=repair))
+    for key, (was, now) in cards.changed_keys(whole, new, free).items():
+        problem, way = f"was {was!r}", f"resume with {was!r}, or "
+        if not cards.has_key(old, key):
+            problem = "the run was begun by a version without it"
+            way = "" if whole is old else f"set it to {was!r} to go on as that did, or "
+        value = now if now is not None else "absent"
+        faults.append(Fault(key or "scene", value, problem, repair=f"{way}start another run"))
     if faults:
         raise InputError(faults)
 
@@ -255,7 +267,7 @@ def _refuse_to_lose(folder: Path) -> None:
     """InputError when ``folder`` holds an unfinished run worth keeping."""
     try:
         outcome = cards.read_card(folder).get("outcome")
-        reached = standing(folder)
+        reached = how_far(folder)
     except InputError:  # nothing there that could be resumed
         return
     if outcome in ABANDONED and reached.seconds > WORTH_KEEPING:

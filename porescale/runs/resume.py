@@ -24,7 +24,7 @@ MISFITS = (KeyError, ValueError, TypeError, IndexError, AttributeError, Overflow
 
 
 @dataclass(frozen=True)
-class Standing:
+class Reached:
     """How far the run of a checkpoint is: ``step``, ``time`` (s), and wall-clock ``seconds`` that it took."""
 
     step: int
@@ -40,7 +40,7 @@ class Saved:
     last_snapshot_step : of the last one, which may be there only because the run ended.
     """
 
-    standing: Standing
+    reached: Reached
     cost: Cost
     series_bytes: int
     table_bytes: dict[str, int]
@@ -49,15 +49,15 @@ class Saved:
     last_snapshot_step: int
 
 
-def standing(folder: Path) -> Standing:
+def how_far(folder: Path) -> Reached:
     """That of the run in ``folder``, whatever the size of its state.  InputError where its checkpoint is none."""
     try:
-        return _standing(read_header(folder / CHECKPOINT))
+        return _reached(read_header(folder / CHECKPOINT))
     except MISFITS as error:
         raise misfit(folder, "holds no state of a run", error) from error
 
 
-def refuse_another(folder: Path, reached: Standing, card: Mapping[str, Any]) -> None:
+def refuse_another(folder: Path, reached: Reached, card: Mapping[str, Any]) -> None:
     """InputError where a checkpoint stands at another step than the ``card`` of a run that came to its end."""
     if card.get("step") != reached.step:
         error = ValueError(f"step {reached.step}, the run ended at {card.get('step')}")
@@ -73,7 +73,7 @@ def take_up(folder: Path, model: Model, schedules: Mapping[str, Schedule]) -> Sa
     try:
         meta = content["record"]
         saved = Saved(
-            _standing(content),
+            _reached(content),
             Cost.restored(content.get("cost", {})),
             int(meta["series_bytes"]),
             {str(name): int(size) for name, size in meta.get("table_bytes", {}).items()},
@@ -87,6 +87,8 @@ def take_up(folder: Path, model: Model, schedules: Mapping[str, Schedule]) -> Sa
         model.restore(content["state"])
         for name, schedule in schedules.items():
             schedule.restore(content["schedules"][name], model.time)
+    except KeyError as error:
+        raise misfit(folder, "does not fit this model", f"holds no {error}, which this version saves") from error
     except (*MISFITS, InputError) as error:
         raise misfit(folder, "does not fit this model", error) from error
     try:
@@ -96,5 +98,5 @@ def take_up(folder: Path, model: Model, schedules: Mapping[str, Schedule]) -> Sa
     return saved
 
 
-def _standing(content: Mapping[str, Any]) -> Standing:
-    return Standing(int(content["step"]), float(content["time"]), float(content["seconds"]))
+def _reached(content: Mapping[str, Any]) -> Reached:
+    return Reached(int(content["step"]), float(content["time"]), float(content["seconds"]))

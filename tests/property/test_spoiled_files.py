@@ -52,13 +52,7 @@ def scene_of(package) -> Read:
 def whole_run(folder: Path) -> object:
     """A run and all that it holds."""
     run = open_run(folder)
-    return [run.snapshot(k) for k in range(len(run))], run.series
-
-
-def rows(folder: Path) -> object:
-    """A run and its rows: what is not spoilt need not be read again and again."""
-    run = open_run(folder)
-    return run.series, run.table("beads")
+    return [run.snapshot(k) for k in range(len(run))], run.series, run.table("beads")
 
 
 def deck(name: str) -> Callable[[Path], Path]:
@@ -136,8 +130,8 @@ READERS: dict[str, Read] = {
     "deck:demseg_chain/in_gm.dat": lambda file: read_deck(file.parent),
     "deck:demseg_chain/in_bc.dat": lambda file: read_deck(file.parent),
     "run:card.json": lambda file: read_card(file.parent),
-    "run:series.csv": lambda file: rows(file.parent),
-    "run:beads.csv": lambda file: rows(file.parent),
+    "run:series.csv": lambda file: whole_run(file.parent),
+    "run:beads.csv": lambda file: whole_run(file.parent),
     "run:fields.vtkhdf": lambda file: whole_run(file.parent),
     "run:grains.vtkhdf": lambda file: whole_run(file.parent),
     "of grains:circles.csv": lambda file: read_circles(file, "m"),

@@ -4,20 +4,26 @@ from __future__ import annotations
 
 import json
 import shutil
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from unittest.mock import patch
 
 import h5py
 import numpy as np
 import pytest
 
+from continuum_sph.app import PACKAGE as CONTINUUM
 from continuum_sph.scene.sections import Scene as Ground
+from porescale.app.main import PACKAGE as PORESCALE
 from porescale.ground.card import read_card
 from porescale.ground.check import InputError
 from porescale.runs.checkpoint import read_checkpoint, read_header
 from porescale.runs.open_run import open_run
 from porescale.scene.sections import Scene
+from porescale.workbench.application import application, main
+from porescale.workbench.package import Package
 from porescale.workbench.sections import Section, load, scene_as_dict, validate
 from tests.reference.spoiled import renumbered
 from tests.reference.toy_model import run_toy
@@ -29,8 +35,8 @@ SAMPLES = Path(__file__).resolve().parents[1] / "samples"
 class Kept:
     """A run folder that is kept as it was written, and what the version that wrote it read there.
 
-    cloud : one of its clouds;  table : a table, one of its columns and the last number there;  last : last numbers of
-    the series;  at : place of a point at the end, m;  state : parts of the checkpoint's.
+    rows : times of the series, s;  cloud : one of its clouds;  table : a table, one of its columns and the last number
+    there;  last : last numbers of the series;  at : place of a point at the end, m;  state : parts of the checkpoint's.
     """
 
     package: str
@@ -38,6 +44,7 @@ class Kept:
     name: str
     steps: list[int]
     times: list[float]
+    rows: list[float]
     cloud: str
     last: dict[str, float]
     at: tuple[int, list[float]]
@@ -47,13 +54,15 @@ class Kept:
 
 KEPT = {
     "porescale": Kept(  # three grains settle in a box of 12 x 16 cells
-        "porescale", Scene, "run_format_1", [0, 100, 200], [0.0, 0.004, 0.008], "grains",
-        {"time (s)": 0.008, "front (m)": 0.0020515794892186725},
+        "porescale", Scene, "run_format_1", [0, 100, 200], [0.0, 0.004, 0.008], [k * 1e-3 for k in range(9)],
+        "grains", {"front (m)": 0.0020515794892186725},
         (2, [0.0012017152318223414, 0.0021507761085947175]), ["coupled", "mass", "step", "watch"],
     ),
     "continuum-sph": Kept(  # water stands on soil and seeps into it
         "continuum-sph", Ground, "continuum_run_format_1", [0, 109, 217],
-        [0.0, 0.010064542922531037, 0.020036750588892146], "soil",
+        [0.0, 0.010064542922531037, 0.020036750588892146],
+        [0.0, 0.0025853871727602664, 0.005078439089350523, 0.00757149100594078, 0.010064542922531037,
+         0.012557594839121293, 0.01505064675571155, 0.017543698672301843, 0.020036750588892146], "soil",
         {"mean height (m)": 0.14814649501748745, "soil: stress across over upright ()": 0.4326588524773842,
          "heat of drag (J/m)": 8.587332447798112e-06},
         (7, [0.18750095205989464, 0.012495709808497782]), ["next_step", "soil", "water"],
@@ -81,6 +90,7 @@ def test_a_kept_run_is_read_to_the_last_digit(sample):
     assert run.name == kept.name
     assert run.steps.tolist() == kept.steps
     assert run.times.tolist() == kept.times
+    assert run.series["time (s)"].tolist() == kept.rows
     assert {name: run.series[name][-1] for name in kept.last} == kept.last
     number, place = kept.at
     assert run.snapshot(-1).clouds[kept.cloud].position[number].tolist() == place
@@ -112,6 +122,63 @@ def test_a_card_without_a_format_is_of_the_first(copy):
     del card["format"]
     (copy / "card.json").write_text(json.dumps(card))
     assert len(open_run(copy)) == 3
+
+
+def run_of(package: Package, run: Path, out: Path, *words: str) -> int:
+    """Exit code of a run of the scene in the folder ``run`` into ``out``, without pictures."""
+    with patch.object(sys.modules[package.show.__module__], "show", lambda folder: []):
+        given = ["run", str(run / "scene.toml"), "--out", str(out), "--quiet", "--threads", "1", *words]
+        return main(application(package), given)
+
+
+@pytest.fixture
+def kept_run(tmp_path) -> Callable[[str], Path]:
+    """A copy of a kept run that may go on."""
+
+    def unpacked(name: str) -> Path:
+        shutil.unpack_archive(SAMPLES / f"{name}.tar.xz", tmp_path)
+        return tmp_path / "run"
+
+    return unpacked
+
+
+@pytest.mark.usefixtures("one_thread")
+def test_a_kept_run_goes_on_as_if_it_were_of_today(kept_run, tmp_path):
+    run, later = kept_run("run_format_1"), "time.end=0.012"
+    assert run_of(PORESCALE, run, run, "--resume", "--set", later) == 0
+    assert run_of(PORESCALE, run, tmp_path / "new", "--set", later) == 0
+    old, new = open_run(run), open_run(tmp_path / "new")
+    assert old.times.tolist() == [0.0, 0.004, 0.008, 0.012]
+    for name in ("front (m)", "highest grain (m)", "kinetic energy of grains (J/m)", "largest fluid speed (m/s)"):
+        # Another version may round otherwise: eps over the speed of the water, 2e-3 cells a step, in each of 300 steps.
+        assert old.series[name] == pytest.approx(new.series[name], rel=300 * np.finfo(float).eps / 2e-3)
+
+
+@pytest.mark.usefixtures("one_thread")
+def test_a_kept_run_without_a_key_of_today_says_which_value_is_as_before(kept_run, capsys):
+    run, later = kept_run("continuum_run_format_1"), ("--resume", "--set", "time.end=0.03")
+    before = {file: file.read_bytes() for file in run.iterdir()}
+    assert run_of(CONTINUUM, run, run, *later) == 2
+    assert capsys.readouterr().err.splitlines() == [
+        "numerics.noise_floor = 0.001: the run was begun by a version without it; set it to 0.0 to go on as that did, "
+        "or start another run"
+    ]
+    # As that it would go on, but soil of that version does not say for what step its diffusion was bounded.
+    assert run_of(CONTINUUM, run, run, *later, "--set", "numerics.noise_floor=0") == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "does not fit this model (holds no 'strained', which this version saves); start the run anew" in line
+    assert {file: file.read_bytes() for file in run.iterdir() if file.name != ".lock"} == before
+
+
+def test_keys_that_came_later_are_no_change_where_they_do_nothing_new(kept_run):
+    run = kept_run("continuum_run_format_1")
+    scene = scene_as_dict(load(run / "scene.toml", Ground, overrides=["numerics.noise_floor=0"]))
+    card = {"package": "continuum-sph", "scene": scene, "scene_file": str(run / "scene.toml")}
+    assert CONTINUUM.judge is not None
+    CONTINUUM.judge(run, card)
+    scene["numerics"]["courant"] = 0.2  # the twin that must fail: a key that the run had
+    with pytest.raises(InputError, match=r"was 0\.25; resume with 0\.25, or start another run"):
+        CONTINUUM.judge(run, card)
 
 
 def card_of(folder: Path, number: object) -> None:
