@@ -19,9 +19,12 @@ Array = NDArray[np.float64]
 
 
 class Standing(NamedTuple):
-    """What a system was when a step in full left it as it was: positions (n, 2) m, the walls, step (s), drag (1/s)."""
+    """What a system was when a step in full left it as it was: copies of positions (n, 2) m, radii (n,) m and walls
+    (w, WALL), since owners write into those; step (s), drag (1/s).
+    """
 
     position: Array
+    radius: Array
     walls: Array
     dt: float
     drag: float
@@ -55,21 +58,38 @@ def clear(position, radius, start, partner, walls, cell):
 
 
 @kernel
-def bear(count, held, position, velocity, spin, stood, force, torque, external_force, external_torque, withheld):
-    """Whether all discs are held and at rest where they ``stood`` (n, 2) m; if so, what ``count`` steps of them write.
+def unchanged(position, radius, walls, last_position, last_radius, last_walls):
+    """Whether positions (n, 2) m, radii (n,) m and walls (w, WALL) are, number by number, what they were last."""
+    if walls.shape[0] != last_walls.shape[0]:
+        return False
+    for i in range(radius.shape[0]):
+        if position[i, 0] != last_position[i, 0] or position[i, 1] != last_position[i, 1]:
+            return False
+        if radius[i] != last_radius[i]:
+            return False
+    for w in range(walls.shape[0]):
+        for k in range(walls.shape[1]):
+            if walls[w, k] != last_walls[w, k]:
+                return False
+    return True
 
-    force (n, 2) N/m, torque (n,) N m/m: from outside, copied to external_force and external_torque;  withheld (n, 3):
-    overwritten with the mean over the steps, rounded as they round it.  Returning False, it writes nothing.
+
+@kernel
+def bear(
+    count, held, velocity, spin, position, radius, walls, last_position, last_radius, last_walls, force, torque,
+    withheld,
+):  # fmt: skip
+    """Whether all discs are held and at rest, and they and the walls as they were last; if so, what ``count`` steps
+    write.
+
+    force (n, 2) N/m, torque (n,) N m/m: from outside;  withheld (n, 3): overwritten with the mean over the steps,
+    rounded as they round it.  Returning False, it writes nothing.
     """
+    if not resting(held, velocity, spin):
+        return False
+    if not unchanged(position, radius, walls, last_position, last_radius, last_walls):
+        return False
     for i in range(spin.shape[0]):
-        if not (held[i, 0] and held[i, 1] and held[i, 2]):
-            return False
-        if not (velocity[i, 0] == 0.0 and velocity[i, 1] == 0.0 and spin[i] == 0.0):
-            return False
-        if not (position[i, 0] == stood[i, 0] and position[i, 1] == stood[i, 1]):
-            return False
-    for i in range(spin.shape[0]):
-        external_force[i, 0], external_force[i, 1], external_torque[i] = force[i, 0], force[i, 1], torque[i]
         fx, fy, moment = 0.0, 0.0, 0.0
         for _ in range(count):
             fx += force[i, 0]
@@ -85,30 +105,32 @@ def others_are_about(grains: Grains) -> bool:
     return bool(len(grains.plates) or len(grains.rectangles) or any(other is not None for other in others))
 
 
-def standing(grains: Grains, drag: float) -> Standing | None:
-    """What ``grains`` are right after a step in full, if another would leave them so; None if something may change."""
-    d, pairs = grains.discs, grains.pairs
+def what_stands(grains: Grains, drag: float) -> Standing | None:
+    """What ``grains`` are right after a step in full, if another would leave them so; None if something may change.
+
+    Copies go into those of the step before, if there are any.
+    """
+    d, pairs, walls, last = grains.discs, grains.pairs, grains.walls, grains.standing
     if grains._stale or others_are_about(grains) or not resting(grains.held, d.velocity, d.spin):
         return None
-    if not clear(d.position, d.radius, pairs.start, pairs.partner, grains.walls, grains.cell):
+    if not clear(d.position, d.radius, pairs.start, pairs.partner, walls, grains.cell):
         return None
-    return Standing(d.position.copy(), grains.walls, grains.last_dt, drag)
+    if last is None or last.walls.shape != walls.shape:
+        return Standing(d.position.copy(), d.radius.copy(), walls.copy(), grains.last_dt, drag)
+    last.position[:], last.radius[:], last.walls[:] = d.position, d.radius, walls
+    return last._replace(dt=grains.last_dt, drag=drag)
 
 
-def stood(
-    grains: Grains, last: Standing, dt: float, force: Array | None, torque: Array | None, count: int, drag: float
-) -> bool:
-    """Do ``count`` contact steps, arguments as in Grains.step, if all stands as it did ``last``; else False, and
-    nothing is done.
+def leave_out(grains: Grains, last: Standing, dt: float, count: int, drag: float) -> bool:
+    """Do ``count`` contact steps under grains.external_force and external_torque, if all stands as it did ``last``,
+    without doing each; else False, and nothing is done.  Other arguments as in Grains.step.
     """
-    if force is None or torque is None or force.shape != last.position.shape or torque.shape != force.shape[:1]:
-        return False
-    if last.walls is not grains.walls or (dt, drag) != last[2:] or not count > 0 or others_are_about(grains):
+    if dt != last.dt or drag != last.drag or not count > 0 or others_are_about(grains):
         return False
     d = grains.discs
     if not bear(
-        count, grains.held, d.position, d.velocity, d.spin, last.position, force, torque, grains.external_force,
-        grains.external_torque, grains.withheld,
+        count, grains.held, d.velocity, d.spin, d.position, d.radius, grains.walls, last.position, last.radius,
+        last.walls, grains.external_force, grains.external_torque, grains.withheld,
     ):  # fmt: skip
         return False
     grains.steps += count

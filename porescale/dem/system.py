@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from porescale.dem import resume
-from porescale.dem.at_rest import Standing, standing, stood
+from porescale.dem.at_rest import Standing, leave_out, what_stands
 from porescale.dem.bonds import BondList, beside
 from porescale.dem.cell import Still, Straining, period_of
 from porescale.dem.contact.law import BOOK, COLUMNS, KernelLaw, memory_of
@@ -257,13 +257,13 @@ class Grains:
         """``count`` contact steps of ``dt`` (s) with the external force (n, 2) N/m and torque (n,) N m/m (None: 0).
 
         drag (1/s): background damping, for settling only.  Raises Unstable when the list must be rebuilt and a position
-        is no number.  No array is allocated, but a rebuild may grow the list's buffers.
+        is no number.  Arrays are allocated only by a rebuild, for a longer list, and where all discs come to rest.
         """
-        if self.standing and stood(self, self.standing, dt, external_force, external_torque, count, drag):
-            return
         for own, given in ((self.external_force, external_force), (self.external_torque, external_torque)):
             if given is not own:
                 own[:] = 0.0 if given is None else given
+        if self.standing and leave_out(self, self.standing, dt, count, drag):
+            return
         d = self.discs
         if dt != self.last_dt:
             self._time, self._steps_of_dt, self.last_dt = self.time, 0, dt
@@ -308,7 +308,7 @@ class Grains:
                 self._steering.start(self._time, self._steps_of_dt)
         if len(self.held):
             self.withheld /= count
-            self.standing = standing(self, drag)
+            self.standing = what_stands(self, drag)
 
     def hold(self, disc: int | slice | Array, x: bool = True, y: bool = True, rotation: bool = True) -> None:
         """Hold these components of the velocity of discs (index, slice or mask) from now on, and let the others go.

@@ -9,12 +9,12 @@ import pytest
 
 from porescale.coupling import experiments as lab
 from porescale.dem import system
-from porescale.dem.at_rest import bear, clear, resting
+from porescale.dem.at_rest import bear, clear, resting, unchanged
 from porescale.dem.cell import Still
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
 from porescale.dem.system import Grains
-from porescale.dem.walls import Box, Plate
+from porescale.dem.walls import PY, Box, Plate
 
 LAW = Linear(1e4, 1.0, 2.5e3, 0.5, 0.5)
 DT = 1e-4
@@ -60,12 +60,12 @@ def counted(monkeypatch):
 
 
 def in_full(monkeypatch):
-    monkeypatch.setattr(system, "stood", lambda *_: False)
+    monkeypatch.setattr(system, "leave_out", lambda *_: False)
 
 
-def run(grains, calls=6, count=3, drag=0.0):
+def run(grains, calls=6, count=3, drag=0.0, given=outside):
     for step in range(calls):
-        grains.step(DT, *outside(step), count=count, drag=drag)
+        grains.step(DT, *given(step), count=count, drag=drag)
     return grains
 
 
@@ -84,6 +84,35 @@ def test_what_stands_is_left_out_to_the_same_bits(monkeypatch, drag):
     assert short.steps == 18
     assert short.time == whole.time
     assert short.last_count == 3
+
+
+def nothing(_):
+    return None, None
+
+
+def listed(step):
+    force, torque = outside(step)
+    return force.tolist(), torque.tolist()
+
+
+def weight(step):
+    return (0.0, -9.81 - step), None
+
+
+def spun(step):
+    return None, outside(step)[1]
+
+
+@pytest.mark.parametrize("given", [nothing, listed, weight, spun])
+def test_forces_may_be_none_lists_or_one_for_all(monkeypatch, given):
+    done = counted(monkeypatch)
+    short = run(row(), given=given)
+    assert done == [3]
+    in_full(monkeypatch)
+    whole = run(row(), given=given)
+    assert done == [3 + 18]
+    compare(short, whole)
+    assert np.any(short.withheld != 0.0) or given is nothing
 
 
 def loose(grains):
@@ -112,10 +141,29 @@ def wall_across(grains):
     grains.add_wall("slope", (0.0, 0.03), (0.0, 1.0))
 
 
-@pytest.mark.parametrize("change", [loose, spinning, towed, put_elsewhere, put_beside, wall_across])
+def bottom_raised(grains):
+    grains.walls[grains.wall_names.index("bottom"), PY] += 0.02
+
+
+def grown(grains):
+    grains.discs.radius[1] += 0.02  # into the bottom, not to the first
+
+
+def lowered(grains):
+    grains.discs.position[1, 1] -= 0.01
+
+
+def shifted(grains):
+    grains.discs.position[2, 0] += 1e-3  # touches nothing there either
+
+
+CHANGES = [loose, spinning, towed, put_elsewhere, put_beside, wall_across, bottom_raised, grown, lowered, shifted]
+
+
+@pytest.mark.parametrize("change", CHANGES)
 def test_what_may_move_or_touches_is_not_left_out(monkeypatch, change):
     done = counted(monkeypatch)
-    grains, twin = run(row()), run(row())
+    grains, twin, alike = run(row()), run(row()), run(row())
     done[0] = 0
     change(grains)
     change(twin)
@@ -127,7 +175,45 @@ def test_what_may_move_or_touches_is_not_left_out(monkeypatch, change):
         run(twin, calls=1, count=2)
         run(twin)
     compare(grains, twin)
-    compare(grains, run(row()), same=False)
+    run(alike, calls=1, count=2)
+    run(alike)
+    compare(grains, alike, same=False)
+
+
+def test_without_a_change_all_is_the_same():  # the twin of what is compared last above
+    grains, alike = run(row()), run(row())
+    compare(run(grains, calls=1, count=2), run(alike, calls=1, count=2))
+
+
+@pytest.mark.parametrize(
+    ("change", "disc", "push"),
+    [
+        (bottom_raised, 1, (0.0, 1e4 * 0.02)),
+        (grown, 1, (0.0, 1e4 * 0.02)),
+        (lowered, 1, (0.0, 1e4 * 0.01)),
+        (shifted, 2, (0.0, 0.0)),
+    ],
+)
+def test_what_owners_write_in_place_is_felt_at_once(change, disc, push):
+    grains = run(row())
+    change(grains)
+    run(grains, calls=1)
+    # 16 roundings of places up to 1 m, each 1e4 N/m times eps/2: 2e-11 N/m
+    np.testing.assert_allclose(grains.withheld[disc, :2] - outside(0)[0][disc], push, rtol=0, atol=2e-11)
+
+
+def test_what_stands_is_copied_to_one_place():
+    grains = run(row())
+    first = grains.standing
+    grains.walls[:, PY] -= 0.1
+    shifted(grains)
+    run(grains)
+    assert grains.standing.position is first.position
+    assert grains.standing.radius is first.radius
+    assert grains.standing.walls is first.walls
+    np.testing.assert_array_equal(first.position, grains.discs.position)
+    np.testing.assert_array_equal(first.walls, grains.walls)
+    assert not np.shares_memory(first.walls, grains.walls)
 
 
 @pytest.mark.parametrize("more", [{"energy": True}, {"plates": [Plate(0.8, 0.0, 1.0, name="gate")]}, {"hold": False}])
@@ -181,14 +267,27 @@ def test_fluid_around_discs_that_stand_goes_on_to_the_same_bits(monkeypatch):
 
 def test_the_kernels_say_the_same_compiled_or_not():
     grains = row()
-    d, pairs = grains.discs, grains.current_pairs()
+    d, pairs, walls = grains.discs, grains.current_pairs(), grains.walls
     given, torque = outside(1)
+    position, radius, sides = last = d.position.copy(), d.radius.copy(), walls.copy()
+    others = (
+        (position + 1.0, radius, sides),
+        (position, 2.0 * radius, sides),
+        (position, radius, sides - 1.0),
+        (position, radius, sides[:-1]),
+    )
     results = []
-    for test, touch, do in ((resting, clear, bear), (resting.py_func, clear.py_func, bear.py_func)):
-        written = np.zeros((3, 2)), np.zeros(3), np.zeros((3, 3))
-        assert test(grains.held, d.velocity, d.spin)
-        assert touch(d.position, d.radius, pairs.start, pairs.partner, grains.walls, Still(0.0, 0.0))
-        assert do(7, grains.held, d.position, d.velocity, d.spin, d.position.copy(), given, torque, *written)
-        results.append(np.column_stack([part.reshape(3, -1) for part in written]))
-        assert not do(7, grains.held, d.position, d.velocity, d.spin, d.position + 1.0, given, torque, *written)
+    kernels = resting, unchanged, clear, bear
+    for rest, alike, touch, do in (kernels, [kernel.py_func for kernel in kernels]):
+        withheld = np.zeros((3, 3))
+        assert rest(grains.held, d.velocity, d.spin)
+        assert touch(d.position, d.radius, pairs.start, pairs.partner, walls, Still(0.0, 0.0))
+        outcome = given, torque, withheld
+        for other in others:
+            assert not alike(d.position, d.radius, walls, *other)
+            assert not do(7, grains.held, d.velocity, d.spin, d.position, d.radius, walls, *other, *outcome)
+            np.testing.assert_array_equal(withheld, 0.0)
+        assert alike(d.position, d.radius, walls, *last)
+        assert do(7, grains.held, d.velocity, d.spin, d.position, d.radius, walls, *last, *outcome)
+        results.append(withheld)
     np.testing.assert_array_equal(*results)
