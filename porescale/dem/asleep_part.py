@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from porescale.dem.asleep_kernels import list_part, return_springs
 from porescale.dem.contact.law import KernelLaw
 from porescale.dem.integrate import contact_steps
-from porescale.dem.sweep import BLOCK, Serial
+from porescale.dem.sweep import Serial, serial
 
 if TYPE_CHECKING:
     from porescale.dem.system import Grains
@@ -80,7 +80,7 @@ class Part:
             plates, g.plate_laws, self.plate_spring, self.plate_load[: len(plates)],
             rectangles, g.rectangle_laws, self.rectangle_spring, self.rectangle_load[: len(rectangles)],
             self.held, self.withheld, first,
-            self.sweep if surfaces else Serial(np.zeros((len(self.sweep.partial), 0, 3))),
+            self.sweep if surfaces else serial(len(self.mass), 0),
             None, g.cell, None, None,
         )  # fmt: skip
         return int(done), bool(moved)
@@ -125,7 +125,6 @@ def part_of(
         None if law.book is None else law.book[index],
     )  # fmt: skip
     surfaces = len(grains.walls) + len(grains.plates) + len(grains.rectangles)
-    blocks = max(1, -(-m // BLOCK))
     return Part(
         index=index, position=d.position[index], angle=d.angle[index], velocity=d.velocity[index], spin=d.spin[index],
         radius=d.radius[index], mass=d.mass[index], inertia=d.inertia[index], force=np.zeros((m, 2)),
@@ -135,5 +134,5 @@ def part_of(
         plate_spring=np.ascontiguousarray(grains.plate_spring[:, index]),
         rectangle_spring=np.ascontiguousarray(grains.rectangle_spring[:, index]),
         load=np.zeros((len(grains.walls), 3)), plate_load=np.zeros((len(grains.plates), 2)),
-        rectangle_load=np.zeros((len(grains.rectangles), 2)), law=own, sweep=Serial(np.zeros((blocks, surfaces, 3))),
+        rectangle_load=np.zeros((len(grains.rectangles), 2)), law=own, sweep=serial(m, surfaces),
     )  # fmt: skip

@@ -21,11 +21,16 @@ from porescale.dem.rectangle import move_rectangles
 from porescale.dem.segments import add_segment_forces
 from porescale.dem.strain import at_present, move_discs, note_clumps, steer
 from porescale.dem.sweep import sweep_pairs, sweep_surfaces
-from porescale.dem.walls import move_plates
+from porescale.dem.walls import ask_near, move_plates
 from porescale.ground.jit import kernel
 
 NEIGHBOURS = 6
 """Most discs that touch a disc and are no smaller than it: the kissing number of the plane."""
+WAY = 2.01
+"""How far a disc gets within a call, in lengths that the list allows from its mark: from one side of the mark to the
+other, and for round-off 0.01 more, where the domain is less than 1e13 such lengths wide."""
+ASK_AGAIN = 3
+"""Steps of a call that pay for asking once which discs are near walls, which costs what walls do in a step."""
 
 
 @kernel
@@ -65,6 +70,7 @@ def contact_steps(
     cell.Still or strain.Deforming;  segments, bonds: None or segments.Segments and bonds.Bonds, in a cell that stands
     still.  Overwrites the state of discs, springs, plates, rectangles.
     """
+    sweep.near[:] = 1
     for step in range(count):
         sweep_pairs(
             position, velocity, spin, radius, force, torque, external_force, external_torque, start, partner, carried,
@@ -75,6 +81,8 @@ def contact_steps(
             plates, plate_laws, plate_spring, plate_force,
             rectangles, rectangle_laws, rectangle_spring, rectangle_force, law, dt, sweep,
         )  # fmt: skip
+        if motion is None and step == 0 and count >= ASK_AGAIN:  # walls stand still; springs far from them are at rest
+            ask_near(position, radius, walls, WAY * np.sqrt(limit_square), sweep.near)
         if segments is not None:
             add_segment_forces(position, velocity, spin, radius, force, torque, segments, law, dt, cell)
         if bonds is not None:

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from porescale.dem.contact.law import HertzRolling, HertzSliding, LinearRolling, LinearSliding, LinearSmooth
 from porescale.dem.forces import numbers_of, pair_contact, pair_forces, start_forces
 from porescale.dem.rectangle import add_rectangle_forces
-from porescale.dem.walls import add_plate_forces, add_wall_forces
+from porescale.dem.walls import RUN, add_near_walls, add_plate_forces, runs_of
 from porescale.ground.jit import by_law, inline, kernel, parallel_kernel, prange, threads
 from porescale.particles.pairs import PairList
 
@@ -30,27 +30,34 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 BLOCK = 1024
-"""Discs: their state stays in a core's own memory; a settled pile has some hundredths of its pairs across blocks."""
+"""Discs, in whole runs of walls.RUN: their state stays in a core's own memory; a settled pile has some hundredths of
+its pairs across blocks."""
 SERIAL_BELOW = 20_000  # discs; fewer cost less in one thread than barriers cost (spec: "below about 2e4")
 NOTHING = np.nan
 """Put down for a far pair that does not touch: adding a zero could turn -0.0 into 0.0."""
 
 
 class Serial(NamedTuple):
-    """One thread.  partial (blocks, surfaces, 3) N/m, N m/m: forces on walls, plates and rectangles by block."""
+    """One thread.
+
+    partial (blocks, surfaces, 3) N/m, N m/m: forces on walls, plates and rectangles by block;  near (surfaces, runs):
+    which runs of discs are near each wall, see walls.ask_near; rows of other surfaces are not read.
+    """
 
     partial: Array
+    near: NDArray[np.uint8]
 
 
 class Threads(NamedTuple):
     """Several threads.
 
-    partial : as in Serial;  far_start (n + 1,): far pairs of each disc are the last of its row and have the places
-    far_start[i]:far_start[i + 1];  incoming (f,): places of the far pairs that end at disc j, by rising lower disc,
-    incoming_start[j]:incoming_start[j + 1];  far (f, 4): force on i N/m, torques on i and j N m/m.
+    partial, near : as in Serial;  far_start (n + 1,): far pairs of each disc are the last of its row and have the
+    places far_start[i]:far_start[i + 1];  incoming (f,): places of the far pairs that end at disc j, by rising lower
+    disc, incoming_start[j]:incoming_start[j + 1];  far (f, 4): force on i N/m, torques on i and j N m/m.
     """
 
     partial: Array
+    near: NDArray[np.uint8]
     far_start: Index
     incoming_start: Index
     incoming: Index
@@ -153,22 +160,9 @@ def near_forces(
 
 @by_law
 def sweep_pairs(
-    position,
-    velocity,
-    spin,
-    radius,
-    force,
-    torque,
-    external_force,
-    external_torque,
-    start,
-    partner,
-    carried,
-    law,
-    dt,
-    cell,
-    sweep,
-):
+    position, velocity, spin, radius, force, torque, external_force, external_torque, start, partner, carried, law,
+    dt, cell, sweep,
+):  # fmt: skip
     """Overwrite force (n, 2) N/m and torque (n,) N m/m with the external ones and those between discs."""
 
 
@@ -241,7 +235,7 @@ def _hertz_rolling(first, last, law):
 @inline
 def surfaces_of_block(
     b, position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws, plate_spring,
-    rectangles, rectangle_laws, rectangle_spring, law, dt, partial,
+    rectangles, rectangle_laws, rectangle_spring, law, dt, partial, near,
 ):  # fmt: skip
     """Contacts of the discs of block b with all surfaces; overwrites partial[b]."""
     first, last = b * BLOCK, min((b + 1) * BLOCK, radius.shape[0])
@@ -250,7 +244,10 @@ def surfaces_of_block(
     f, t = force[first:last], torque[first:last]
     to_plates = walls.shape[0]
     to_rectangles = to_plates + plates.shape[0]
-    add_wall_forces(x, v, w, r, f, t, walls, wall_laws, wall_spring[:, first:last], partial[b, :to_plates], own, dt)
+    add_near_walls(
+        x, v, w, r, f, t, walls, wall_laws, wall_spring[:, first:last], partial[b, :to_plates],
+        near[:, first // RUN : runs_of(last)], own, dt,
+    )  # fmt: skip
     if plates.shape[0] > 0:
         add_plate_forces(
             x, v, w, r, f, t, plates, plate_laws, plate_spring[:, first:last], partial[b, to_plates:to_rectangles], own,
@@ -266,37 +263,21 @@ def surfaces_of_block(
 @parallel_kernel
 def surfaces_threads(
     position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws, plate_spring,
-    rectangles, rectangle_laws, rectangle_spring, law, dt, partial,
+    rectangles, rectangle_laws, rectangle_spring, law, dt, partial, near,
 ):  # fmt: skip
     """Contacts with all surfaces, block by block: adds to force and torque, overwrites springs and partial."""
     for b in prange(partial.shape[0]):
         surfaces_of_block(
             b, position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws,
-            plate_spring, rectangles, rectangle_laws, rectangle_spring, law, dt, partial,
+            plate_spring, rectangles, rectangle_laws, rectangle_spring, law, dt, partial, near,
         )  # fmt: skip
 
 
 @by_law
 def sweep_blocks(
-    position,
-    velocity,
-    spin,
-    radius,
-    force,
-    torque,
-    walls,
-    wall_laws,
-    wall_spring,
-    plates,
-    plate_laws,
-    plate_spring,
-    rectangles,
-    rectangle_laws,
-    rectangle_spring,
-    law,
-    dt,
-    sweep,
-):
+    position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws,
+    plate_spring, rectangles, rectangle_laws, rectangle_spring, law, dt, sweep,
+):  # fmt: skip
     """As surfaces_threads, by as many threads as ``sweep`` says."""
 
 
@@ -309,7 +290,7 @@ def _blocks_serial(
     for b in range(sweep.partial.shape[0]):
         surfaces_of_block(
             b, position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws,
-            plate_spring, rectangles, rectangle_laws, rectangle_spring, law, dt, sweep.partial,
+            plate_spring, rectangles, rectangle_laws, rectangle_spring, law, dt, sweep.partial, sweep.near,
         )  # fmt: skip
 
 
@@ -321,7 +302,7 @@ def _blocks_threads(
     """Blocks by threads."""
     surfaces_threads(
         position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws,
-        plate_spring, rectangles, rectangle_laws, rectangle_spring, law, dt, sweep.partial,
+        plate_spring, rectangles, rectangle_laws, rectangle_spring, law, dt, sweep.partial, sweep.near,
     )  # fmt: skip
 
 
@@ -354,6 +335,12 @@ def sweep_surfaces(
     add_up(sweep.partial, walls.shape[0] + plates.shape[0], rectangle_force)
 
 
+def serial(count: int, surfaces: int) -> Serial:
+    """One thread over so many discs and surfaces; all discs count as near."""
+    blocks = max(1, -(-count // BLOCK))
+    return Serial(np.zeros((blocks, surfaces, 3)), np.ones((surfaces, -(-count // RUN)), np.uint8))
+
+
 class Sweeps:
     """What sweeps need beside the system: made once, renewed when the pair list is.
 
@@ -362,8 +349,7 @@ class Sweeps:
 
     def __init__(self, count: int) -> None:
         self.count = count
-        self.blocks = max(1, -(-count // BLOCK))
-        self.partial = np.zeros((self.blocks, 0, 3))
+        self._room_for(0)
         self.far_start, self.incoming_start = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
         self.incoming, self.far = np.zeros(0, np.int64), np.zeros((0, 4))
         self._builds = -1
@@ -374,12 +360,16 @@ class Sweeps:
         booked : an energy book is kept;  alone : something in the step allows one thread only.
         """
         if self.partial.shape[1] != surfaces:
-            self.partial = np.zeros((self.blocks, surfaces, 3))
+            self._room_for(surfaces)
         if alone or self.count < SERIAL_BELOW or (threads() == 1 and not booked):
-            return Serial(self.partial)
+            return Serial(self.partial, self.near)
         if self._builds != pairs.builds:
             self._renew(pairs)
-        return Threads(self.partial, self.far_start, self.incoming_start, self.incoming, self.far)
+        return Threads(self.partial, self.near, self.far_start, self.incoming_start, self.incoming, self.far)
+
+    def _room_for(self, surfaces: int) -> None:
+        """Arrays for so many surfaces."""
+        self.partial, self.near = serial(self.count, surfaces)
 
     def _renew(self, pairs: PairList) -> None:
         """Number the far pairs of the list as it is now."""

@@ -42,6 +42,15 @@ PX, PY, NX, NY, VX, VY, TURN = range(7)
 WALL = 7
 X, LOW, HIGH, VELOCITY, PRESENT = range(5)
 """Columns of the plate table: x, lower and upper end (m), upward velocity (m/s), 1 while it is there."""
+RUN = 16
+"""Discs that are asked together whether any is near a wall: in a pile settled from left to right 3 % of runs touch a
+side and 26 % the floor; 14 % with runs of 8, but twice as many flags to read."""
+
+
+@inline
+def runs_of(count):
+    """Runs of so many discs."""
+    return (count + RUN - 1) // RUN
 
 
 @dataclass(frozen=True)
@@ -182,39 +191,71 @@ def add_wall_forces(
     (w, n, 1 or 2) m and wall_force (w, 2 or 3) N/m, N m/m, the force of the discs on each wall, summed in the order of
     discs, and its moment about the wall's point.
     """
+    near = np.ones((walls.shape[0], runs_of(radius.shape[0])), np.uint8)
+    add_near_walls(position, velocity, spin, radius, force, torque, walls, laws, spring, wall_force, near, law, dt)
+
+
+@kernel
+def add_near_walls(
+    position, velocity, spin, radius, force, torque, walls, laws, spring, wall_force, near, law, dt
+):  # fmt: skip
+    """As add_wall_forces, for discs of runs that are near a wall; near (w or more, runs): see ask_near.
+
+    Discs of other runs must touch nothing and have springs at rest.
+    """
     for w in range(walls.shape[0]):
         px, py, nx, ny = walls[w, PX], walls[w, PY], walls[w, NX], walls[w, NY]
         wall_x, wall_y, turn = walls[w, VX], walls[w, VY], walls[w, TURN]
         memory, own, book = spring[w], laws[w], law.book
         sum_x, sum_y, moments_sum = 0.0, 0.0, 0.0
-        for i in range(radius.shape[0]):
-            distance = (position[i, 0] - px) * nx + (position[i, 1] - py) * ny
-            if radius[i] - distance > 0.0:
-                along = (position[i, 1] - py) * nx - (position[i, 0] - px) * ny
-                at_x, at_y = wall_x - turn * along * nx, wall_y - turn * along * ny
-                fx, fy, moment, other = surface_contact(
-                    i, -nx, -ny, distance, radius[i], velocity[i, 0] - at_x, velocity[i, 1] - at_y, spin[i], turn,
-                    memory, dt, own, law,
-                )  # fmt: skip
-                force[i, 0] += fx
-                force[i, 1] += fy
-                torque[i] += moment
-                sum_x -= fx
-                sum_y -= fy
-                moments_sum += along * (ny * fy + nx * fx) + other
-                note_work(book, i, SURFACES, fx * at_x + fy * at_y - other * turn, dt)
-            else:
-                if booked(book) and holds(memory, i, law):
+        for run in range(near.shape[1]):
+            if not near[w, run]:
+                continue
+            for i in range(run * RUN, min((run + 1) * RUN, radius.shape[0])):
+                distance = (position[i, 0] - px) * nx + (position[i, 1] - py) * ny
+                if radius[i] - distance > 0.0:
                     along = (position[i, 1] - py) * nx - (position[i, 0] - px) * ny
-                    note_leaving(
-                        i, -distance * nx, -distance * ny, radius[i], velocity[i, 0] - wall_x + turn * along * nx,
-                        velocity[i, 1] - wall_y + turn * along * ny, spin[i], turn, memory, dt, own, book, law,
+                    at_x, at_y = wall_x - turn * along * nx, wall_y - turn * along * ny
+                    fx, fy, moment, other = surface_contact(
+                        i, -nx, -ny, distance, radius[i], velocity[i, 0] - at_x, velocity[i, 1] - at_y, spin[i], turn,
+                        memory, dt, own, law,
                     )  # fmt: skip
-                remember(memory, i, 0.0, 0.0, law)
+                    force[i, 0] += fx
+                    force[i, 1] += fy
+                    torque[i] += moment
+                    sum_x -= fx
+                    sum_y -= fy
+                    moments_sum += along * (ny * fy + nx * fx) + other
+                    note_work(book, i, SURFACES, fx * at_x + fy * at_y - other * turn, dt)
+                else:
+                    if booked(book) and holds(memory, i, law):
+                        along = (position[i, 1] - py) * nx - (position[i, 0] - px) * ny
+                        note_leaving(
+                            i, -distance * nx, -distance * ny, radius[i], velocity[i, 0] - wall_x + turn * along * nx,
+                            velocity[i, 1] - wall_y + turn * along * ny, spin[i], turn, memory, dt, own, book, law,
+                        )  # fmt: skip
+                    remember(memory, i, 0.0, 0.0, law)
         wall_force[w, 0] = sum_x
         wall_force[w, 1] = sum_y
         if wall_force.shape[1] > 2:
             wall_force[w, 2] = moments_sum
+
+
+@kernel
+def ask_near(position, radius, walls, way, near):
+    """Overwrite near (w or more, runs): whether a disc of each RUN discs is within ``way`` (m) of touching each wall.
+
+    position (n, 2) m;  radius (n,) m;  walls (w, WALL).  A disc that is no number anywhere counts as near.
+    """
+    for w in range(walls.shape[0]):
+        px, py, nx, ny = walls[w, PX], walls[w, PY], walls[w, NX], walls[w, NY]
+        for run in range(near.shape[1]):
+            found = False
+            for i in range(run * RUN, min((run + 1) * RUN, radius.shape[0])):
+                if not (position[i, 0] - px) * nx + (position[i, 1] - py) * ny > radius[i] + way:
+                    found = True
+                    break
+            near[w, run] = found
 
 
 @kernel

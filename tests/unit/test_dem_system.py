@@ -97,9 +97,10 @@ def test_kernels_do_the_same_as_plain_python():
             d.position, d.velocity, d.spin, d.radius, force, torque, p.start, p.partner, p.carried, 0.0, 0.0,
             grains.contact, 1e-5,
         )  # fmt: skip
-        call(walls.add_wall_forces)(
+        near = np.ones((len(grains.walls), walls.runs_of(d.count)), np.uint8)
+        call(walls.add_near_walls)(
             d.position, d.velocity, d.spin, d.radius, force, torque, grains.walls, grains.wall_laws,
-            grains.wall_spring, grains.wall_force, grains.contact, 1e-5,
+            grains.wall_spring, grains.wall_force, near, grains.contact, 1e-5,
         )  # fmt: skip
         call(walls.add_plate_forces)(
             d.position, d.velocity, d.spin, d.radius, force, torque, grains.plates, grains.plate_laws,
