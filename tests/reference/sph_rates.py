@@ -42,7 +42,11 @@ def pair_sums(flow, half):
     for i in range(n):
         apart = record[i, X : X + 2] - record[:, X : X + 2]
         apart -= period * np.round(apart / np.where(period > 0.0, period, 1.0))
-        h = 0.5 * (layer.length[i] + layer.length) if law.varied else np.full(layer.count, law.smoothing.length)
+        h = (
+            0.5 * (layer.girths[i, 0] + layer.girths[:, 0])
+            if law.varied
+            else np.full(layer.count, law.smoothing.length)
+        )
         near = np.flatnonzero((np.hypot(*apart.T) < 2.0 * h) & (np.arange(layer.count) != i))
         j, walls = near[near < n], near[near >= n]
         rho, p, fluid = record[i, RHO], record[i, PRESSURE], law.fluids[layer.material[i] if several else 0]

@@ -12,6 +12,7 @@ from continuum_sph import step as steps
 from continuum_sph.density import LINEAR, PLAIN
 from continuum_sph.eos import Tait
 from continuum_sph.fluids import Fluid
+from continuum_sph.scene import trials
 from continuum_sph.scene.build import flow_of
 from continuum_sph.scene.trials import column_scene, open_box
 from continuum_sph.scene.trials_fluids import drop
@@ -62,6 +63,27 @@ def two_fluids_between_walls():
     return begun(flow, fluids=(*flow.law.fluids, Fluid(Tait(900.0, 40.0), 2.0)))
 
 
+def evolved(flow, steps=20, least=1e-4):
+    """A flow some steps on: its smoothing lengths differ, and are already those of the next step."""
+    for _ in range(steps):
+        flow.advance()
+    layer = flow.layer
+    lengths = layer.length[: layer.fluid]
+    assert np.ptp(lengths) > least * lengths.max()
+    assert np.abs(lengths - layer.girths[: layer.fluid, 0]).max() > 1e-9 * lengths.max()
+    return flow
+
+
+def channel():
+    """Water on its way down between walls that hold, periodic along them."""
+    flow = trials.channel(1.0, 10, 1e-2, 20.0, force=1.0, lid_speed=0.5)
+    rng, fluid = np.random.default_rng(4), flow.layer.fluid
+    flow.layer.x[:fluid] += rng.uniform(-0.02, 0.02, (fluid, 2))
+    flow.layer.x[:fluid, 0] += 0.03  # some of the last column are beyond the period
+    flow.layer.v[:fluid] = rng.normal(size=(fluid, 2))
+    return begun(flow, diffusion=0.1, noise=LINEAR)
+
+
 FLOWS = {
     "slip": lambda: walled("slip"),
     "stick": lambda: walled("floor and lid stick"),
@@ -72,6 +94,9 @@ FLOWS = {
     "xsph": lambda: walled("slip", xsph=0.4),
     "images": lambda: walled("slip", "images"),
     "images that hold": lambda: walled("stick", "images", gradient="corrected"),
+    "images, xsph": lambda: walled("slip", "images", xsph=0.4),
+    "walls, lengths of their own": lambda: evolved(walled("stick", steps=0, smoothing_length="evolved")),
+    "channel": channel,
     "box": boxed,
     "gravity sideways, beta, calm": lambda: boxed(gravity=(3.0, -9.81), beta=2.0, calm=0.1),
     "cohesion": lambda: boxed(fluids=(Fluid(Tait(1000.0, 40.0), 1.0, 1e-2),)),
