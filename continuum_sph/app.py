@@ -39,15 +39,11 @@ def template() -> str:
 
 
 def build(scene: Scene) -> Model:
-    """The simulation of a scene; warnings about it go to stderr, refusals are InputErrors."""
-    import sys
-
+    """The simulation of a scene that `report` does not refuse."""
     from continuum_sph.scene.model import Simulation
     from continuum_sph.scene.seepage_model import SeepageSimulation
     from continuum_sph.scene.soil_model import SoilSimulation
 
-    for warning in report(scene).warnings:
-        print(f"warning: {warning}", file=sys.stderr)
     if scene.soil is None:
         return Simulation(scene)
     return SoilSimulation(scene) if dry(scene) else SeepageSimulation(scene)

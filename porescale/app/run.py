@@ -20,14 +20,9 @@ def scene_type() -> type[Scene]:
 
 
 def build(scene: Scene) -> Simulation:
-    """The simulation of a scene; warnings about it go to stderr."""
-    import sys
-
+    """The simulation of a scene."""
     from porescale.scene.build import build as build_scene
-    from porescale.scene.derive import derive
 
-    for warning in derive(scene).warnings:
-        print(f"warning: {warning}", file=sys.stderr)
     return build_scene(scene)
 
 

@@ -77,7 +77,8 @@ class Package:
 
     name : of the command;  summary : one line for --help;  version;
     scene : gives the scene type;  template : gives the commented scene.toml that `new` writes;
-    build : scene -> model;  drive : runs it;  report : scene -> what `check` says (it may raise InputError);
+    build : scene -> model, of scenes that report did not refuse;  drive : runs it;  report : scene -> what `check`
+    says, warnings and all (it may raise InputError);
     show : makes pictures and a film in a run folder and gives their paths;
     table : columns of a table of a run folder by its name, "series" for series.csv;
     also : the same as show for runs of other commands, by what their cards call them;

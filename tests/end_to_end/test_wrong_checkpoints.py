@@ -18,7 +18,7 @@ from tests.reference.programs import KINDS, Program, program
 from tests.reference.same_run import differences
 from tests.reference.spoiled import renumbered
 
-OTHERS = {"column": "tank", "asleep": "column", "tank": None, "seeping": "tank", "soil": "tank",
+OTHERS = {"column": "tank", "asleep": "column", "framed": "tank", "tank": None, "seeping": "tank", "soil": "tank",
           "bubble": "tank", "air": "seeping"}  # fmt: skip
 """Whose checkpoint each is given: another program's, or another model's of the same one; None: that of the kept run."""
 KEPT = Path(__file__).resolve().parents[1] / "samples" / "run_format_1.tar.xz"
@@ -215,6 +215,53 @@ def test_a_wrong_checkpoint_is_one_line_and_nothing_is_lost(tmp_path, capsys, ha
         assert str(run) in said, (way, said)
         assert len(said) < 500, (way, said)
         shutil.rmtree(run)
+
+
+def pointed(table: str, name: str, at: tuple[int, int], value: int) -> Callable[[Path], None]:
+    """An index of the segments or bonds is another; its checksums are right."""
+
+    def change(content: dict[str, Any]) -> None:
+        content["state"]["grains"][table][name][at] = value
+        if name == "ends":
+            content["state"]["grains"][table][name][at[0], 2] = at[1] == 1  # of a segment
+
+    return changed(change)
+
+
+def rowed(**rows: int) -> Callable[[Path], None]:
+    """So many rows of which discs are held, and what that took."""
+
+    def change(content: dict[str, Any]) -> None:
+        grains = content["state"]["grains"]
+        grains.update({name: np.zeros((count, 3), grains[name].dtype) for name, count in rows.items()})
+
+    return changed(change)
+
+
+OF_FRAMES: dict[str, tuple[Callable[[Path], None], str]] = {
+    "more held than there are": (rowed(held=500, withheld=500), "held: (500, 3) for none or all of "),
+    "held without what it takes": (rowed(withheld=0), "withheld: (0,) rows for "),
+    "a segment far beyond all": (pointed("segments", "near", (0, 1), 1 << 40), f"near = {1 << 40}: is none of 13"),
+    "the segment after the last": (pointed("segments", "near", (-1, 1), 13), "segments.near = 13: is none of 13"),
+    "a disc far beyond all": (pointed("segments", "near", (0, 0), 1 << 40), f"segments.near: {1 << 40} is none of "),
+    "a corner far beyond all": (pointed("segments", "corner", (0, 1), 1 << 40), f"corner: {1 << 40} is none of "),
+    "a bond to a segment far beyond all": (pointed("bonds", "ends", (0, 1), 1 << 40), f"= {1 << 40}: is none of 13"),
+    "a bond of a disc far beyond all": (pointed("bonds", "ends", (0, 0), 1 << 40), f"ends: {1 << 40} is none of "),
+}
+"""What is wrong with the tables that only frames and bonds have, and how it is said."""
+
+
+@pytest.mark.parametrize("way", OF_FRAMES)
+def test_indices_of_frames_and_bonds_are_judged(tmp_path, capsys, halves, way):
+    half, (spoil, words) = halves("framed"), OF_FRAMES[way]
+    run = Path(shutil.copytree(half.folder, tmp_path / "run"))
+    grains = read_checkpoint(run / "checkpoint.h5")["state"]["grains"]
+    assert all(len(grains[table][name]) for table, name in (("segments", "near"), ("bonds", "ends")))
+    assert len(grains["held"]) == len(grains["discs"]["radius"])
+    spoil(run / "checkpoint.h5")
+    said = refused(half, run, capsys)
+    assert "checkpoint" in said
+    assert words in said
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -42,11 +42,24 @@ AIR: dict[str, Any] = {
                  "tension": "cut"},
     "time": {"end": 0.02}, "output": {"snapshot_interval": 0.005, "series_interval": 0.001},
 }  # fmt: skip
-KINDS = {
-    **SCENES, "soil": ("continuum_sph", SOIL), "bubble": ("continuum_sph", BUBBLE), "air": ("continuum_sph", AIR)
+FRAMED: dict[str, Any] = {
+    "domain": {"width": 0.012, "height": 0.008}, "time": {"end": 0.008},
+    "output": {"snapshot_interval": 0.002, "series_interval": 0.0004, "checkpoint_seconds": 0.05, "energy": True},
+    "grains": {"density": 2500, "grain": [{"x": x, "y": 0.0017, "diameter": 0.001} for x in (0.0085, 0.00951)]},
+    "contact": {"stiffness": 2e5, "tangential_stiffness": 5e4, "restitution": 0.5, "friction": 0.5},
+    "disc": [{"x": 0.011, "y": 0.006, "diameter": 0.001}],
+    "polygon": [{"corners": [[0, 0], [1e-3, 0], [1e-3, 1e-3], [0, 1e-3]], "thickness": 5e-5,
+                 "at": [[2e-3, 2e-3], [3.0992e-3, 2e-3], [4.1984e-3, 2e-3]]}],
+    "container": [{"chain": [[7e-3, 1e-3], [10e-3, 1e-3]], "thickness": 1e-4}],
+    "bonds": [{}], "control": [{"polygon": 0, **{axis: {"velocity": 0.0} for axis in ("x", "y", "rotation")}}],
 }  # fmt: skip
-"""Package and scene: grains behind a gate in water, awake and asleep; water, ground, and ground with water in it; gas
-in water, and in ground."""
+"""Squares 0.8 µm into each other, which bonds hold to a first one that is held; two grains fall on a chain."""
+KINDS = {
+    **SCENES, "framed": ("porescale", FRAMED), "soil": ("continuum_sph", SOIL), "bubble": ("continuum_sph", BUBBLE),
+    "air": ("continuum_sph", AIR),
+}  # fmt: skip
+"""Package and scene: grains behind a gate in water, awake and asleep; bodies of lines, bonded; water, ground, and
+ground with water in it; gas in water, and in ground."""
 
 
 @dataclass(frozen=True)

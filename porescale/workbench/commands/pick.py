@@ -31,6 +31,7 @@ def pick(
         """The beginning of the point's scene, and the time it is to simulate, s, where its scene says that."""
         overrides = (*point.settings, *settings)
         opened = open_scene(scene, package.scene(), quality=point.quality, overrides=overrides)
+        package.report(opened.scene)  # what contradicts itself is refused
         end = getattr(getattr(opened.scene, "time", None), "end", None)
         return begun(lambda: package.build(opened.scene), end)
 

@@ -62,10 +62,12 @@ def command(package: Package) -> Callable[..., int]:
         if chosen is not None:
             card["picked"] = chosen.as_dict()
         begun = time.perf_counter()
-        package.report(opened.scene)  # what contradicts itself is refused
+        warnings = package.report(opened.scene).warnings  # what contradicts itself is refused
         if resume and package.judge is not None:
             package.judge(folder, card)
-        use_threads(threads)  # which brings numba along: after all that may be wrong
+        use_threads(threads)  # numba counts them; unless moving frames were to be judged, it is imported only now
+        for warning in warnings:
+            print(f"warning: {warning}", file=sys.stderr)
         model = package.build(opened.scene)
         outcome = package.drive(model, folder, opened.scene, card=card, resume=resume, quiet=quiet, overwrite=overwrite)
         if not quiet:
