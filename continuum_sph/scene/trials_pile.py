@@ -21,8 +21,14 @@ Floats = NDArray[np.float64]
 WATER, GRAINS = 1000.0, 2650.0  # kg/m³
 FREELY = 4.0  # of the rise that elasticity explains: the rest is flow of soil that yields
 BARELY = 0.01  # i_c s, by which a head that is held rises all the same
-GONE = 0.1  # of s: ground that has risen that far has failed, whether or not it comes to rest there
 STIFF = 10.0  # K_w/(n M) of the water: what soil squeezes out is not stored
+
+
+def rests(rise: Floats, most: float) -> bool:
+    """Whether ground whose ``rise`` (3,) is known at the ends of three thirds of a time rises less in the last than in
+    the one before, and by less than ``most`` in all."""
+    before, then, now = rise
+    return bool(now - then < then - before and now < most)
 
 
 @dataclass(frozen=True)
@@ -162,13 +168,12 @@ class Heave:
         it never does."""
         return next((head for _, head, rise, _ in self.course() if rise > times * self.elastic), float("nan"))
 
-    def stands(self, head: float, seconds: float = 2.2) -> bool:
-        """Whether ground under a ``head`` (over i_c s) that is held for so many ``seconds`` comes to rest, and not
-        far: the prism's surface rises less in their last third than in the one before, or than elasticity explains."""
+    def stands(self, head: float, most: float, seconds: float = 2.2) -> bool:
+        """Whether ground under a ``head`` (over i_c s) that is held for so many ``seconds`` comes to rest before its
+        surface, that of the prism, has risen by ``most`` s: see `rests`."""
         held = replace(self, first=head, last=head + BARELY, rate=BARELY / seconds)
         time, _, rise = np.array([row[:3] for row in held.course(seconds / 60.0)]).T
-        before, then, now = np.interp(self.calm + seconds * np.array([1.0, 2.0, 3.0]) / 3.0, time, rise)
-        return bool(now - then < max(then - before, self.elastic) and now < GONE)
+        return rests(np.interp(self.calm + seconds * np.array([1.0, 2.0, 3.0]) / 3.0, time, rise), most)
 
 
 @dataclass(frozen=True)

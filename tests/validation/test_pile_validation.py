@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from continuum_sph.scene.trials_pile import Around
+from continuum_sph.scene.trials_pile import Around, rests
 from continuum_sph.scene.trials_seepage_steady import SheetPile
 from continuum_sph.scene.validations import VALIDATIONS
 from continuum_sph.scene.verify_pile import (
+    APART,
     AROUND,
     BOUNDS,
     CALM,
@@ -77,11 +79,21 @@ def test_bounds_in_narrow_ground_are_those_of_finite_volumes():
         assert bounds(share, 1.0, 40) == pytest.approx(known, abs=5e-3 + 40**-1.5)
 
 
+def test_ground_that_slows_down_near_where_it_was_rests():
+    most = APART[QUICK.share]
+    assert rests(np.array([0.01, 0.02, 0.029]), most)
+    # the twins that must fail: steadily, if by less than elasticity explains; faster and faster; slower, but far away
+    assert QUICK.elastic > 1 / 256
+    assert not rests(np.array([1.0, 2.0, 3.0]) / 256, most)
+    assert not rests(np.array([0.01, 0.02, 0.031]), most)
+    assert not rests(np.array([0.5, 0.9, 1.0]) * 1.01 * most, most)
+
+
 @pytest.mark.slow
 def test_heavier_grains_stand_a_head_that_others_do_not():  # the twin that must fail
     heavy = replace(QUICK, grains=3200.0)
-    assert heavy.stands(HEADS[1] * QUICK.critical / heavy.critical)
-    assert not QUICK.stands(HEADS[1])
+    assert heavy.stands(HEADS[1] * QUICK.critical / heavy.critical, APART[QUICK.share])
+    assert not QUICK.stands(HEADS[1], APART[QUICK.share])
 
 
 @pytest.mark.slow
@@ -89,7 +101,7 @@ def test_heavier_grains_stand_a_head_that_others_do_not():  # the twin that must
 def test_heavier_grains_stand_all_that_others_might(share):  # the twin that must fail
     # Grains of 3200 kg/m³ under the i_c of quartz still stand at the upper of the two bounds.
     heavy = replace(HELD[share], grains=3200.0)
-    assert heavy.stands(NARROW[share][1] * QUICK.critical / heavy.critical, seconds=1.0)
+    assert heavy.stands(NARROW[share][1] * QUICK.critical / heavy.critical, APART[share], seconds=1.0)
 
 
 WEAKEST = {0.25: 2.54, 0.5: 2.56, 0.75: 2.65}
