@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from continuum_sph.layers import RHO, VOLUME, VX, VY, X, Y
+from continuum_sph.layers import BY_SHIFTING, RHO, VOLUME, VX, VY, X, Y
 from continuum_sph.seepage.overlap import closeness
 from continuum_sph.smoothing import CUBIC, kernel_value
 from porescale.ground.jit import parallel_kernel, prange
@@ -108,12 +108,23 @@ def blend(fluid, start, split, partner, record, home, pores, h, period_x, period
 
 
 @parallel_kernel
+def keep_met(fluid, pores, slant, drift, rate):
+    """Takes off ``rate`` (fluid,) what `part_forces` will multiply too much: 1 - n of what shifting gives.
+
+    A particle that drifts meets the true density of another place, δu · ∇ρ, however little room grains leave there.
+    slant (fluid, 2) kg/m⁴, drift (fluid, 2) m/s: those that `rates` has had.
+    """
+    for i in prange(fluid):
+        rate[i] -= (1.0 - pores[POROSITY, i]) * (drift[i, 0] * slant[i, 0] + drift[i, 1] * slant[i, 1])
+
+
+@parallel_kernel
 def part_forces(fluid, mass, acceleration, gx, gy, pores, rate, power, thrust):
-    """Divides ``rate`` (fluid,) and ``power`` (fluid, 4), if it has rows, by n; overwrites the last two columns of
-    ``thrust`` (fluid, 4), N/m: force of the whole volume over the grains' weight.
+    """Divides ``rate`` (fluid,) and ``power`` (fluid, 6), but for BY_SHIFTING and STOPPED, by n; overwrites the
+    last two columns of ``thrust`` (fluid, 4), N/m: force of the whole volume over the grains' weight.
 
     acceleration (fluid, 2) m/s² of the water, with gravity (gx, gy), which acts on each layer by itself;  mass
-    (fluid…,) kg/m, of water.
+    (fluid…,) kg/m, of water;  power: None without a book.
     """
     for i in prange(fluid):
         porosity = pores[POROSITY, i]
@@ -123,8 +134,8 @@ def part_forces(fluid, mass, acceleration, gx, gy, pores, rate, power, thrust):
         if solid > 0.0:
             open_ = 1.0 / porosity
             rate[i] *= open_
-            if power.shape[0] > 0:
-                for k in range(4):
+            if power is not None:
+                for k in range(BY_SHIFTING):
                     power[i, k] *= open_
             whole = mass[i] * (1.0 - porosity) / (porosity * solid)
             thrust[i, 2] = whole * (acceleration[i, 0] - gx)

@@ -19,6 +19,7 @@ from continuum_sph.seepage.mixture import (
     SLIP_Y,
     bear,
     blend,
+    keep_met,
     meet,
     part_forces,
 )
@@ -74,12 +75,18 @@ class PoreFlow(Flow):
         super().evaluate(step, ratio)
         self.thrust[:, :2] = x
         part_forces(
-            layer.fluid, layer.mass, layer.acceleration, *self.law.gravity, self.pores, layer.rate, layer.power,
+            layer.fluid, layer.mass, layer.acceleration, *self.law.gravity, self.pores, layer.rate, self.book[0],
             self.thrust,
         )  # fmt: skip
         bear(
             layer.fluid, *self.overlap.rows, soil.x, soil.grains, self.thrust, soil.force, length, *self.pairs.period
         )  # fmt: skip
+
+    def sum_pairs(self, half: float) -> None:
+        """As of water alone, of the mixture."""
+        super().sum_pairs(half)
+        if self.law.shifting > 0.0:
+            keep_met(self.layer.fluid, self.pores, self.slant, self.layer.drift, self.layer.rate)
 
     def show_walls(self, step: float, ratio: float) -> None:
         """What the water sees of walls, of grains and of open faces, a ``step`` (s) on."""

@@ -93,7 +93,7 @@ def test_porosity_flux_and_shared_forces_are_those_of_the_dense_sums(place):
     np.testing.assert_allclose(record[:, [VX, VY]], q, atol=100 * eps)
     np.testing.assert_allclose(record[:, VOLUME], place["mass"] / (porosity * place["rho"]), rtol=50 * eps)
     # continuity of one fluid, as `rates` leaves it, is n times the rate
-    given, power = porosity * rate, np.ones((n, 4))
+    given, power = porosity * rate, np.ones((n, 6))
     thrust, found, rows = np.zeros((n, 4)), np.zeros((n, 2)), anew(place)
     thrust[:, :2] = place["x"]
     falling = acceleration + np.array([0.0, -GRAVITY])
@@ -102,7 +102,8 @@ def test_porosity_flux_and_shared_forces_are_those_of_the_dense_sums(place):
     first, last = rows[0][n], rows[0][-1]
     np.testing.assert_array_equal(rows[2][first:last], place["rows"][2][first:last])
     np.testing.assert_allclose(given, rate, rtol=10 * eps)
-    np.testing.assert_allclose(power, 1.0 / porosity[:, None] * np.ones(4), rtol=10 * eps)
+    np.testing.assert_allclose(power[:, :4], 1.0 / porosity[:, None] * np.ones(4), rtol=10 * eps)
+    np.testing.assert_array_equal(power[:, 4:], 1.0)
     # gravity is added and taken off again: eps g over accelerations of size 1
     np.testing.assert_allclose(found, force, atol=np.abs(force).max() * 1000 * eps)
     # work: what continuity gives to the water's energy the forces take from both layers' motion
