@@ -42,9 +42,9 @@ def inverse(xx, xy, yy):
 def surroundings(
     fluid, start, split, partner, record, traits, matrix, crowd, slant, kind, h, spacing, period_x, period_y
 ):  # fmt: skip
-    """Overwrites, of fluid particles, ``matrix`` (fluid, 4), L and the trace of M;  ``crowd`` (n, 2) 1/m,
-    Σ {1 + R (W/W(spacing))⁴} V ∇W, which points away from where particles crowd;  ``slant`` (n, 2) kg/m⁴, gradient of
-    density within the material, exact for linear fields.
+    """Overwrites, of fluid particles, ``matrix`` (fluid, 4), L and the trace of M;  ``crowd`` (fluid, 2) 1/m,
+    Σ {1 + R (W/W(spacing))⁴} V ∇W, which points away from where particles crowd;  ``slant`` (fluid, 2) kg/m⁴, gradient
+    of density within the material, exact for linear fields.
 
     start, split, partner: full list, walls from ``split[i]`` on;  record: see Layer;  traits: of `rates`, None of one
     fluid;  kind, h: smoothing;  spacing of the particles, m;  periods, m or 0, or both None.  Where crowd or slant is

@@ -28,7 +28,7 @@ from continuum_sph.stopped import no_step
 from porescale.ground.check import Fault, InputError
 from porescale.particles import PairList
 
-LONGER = 2.0
+LASTING = 2.0
 """Times the step that diffusion was bounded for, how long it may last: one that is longer yet after a short step, or
 the first, would exchange more volume than there is (`SoilLaw.most`)."""
 
@@ -123,7 +123,7 @@ class SoilFlow:
         )  # fmt: skip
         quickest = deform(
             soil.density, soil.stress, soil.material, self.table, soil.matrix, soil.spread, soil.opening, soil.plastic,
-            soil.record, step, min(step, LONGER * self.strained), -1.0 if law.printed_spin else 1.0, law.most,
+            soil.record, step, min(step, LASTING * self.strained), -1.0 if law.printed_spin else 1.0, law.most,
         )  # fmt: skip
         self.strained = step
         self.pace = float(quickest) ** 0.5 / law.smoothing.length

@@ -137,7 +137,7 @@ def first_volume(short):
 @pytest.mark.parametrize("short", [0.0, 1e-3])
 def test_a_step_longer_than_the_last_exchanges_no_more_than_there_is(short, monkeypatch):
     assert first_volume(short) > 0.5 * SPACING**2
-    monkeypatch.setattr(flow_module, "LONGER", np.inf)  # the twin that must fail
+    monkeypatch.setattr(flow_module, "LASTING", np.inf)  # the twin that must fail
     assert first_volume(short) < 0.0
 
 
