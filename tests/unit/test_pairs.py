@@ -11,6 +11,8 @@ from porescale.particles import PairList, drift, pairs, search
 from tests.reference.pairs import neighbours, rows_of
 
 LOWER, UPPER = (0.0, -1.0), (10.0, 7.0)
+OLDER = ("start", "partner", "carried", "anchor", "anchor_reach", "builds")
+"""What states of lists have said from the first."""
 
 
 def cloud(n, seed=0, ratio=1.0, outside=0.0):
@@ -245,6 +247,26 @@ def test_restored_list_goes_on_exactly():
             assert np.array_equal(value, second.state()[name]), name
         x += rng.normal(0.0, 0.03, x.shape)
     assert first.builds > 1
+
+
+def test_a_state_that_does_not_say_its_skin_is_listed_anew_and_keeps_its_data():
+    x, reach = cloud(400, seed=4)
+    first = PairList(400, 0.02, LOWER, UPPER, carried=1)
+    first.update(x, reach)
+    first.carried[:, 0] = np.arange(1.0, 1.0 + len(first.partner))
+    older = {name: value for name, value in first.state().items() if name in OLDER}
+    moved = x + np.array([0.05, 0.0]) * (np.arange(400) % 2)[:, None]  # less than half of 0.2
+    for state, anew in ((older, True), (first.state() | {"skin": np.array(0.2)}, False)):  # the twin that must fail
+        second = PairList(400, 0.2, LOWER, UPPER, carried=1)
+        second.restore(state)
+        assert second.update(moved, reach) == anew
+        must = neighbours(moved, reach, 0.0, LOWER, UPPER, (False, False), False)
+        lacking = [set(row) - set(now) for row, now in zip(must, rows_of(second), strict=True)]
+        assert any(lacking) != anew
+    again = PairList(400, 0.2, LOWER, UPPER, carried=1)
+    again.restore(older)
+    again.update(x, reach)
+    assert set(first.carried[:, 0]) <= set(again.carried[:, 0])
 
 
 @pytest.mark.parametrize("full", [False, True])
