@@ -11,10 +11,11 @@ from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.seepage_model import SeepageSimulation
 from continuum_sph.seepage.mixture import POROSITY
 from porescale.workbench.sections import load
-from tests.reference.seeded import INF, NAN, Running, put, running, times
+from tests.reference.seeded import INF, NAN, Running, crowd, put, running, step, times
 
 pytestmark = pytest.mark.slow
 CASE = Path(__file__).resolve().parents[2] / "cases" / "trapped_air"
+SAND, WATER = "soil.flow.soil.", "both.water.layer."
 BOOKED = ("output.energy=true",)
 
 
@@ -32,40 +33,13 @@ def air(simulation: SeepageSimulation) -> list[int]:
 
 def at(name: str, index: tuple[int, ...], value: float) -> Callable[[SeepageSimulation], None]:
     """Writes ``value`` into an array of the layer, of one particle of air."""
-
-    def fault(simulation: SeepageSimulation) -> None:
-        own = air(simulation)
-        put(f"both.water.layer.{name}", (own[len(own) // 2], *index), value)(simulation)
-
-    return fault
+    return put(f"{WATER}{name}", lambda simulation: (one(simulation), *index), value)
 
 
-def all_of(name: str, factor: float) -> Callable[[SeepageSimulation], None]:
-    """Multiplies what is there of all air."""
-
-    def fault(simulation: SeepageSimulation) -> None:
-        times(f"both.water.layer.{name}", air(simulation), factor)(simulation)
-
-    return fault
-
-
-def crowd(count: int) -> Callable[[SeepageSimulation], None]:
-    """So many particles of air are put into one place."""
-
-    def fault(simulation: SeepageSimulation) -> None:
-        own, x = air(simulation)[:count], simulation.both.water.layer.x
-        x[own] = x[own[0]]
-
-    return fault
-
-
-def step(factor: float) -> Callable[[SeepageSimulation], None]:
-    """The next step takes ``factor`` times as long."""
-
-    def fault(simulation: SeepageSimulation) -> None:
-        simulation.both.next_step *= factor
-
-    return fault
+def one(simulation: SeepageSimulation) -> int:
+    """The particle of air in the middle of the list."""
+    own = air(simulation)
+    return own[len(own) // 2]
 
 
 def lost(simulation: SeepageSimulation) -> None:
@@ -73,7 +47,6 @@ def lost(simulation: SeepageSimulation) -> None:
     simulation.both.water.pores[POROSITY, air(simulation)[0]] = NAN
 
 
-SAND, WATER = "soil.flow.soil.", "both.water.layer."
 FAULTS: dict[str, Callable[[SeepageSimulation], None]] = {
     **{f"air {name} {value:g}": at(name, index, value) for name, index, value in (
         ("x", (0,), NAN), ("x", (1,), INF), ("v", (0,), NAN), ("v", (1,), INF), ("v", (0,), 1e3), ("v", (1,), -1e4),
@@ -81,15 +54,15 @@ FAULTS: dict[str, Callable[[SeepageSimulation], None]] = {
         ("mass", (), NAN), ("mass", (), -1.0), ("acceleration", (0,), NAN), ("acceleration", (1,), 1e9),
         ("rate_before", (), NAN), ("pressure", (), NAN), ("energy", (0,), NAN), ("drift", (0,), NAN),
         ("length", (), NAN))},
-    "air a hundred times as dense": all_of("density", 100.0),
-    "air of no density": all_of("density", 1e-6),
-    "air of negative mass": all_of("mass", -1.0),
-    "air of a thousand times the mass": all_of("mass", 1e3),
+    "air a hundred times as dense": times(f"{WATER}density", air, 100.0),
+    "air of no density": times(f"{WATER}density", air, 1e-6),
+    "air of negative mass": times(f"{WATER}mass", air, -1.0),
+    "air of a thousand times the mass": times(f"{WATER}mass", air, 1e3),
     "air thrown up": at("x", (1,), 5.0),
     "air thrown through the wall": at("x", (0,), -1.0),
     "air thrown through the floor": at("x", (1,), -1.0),
-    "air: two in one place": crowd(2),
-    "air: ten in one place": crowd(10),
+    "air: two in one place": crowd(f"{WATER}x", lambda simulation: air(simulation)[:2]),
+    "air: ten in one place": crowd(f"{WATER}x", lambda simulation: air(simulation)[:10]),
     "porosity about air nan": lost,
     **{f"water {name} {value:g}": put(f"{WATER}{name}", index, value) for name, index, value in (
         ("x", (20, 0), NAN), ("v", (20, 0), 1e3), ("density", 20, NAN), ("density", 20, -1.0), ("mass", 20, NAN),
@@ -97,7 +70,7 @@ FAULTS: dict[str, Callable[[SeepageSimulation], None]] = {
     **{f"soil {name} {value:g}": put(f"{SAND}{name}", index, value) for name, index, value in (
         ("x", (20, 0), NAN), ("stress", (20, 1), NAN), ("stress", (20, 1), 1e12), ("density", 20, -1.0),
         ("v", (20, 0), 1e3))},
-    **{f"step times {factor:g}": step(factor) for factor in (100.0, 1e4, NAN, -1.0, 0.0)},
+    **{f"step times {factor:g}": step("both", factor) for factor in (100.0, 1e4, NAN, -1.0, 0.0)},
 }  # fmt: skip
 
 
@@ -115,8 +88,7 @@ NAMED = {
 
 @pytest.mark.parametrize("name", NAMED)
 def test_what_is_wrong_is_named(sinking, name):
-    own = air(sinking.simulation)
-    sinking.names(FAULTS[name], NAMED[name], own[len(own) // 2])
+    sinking.names(FAULTS[name], NAMED[name], one(sinking.simulation))
 
 
 def test_nothing_is_found_where_nothing_is_wrong(sinking):  # the twin that must not fail

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from continuum_sph.scene.model import Simulation
 from continuum_sph.scene.sections import Scene
 from porescale.workbench.sections import load
-from tests.reference.seeded import INF, NAN, Running, put, running, times
+from tests.reference.seeded import INF, NAN, Running, crowd, put, running, step, times
 
 pytestmark = pytest.mark.slow
 CASES = Path(__file__).resolve().parents[2] / "cases"
@@ -28,60 +29,24 @@ def rising(request) -> Running:
     return running(Simulation(load(CASES / request.param, Scene, overrides=COARSE[request.param])), 100)
 
 
+def bubble(simulation: Simulation) -> NDArray[np.int64]:
+    """Particles of the bubble."""
+    layer = simulation.flow.layer
+    return (layer.material[: layer.fluid] == 1).nonzero()[0]
+
+
 def one(simulation: Simulation) -> int:
     """The particle of the bubble in the middle of its list."""
-    own = (simulation.flow.layer.material[: simulation.flow.layer.fluid] == 1).nonzero()[0]
+    own = bubble(simulation)
     return int(own[len(own) // 2])
 
 
 def at(name: str, index: tuple[int, ...], value: float) -> Callable[[Simulation], None]:
     """Writes ``value`` into an array of the layer, of one particle of the bubble."""
-
-    def fault(simulation: Simulation) -> None:
-        put(f"flow.layer.{name}", (one(simulation), *index), value)(simulation)
-
-    return fault
+    return put(f"{LAYER}{name}", lambda simulation: (one(simulation), *index), value)
 
 
-def scaled(name: str, factor: float) -> Callable[[Simulation], None]:
-    """Multiplies what is there of one particle of the bubble."""
-
-    def fault(simulation: Simulation) -> None:
-        times(f"flow.layer.{name}", one(simulation), factor)(simulation)
-
-    return fault
-
-
-def all_of(name: str, factor: float) -> Callable[[Simulation], None]:
-    """Multiplies what is there of the whole bubble."""
-
-    def fault(simulation: Simulation) -> None:
-        layer = simulation.flow.layer
-        times(f"flow.layer.{name}", (layer.material[: layer.fluid] == 1).nonzero()[0], factor)(simulation)
-
-    return fault
-
-
-def crowd(count: int) -> Callable[[Simulation], None]:
-    """So many particles of the bubble are put into one place."""
-
-    def fault(simulation: Simulation) -> None:
-        layer = simulation.flow.layer
-        own = (layer.material[: layer.fluid] == 1).nonzero()[0][:count]
-        layer.x[own] = layer.x[own[0]]
-
-    return fault
-
-
-def step(factor: float) -> Callable[[Any], None]:
-    """The next step takes ``factor`` times as long."""
-
-    def fault(simulation: Any) -> None:
-        simulation.flow.next_step *= factor
-
-    return fault
-
-
+LAYER = "flow.layer."
 FAULTS: dict[str, Callable[[Simulation], None]] = {
     **{f"{name} {value:g}": at(name, index, value) for name, index, value in (
         ("x", (0,), NAN), ("x", (1,), INF), ("v", (0,), NAN), ("v", (1,), INF), ("v", (0,), 1e3), ("v", (1,), -1e4),
@@ -89,16 +54,16 @@ FAULTS: dict[str, Callable[[Simulation], None]] = {
         ("density", (), -100.0), ("mass", (), NAN), ("mass", (), -1.0), ("acceleration", (0,), NAN),
         ("acceleration", (1,), 1e9), ("rate_before", (), NAN), ("rate_before", (), 1e9), ("drift", (0,), NAN),
         ("length", (), NAN), ("energy", (0,), NAN))},
-    "mass times a thousand": scaled("mass", 1e3),
-    "bubble a hundred times as dense": all_of("density", 100.0),
-    "bubble of no density": all_of("density", 1e-6),
-    "bubble of negative mass": all_of("mass", -1.0),
+    "mass times a thousand": times(f"{LAYER}mass", one, 1e3),
+    "bubble a hundred times as dense": times(f"{LAYER}density", bubble, 100.0),
+    "bubble of no density": times(f"{LAYER}density", bubble, 1e-6),
+    "bubble of negative mass": times(f"{LAYER}mass", bubble, -1.0),
     "thrown up": at("x", (1,), 5.0),
     "thrown through the wall": at("x", (0,), -1.0),
     "thrown through the floor": at("x", (1,), -1.0),
-    "two in one place": crowd(2),
-    "ten in one place": crowd(10),
-    **{f"step times {factor:g}": step(factor) for factor in (100.0, 1e4, NAN, -1.0, 0.0)},
+    "two in one place": crowd(f"{LAYER}x", lambda simulation: bubble(simulation)[:2]),
+    "ten in one place": crowd(f"{LAYER}x", lambda simulation: bubble(simulation)[:10]),
+    **{f"step times {factor:g}": step("flow", factor) for factor in (100.0, 1e4, NAN, -1.0, 0.0)},
 }  # fmt: skip
 
 

@@ -10,7 +10,7 @@ import pytest
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil_model import SoilSimulation
 from tests.reference.programs import SOIL
-from tests.reference.seeded import INF, NAN, Running, put, running, times
+from tests.reference.seeded import INF, NAN, Running, crowd, put, running, step, times
 
 AT = 50
 """The particle that most faults are put at: within the pile, on its way down."""
@@ -22,29 +22,10 @@ def sliding() -> Running:
     return running(SoilSimulation(Scene.model_validate(SOIL)), 100)
 
 
-def crowd(count: int) -> Callable[[SoilSimulation], None]:
-    """So many particles of soil are put into one place."""
-
-    def fault(simulation: SoilSimulation) -> None:
-        x = simulation.flow.soil.x
-        x[AT : AT + count] = x[AT]
-
-    return fault
-
-
 def near(simulation: SoilSimulation) -> None:
     """Particles of soil are drawn to a tenth of the distance that they have from one of them."""
     x = simulation.flow.soil.x
     x[40:60] = x[AT] + 0.1 * (x[40:60] - x[AT])
-
-
-def step(factor: float) -> Callable[[SoilSimulation], None]:
-    """The next step takes ``factor`` times as long."""
-
-    def fault(simulation: SoilSimulation) -> None:
-        simulation.flow.next_step *= factor
-
-    return fault
 
 
 SAND = "flow.soil."
@@ -62,10 +43,10 @@ FAULTS: dict[str, Callable[[SoilSimulation], None]] = {
     "mass times a hundred": times(f"{SAND}mass", AT, 100.0),
     **{f"thrown {where}": put(f"{SAND}x", (AT, axis), value) for where, axis, value in (
         ("up", 1, 3.0), ("through the wall", 0, -1.0), ("through the floor", 1, -1.0), ("aside", 0, 0.28))},
-    "two in one place": crowd(2),
-    "twenty in one place": crowd(20),
+    "two in one place": crowd(f"{SAND}x", slice(AT, AT + 2)),
+    "twenty in one place": crowd(f"{SAND}x", slice(AT, AT + 20)),
     "twenty drawn together": near,
-    **{f"step times {factor:g}": step(factor) for factor in (100.0, 1e4, NAN, -1.0, 0.0)},
+    **{f"step times {factor:g}": step("flow", factor) for factor in (100.0, 1e4, NAN, -1.0, 0.0)},
 }  # fmt: skip
 
 

@@ -16,14 +16,23 @@ from porescale.runs.drive import CHECK_EVERY
 NAN, INF = float("nan"), float("inf")
 
 
+def named(simulation: Any, place: str) -> Any:
+    """What a dotted ``place`` names."""
+    for part in place.split("."):
+        simulation = getattr(simulation, part)
+    return simulation
+
+
+def rows(simulation: Any, index: Any) -> Any:
+    """An ``index``, or what it says of the simulation if it is a function."""
+    return index(simulation) if callable(index) else index
+
+
 def put(place: str, index: Any, value: float) -> Callable[[Any], None]:
-    """Writes ``value`` at ``index`` of the array that a dotted ``place`` names."""
+    """Writes ``value`` at ``index``, see `rows`, of the array that a dotted ``place`` names."""
 
     def fault(simulation: Any) -> None:
-        array = simulation
-        for part in place.split("."):
-            array = getattr(array, part)
-        array[index] = value
+        named(simulation, place)[rows(simulation, index)] = value
 
     return fault
 
@@ -32,10 +41,26 @@ def times(place: str, index: Any, factor: float) -> Callable[[Any], None]:
     """Multiplies what is there."""
 
     def fault(simulation: Any) -> None:
-        array = simulation
-        for part in place.split("."):
-            array = getattr(array, part)
-        array[index] *= factor
+        named(simulation, place)[rows(simulation, index)] *= factor
+
+    return fault
+
+
+def crowd(place: str, index: Any) -> Callable[[Any], None]:
+    """Puts the particles at ``index``, see `rows`, where the first of them is; ``place``: of their places."""
+
+    def fault(simulation: Any) -> None:
+        x, own = named(simulation, place), rows(simulation, index)
+        x[own] = x[own][0]
+
+    return fault
+
+
+def step(place: str, factor: float) -> Callable[[Any], None]:
+    """The next step of what a dotted ``place`` names takes ``factor`` times as long."""
+
+    def fault(simulation: Any) -> None:
+        named(simulation, place).next_step *= factor
 
     return fault
 
