@@ -6,11 +6,12 @@ Scripts run as they are, some with fewer of their methods: those that the rows s
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
-from continuum_sph.scene import trials_fluids
+from continuum_sph.scene import trials_fluids, verify_seepage
 from porescale.scene import case as cases
 from porescale.scene.case import expected, missed
 from tests.end_to_end.test_dem_cases import CASES, script
@@ -68,10 +69,18 @@ def test_both_corrections_buy_what_their_case_says(concluded):
     plain, corrected, both = "Wendland, h 1.3", "corrected gradients", "both"
     numbers = concluded(case, change=only(METHODS=[plain, corrected, both]))
     assert missed(CASES / case, numbers) == []
-    # The twin that must fail: one method's errors taken for another's.
-    names = [row["name"] for row in expected(CASES / case)]
-    swapped = dict(zip(names, (numbers[names[k]] for k in (1, 0, 3, 2)), strict=True))
-    assert missed(CASES / case, swapped) == names
+
+
+def test_corrections_that_are_none_buy_nothing_and_those_that_are_change_what_is_plain(concluded):
+    # The twin that must fail: plain gradients in place of corrected ones, and both corrections in place of none.
+    def change(module: Any) -> None:
+        plain, corrected, both = (module.METHODS[name] for name in ("Wendland, h 1.3", "corrected gradients", "both"))
+        assert corrected != plain
+        module.METHODS = {"Wendland, h 1.3": both, "corrected gradients": plain, "both": plain}
+        module.rest = lambda *_: (0.0, 0.0)  # no row speaks of it
+
+    case = "sph_corrections"
+    assert missed(CASES / case, concluded(case, change=change)) == [row["name"] for row in expected(CASES / case)]
 
 
 def test_shear_keeps_stress_smooth_and_ground_at_rest_and_parting_keeps_particles_apart(concluded):
@@ -114,11 +123,22 @@ def test_two_columns_of_water_do_not_differ_and_are_not_level_at_once(concluded)
 
 def test_water_goes_up_through_soil_as_darcy_says_until_it_boils(concluded):
     case = "upward_flow"
-    numbers = concluded(case)
-    assert missed(CASES / case, numbers) == []
-    # The twin that must fail: a permeability that is off by two hundredths, and soil a tenth heavier.
-    off = {name: 1.02 * value if "k =" in name else 1.1 * value for name, value in numbers.items()}
-    assert missed(CASES / case, off) == [row["name"] for row in expected(CASES / case)]
+    assert missed(CASES / case, concluded(case)) == []
+
+
+def test_water_that_has_not_come_to_speed_and_a_gradient_that_soon_rises_are_not_darcys(concluded, monkeypatch):
+    # The twin that must fail: a sixteenth of the steps, a gradient that rises ten times as fast, and looser soil.
+    low, high, seconds = verify_seepage.RAMP
+    monkeypatch.setattr(verify_seepage, "RAMP", (low, high, 0.1 * seconds))
+    monkeypatch.setattr(verify_seepage, "ramp", verify_seepage.ramp.__wrapped__)
+
+    def change(module: Any) -> None:
+        module.ramp = verify_seepage.ramp
+        module.darcy = lambda k: verify_seepage.darcy(k, steps=100)
+        module.BOILING = replace(module.BOILING, porosity=0.45)
+
+    case = "upward_flow"
+    assert missed(CASES / case, concluded(case, change=change)) == [row["name"] for row in expected(CASES / case)]
 
 
 def test_the_foot_of_the_wet_part_of_a_levee_lags_as_it_comes_into_the_middle(concluded):
