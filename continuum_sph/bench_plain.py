@@ -1,8 +1,8 @@
 """The smallest kernels that do the job of water alone: one liquid, closed walls that slip; nothing is chosen.
 
 They are what `study parts` holds a column of water against: the step of `step.py` with Wendland's kernel, γ = 7,
-artificial viscosity without β, hydrostatic density diffusion, and no book of energies.  Sums run in the order of
-`rates`; the pair list is the one that everybody has.
+artificial viscosity without β, hydrostatic density diffusion, and no book of energies; with XSPH, if the water has it,
+and compiled without where it has not.  Sums run in the order of `rates`; the pair list is the one that everybody has.
 """
 
 from __future__ import annotations
@@ -23,7 +23,9 @@ Floats = NDArray[np.float64]
 
 
 @parallel_kernel
-def plain_drift(x, v, acceleration, density, rate, before, mass, record, half, step, ratio, lower, upper, density0, b):
+def plain_drift(
+    x, v, acceleration, smoothed, density, rate, before, mass, record, half, step, ratio, lower, upper, density0, b
+):
     """Half kick, drift, densities a step on and their pressures, of fluid particles: overwrites x, v, record.
 
     Arguments as of `motion.kick_drift`;  b: of Tait, Pa.  Returns the largest (c/c0)².
@@ -32,7 +34,10 @@ def plain_drift(x, v, acceleration, density, rate, before, mass, record, half, s
     for i in prange(density.shape[0]):
         for axis in range(2):
             speed = v[i, axis] + half * acceleration[i, axis]
-            at = x[i, axis] + step * speed
+            carried = speed
+            if smoothed is not None:
+                carried += smoothed[i, axis]
+            at = x[i, axis] + step * carried
             if at < lower[axis]:
                 at, speed = lower[axis], max(0.0, speed)
             if at > upper[axis]:
@@ -71,10 +76,14 @@ def plain_walls(fluid, start, split, partner, record, h, g):
 
 @parallel_kernel
 def plain_pairs(
-    fluid, start, split, partner, record, acceleration, rate, h, g, alpha, softening, delta, calm, sound, mu
-):
-    """Overwrites ``acceleration`` (fluid, 2) and ``rate`` (fluid,), as `rates.rates`;  g: downwards."""
+    fluid, start, split, partner, record, acceleration, rate, smoothed, h, g, alpha, softening, delta, calm, sound, mu,
+    xsph,
+):  # fmt: skip
+    """Overwrites ``acceleration`` (fluid, 2) and ``rate`` (fluid,), and ``smoothed`` (fluid, 2) if it is not None, as
+    `rates.rates`;  g: downwards;  xsph: ε, or None."""
     scale = -8.75 / (np.pi * h * h * h * h)
+    if smoothed is not None:
+        strength = 2.0 * xsph * 1.75 / (np.pi * h * h)
     inverse, soft, half_g = 1.0 / h, softening * h * h, 0.5 * g
     haste, restless = haste_of(calm, h)
     for i in prange(fluid):
@@ -82,24 +91,31 @@ def plain_pairs(
         rho, own, stiff = record[i, RHO], record[i, P], record[i, STIFF]
         specific = 1.0 / rho
         friction = 2.0 * mu * specific
-        ax, ay, change, spread = nothing(), nothing(), nothing(), nothing()
+        ax, ay, change, spread, sx, sy = nothing(), nothing(), nothing(), nothing(), nothing(), nothing()
         k = start[i]
         while k < split[i]:
             xj, yj, vxj, vyj, rho_j, pressure_j, volume, stiff_j = take_rows(record, partner, k, split[i], i)
             k += LANES
             dx, dy, vx, vy = xi - xj, yi - yj, vxi - vxj, vyi - vyj
             distance2 = dx * dx + dy * dy
-            rest = greater(1.0 - 0.5 * (root(distance2) * inverse), 0.0)
-            part = volume * scale * (rest * rest * rest)
+            q = root(distance2) * inverse
+            rest = greater(1.0 - 0.5 * q, 0.0)
+            cube = rest * rest * rest
+            part = volume * scale * cube
             approach = vx * dx + vy * dy
             hasty = lesser(restless + haste * greater(approach, -approach), 1.0)
             spread += (rho - rho_j + (stiff + stiff_j) * (half_g * dy)) * (part * hasty)
             change += approach * part
-            damp = -2.0 * alpha * sound * h * lesser(approach, 0.0) / ((distance2 + soft) * (rho + rho_j)) * rho_j
+            both = rho + rho_j
+            damp = -2.0 * alpha * sound * h * lesser(approach, 0.0) / ((distance2 + soft) * both) * rho_j
             push = ((own + pressure_j) * specific + damp) * part
             brake = friction * part
             ax += brake * vx - push * dx
             ay += brake * vy - push * dy
+            if smoothed is not None:
+                weight = rho_j * volume / both * (cube * rest * (1.0 + 2.0 * q))
+                sx -= weight * vx
+                sy -= weight * vy
         wx, wy, swept = 0.0, 0.0, 0.0
         for n in range(np.uint64(split[i]), np.uint64(start[i + 1])):
             j = np.uint64(partner[n])
@@ -113,6 +129,9 @@ def plain_pairs(
         acceleration[i, 0] = total(ax) + wx
         acceleration[i, 1] = total(ay) + wy - g
         rate[i] = rho * (total(change) + swept) + delta * sound * total(spread)
+        if smoothed is not None:
+            smoothed[i, 0] = strength * total(sx)
+            smoothed[i, 1] = strength * total(sy)
 
 
 @parallel_kernel
@@ -131,12 +150,9 @@ def plain_kick(v, acceleration, density, rate, half, step, thinnest):
 class PlainColumn:
     """The water of ``flow`` by the smallest kernels, from where it is now on, with a list of its own."""
 
-    xsph = False
-
     def __init__(self, flow: Flow) -> None:
         layer, law, own = flow.layer, flow.law, flow.pairs
         assert len(law.fluids) == 1
-        assert (law.xsph > 0.0) == self.xsph
         assert not any((law.images, law.varied, law.fluids[0].cohesion, law.gravity[0], layer.booked))
         assert law.smoothing.kind == WENDLAND
         assert law.noise == HYDROSTATIC
@@ -149,6 +165,7 @@ class PlainColumn:
         self._rate, self._before, self._length = layer.rate.copy(), layer.rate_before.copy(), layer.length.copy()
         self._lower, self._upper = flow.lower.copy(), flow.upper.copy()
         self.next_step, self._last = flow.next_step, flow.last_steps
+        self._smoothed = layer.smoothed.copy() if law.xsph > 0.0 else None
         self.pairs = PairList(layer.count, own.most, own.lower, own.upper, full=True)
         self.pairs.adaptive = True
         self.pairs.restore(own.state())
@@ -164,8 +181,8 @@ class PlainColumn:
         law, listed, h, sound = self.law, self.pairs, self.law.smoothing.length, self.state.sound_speed
         ratio = (step + self._last[0]) / (self._last[0] + self._last[1])
         fastest = plain_drift(
-            self.x, self.v, self.acceleration, self.density, self._rate, self._before, self.mass, self.record,
-            0.5 * step, step, ratio, self._lower, self._upper, self.state.density, self.state.stiffness,
+            self.x, self.v, self.acceleration, self._smoothed, self.density, self._rate, self._before, self.mass,
+            self.record, 0.5 * step, step, ratio, self._lower, self._upper, self.state.density, self.state.stiffness,
         )  # fmt: skip
         self._rate, self._before = self._before, self._rate
         if listed.update(self.x, self._length):
@@ -173,8 +190,8 @@ class PlainColumn:
         where = (self.fluid, listed.start, self._split, listed.partner, self.record)
         plain_walls(*where, h, -law.gravity[1])
         plain_pairs(
-            *where, self.acceleration, self._rate, h, -law.gravity[1], law.alpha, law.softening,
-            2.0 * law.diffusion * h, law.calm, sound, law.fluids[0].viscosity,
+            *where, self.acceleration, self._rate, self._smoothed, h, -law.gravity[1], law.alpha, law.softening,
+            2.0 * law.diffusion * h, law.calm, sound, law.fluids[0].viscosity, law.xsph or None,
         )  # fmt: skip
         hardest = plain_kick(
             self.v, self.acceleration, self.density, self._rate, 0.5 * step, step, 0.8 * self.state.density

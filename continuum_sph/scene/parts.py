@@ -7,7 +7,6 @@ from collections.abc import Callable
 from typing import Any
 
 from continuum_sph.bench_plain import PlainColumn
-from continuum_sph.bench_plain_xsph import PlainSmoothed
 from continuum_sph.scene.model import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.seepage_model import SeepageSimulation
@@ -69,11 +68,11 @@ def added(name: str, because: str = "", **more: Any) -> Kind:
     return Kind(name, "particle", PLAIN, make, because=because)
 
 
-def alone(smallest: type[PlainColumn], **more: Any) -> Built:
+def alone(**more: Any) -> Built:
     """Water alone, with ``more`` in its scene, beside the smallest kernels for it."""
     it = scene(**more)
     made = started(it)
-    return Built(made, parts_of(it), made.flow.layer.fluid, made.advance, smallest(made.flow).advance)
+    return Built(made, parts_of(it), made.flow.layer.fluid, made.advance, PlainColumn(made.flow).advance)
 
 
 def ground(**more: Any) -> Scene:
@@ -126,10 +125,10 @@ BOOK: Table = {"snapshot_interval": 1.0, "series_interval": 1.0, "energy": True}
 SHIFTED: Table = {"gradient": "corrected", "shifting": 2.0}
 
 KINDS = Kinds([
-    Kind(PLAIN, "particle", SMALLEST, lambda: alone(PlainColumn),
+    Kind(PLAIN, "particle", SMALLEST, alone,
          because="1 to 5 % from process to process: what calls hand over 1.5 %; Python between kernels 1.5 %; stops at "
                  "walls counted, densities and pressures kept for others 1 %; the pass over pairs 1 %"),
-    Kind(SMOOTHED, "particle", SMALLEST, lambda: alone(PlainSmoothed, numerics={"xsph": 0.5}),
+    Kind(SMOOTHED, "particle", SMALLEST, lambda: alone(numerics={"xsph": 0.5}),
          because="as of water only, and 3 % in the pass over pairs"),
     added("water only, twice", "a run beside its like: what the method of measuring makes of nothing"),
     added("energy book", "sums of pressure apart from the rest 8 %, the book's own lines 5 %, taken up 3 %",
