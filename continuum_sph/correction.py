@@ -38,6 +38,13 @@ def inverse(xx, xy, yy):
     return whole * yy + rest, -whole * xy, whole * xx + rest
 
 
+@inline
+def clumping(ratio):
+    """1 + R ratio⁴, the weight of a pair in the shifting sum; ratio: W/W(spacing)."""
+    ratio *= ratio
+    return 1.0 + CLUMP * ratio * ratio
+
+
 @parallel_kernel
 def surroundings(
     fluid, start, split, partner, record, traits, matrix, crowd, slant, kind, h, spacing, period_x, period_y
@@ -88,9 +95,7 @@ def surroundings(
             mxy += px * dy
             myy += py * dy
             if crowd is not None:
-                ratio = kernel_value(kind, q, h) * whole
-                ratio *= ratio
-                weight = 1.0 + CLUMP * ratio * ratio
+                weight = clumping(kernel_value(kind, q, h) * whole)
                 ax += weight * px
                 ay += weight * py
             if slant is not None:
@@ -132,9 +137,7 @@ def surroundings(
             xy -= px * dy
             yy -= py * dy
             if crowd is not None:
-                ratio = kernel_value(kind, q, h) * whole
-                ratio *= ratio
-                weight = 1.0 + CLUMP * ratio * ratio
+                weight = clumping(kernel_value(kind, q, h) * whole)
                 cx += weight * px
                 cy += weight * py
         lxx, lxy, lyy = inverse(xx, xy, yy)
