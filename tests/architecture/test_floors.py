@@ -9,25 +9,25 @@ from sources import Source, sources, written
 
 TOP = 6
 FLOORS = {
-    "porescale.ground": 0,
-    "porescale.particles": 1,
-    "porescale.runs": 1,
-    "porescale.workbench": 1,
+    "porescale.common.core": 0,
+    "porescale.common.neighbors": 1,
+    "porescale.common.record": 1,
+    "porescale.common": 1,
     "porescale.lbm": 2,
     "porescale.dem": 2,
     "porescale.piv": 2,
     "continuum_sph": 2,
     "porescale.coupling": 3,
     "porescale.scene": 4,
-    "porescale.decks": 4,
+    "porescale.demseg": 4,
     "continuum_sph.scene": 4,
-    "porescale.app": 5,
-    "continuum_sph.app": 5,
+    "porescale.cli": 5,
+    "continuum_sph.cli": 5,
     "porescale.__main__": TOP,
     "continuum_sph.__main__": TOP,
     "porescale": TOP,
 }
-WITHOUT_PHYSICS = ("porescale.ground", "porescale.particles", "porescale.runs", "porescale.workbench")
+WITHOUT_PHYSICS = ("porescale.common.core", "porescale.common.neighbors", "porescale.common.record", "porescale.common")
 
 
 def room(name: str) -> str:
@@ -74,29 +74,29 @@ def test_imports_point_down_and_rooms_are_strangers() -> None:
 def test_there_is_something_to_check() -> None:  # the twin of a check that passes because it sees nothing
     modules = sources()
     assert len(modules) > 20
-    assert sum(name.startswith("porescale.ground") for source in modules for _, name in source.imports()) > 20
+    assert sum(name.startswith("porescale.common.core") for source in modules for _, name in source.imports()) > 20
 
 
 @pytest.mark.parametrize(
     ("module", "text"),
     [
-        ("porescale.ground.units", "import porescale.runs"),
-        ("porescale.runs.drive", "from porescale.workbench.report import Report"),
-        ("porescale.runs.drive", "from porescale import workbench"),
+        ("porescale.common.core.units", "import porescale.common.record"),
+        ("porescale.common.record.drive", "from porescale.common.cli.report import Report"),
+        ("porescale.common.record.drive", "from porescale import workbench"),
         ("porescale.lbm.step", "def f():\n    from porescale.dem import bodies"),
         ("porescale.lbm.step", "from ..dem import bodies"),
         ("porescale.dem.step", "if TYPE_CHECKING:\n    from porescale.coupling.step import Step"),
-        ("porescale.coupling.step", "from porescale.scene.build import build"),
-        ("porescale.scene.build", "import porescale.app.main"),
-        ("porescale.scene.build", "import continuum_sph.soil"),
-        ("porescale.runs.card", "import porescale\nporescale.load('x')"),
-        ("porescale.runs.card", "from porescale import Simulation"),
+        ("porescale.coupling.step", "from porescale.build.build import build"),
+        ("porescale.build.build", "import porescale.cli.main"),
+        ("porescale.build.build", "import continuum_sph.soil"),
+        ("porescale.common.record.card", "import porescale\nporescale.load('x')"),
+        ("porescale.common.record.card", "from porescale import Simulation"),
         ("porescale.extra.thing", ""),
         ("continuum_sph.soil", "from porescale.dem import bodies"),
         ("continuum_sph.soil", "from continuum_sph.scene import Scene"),
         ("continuum_sph.soil", "from . import app"),
-        ("continuum_sph.app", "from porescale.app import main"),
-        ("continuum_sph.app", "from porescale.coupling import step"),
+        ("continuum_sph.cli", "from porescale.cli import main"),
+        ("continuum_sph.cli", "from porescale.coupling import step"),
         ("continuum_sph", "from porescale.scene import build"),
     ],
 )
@@ -107,16 +107,19 @@ def test_a_wrong_door_is_found(module: str, text: str) -> None:
 @pytest.mark.parametrize(
     ("module", "text"),
     [
-        ("porescale.runs.drive", "from porescale.ground.check import Fault\nfrom porescale.runs import card"),
-        ("porescale.runs.card", "import porescale\nprint(porescale.__version__)"),
+        (
+            "porescale.common.record.drive",
+            "from porescale.common.core.errors import Fault\nfrom porescale.common.record import card",
+        ),
+        ("porescale.common.record.card", "import porescale\nprint(porescale.__version__)"),
         ("porescale.coupling.step", "from porescale.lbm import step\nfrom porescale.dem import bodies"),
-        ("porescale.app.main", "from porescale import __version__\nimport porescale.scene.build, numpy"),
-        ("porescale.__main__", "from porescale.app.main import main"),
-        ("continuum_sph.soil", "from porescale.particles import pairs\nfrom . import eos"),
-        ("continuum_sph.scene", "from continuum_sph.soil import Soil\nimport porescale.workbench.sections"),
-        ("continuum_sph.app", "from continuum_sph.scene import Scene"),
+        ("porescale.cli.main", "from porescale import __version__\nimport porescale.build.build, numpy"),
+        ("porescale.__main__", "from porescale.cli.main import main"),
+        ("continuum_sph.soil", "from porescale.common.neighbors import pairs\nfrom . import eos"),
+        ("continuum_sph.scene", "from continuum_sph.soil import Soil\nimport porescale.common.schema.sections"),
+        ("continuum_sph.cli", "from continuum_sph.scene import Scene"),
         ("continuum_sph", "from continuum_sph.scene import Scene"),
-        ("porescale", "from porescale.scene.build import Simulation"),
+        ("porescale", "from porescale.build.build import Simulation"),
     ],
 )
 def test_a_right_door_is_open(module: str, text: str) -> None:

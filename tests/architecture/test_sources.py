@@ -11,8 +11,8 @@ from sources import ROOT, Source, functions, is_kernel, read, sources, written
 
 LONGEST = 400
 UNFINISHED = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b")
-JIT = "porescale.ground.jit"
-COMPILING = ("porescale.ground.compiling", "porescale.ground.lanes_code")
+JIT = "porescale.common.compiled.jit"
+COMPILING = ("porescale.common.compiled.compiling", "porescale.common.compiled.simd_code")
 
 
 def undocumented(source: Source) -> Iterator[str]:
@@ -189,7 +189,7 @@ GOOD = [
     (unannotated, "def f(x: int, *y: int, **z: int) -> None: ..."),
     (unannotated, "class A:\n    def f(self) -> None: ...\n    @classmethod\n    def g(cls) -> None: ..."),
     (unannotated, "@kernel\ndef f(x):\n    def g(y): return y\n    return g(x)"),
-    (compiled_elsewhere, "from porescale.ground.jit import kernel"),
+    (compiled_elsewhere, "from porescale.common.compiled.jit import kernel"),
     (too_long, "x = 1\n" * LONGEST),
     (unfinished, "try:\n    f()\nexcept Exception as error:\n    note(error)"),
     (unfinished, "try:\n    f()\nexcept KeyError:\n    pass"),
