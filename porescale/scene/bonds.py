@@ -13,8 +13,8 @@ import pydantic
 from numpy.typing import NDArray
 
 from porescale.build.frame_build import Placed, disc_count
+from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.record.atomic import write_bytes
 from porescale.common.record.model import Cloud
 from porescale.common.schema.sections import Refused, Section, quantity
 from porescale.dem.bodies.bonding import beside, bond
