@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from porescale.build.frame_build import Placed
-from porescale.dem.contact.law import BOOK
+from porescale.dem.contact.law import BUDGET
 from porescale.dem.grains import Grains
 from porescale.dem.measures.energy import energy_book
 from porescale.scene.bodies_of_grains import add_clumps, add_controls, by_hand
@@ -30,7 +30,7 @@ def fit_out(scene: Scene, grains: Grains, mass: float, placed: Sequence[Placed] 
     """
     materials = materials_of(scene, mass)
     if scene.output.energy:
-        grains.book = np.zeros((grains.discs.count, BOOK))
+        grains.book = np.zeros((grains.discs.count, BUDGET))
     if materials:
         own = [it.frame.material for it in placed for _ in it.frame.corners]
         names = names_of(scene, grains.discs.count - len(own))

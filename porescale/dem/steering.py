@@ -67,7 +67,7 @@ class Steering(Drivers):
         self._controls, self._given = [self._controls[k] for k in kept], self._given[kept]
         self._watched = [body for body in self._watched if not isinstance(body, Clump)]
         self.watch(*self._watched)
-        grains.contact = grains.contact._replace(mass=masses(grains))
+        grains.body_mass = masses(grains)
         grains.pairs.group = clumps.group if clumps.count else None
         refresh(grains, anew=True)
         return clumps

@@ -17,7 +17,7 @@ from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.record.model import Cloud
 from porescale.common.schema.sections import Refused, Section, quantity
-from porescale.dem.bodies.bonding import beside, bond
+from porescale.dem.bodies.bonding import bond, segments_now
 from porescale.dem.bodies.rigid import as_bodies
 from porescale.dem.forces.bonds import BondList, touched
 from porescale.dem.grains import Grains
@@ -203,7 +203,7 @@ class Binder:
         shown = bonds.back > 0.0
         ends = np.ascontiguousarray(bonds.ends[shown])
         way, far, other = np.zeros((len(ends), 2)), np.zeros((len(ends), 2)), np.zeros(len(ends), np.int64)
-        known = beside(self.grains)[0]
+        known = segments_now(self.grains)
         at = self.grains.discs.position
         if known is not None:
             touched(at, ends, known, self.grains.cell, way, far, other)

@@ -36,11 +36,10 @@ from porescale.dem.contact.law import (
     KR,
     KT,
     RELEASES,
-    HertzRolling,
-    HertzSliding,
-    kept,
-    scale_at,
+    KernelLaw,
+    history_scaling,
     stiffness,
+    stiffness_scale,
     stored_normal,
 )
 from porescale.dem.contact.linear import Linear, series
@@ -50,7 +49,11 @@ TANGENT = 2.0 * math.sqrt(5.0 / 6.0)
 """Damping over sqrt(m dF/dd) and ratio h: of a d^(1/4) = TANGENT h sqrt(m 3/2 K sqrt(d))."""
 
 
-@stiffness.of(HertzSliding, HertzRolling)
+class HertzKernel(KernelLaw):
+    """The law of Hertz and Mindlin as kernels take it."""
+
+
+@stiffness.of(HertzKernel)
 def _stiffness(overlap, radius, mass, p, law):
     """Tangents that grow with the square root of the overlap."""
     scale = np.sqrt(radius * overlap)
@@ -59,22 +62,22 @@ def _stiffness(overlap, radius, mass, p, law):
     return p[KN] * scale * overlap, p[CN] * root, scale, 1.0 / scale, p[CT] * root, p[CR] * root
 
 
-@scale_at.of(HertzSliding, HertzRolling)
-def _scale_at(overlap, radius, law):
-    """Radius of the contact."""
+@stiffness_scale.of(HertzKernel)
+def _stiffness_scale(overlap, radius, law):
+    """Radius of the contact area, m."""
     return np.sqrt(radius * overlap)
 
 
-@kept.of(HertzSliding, HertzRolling)
-def _kept(overlap, closing, dt, law):
+@history_scaling.of(HertzKernel)
+def _history_scaling(overlap, closing, dt, law):
     """Springs shrink as the contact does while it is unloaded, never grow."""
     before = max(overlap - closing * dt, 0.0)
     return np.sqrt(min(before / overlap, 1.0))
 
 
-@stored_normal.of(HertzSliding, HertzRolling)
+@stored_normal.of(HertzKernel)
 def _stored_normal(overlap, radius, p, law):
-    """Integral of K d^(3/2)."""
+    """Integral of K d^(3/2) over the overlap."""
     return 0.4 * p[KN] * np.sqrt(radius * overlap) * overlap * overlap
 
 
@@ -89,6 +92,7 @@ class Hertz:
     """
 
     name = "hertz"
+    kernel = HertzKernel
     modulus: float
     shear_modulus: float = 0.0
     damping_ratio: float = 0.0
@@ -142,10 +146,6 @@ class Hertz:
     def rolls(self) -> bool:
         """Whether there is rolling resistance."""
         return self.rolling_friction > 0.0
-
-    def kind(self, rolls: bool) -> type[HertzSliding | HertzRolling]:
-        """The class under which kernels take it, with rolling resistance or without."""
-        return HertzRolling if rolls else HertzSliding
 
     def with_friction(self, friction: float) -> Hertz:
         """The same law with another friction coefficient."""

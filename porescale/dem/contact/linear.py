@@ -20,38 +20,40 @@ from porescale.dem.contact.law import (
     CT,
     KN,
     RELEASES,
-    LinearRolling,
-    LinearSliding,
-    LinearSmooth,
-    kept,
-    scale_at,
+    KernelLaw,
+    history_scaling,
     stiffness,
+    stiffness_scale,
     stored_normal,
 )
 from porescale.dem.contact.restitution import contact_phase, ratio_from_restitution, refuse, restitution_of
 
 
-@stiffness.of(LinearSliding, LinearRolling, LinearSmooth)
+class LinearKernel(KernelLaw):
+    """The linear law as kernels take it."""
+
+
+@stiffness.of(LinearKernel)
 def _stiffness(overlap, radius, mass, p, law):
-    """The same at every overlap."""
+    """Elastic force k_n d; stiffnesses and dampings are the same at every overlap."""
     return p[KN] * overlap, p[CN], 1.0, 1.0, p[CT], p[CR]
 
 
-@scale_at.of(LinearSliding, LinearRolling, LinearSmooth)
-def _scale_at(overlap, radius, law):
-    """Constant."""
+@stiffness_scale.of(LinearKernel)
+def _stiffness_scale(overlap, radius, law):
+    """One at every overlap."""
     return 1.0
 
 
-@kept.of(LinearSliding, LinearRolling, LinearSmooth)
-def _kept(overlap, closing, dt, law):
-    """All of it."""
+@history_scaling.of(LinearKernel)
+def _history_scaling(overlap, closing, dt, law):
+    """Springs keep their length."""
     return 1.0
 
 
-@stored_normal.of(LinearSliding, LinearRolling, LinearSmooth)
+@stored_normal.of(LinearKernel)
 def _stored_normal(overlap, radius, p, law):
-    """Half k d²."""
+    """Half the stiffness times the overlap squared."""
     return 0.5 * p[KN] * overlap * overlap
 
 
@@ -67,6 +69,7 @@ class Linear:
     """
 
     name = "linear"
+    kernel = LinearKernel
     stiffness: float
     damping: float = 0.0
     tangential_stiffness: float = 0.0
@@ -113,10 +116,6 @@ class Linear:
     def rolls(self) -> bool:
         """Whether there is rolling resistance."""
         return self.rolling_friction > 0.0
-
-    def kind(self, rolls: bool) -> type[LinearSliding | LinearRolling]:
-        """The class under which kernels take it, with rolling resistance or without."""
-        return LinearRolling if rolls else LinearSliding
 
     def with_friction(self, friction: float) -> Linear:
         """The same law with another friction coefficient."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.bodies.bonding import beside, segments_now
+from porescale.dem.bodies.bonding import segments_now
 from porescale.dem.contact.law import MU
 from porescale.dem.forces.bonds import BondList, pressing, touched
 from porescale.dem.forces.segment_list import SegmentList
@@ -78,11 +78,8 @@ def _alone(
         np.ascontiguousarray(pair), corner_memory, np.zeros((len(pair), 0), np.int64),
         np.ascontiguousarray(near), near_memory,
     )  # fmt: skip
-    force, torque = np.zeros((len(rows), 2)), np.zeros(len(rows))
-    add_segment_forces(
-        d.position[rows], d.velocity[rows], d.spin[rows], d.radius[rows], force, torque, alone, grains.law_of(rows),
-        grains.last_dt, grains.cell,
-    )  # fmt: skip
+    found = grains.some_discs(rows)
+    add_segment_forces(found, alone, grains.contact, grains.last_dt, grains.cell)
     i, a = members[:, 0], members[:, 1]
     distance = np.hypot(*way.T)
     normal = way / distance[:, None]
@@ -92,15 +89,14 @@ def _alone(
     material = np.zeros(d.count, np.uint8) if grains.material is None else grains.material
     return listed(
         i, a, np.full(count, NOBODY), d.position[i] + arm[:, None] * normal, normal, d.position[i], branch,
-        d.radius[i] + d.radius[a] - distance if overlap is None else overlap, force[1::each],
-        torque.reshape(-1, each)[:, :2], memory[:, 0], table[material[i], material[a], MU],
+        d.radius[i] + d.radius[a] - distance if overlap is None else overlap, found.force[1::each],
+        found.torque.reshape(-1, each)[:, :2], memory[:, 0], table[material[i], material[a], MU],
     )  # fmt: skip
 
 
 def bond_contacts(grains: State, own: BondList) -> Contacts:
     """Bonds that hold, each with its back tension as a normal force below zero."""
-    known = beside(grains)[0]
-    assert known is not None
+    known = segments_now(grains)
     whole = own.whole != 0
     return _taken_off(grains, known, own.ends[whole], own.back[whole])
 
@@ -110,7 +106,9 @@ def _taken_off(grains: State, known: Segments, ends: Index, back: Array | None) 
     d, count = grains.discs, len(ends)
     if back is None:
         back = np.zeros(count)
-        pressing(d.position, d.radius, ends, known, grains.contact, grains.cell, back)
+        pressing(
+            d.position, d.radius, grains.body_mass, grains.material, ends, known, grains.contact, grains.cell, back
+        )
         back = -back
     way, far, other = np.zeros((count, 2)), np.zeros((count, 2)), np.zeros(count, np.int64)
     touched(d.position, ends, known, grains.cell, way, far, other)
