@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import pytest
 
-from porescale.ground import jit
-from porescale.ground.jit import Kernel, by_law, by_precision, inline, kernel, sum_by_halves
-from porescale.ground.kernel_key import Unknown, key_of
+from porescale.common.compiled import jit
+from porescale.common.compiled.jit import Kernel, by_law, by_precision, inline, kernel, sum_by_halves
+from porescale.common.compiled.kernel_key import Unknown, key_of
 
 ROOT = Path(jit.__file__).resolve().parents[2]
 
@@ -23,7 +23,7 @@ PACKAGE = {
     "laws.py": '''
 """What a law is."""
 from typing import NamedTuple
-from porescale.ground.jit import by_law
+from porescale.common.compiled.jit import by_law
 class Soft(NamedTuple):
     stiffness: float
 class Hard(NamedTuple):
@@ -48,7 +48,7 @@ def hard_force(overlap, law):
     return law.stiffness * overlap**POWER
 ''',
     "helpers.py": '''
-from porescale.ground.jit import inline
+from porescale.common.compiled.jit import inline
 SHIFT = 0.0
 @inline
 def half(x):
@@ -56,7 +56,7 @@ def half(x):
     return 0.5 * x
 ''',
     "sweep.py": '''
-from porescale.ground.jit import kernel
+from porescale.common.compiled.jit import kernel
 from toy.helpers import half
 from toy.laws import force
 @kernel
@@ -178,7 +178,7 @@ def test_a_law_with_another_field_is_compiled_anew(toy):
 
 def test_a_users_own_kernel_outside_the_packages_is_compiled_anew_when_it_is_edited(toy):
     mine = toy.folder / "mine.py"
-    text = "from porescale.ground.jit import kernel\nfrom toy.helpers import half\n"
+    text = "from porescale.common.compiled.jit import kernel\nfrom toy.helpers import half\n"
     text += "@kernel\ndef quarter(x):\n    return half(half(x))\n"
     ask = "import json, sys; sys.path.insert(0, sys.argv[1]); from mine import quarter; "
     ask += "value = quarter(8.0); print(json.dumps({'it': [value, sum(quarter.stats.cache_hits.values())]}))"
