@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 
 import av
@@ -16,6 +15,7 @@ from porescale.runs.film import encoder, film, write_film
 from porescale.runs.look import GRAIN, WALL, Look, length_unit, rgb, scale, survey, time_text
 from porescale.runs.model import Cloud, Grid, Snapshot
 from porescale.runs.picture import Painter, paint, pictures
+from tests.reference.waiting import done
 
 NY, NX, DX = 30, 50, 1e-3
 
@@ -224,5 +224,4 @@ def test_a_run_without_snapshots_is_told_so(tmp_path):
 
 def test_painting_needs_no_display():
     words = "from porescale.runs.picture import Painter; import sys; print('matplotlib.pyplot' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", words], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "False"
+    assert done([sys.executable, "-c", words]).stdout.strip() == "False"
