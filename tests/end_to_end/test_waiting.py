@@ -53,7 +53,8 @@ def test_a_child_has_the_time_that_it_is_given(tmp_path):
 def test_what_a_child_has_started_is_gone_with_it(tmp_path, hangs):
     here = tmp_path / "here"
     words = FORKS + "print(child.pid, flush=True)\n" + (HANGS if hangs else "")
-    with running([sys.executable, "-c", words, here], stdout=subprocess.PIPE) as process:
+    command = [sys.executable, "-c", words, here]
+    with running(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         number = int(process.stdout.readline())
         if hangs:
             assert until(process, here.exists)
@@ -70,7 +71,8 @@ def test_what_a_child_has_started_is_gone_with_it(tmp_path, hangs):
 def test_what_never_happens_ends_the_wait_when_the_process_does(tmp_path):
     with running([sys.executable, "-c", ""], stderr=subprocess.PIPE) as process:
         assert not until(process, lambda: False)
-    with running([sys.executable, "-c", HANGS, tmp_path / "here"]) as process, pytest.raises(Hung):
+    command = [sys.executable, "-c", HANGS, tmp_path / "here"]
+    with running(command, stderr=subprocess.PIPE) as process, pytest.raises(Hung):
         until(process, lambda: False, 0.2)
     with pytest.raises(Hung, match="in vain"):
         awaited(lambda: False, 0.0)
