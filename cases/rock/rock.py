@@ -12,12 +12,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from porescale.dem import experiments_rock as lab
-from porescale.dem.network import stiffness, voigt
-from porescale.dem.rock import Curve, Kind, Rock, load
-from porescale.runs.film import write_film
-from porescale.scene.case import conclude, options, stage
-from porescale.scene.case_bodies import Shot, by_piece, draw_bodies, draw_cracks, frame, keep, pixels, shot
+from porescale.common.pictures.film import write_film
+from porescale.dem.measures.network import stiffness, voigt
+from porescale.dem.prepare.rock import Curve, Kind, Rock, load
+from porescale.output.case import conclude, options, stage
+from porescale.output.case_bodies import Shot, by_piece, draw_bodies, draw_cracks, frame, keep, pixels, shot
+from porescale.validation.dem import rock_trials as lab
 
 Array = NDArray[np.float64]
 
@@ -127,7 +127,7 @@ def contacts(packings: int, count: int) -> Array:
             made = lab.sample("discs", seed, count, friction)
             bonds, group = made.grains.bonds, made.grains.steering.clumps.group
             assert bonds is not None
-            both = group[bonds.partners(made.grains)] < 0
+            both = group[bonds.partners(made.grains.segments)] < 0
             found.append((2.0 * both.all(axis=1).sum() / count, stiffness(made), voigt(made)))
         rows.append(np.mean(found, axis=0) / (1.0, lab.STIFFNESS, lab.STIFFNESS))
     return np.array(rows)

@@ -1,76 +1,53 @@
-"""Clumps, controlled bodies, driven walls and a strained cell: what a system of grains has beside free discs."""
+"""Clumps, controlled bodies, moving walls and the strain of the cell of a system: set up and read."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from porescale.dem import servo as servos
-from porescale.dem import strain as cells
-from porescale.dem.cell import LOAD, Still, Straining
-from porescale.dem.clump_step import lightest
-from porescale.dem.clumps import Body, Clumps
+from porescale.common.core.errors import Fault, InputError
+from porescale.dem.bodies.clumps import Body, Clumps
+from porescale.dem.bodies.rigid import masses
 from porescale.dem.contact.materials import Law
-from porescale.dem.control import KINDS, PUSH, WORK, Control, schedule_of
-from porescale.dem.motion import FIRST_CONTROL, Arrays
-from porescale.dem.rigid import masses
-from porescale.dem.schedule import Schedule, schedule_rows
-from porescale.dem.walls import TURN
-from porescale.ground.check import Fault, InputError
-
-if TYPE_CHECKING:
-    from porescale.dem.system import Grains
+from porescale.dem.forces.walls import TURN
+from porescale.dem.listing import refresh
+from porescale.dem.motion import affine_strain as cells
+from porescale.dem.motion import servo as servos
+from porescale.dem.motion.control import KINDS, PUSH, Control
+from porescale.dem.motion.drivers import Clump, Drivers, Row
+from porescale.dem.motion.time_function import Schedule
+from porescale.dem.state import State
+from porescale.dem.timestep import lightest
 
 Array = NDArray[np.float64]
 
-AXES = ("x", "y", "rotation")
 COMPONENTS = ("xx", "yy", "xy")
 SHARE = 0.5
 """Of the stability bound of a servo that is 2: monotone, see servo.py."""
 
 
-class Clump(NamedTuple):
-    """A clump by its number, where a body is named; a plain number names a disc."""
+def hold(grains: State, disc: int | slice | Array, x: bool = True, y: bool = True, rotation: bool = True) -> None:
+    """Hold these components of the velocity of discs (index, slice or mask) from now on, and let the others go.
 
-    number: int
-
-
-class Row(NamedTuple):
-    """One line of the force-displacement record: of a body, since it was watched."""
-
-    time: float  # s
-    body: int | Clump
-    displacement: tuple[float, float, float]  # m, m, rad
-    contact: tuple[float, float, float]  # N/m, N/m, N m/m, of contacts on the body, mean over the last call of step
-    supply: tuple[float, float, float]  # what its controls gave, likewise; 0 where there is none
-
-
-class Steering:
-    """Everything of ``grains`` that moves as told.  Made by Grains on first use, see ``Grains.steering``.
-
-    clumps : of the system, none at first;  cell (STATE,) or None: of a strained cell, see cell.py.
+    A held component keeps its value until the owner writes another between steps, whatever the forces; they are in
+    ``withheld``.  Contacts with other discs go on.
     """
+    if grains.drivers is not None and np.any(grains.drivers.clumps.group[disc] >= 0):
+        raise InputError(Fault("disc", str(disc), "belongs to a clump", repair="control the clump"))
+    if not len(grains.held):
+        grains.held, grains.withheld = np.zeros((grains.discs.count, 3), np.uint8), np.zeros((grains.discs.count, 3))
+    grains.held[disc] = x, y, rotation
+    grains.withheld[disc] = 0.0
 
-    def __init__(self, grains: Grains) -> None:
+
+class Steering(Drivers):
+    """Drivers of ``grains`` that can be changed.  Made by Grains on first use, see ``Grains.steering``."""
+
+    def __init__(self, grains: State) -> None:
         self._grains = grains
-        self.clumps = Clumps(grains.discs, [], 1.0)
-        self._controls: list[tuple[int, int, int, Control]] = []
-        self._given = np.zeros((0, 2))
-        self._watched: list[int | Clump] = []
-        self._watched_load, self._watched_from = np.zeros((0, 3)), np.zeros((0, 3))
-        self._drives: list[tuple[int, int, int, int, Schedule]] = []
-        self._servo = np.zeros((0, 6))
-        self._clock = np.zeros(2)
-        self._rates: list[Schedule] = [0.0, 0.0, 0.0]
-        self._plan = np.zeros((3, 5))
-        self.cell: Array | None = None
-        self.load = np.zeros(LOAD)
-        self._compile()
-
-    # -- clumps
+        super().__init__(grains.discs, grains.box.period)
 
     def bind(self, members: Sequence[ArrayLike], density: ArrayLike, bodies: Sequence[Body | None] = ()) -> Clumps:
         """Make clumps of discs, in place of those there were; see Clumps.  Controls and watches of clumps are dropped.
@@ -92,10 +69,8 @@ class Steering:
         self.watch(*self._watched)
         grains.contact = grains.contact._replace(mass=masses(grains))
         grains.pairs.group = clumps.group if clumps.count else None
-        grains.refresh(anew=True)
+        refresh(grains, anew=True)
         return clumps
-
-    # -- control of bodies
 
     def control(
         self,
@@ -119,20 +94,7 @@ class Steering:
             self.clumps.held[index] = held
             self.clumps.withheld[index] = 0.0
         else:
-            self._grains.hold(index, *held)
-        self._compile()
-
-    def work(self) -> tuple[float, float]:
-        """Work of controls so far, J/m: (by displacement, by force); that of a control that was replaced is dropped."""
-        pushes = np.array([KINDS[type(row[3])] == PUSH for row in self._controls], bool)
-        return float(self._given[~pushes, WORK].sum()), float(self._given[pushes, WORK].sum())
-
-    def watch(self, *bodies: int | Clump) -> None:
-        """Keep the record of these bodies and no others; displacements count from now."""
-        located = [self._locate(body) for body in bodies]
-        self._watched = list(bodies)
-        self._watched_load = np.zeros((len(bodies), 3))
-        self._watched_from = np.array([self._place(*each) for each in located]).reshape(-1, 3)
+            hold(self._grains, index, *held)
         self._compile()
 
     def record(self) -> list[Row]:
@@ -148,22 +110,6 @@ class Steering:
             gone = self._place(*where) - self._watched_from[k]
             rows.append(Row(self._grains.time, body, *(tuple(part.tolist()) for part in (gone, met, supply))))
         return rows
-
-    def _locate(self, body: int | Clump) -> tuple[int, int]:
-        clump, index = (1, body.number) if isinstance(body, Clump) else (0, int(body))
-        count, name = (self.clumps.count, "clump") if clump else (self._grains.discs.count, "disc")
-        if not 0 <= index < count:
-            raise InputError(Fault(name, index, f"no such {name}", allowed=f"0 to {count - 1}"))
-        if not clump and self.clumps.group[index] >= 0:
-            owner = int(self.clumps.group[index])
-            raise InputError(Fault("disc", index, f"belongs to clump {owner}", repair="name the clump"))
-        return clump, index
-
-    def _place(self, clump: int, index: int) -> Array:
-        body: Any = self.clumps if clump else self._grains.discs
-        return np.array([*body.position[index], body.angle[index]])
-
-    # -- walls
 
     def move_wall(self, name: str, x: Schedule = 0.0, y: Schedule = 0.0, turn: Schedule = 0.0) -> None:
         """Give a wall the velocity (x, y) m/s and turn it about its point (rad/s), from now on."""
@@ -196,7 +142,8 @@ class Steering:
         low, high = (self._wall(between[0]), self._wall(between[1])) if between else (-1, -1)
         mode, wanted = (servos.BY_FORCE, force) if stress is None else (servos.BY_STRESS, stress)
         assert wanted is not None
-        self._drive(name, [(mode, wanted)], low, high, [*self._grains.hardest(), share, speed, length or 0.0, 0.0])
+        numbers = [*self._grains.stiffest_contact(), share, speed, length or 0.0, 0.0]
+        self._drive(name, [(mode, wanted)], low, high, numbers)
 
     def _wall(self, name: str) -> int:
         names = self._grains.wall_names
@@ -219,8 +166,6 @@ class Steering:
         self._drives += [(wall, mode, low, high, schedule) for mode, schedule in told]
         self._servo = np.concatenate((self._servo, np.array([numbers] * len(told), float)))
         self._compile()
-
-    # -- cell
 
     def strain_cell(
         self,
@@ -253,12 +198,13 @@ class Steering:
             if rate is not None and stress is not None:
                 raise InputError(Fault(f"cell.{COMPONENTS[k]}", problem="has both a rate and a stress"))
             self._rates[k] = stress if stress is not None else rate if rate is not None else 0.0
-            self._plan[k] = stress is not None, share, limit, *(self._leverage() * value for value in grains.hardest())
+            stiff, damping = (self._leverage() * value for value in grains.stiffest_contact())
+            self._plan[k] = stress is not None, share, limit, stiff, damping
         if self.cell is None:
             self.cell = np.zeros(cells.STATE)
             self.cell[cells.WIDTH : cells.TILT] = grains.box.period
         self._compile()
-        grains.refresh(anew=True)
+        refresh(grains, anew=True)
 
     def _leverage(self) -> float:
         """Square of how much further than discs that touch their bodies' centroids may be apart: a contact resists a
@@ -268,28 +214,6 @@ class Steering:
         far = np.hypot(*c.offset[round_ones].T) / c.radius[round_ones]
         return (1.0 + float(far.max(initial=0.0))) ** 2
 
-    def edges(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Edges of the cell now, m: (width, 0) and (tilt, height)."""
-        if self.cell is None:
-            width, height = self._grains.box.period
-            return (width, 0.0), (0.0, height)
-        c = self.cell
-        return (float(c[cells.WIDTH]), 0.0), (float(c[cells.TILT]), float(c[cells.HEIGHT]))
-
-    def shape(self) -> Still | Straining:
-        """The cell at this moment, see ``Grains.cell``."""
-        if self.cell is None:
-            return Still(*self._grains.box.period)
-        width, height, tilt, gxx, gxy, gyy = (float(value) for value in self.cell[: cells.GYY + 1])
-        return Straining(width, height, tilt, gxx, gxy, gyy, np.zeros(LOAD))
-
-    def gradient(self) -> Array:
-        """Velocity gradient of the cell, (2, 2) 1/s."""
-        if self.cell is None:
-            return np.zeros((2, 2))
-        c = self.cell
-        return np.array([[c[cells.GXX], c[cells.GXY]], [0.0, c[cells.GYY]]])
-
     def cell_pressure(self) -> Array:
         """Pressure tensor (xx, xy, yy) of the strained cell in its last step, Pa, compression positive."""
         assert self.cell is not None
@@ -297,77 +221,6 @@ class Steering:
         area = float(self.cell[cells.WIDTH] * self.cell[cells.HEIGHT])
         return np.array(cells.pressure(d.velocity, d.mass, self.load, area))
 
-    # -- for the system
-
-    def _compile(self) -> None:
-        """The arrays that kernels read."""
-        kinds = [KINDS[type(row[3])] for row in self._controls]
-        control = [(*row[:3], kind) for row, kind in zip(self._controls, kinds, strict=True)]
-        told = [*self._rates, *(schedule_of(row[3]) for row in self._controls), *(row[4] for row in self._drives)]
-        assert len(self._rates) == FIRST_CONTROL
-        schedules, points = schedule_rows(told)
-        c = self.clumps
-        watched = [self._locate(body) for body in self._watched]
-        self.arrays = Arrays(
-            self._clock, schedules, points, c.start, c.member, c.offset, c.arm, c.turn, c.position, c.angle,
-            c.velocity, c.spin, c.mass, c.inertia, c.force, c.torque, c.held, c.withheld,
-            np.array(control, np.int64).reshape(-1, 4), self._given, np.array(watched, np.int64).reshape(-1, 2),
-            self._watched_load, np.array([row[:4] for row in self._drives], np.int64).reshape(-1, 4), self._servo,
-        )  # fmt: skip
-
-    def now(self) -> Still | cells.Deforming:
-        """The cell as kernels take it."""
-        if self.cell is None:
-            return Still(*self._grains.box.period)
-        a = self.arrays
-        return cells.Deforming(self.cell, self.load, self._plan, a.schedules, a.points, self._clock)
-
     def lightest(self, laws: Sequence[Law]) -> float:
-        """Mass (kg/m) of a disc that allows no longer step than the clumps, see clump_step.py."""
+        """Mass (kg/m) of a disc with the same stable step as the clumps, see timestep.lightest."""
         return lightest(self.clumps, self._grains.discs, laws)
-
-    def start(self, seconds: float, steps: int) -> None:
-        """Set the clock for a call: seconds before the step last changed, and steps since."""
-        self._clock[0], self._clock[1] = seconds, steps
-
-    def listed(self) -> None:
-        """The pairs were listed: strain counts from now.  Called before, so that the list is that of the cell now."""
-        if self.cell is None:
-            return
-        pairs, c = self._grains.pairs, self.cell
-        pairs.set_cell(float(c[cells.WIDTH]), float(c[cells.HEIGHT]), float(c[cells.TILT]))
-        c[cells.WIDTH_THEN : cells.TILT_THEN + 1] = c[cells.WIDTH : cells.TILT + 1]
-        reach = self._grains.reach
-        c[cells.REACH] = float((self._grains.discs.radius if reach is None else reach).max(initial=0.0))
-        c[cells.SKIN] = pairs.skin
-
-    def state(self) -> dict[str, Any]:
-        """What changes as it moves, in flat names; what was told is the scene's."""
-        parts = {f"clumps.{name}": part for name, part in self.clumps.state().items()}
-        return {
-            **parts,
-            "given": self._given.copy(),
-            "watched_load": self._watched_load.copy(),
-            "watched_from": self._watched_from.copy(),
-            "walls": self._grains.walls.copy(),
-            "servo": self._servo.copy(),
-            "load": self.load.copy(),
-            **({} if self.cell is None else {"cell": self.cell.copy()}),
-        }
-
-    def restore(self, state: dict[str, Any]) -> None:
-        """Go on exactly from ``state()`` of one told alike; raises InputError where it was told otherwise."""
-        self.clumps.restore({name[7:]: part for name, part in state.items() if name.startswith("clumps.")})
-        own = {"given": self._given, "watched_load": self._watched_load, "watched_from": self._watched_from,
-               "walls": self._grains.walls, "servo": self._servo, "load": self.load}  # fmt: skip
-        if (self.cell is None) != ("cell" not in state):
-            raise InputError(Fault("state.steering.cell", "cell" in state, "strained in one, not in the other"))
-        if self.cell is not None:
-            own["cell"] = self.cell
-        for name, array in own.items():
-            if array.shape != np.asarray(state[name]).shape:
-                raise InputError(Fault(f"state.steering.{name}", np.asarray(state[name]).shape, "wrong shape"))
-            array[...] = state[name]
-        if self.cell is not None:
-            c = self.cell
-            self._grains.pairs.set_cell(*(float(c[k]) for k in range(cells.WIDTH_THEN, cells.TILT_THEN + 1)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.coupling.saturated import Saturated
+from porescale.coupling.psm import Saturated
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX
 from tests.reference.memory import peak

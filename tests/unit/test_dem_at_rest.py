@@ -7,14 +7,14 @@ import copy
 import numpy as np
 import pytest
 
-from porescale.coupling import experiments as lab
-from porescale.dem import system
-from porescale.dem.at_rest import bear, clear, resting, unchanged
-from porescale.dem.cell import Still
+from porescale.dem import grains as system
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.system import Grains
-from porescale.dem.walls import PY, Box, Plate
+from porescale.dem.forces.walls import PY, Box, Plate
+from porescale.dem.grains import Grains
+from porescale.dem.motion.periodic_cell import Still
+from porescale.dem.resting.static import bear, clear, resting, unchanged
+from porescale.validation.coupling import grains_trials as lab
 
 LAW = Linear(1e4, 1.0, 2.5e3, 0.5, 0.5)
 DT = 1e-4
@@ -204,13 +204,13 @@ def test_what_owners_write_in_place_is_felt_at_once(change, disc, push):
 
 def test_what_stands_is_copied_to_one_place():
     grains = run(row())
-    first = grains.standing
+    first = grains.static
     grains.walls[:, PY] -= 0.1
     shifted(grains)
     run(grains)
-    assert grains.standing.position is first.position
-    assert grains.standing.radius is first.radius
-    assert grains.standing.walls is first.walls
+    assert grains.static.position is first.position
+    assert grains.static.radius is first.radius
+    assert grains.static.walls is first.walls
     np.testing.assert_array_equal(first.position, grains.discs.position)
     np.testing.assert_array_equal(first.walls, grains.walls)
     assert not np.shares_memory(first.walls, grains.walls)
@@ -221,7 +221,7 @@ def test_with_a_book_a_plate_or_nothing_held_each_step_is_done(monkeypatch, more
     done = counted(monkeypatch)
     grains = run(row(**more))
     assert done == [18]
-    assert grains.standing is None
+    assert grains.static is None
 
 
 def test_held_discs_that_touch_bear_their_contacts_step_by_step(monkeypatch):

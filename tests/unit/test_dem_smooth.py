@@ -8,10 +8,10 @@ import pytest
 from porescale.dem.contact.law import LinearSliding, LinearSmooth
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.rectangle import Rectangle
-from porescale.dem.smooth import law_of_steps, turning
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box, Plate
+from porescale.dem.forces.rectangle import Rectangle
+from porescale.dem.forces.walls import Box, Plate
+from porescale.dem.grains import Grains
+from porescale.dem.resting.frictionless import law_of_steps, turning
 
 SMOOTH, ROUGH = Linear(1e5, 2.0), Linear(1e5, 2.0, 2.5e4, 1.0, 0.5)
 
@@ -55,11 +55,11 @@ def test_discs_without_friction_go_the_same_way_under_either_law_and_turn_only_w
         grains, twin = row_of_discs(SMOOTH), row_of_discs(SMOOTH)
         for each in (grains, twin):
             each.discs.spin[:] = spin
-        twin._free_law = twin.contact  # the law that knows friction, of which there is none
+        twin.free_law = twin.contact  # the law that knows friction, of which there is none
         assert turning(grains, law_of_steps(grains)) == (spin > 0.0)
         for each in (grains, twin):
             each.step(1e-5, count=200)
-        assert type(grains._free_law) is LinearSmooth
+        assert type(grains.free_law) is LinearSmooth
         assert np.array_equal(grains.discs.position, twin.discs.position)
         assert np.array_equal(grains.discs.velocity, twin.discs.velocity)
         assert np.array_equal(grains.discs.angle, twin.discs.angle)
