@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 import shutil
-import subprocess
 import sys
 import time
 from pathlib import Path
 
 from porescale.common.compiled import jit
 from porescale.common.compiled.cache import DAY, cache_root, hash_of, keep_only_used
+from tests.reference.waiting import done
 
 
 def test_the_cache_lies_where_the_desktop_standard_says_and_an_empty_variable_counts_as_unset(monkeypatch, tmp_path):
@@ -85,11 +85,8 @@ def test_kernels_are_kept_below_the_cache_unless_a_folder_is_named(tmp_path):
     environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
     for named in ("", str(tmp_path / "named")):
         assert old.exists() or not named
-        words = [sys.executable, "-c", ask]
-        done = subprocess.run(
-            words, env=environment | {"NUMBA_CACHE_DIR": named}, capture_output=True, text=True, check=True, cwd=root
-        )
-        folder = Path(done.stdout.strip())
+        it = done([sys.executable, "-c", ask], env=environment | {"NUMBA_CACHE_DIR": named}, cwd=root)
+        folder = Path(it.stdout.strip())
         if named:
             assert folder == Path(named)
         else:
@@ -107,9 +104,7 @@ def test_kernels_work_where_no_cache_can_be_written(tmp_path):
     root = Path(jit.__file__).resolve().parents[2]
     for place, cache in (("file", "NullCache"), ("folder", "KernelCache")):  # the second is the twin
         environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / place), "NUMBA_CACHE_DIR": ""}
-        words = [sys.executable, "-c", ask]
-        done = subprocess.run(words, env=environment, capture_output=True, text=True, check=True, cwd=root)
-        value, kind = done.stdout.split()
+        value, kind = done([sys.executable, "-c", ask], env=environment, cwd=root).stdout.split()
         assert abs(float(value) + 0.1) < 1e-15  # one rounding of 0.9 - 1
         assert kind == cache
     assert (tmp_path / "file").read_text() == "in the way"
