@@ -150,7 +150,7 @@ class _Content:
             raise Unknown(f"the class {kind.__qualname__}")
 
     def by_name(self, value: Any) -> None:
-        """A function of a library, of jit.py or lanes.py; or a dispatcher of numba's own."""
+        """A function of a library, of jit.py or simd.py; or a dispatcher of numba's own."""
         if hasattr(value, "targetoptions") and _root(value) not in LIBRARIES:
             self.follow(value.py_func, value.targetoptions)
         elif isinstance(value, FunctionType) and value.__module__ in OVERLOADED:
