@@ -16,7 +16,7 @@ from porescale.common.compiled import jit
 from porescale.common.compiled.jit import Kernel, by_law, by_precision, inline, kernel, sum_by_halves
 from porescale.common.compiled.kernel_key import Unknown, key_of
 
-ROOT = Path(jit.__file__).resolve().parents[2]
+ROOT = Path(jit.__file__).resolve().parents[3]
 
 PACKAGE = {
     "__init__.py": "",
