@@ -16,8 +16,7 @@ from porescale.output.case import expected, missed
 from porescale.piv.fields.field import Field
 from porescale.piv.images.synth import Camera
 from porescale.scene.sections import Scene
-
-CASES = Path(__file__).resolve().parents[2] / "cases"
+from tests.reference.folders import CASES
 
 
 def script(case, name=None):

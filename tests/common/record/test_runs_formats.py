@@ -25,10 +25,9 @@ from porescale.common.record.open_run import open_run
 from porescale.common.record.read_card import read_card
 from porescale.common.schema.sections import Section, load, scene_as_dict, validate
 from porescale.scene.sections import Scene
+from tests.reference.folders import SAMPLES
 from tests.reference.spoiled import renumbered
 from tests.reference.toy_model import run_toy
-
-SAMPLES = Path(__file__).resolve().parents[1] / "samples"
 
 
 @dataclass(frozen=True)

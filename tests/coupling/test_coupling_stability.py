@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,8 +21,9 @@ from porescale.coupling.weighting import WEIGHTINGS
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.validation.coupling.grains_trials import immersed
+from tests.reference.folders import ROOT
 
-MAP = Path(__file__).resolve().parents[2] / "docs" / "stability" / "stability.json"
+MAP = ROOT / "docs" / "stability" / "stability.json"
 CALM = Circumstances("trt", False, 0.8, 0.01, 0.01, "odd-SC1", "B2", 2.5, 16.0)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -15,9 +14,9 @@ from porescale.build.report import report
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
 from porescale.scene.sections import Scene
+from tests.reference.folders import ROOT
 from tests.reference.scenes import column, dry, grain, table, water
 
-ROOT = Path(__file__).resolve().parents[2]
 TABLE1 = {"spacing": 1e-5, "relaxation_time": 0.8, "viscosity": 1e-4, "step": 1e-6}
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,9 +12,9 @@ from porescale.build.report import report
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
 from porescale.scene.sections import Scene
+from tests.reference.folders import ROOT
 from tests.reference.scenes import column, dry, table
 
-ROOT = Path(__file__).resolve().parents[2]
 TABLE1 = {"spacing": 1e-5, "relaxation_time": 0.8, "viscosity": 1e-4, "step": 1e-6}
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,9 +12,10 @@ from porescale.build.derive import derive
 from porescale.common.evidence.stability import RIGHT, Row
 from porescale.coupling import limits
 from porescale.scene.sections import Scene
+from tests.reference.folders import ROOT
 from tests.reference.scenes import column, grain, table, water
 
-MAP = Path(__file__).resolve().parents[2] / "docs" / "stability" / "stability.json"
+MAP = ROOT / "docs" / "stability" / "stability.json"
 SIDES = {"domain__left": {"kind": "velocity", "velocity": [0.1, 0.0]}, "domain__right": "pressure"}
 H = 0.0002
 

@@ -10,8 +10,7 @@ import pytest
 from porescale.common.core.errors import InputError
 from porescale.common.studies.front import read_front
 from porescale.common.studies.levels import APART, apart, compared, picked
-
-CASES = Path(__file__).parents[2] / "cases"
+from tests.reference.folders import CASES
 
 
 def front_of(folder: Path, **more):

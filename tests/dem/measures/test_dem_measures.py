@@ -18,7 +18,7 @@ from porescale.dem.measures.motion import motion
 from porescale.dem.measures.porosity import disc_areas, porosity, void_ratio
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import kinetic_stress, principal
-from tests.unit.test_dem_contacts import crowd
+from tests.dem.measures.test_dem_contacts import crowd
 
 RNG = np.random.default_rng(0)
 

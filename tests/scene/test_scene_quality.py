@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from porescale.build.build import load_scene
@@ -12,9 +10,9 @@ from porescale.build.report import report
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import LEVELS, scene_as_dict, validate
 from porescale.scene.sections import Scene
+from tests.reference.folders import CASES
 from tests.reference.scenes import COLUMN, column, table, write
 
-CASES = Path(__file__).resolve().parents[2] / "cases"
 SOUND = ["column_collapse", "settling_disc"]
 
 

@@ -6,7 +6,6 @@ import re
 import sys
 import tomllib
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, get_args
 
 import numpy as np
@@ -19,11 +18,11 @@ from porescale.common.core.errors import InputError
 from porescale.common.record.model import Model, Snapshot
 from porescale.common.schema.sections import LEVELS, Section, load, scene_as_dict
 from porescale.scene.sections import Scene
+from tests.reference.folders import ROOT
 from tests.reference.scenes import column, dry, table, write
 from tests.reference.waiting import done
 
 pytestmark = pytest.mark.usefixtures("one_thread")
-ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_the_api_does_what_the_package_says(tmp_path):
