@@ -24,7 +24,8 @@ def __getattr__(name: str) -> Any:
 
         return build
     if name == "Scene":
-        from porescale.scene.sections import Scene
+        import porescale.build.checks.register  # noqa: F401
+        from porescale.scene.scene import Scene
 
         return Scene
     if name == "Simulation":

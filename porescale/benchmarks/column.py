@@ -10,7 +10,7 @@ from porescale.build.build import build
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.evidence.benchmarks import PLAIN, Benchmarks, Dtype, Work
 from porescale.common.schema.sections import validate
-from porescale.scene.sections import Scene
+from porescale.scene.scene import Scene
 
 BENCHMARKS = Benchmarks()
 

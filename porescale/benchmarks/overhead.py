@@ -15,7 +15,7 @@ from porescale.build.report import PARTS
 from porescale.build.simulation import Simulation
 from porescale.common.evidence.overhead import SMALLEST, Built, Kind, Kinds
 from porescale.common.schema.sections import validate
-from porescale.scene.sections import Scene
+from porescale.scene.scene import Scene
 
 CELLS = 256
 GRAINS = (0.09, 0.045)

@@ -18,7 +18,7 @@ from porescale.benchmarks.overhead import Table, built, nothing_moves, parts_of,
 from porescale.build.build import build
 from porescale.build.simulation import Simulation
 from porescale.common.evidence.overhead import SMALLEST, Built, Kind, Kinds
-from porescale.scene.sections import Scene
+from porescale.scene.scene import Scene
 
 PILE = (0.03, 0.02)
 """Width and height, m: some 300 grains, 10 cells each."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from porescale.common.cli.report import Report
-    from porescale.scene.sections import Scene
+    from porescale.scene.scene import Scene
 
 
 def report(scene: Scene) -> Report:

@@ -168,7 +168,7 @@ def _refuse_what_scenes_refuse(text: str) -> None:
     from tempfile import TemporaryDirectory
 
     from porescale.common.schema.sections import load
-    from porescale.scene.sections import Scene
+    from porescale.scene.scene import Scene
 
     with TemporaryDirectory() as place:
         file = Path(place) / "scene.toml"

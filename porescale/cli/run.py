@@ -9,12 +9,12 @@ if TYPE_CHECKING:
     from porescale.build.simulation import Simulation
     from porescale.common.record.drive import Outcome
     from porescale.common.record.model import Array
-    from porescale.scene.sections import Scene
+    from porescale.scene.scene import Scene
 
 
 def scene_type() -> type[Scene]:
     """The type of a porescale scene."""
-    from porescale.scene.sections import Scene
+    from porescale.scene.scene import Scene
 
     return Scene
 

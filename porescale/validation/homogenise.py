@@ -14,7 +14,7 @@ from porescale.build.build import build
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.record.model import Array
 from porescale.common.schema.sections import validate
-from porescale.scene.sections import Scene
+from porescale.scene.scene import Scene
 
 VALIDATIONS = Validations()
 

@@ -10,7 +10,7 @@ import pytest
 
 from porescale.analysis.permeability import gebart, kozeny_carman, measure
 from porescale.build.build import build
-from porescale.build.observe import vorticity
+from porescale.build.parts.flow_fields import vorticity
 from porescale.common.core.errors import InputError
 from porescale.common.record.drive import drive
 from porescale.common.record.open_run import open_run

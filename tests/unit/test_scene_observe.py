@@ -10,8 +10,8 @@ import pytest
 
 from porescale.build import cost, observe
 from porescale.build.build import build
+from porescale.build.checks.regime import terminal_speed
 from porescale.build.derive import derive
-from porescale.build.regime import terminal_speed
 from porescale.lbm.scales import Scales
 from tests.reference.scenes import column, dry, grain, water
 
