@@ -8,7 +8,6 @@ import pydantic
 
 from porescale.common.core.errors import Fault
 from porescale.common.schema.sections import Refused, Section, quantity
-from porescale.scene.ranges import LENGTH
 from porescale.scene.time_function import Course, with_courses
 
 
@@ -22,8 +21,8 @@ class Rock(Section):
     kind: Literal["discs", "triangles", "cells"] = pydantic.Field(
         "discs", description="the packing's discs, Delaunay triangles or Voronoi cells of their centres"
     )
-    gap: float | None = quantity("m", None, **LENGTH, help="distance of neighbouring polygons' lines")
-    pressed: float | None = quantity("m", None, **LENGTH, help="overlap of their sides, from which they are bonded")
+    gap: float | None = quantity("m", None, gt=0, le=1e3, help="distance of neighbouring polygons' lines")
+    pressed: float | None = quantity("m", None, gt=0, le=1e3, help="overlap of their sides, from which they are bonded")
     plates: Literal["x", "y", "none"] = pydantic.Field("x", description="along which axis the plates press and pull")
     strain: Course | None = pydantic.Field(None, description="of the sample over time, > 0 pulled; left out, it stands")
 
