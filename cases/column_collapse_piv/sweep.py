@@ -23,8 +23,8 @@ from variants import VARIANTS, Variant
 
 from porescale import Scene
 from porescale.cli.run import build
+from porescale.common.core.atomic import save, write_text
 from porescale.common.core.errors import InputError
-from porescale.common.record.atomic import save, write_text
 from porescale.common.record.drive import drive
 from porescale.common.record.open_run import open_run
 from porescale.common.schema.sections import open_scene, scene_as_dict

@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
+from porescale.common.core.atomic import write_text
 from porescale.common.core.errors import Fault, InputError, Unstable
-from porescale.common.record.atomic import write_text
 from porescale.common.record.model import Cloud, Snapshot
 from porescale.common.record.series import NAME as SERIES
 from porescale.common.record.series import read_series

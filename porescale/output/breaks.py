@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from porescale.common.record.atomic import write_bytes
+from porescale.common.core.atomic import write_bytes
 from porescale.common.record.open_run import Run
 from porescale.output.frame_clouds import BONDS
 from porescale.scene.bodies.bonds import KINDS

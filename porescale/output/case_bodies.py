@@ -13,7 +13,7 @@ from matplotlib.collections import EllipseCollection, LineCollection, PolyCollec
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from porescale.common.record.atomic import save
+from porescale.common.core.atomic import save
 from porescale.dem.forces.bonds import beside, pieces, touched
 from porescale.dem.grains import Grains
 
