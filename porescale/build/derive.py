@@ -26,7 +26,7 @@ from porescale.build.initial.rock import rock_frames
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.materials import Law
 from porescale.dem.discs import make_discs
-from porescale.dem.step import packing_limit, stable_step
+from porescale.dem.timestep import packing_limit, stable_step
 from porescale.lbm.scales import NAMES, Scales, implied
 from porescale.scene.contact import Contact
 from porescale.scene.fluid import Fluid

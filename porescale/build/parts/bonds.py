@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from porescale.build.initial.frames import Placed, disc_count
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.record.model import Cloud
+from porescale.dem.bodies.bonding import beside, bond
 from porescale.dem.bodies.rigid import as_bodies
-from porescale.dem.forces.bonds import BondList, beside, bond, touched
+from porescale.dem.forces.bonds import BondList, touched
 from porescale.dem.grains import Grains
 from porescale.dem.motion.drivers import Clump as ClumpNumber
 from porescale.scene.bodies.bonds import KINDS, Bonds
