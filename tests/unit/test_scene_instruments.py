@@ -110,14 +110,14 @@ def test_an_absent_instrument_writes_no_table(left_out, tables):
 
 
 def test_without_instruments_nothing_is_measured(monkeypatch):
-    from porescale.build import instruments, simulation
+    from porescale.build.parts import flow_fields, flow_instruments
 
     def refuse(*args: Any, **options: Any) -> None:
         raise AssertionError("measured")
 
-    monkeypatch.setattr(instruments.Instruments, "tables", refuse)
-    monkeypatch.setattr(simulation.observe, "stream_function", refuse)
-    monkeypatch.setattr(simulation.observe, "vorticity", refuse)
+    monkeypatch.setattr(flow_instruments.Instruments, "tables", refuse)
+    monkeypatch.setattr(flow_fields, "stream_function", refuse)
+    monkeypatch.setattr(flow_fields, "vorticity", refuse)
     plain = build(water())
     plain.advance(2)
     assert plain.tables() == {}
