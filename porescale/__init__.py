@@ -26,8 +26,7 @@ def __getattr__(name: str) -> Any:
 
         return build
     if name == "Scene":
-        import porescale.build.checks.register  # noqa: F401
-        from porescale.scene.scene import Scene
+        from porescale.build.scene import Scene
 
         return Scene
     if name == "Simulation":

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 from porescale.analysis.permeability import Measured, gebart, kozeny_carman, measure
 from porescale.build.derive import fluid_scales
 from porescale.build.initial.fluid_options import collision_options, solid_options
+from porescale.build.scene import Scene
 from porescale.common.core.atomic import write_bytes
 from porescale.common.record.model import Cloud
 from porescale.common.schema.sections import validate
-from porescale.scene.scene import Scene
 
 if TYPE_CHECKING:
     from porescale.common.record.open_run import Run

@@ -13,10 +13,10 @@ from porescale.build.initial.grains import GATE, _frames, _grains
 from porescale.build.initial.rectangles import on_the_lattice
 from porescale.build.parts.rectangles import Movers
 from porescale.build.parts.sleep import let_sleep
+from porescale.build.scene import Scene
 from porescale.build.simulation import Gatekeeper, Simulation
 from porescale.common.schema.sections import load
 from porescale.coupling.step import buoyant_weight
-from porescale.scene.scene import Scene
 
 
 def load_scene(path: str | Path, *, quality: str | None = None, settings: Sequence[str] = ()) -> Scene:

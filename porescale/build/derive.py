@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-import porescale.build.checks.register  # noqa: F401
 from porescale.build.checks.frame_places import check_frames, strays, thin_for
 from porescale.build.checks.grain_places import check_grain_places
 from porescale.build.checks.numbers import check_controls
@@ -23,6 +22,7 @@ from porescale.build.initial.frames import Placed, lightest_frame, placed_frames
 from porescale.build.initial.packing import radii_of
 from porescale.build.initial.placed import by_hand, placed
 from porescale.build.initial.rock import rock_frames
+from porescale.build.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.materials import Law
 from porescale.dem.discs import make_discs
@@ -31,7 +31,6 @@ from porescale.lbm.scales import NAMES, Scales, implied
 from porescale.scene.contact import Contact
 from porescale.scene.fluid import Fluid
 from porescale.scene.lattice import is_whole
-from porescale.scene.scene import Scene
 
 MANY = 1e6
 """Contact steps in a step of the fluid beyond which somebody slipped in a unit."""

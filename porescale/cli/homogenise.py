@@ -16,8 +16,8 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.version import VERSION
 
 if TYPE_CHECKING:
+    from porescale.build.scene import Scene as Tables
     from porescale.common.studies.runner import Campaign, Ended
-    from porescale.scene.scene import Scene as Tables
 
 SPECIMEN, PORES = "specimen.toml", "permeability.json"
 HEAD = """\
@@ -47,11 +47,11 @@ def homogenise(
     """
     refuse_no_scene(scene)
     from porescale.analysis.homogenise import asked_of, specimen
+    from porescale.build.scene import Scene as SceneType
     from porescale.common.schema.sections import open_scene
     from porescale.common.studies.parameter_table import Point
     from porescale.common.studies.runner import Campaign
     from porescale.demseg.convert import toml
-    from porescale.scene.scene import Scene as SceneType
 
     opened = open_scene(scene, SceneType, quality=quality, overrides=settings or ())
     test = specimen(opened.scene)

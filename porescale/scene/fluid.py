@@ -14,7 +14,7 @@ from porescale.lbm.scales import NAMES
 
 CHOICES: dict[str, Mapping[str, str]] = {}
 """Keys of the section that name a law, and the names there are with what each is good for: the registers of the laws,
-put here by build/checks/register.py."""
+put here by build/scene.py."""
 MAGIC_MIDWAY_WALL = 3 / 16
 """Magic parameter at which walls lie half-way between nodes."""
 

@@ -25,7 +25,7 @@ from porescale.dem.motion.control import Moved
 from porescale.dem.motion.drivers import Clump
 from porescale.dem.motion.periodic_cell import Still
 from porescale.dem.prepare.settle import pack, unpack
-from porescale.validation.dem.segments_trials import mixed_cloud, regular
+from porescale.validation.dem.segments import mixed_cloud, regular
 from tests.reference import dem_segments as slow
 from tests.reference.memory import peak
 

@@ -1,6 +1,6 @@
-"""Gives the sections what they must not import: checks between them, names of operators, readers of files.
+"""`Scene` with all that its sections must not import: checks between them, names of operators, readers of files.
 
-Imported before any scene is read: by `porescale.Scene`, `porescale.load` and `build.derive`.
+Whoever reads a scene takes it from here; without its checks it refuses.
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ from porescale.scene.bodies.segments import PolygonBody
 from porescale.scene.circles import Circles
 from porescale.scene.fluid import CHOICES, Fluid
 from porescale.scene.scene import Scene
+
+__all__ = ["Scene"]
 
 Scene.checks += [check_needed, check_places]
 Fluid.checks.append(check_solid_options)
