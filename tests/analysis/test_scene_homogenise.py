@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
+from porescale import Scene
 from porescale.analysis.biaxial import WINDOW, numbers, running
 from porescale.analysis.homogenise import WAVES, asked_of, pressure_of, ramp_of, specimen, stiffness_over_pressure
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
-from porescale.scene.sections import Scene
 from porescale.validation import homogenise as verify
 from porescale.validation.homogenise import VALIDATIONS
 from tests.reference.scenes import column, dry

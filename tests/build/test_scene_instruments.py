@@ -10,7 +10,7 @@ import pytest
 
 from porescale.analysis.permeability import gebart, kozeny_carman, measure
 from porescale.build.build import build
-from porescale.build.observe import vorticity
+from porescale.build.parts.flow_fields import vorticity
 from porescale.common.core.errors import InputError
 from porescale.common.record.drive import drive
 from porescale.common.record.open_run import open_run
@@ -110,14 +110,14 @@ def test_an_absent_instrument_writes_no_table(left_out, tables):
 
 
 def test_without_instruments_nothing_is_measured(monkeypatch):
-    from porescale.build import instruments, simulation
+    from porescale.build.parts import flow_fields, flow_instruments
 
     def refuse(*args: Any, **options: Any) -> None:
         raise AssertionError("measured")
 
-    monkeypatch.setattr(instruments.Instruments, "tables", refuse)
-    monkeypatch.setattr(simulation.observe, "stream_function", refuse)
-    monkeypatch.setattr(simulation.observe, "vorticity", refuse)
+    monkeypatch.setattr(flow_instruments.Instruments, "tables", refuse)
+    monkeypatch.setattr(flow_fields, "stream_function", refuse)
+    monkeypatch.setattr(flow_fields, "vorticity", refuse)
     plain = build(water())
     plain.advance(2)
     assert plain.tables() == {}

@@ -8,11 +8,13 @@ import math
 import numpy as np
 import pytest
 
-from porescale.build import cost, observe
+from porescale.build import cost
 from porescale.build.build import build
+from porescale.build.checks.regime import terminal_speed
 from porescale.build.derive import derive
-from porescale.build.regime import terminal_speed
+from porescale.build.parts.flow_fields import fluid_row
 from porescale.lbm.scales import Scales
+from porescale.output.surface import surface
 from tests.reference.scenes import column, dry, grain, water
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -76,11 +78,11 @@ def test_the_surface_is_that_of_the_discs():
     random = np.random.default_rng(3)
     position, radius = random.uniform(0.1, 0.9, (40, 2)), random.uniform(0.02, 0.06, 40)
     edges = np.linspace(0.0, 1.0, 12)
-    found = observe.surface(position, radius, edges)
+    found = surface(position, radius, edges)
     # The twin misses a top within a bin by less than spacing^2/(8 r) = (1/11/2e4)^2/0.16, and where a disc only
     # reaches in its edge is as steep as sqrt(2 r dx): 1e-3 at a spacing of 4.5e-6.
     assert found == pytest.approx(dense_surface(position, radius, edges), abs=1e-3)
-    assert observe.surface(position[:0], radius[:0], edges).tolist() == [0.0] * 11
+    assert surface(position[:0], radius[:0], edges).tolist() == [0.0] * 11
     assert found.max() == pytest.approx((position[:, 1] + radius).max(), rel=1e-15)
 
 
@@ -88,7 +90,7 @@ def test_the_fluid_row_weighs_what_is_not_solid():
     ux, uy, excess, solid = (np.zeros((2, 3)) for _ in range(4))
     ux[0, 0], uy[1, 2], solid[1, 2], excess[0, 0] = 3.0, 4.0, 0.75, 10.0
     scales = Scales(0.1, 0.01, 0.8)
-    row = observe.fluid_row(excess, ux, uy, solid, scales)
+    row = fluid_row(excess, ux, uy, solid, scales)
     assert row["kinetic energy of fluid (J/m)"] == pytest.approx(0.5 * (1010 * 9 + 1000 * 16 / 4) * 0.01, rel=1e-14)
     assert row["largest fluid speed (m/s)"] == 4.0
     assert row["Mach number ()"] == pytest.approx(4.0 / (10 / math.sqrt(3)), rel=1e-14)

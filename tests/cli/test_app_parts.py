@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 import porescale
+from porescale import Scene
 from porescale.cli import bench, new, show, verify
 from porescale.cli.main import PACKAGE
 from porescale.common.core.errors import InputError
 from porescale.common.record.model import Model, Snapshot
 from porescale.common.schema.sections import LEVELS, Section, load, scene_as_dict
-from porescale.scene.sections import Scene
 from tests.reference.folders import ROOT
 from tests.reference.scenes import column, dry, table, write
 from tests.reference.waiting import done

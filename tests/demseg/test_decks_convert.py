@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from porescale import Scene
 from porescale.build.build import build
 from porescale.cli import demseg
 from porescale.cli.main import commands
@@ -13,7 +14,6 @@ from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import load
 from porescale.demseg.build import Options
 from porescale.demseg.run import read
-from porescale.scene.sections import Scene
 from tests.reference import decks
 
 pytestmark = pytest.mark.usefixtures("one_thread")

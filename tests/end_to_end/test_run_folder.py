@@ -55,8 +55,8 @@ def test_the_card_says_what_was_run_with_what_and_how_it_ended(folder, scene):
 
 
 def test_the_scene_on_the_card_is_the_scene(folder, scene):
+    from porescale import Scene
     from porescale.common.schema.sections import validate
-    from porescale.scene.sections import Scene
 
     card = json.loads((folder / "card.json").read_text())
     assert validate(Scene, card["scene"]) == load(scene)

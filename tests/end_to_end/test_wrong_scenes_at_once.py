@@ -48,7 +48,7 @@ def test_what_is_no_scene_is_said_before_numba_is_imported(tmp_path, package):
 
 
 WRONG = {
-    "porescale": ("porescale/app", "grains.packing.width=99", "out of the box", "fluid.viskosity=1e-6", "'viscosity'"),
+    "porescale": ("porescale/cli", "grains.packing.width=99", "out of the box", "fluid.viskosity=1e-6", "'viscosity'"),
     "continuum_sph": ("continuum_sph", "tank.width=0.1", "beyond the tank", "tank.hight=3", "'height'"),
 }
 """By package: folder of its template; a number that others contradict and words of its fault; a key that there is

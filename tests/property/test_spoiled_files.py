@@ -27,7 +27,7 @@ from porescale.dem.prepare.compaction import read_circles, read_packing, write_p
 from porescale.demseg.deck import read_deck
 from porescale.piv.fields.field import read as read_field
 from porescale.piv.images.film import open_film, picture
-from porescale.scene.packing import Circles
+from porescale.scene.circles import Circles
 from tests.reference import grounds
 from tests.reference.folders import CASES
 from tests.reference.pictures import photograph

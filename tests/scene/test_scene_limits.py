@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
+from porescale import Scene
 from porescale.build.checks.limits import TAU_COARSE
 from porescale.build.derive import derive
 from porescale.common.evidence.stability import RIGHT, Row
 from porescale.coupling import limits
-from porescale.scene.sections import Scene
 from tests.reference.folders import ROOT
 from tests.reference.scenes import column, grain, table, water
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from porescale import Scene
 from porescale.build.build import build
 from porescale.build.derive import derive
 from porescale.common.core.errors import InputError
@@ -15,7 +16,6 @@ from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.dem.measures.porosity import porosity, void_ratio
 from porescale.dem.measures.region import Region
 from porescale.dem.prepare.compaction import mean_stress, write_packing
-from porescale.scene.sections import Scene
 from tests.reference.scenes import dry, table
 
 pytestmark = pytest.mark.usefixtures("one_thread")

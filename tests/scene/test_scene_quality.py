@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from porescale import Scene
 from porescale.build.build import load_scene
 from porescale.build.derive import derive
 from porescale.build.report import report
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import LEVELS, scene_as_dict, validate
-from porescale.scene.sections import Scene
 from tests.reference.folders import CASES
 from tests.reference.scenes import COLUMN, column, table, write
 

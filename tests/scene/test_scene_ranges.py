@@ -6,12 +6,12 @@ from typing import Any
 
 import pytest
 
+from porescale import Scene
 from porescale.build import cost
 from porescale.build.build import build, load_scene
 from porescale.build.report import report
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
-from porescale.scene.sections import Scene
 from tests.reference.folders import ROOT
 from tests.reference.scenes import column, dry, table
 

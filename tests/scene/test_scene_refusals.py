@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 
+from porescale import Scene
 from porescale.build import cost
 from porescale.build.build import build, load_scene
 from porescale.build.derive import derive
 from porescale.build.report import report
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
-from porescale.scene.sections import Scene
 from tests.reference.folders import ROOT
 from tests.reference.scenes import column, dry, grain, table, water
 
@@ -359,10 +359,10 @@ def test_a_packing_is_held_while_it_settles():
 
 def test_a_lattice_beyond_the_memory_is_refused_with_a_spacing_that_fits(monkeypatch):
     derived = derive(column())
-    cost.refuse_too_large(derived)
+    cost.require_memory(derived)
     monkeypatch.setattr(cost.os, "sysconf", lambda name: 64)  # a machine of 4 KiB
     with pytest.raises(InputError) as caught:
-        cost.refuse_too_large(derived)
+        cost.require_memory(derived)
     assert caught.value.faults[0].key == "fluid.spacing"
     assert "takes half of the memory" in caught.value.faults[0].line()
 

@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from porescale.build.build import build, lattice_sides
+from porescale import Scene
+from porescale.build.build import build
 from porescale.build.derive import derive
+from porescale.build.initial.fluid import lattice_sides
 from porescale.build.report import report
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import scene_as_dict, validate
-from porescale.scene.sections import Scene
 from tests.reference.scenes import column, dry, grain, water
 
 pytestmark = pytest.mark.usefixtures("one_thread")

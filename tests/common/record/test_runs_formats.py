@@ -16,6 +16,7 @@ import pytest
 
 from continuum_sph.cli import PACKAGE as CONTINUUM
 from continuum_sph.scene.sections import Scene as Ground
+from porescale import Scene
 from porescale.cli.main import PACKAGE as PORESCALE
 from porescale.common.cli.application import application, main
 from porescale.common.cli.package import Package
@@ -24,7 +25,6 @@ from porescale.common.record.checkpoint import read_checkpoint, read_header
 from porescale.common.record.open_run import open_run
 from porescale.common.record.read_card import read_card
 from porescale.common.schema.sections import Section, load, scene_as_dict, validate
-from porescale.scene.sections import Scene
 from tests.reference.folders import SAMPLES
 from tests.reference.spoiled import renumbered
 from tests.reference.toy_model import run_toy

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from porescale import Scene
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
@@ -14,7 +15,6 @@ from porescale.dem.grains import Grains
 from porescale.dem.measures.energy import energy_book
 from porescale.dem.resting import sleep_kernels as kernels
 from porescale.dem.resting.sleep import Sleep
-from porescale.scene.sections import Scene
 from porescale.validation.dem import sleep as lab
 
 LONG = round(20 * lab.AFTER / 1.5e-5)
