@@ -53,19 +53,13 @@ class Pairs(NamedTuple):
     limit_square: float
 
 
-class Surface(NamedTuple):
-    """Walls, plates or rectangles: table (s, columns), see each;  laws (s, m, COLUMNS): with each material of discs;
-    spring (s, n, 1 or 2) m;  load (s, 2 or 3) N/m, N m/m: force of the discs on each, and moment about its point.
-    """
-
-    table: Array
-    laws: Array
-    spring: Array
-    load: Array
+Surface = tuple[Array, Array, Array, Array]
+"""Walls, plates or rectangles: table (s, columns), see each;  laws (s, m, COLUMNS): with each material of discs;
+spring (s, n, 1 or 2) m;  load (s, 2 or 3) N/m, N m/m: force of the discs on each, and moment about its point."""
 
 
 class Surfaces(NamedTuple):
-    """Walls, plates and rectangles: the fields of Surface of each, side by side."""
+    """Walls, plates and rectangles: the parts of Surface of each, side by side."""
 
     walls: Array
     wall_laws: Array

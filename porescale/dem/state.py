@@ -157,11 +157,15 @@ class State:
     def surface(self, kind: str) -> Surface:
         """All surfaces of a ``kind``, "wall", "plate" or "rectangle", as kernels take them."""
         load = self.wall_load if kind == "wall" else getattr(self, f"{kind}_force")
-        return Surface(getattr(self, f"{kind}s"), getattr(self, f"{kind}_laws"), getattr(self, f"{kind}_spring"), load)
+        return getattr(self, f"{kind}s"), getattr(self, f"{kind}_laws"), getattr(self, f"{kind}_spring"), load
 
     def surfaces(self) -> Surfaces:
         """Walls, plates and rectangles as kernels take them."""
-        return Surfaces(*self.surface("wall"), *self.surface("plate"), *self.surface("rectangle"))
+        return Surfaces(
+            self.walls, self.wall_laws, self.wall_spring, self.wall_load, self.plates, self.plate_laws,
+            self.plate_spring, self.plate_force, self.rectangles, self.rectangle_laws, self.rectangle_spring,
+            self.rectangle_force,
+        )  # fmt: skip
 
     @property
     def surface_count(self) -> int:

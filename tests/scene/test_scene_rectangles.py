@@ -282,7 +282,7 @@ def test_an_overlap_with_a_rectangle_counts_among_the_others():
     assert elastic_energy(grains) == pytest.approx(0.5 * 2e5 * 2e-4**2, rel=1e-12)
     grains.discs.position[0] = 0.005, 0.0016
     for survey in (survey_rectangles, survey_rectangles.py_func):
-        found = survey(grains.disc_arrays(), grains.surface("rectangle"), grains.contact)
+        found = survey(grains.disc_arrays(), *grains.surface("rectangle")[:3], grains.contact)
         assert found[0] == pytest.approx(1.2, rel=1e-12)
 
 

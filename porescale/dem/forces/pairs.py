@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.common.compiled.jit import inline, kernel
+from porescale.common.compiled.jit import inline
 from porescale.dem.contact.law import (
     CN,
     COMPLIANCE_R,
@@ -53,14 +53,13 @@ class Approach(NamedTuple):
     rolling: float
 
 
-@kernel
+@inline
 def start_forces(d):
     """Overwrite force (n, 2) N/m and torque (n,) N m/m of the DiscArrays ``d`` with the external ones."""
-    force, torque, external_force, external_torque = d.force, d.torque, d.external_force, d.external_torque
-    for i in range(torque.shape[0]):
-        force[i, 0] = external_force[i, 0]
-        force[i, 1] = external_force[i, 1]
-        torque[i] = external_torque[i]
+    for i in range(d.torque.shape[0]):
+        d.force[i, 0] = d.external_force[i, 0]
+        d.force[i, 1] = d.external_force[i, 1]
+        d.torque[i] = d.external_torque[i]
 
 
 @inline
@@ -166,7 +165,7 @@ def pair_contact(i, j, k, d, history, shared, law, dt, cell):
     return True, gx, gy, moment_i, moment_j
 
 
-@kernel
+@inline
 def pair_forces(d, pairs, law, dt, cell):
     """Add the contacts of all listed pairs; reset the springs of those that do not touch.
 
@@ -175,20 +174,18 @@ def pair_forces(d, pairs, law, dt, cell):
     Not checked: two centres in one place give nan, which Grains.check reports.
     """
     shared = numbers_of(law.table[0, 0])
-    start, partner, history = pairs.start, pairs.partner, pairs.history
-    force, torque = d.force, d.torque
-    for i in range(torque.shape[0]):
+    for i in range(d.torque.shape[0]):
         fx, fy, moment = 0.0, 0.0, 0.0
-        for k in range(start[i], start[i + 1]):
-            j = partner[k]
-            met, gx, gy, moment_i, moment_j = pair_contact(i, j, k, d, history, shared, law, dt, cell)
+        for k in range(pairs.start[i], pairs.start[i + 1]):
+            j = pairs.partner[k]
+            met, gx, gy, moment_i, moment_j = pair_contact(i, j, k, d, pairs.history, shared, law, dt, cell)
             if met:
                 fx += gx
                 fy += gy
                 moment += moment_i
-                force[j, 0] -= gx
-                force[j, 1] -= gy
-                torque[j] += moment_j
-        force[i, 0] += fx
-        force[i, 1] += fy
-        torque[i] += moment
+                d.force[j, 0] -= gx
+                d.force[j, 1] -= gy
+                d.torque[j] += moment_j
+        d.force[i, 0] += fx
+        d.force[i, 1] += fy
+        d.torque[i] += moment

@@ -62,13 +62,11 @@ def nearest_face(x, y, left, bottom, right, top):
 
 
 @kernel
-def add_rectangle_forces(d, surface, law, dt):
-    """Add the contacts of all discs with all rectangles; reset the springs of those that do not touch.
+def add_rectangle_forces(d, rectangles, laws, spring, load, row, first, last, law, dt):
+    """Add the contacts of discs first to last with all rectangles; reset the springs of those that do not touch.
 
-    surface: Surface with rectangles (k, 6) and load (k, 2) N/m.  The rest as in walls.add_wall_forces.
+    rectangles (k, 6);  overwrites rows of load (k or more, 2 or 3) N/m from ``row`` on.  The rest as in walls.py.
     """
-    rectangles, load, position, radius = surface.table, surface.load, d.position, d.radius
-    force, torque, budget = d.force, d.torque, d.budget
     for w in range(rectangles.shape[0]):
         left, bottom, right, top = (
             rectangles[w, LEFT],
@@ -77,14 +75,14 @@ def add_rectangle_forces(d, surface, law, dt):
             rectangles[w, TOP],
         )
         across, up = rectangles[w, VELOCITY_X], rectangles[w, VELOCITY_Y]
-        memory, own = surface.spring[w], surface.laws[w]
+        memory, own = spring[w], laws[w]
         sum_x, sum_y = 0.0, 0.0
-        for i in range(radius.shape[0]):
-            x, y = position[i, 0], position[i, 1]
+        for i in range(first, last):
+            x, y = d.position[i, 0], d.position[i, 1]
             dx = min(max(x, left), right) - x
             dy = min(max(y, bottom), top) - y
             square = dx * dx + dy * dy
-            if square < radius[i] * radius[i]:
+            if square < d.radius[i] * d.radius[i]:
                 if square > 0.0:
                     distance = np.sqrt(square)
                     nx, ny = dx / distance, dy / distance
@@ -92,19 +90,19 @@ def add_rectangle_forces(d, surface, law, dt):
                     nx, ny, depth = nearest_face(x, y, left, bottom, right, top)
                     distance = -depth
                 fx, fy, moment, _ = surface_contact(i, nx, ny, distance, across, up, 0.0, d, memory, dt, own, law)
-                force[i, 0] += fx
-                force[i, 1] += fy
-                torque[i] += moment
+                d.force[i, 0] += fx
+                d.force[i, 1] += fy
+                d.torque[i] += moment
                 sum_x -= fx
                 sum_y -= fy
-                add_work(budget, i, SURFACES, fx * across + fy * up, dt)
+                add_work(d.budget, i, SURFACES, fx * across + fy * up, dt)
             else:
-                if has_budget(budget) and has_history(memory, i, law):
+                if has_budget(d.budget) and has_history(memory, i, law):
                     vx, vy = d.velocity[i, 0] - across, d.velocity[i, 1] - up
                     add_leaving_losses(i, dx, dy, vx, vy, 0.0, d, memory, dt, own, law)
                 store_history(memory, i, 0.0, 0.0, law)
-        load[w, 0] = sum_x
-        load[w, 1] = sum_y
+        load[row + w, 0] = sum_x
+        load[row + w, 1] = sum_y
 
 
 @inline

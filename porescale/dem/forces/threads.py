@@ -21,10 +21,9 @@ from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import by_law, inline, kernel, parallel_kernel, prange, threads
 from porescale.common.neighbors.pair_list import PairList
-from porescale.dem.arrays import DiscArrays, Surface
 from porescale.dem.forces.pairs import numbers_of, pair_contact, pair_forces, start_forces
 from porescale.dem.forces.rectangle import add_rectangle_forces
-from porescale.dem.forces.walls import RUN, add_near_walls, add_plate_forces, runs_of
+from porescale.dem.forces.walls import RUN, add_near_walls, add_plate_forces
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -175,40 +174,17 @@ def _pairs_threads(d, pairs, law, dt, cell, sweep):
 
 
 @inline
-def rows_if(array, first, last):
-    """Rows first to last of an array, or None of None."""
-    if array is None:
-        return None
-    return array[first:last]
-
-
-@inline
-def block_of(d, first, last):
-    """DiscArrays of discs first to last, as contacts with surfaces take them."""
-    return DiscArrays(
-        d.position[first:last], d.angle, d.velocity[first:last], d.spin[first:last], d.radius[first:last], d.mass,
-        d.inertia, d.force[first:last], d.torque[first:last], d.external_force, d.external_torque, d.held, d.withheld,
-        d.body_mass[first:last], rows_if(d.material, first, last), rows_if(d.budget, first, last),
-    )  # fmt: skip
-
-
-@inline
 def surfaces_of_block(b, d, s, law, dt, sweep):
     """Contacts of the discs of block b with all surfaces ``s``, Surfaces; overwrites sweep.partial[b]."""
     first, last = b * BLOCK, min((b + 1) * BLOCK, d.radius.shape[0])
-    own, partial = block_of(d, first, last), sweep.partial
-    to_plates = s.walls.shape[0]
-    to_rectangles = to_plates + s.plates.shape[0]
-    walls = Surface(s.walls, s.wall_laws, s.wall_spring[:, first:last], partial[b, :to_plates])
-    add_near_walls(own, walls, sweep.near[:, first // RUN : runs_of(last)], law, dt)
-    if s.plates.shape[0] > 0:
-        plates = Surface(s.plates, s.plate_laws, s.plate_spring[:, first:last], partial[b, to_plates:to_rectangles])
-        add_plate_forces(own, plates, law, dt)
+    load, walls, plates = sweep.partial[b], s.walls.shape[0], s.plates.shape[0]
+    add_near_walls(d, s.walls, s.wall_laws, s.wall_spring, load, 0, sweep.near, first, last, law, dt)
+    if plates > 0:
+        add_plate_forces(d, s.plates, s.plate_laws, s.plate_spring, load, walls, first, last, law, dt)
     if s.rectangles.shape[0] > 0:
-        rectangles = Surface(
-            s.rectangles, s.rectangle_laws, s.rectangle_spring[:, first:last], partial[b, to_rectangles:]
+        add_rectangle_forces(
+            d, s.rectangles, s.rectangle_laws, s.rectangle_spring, load, walls + plates, first, last, law, dt
         )
-        add_rectangle_forces(own, rectangles, law, dt)
 
 
 @parallel_kernel
@@ -247,7 +223,7 @@ def add_up(partial, first, total):
             total[s, c] = value
 
 
-@kernel
+@inline
 def add_surface_forces(d, surfaces, law, dt, sweep):
     """Add the contacts with walls, plates and rectangles; arguments as in the kernels of each.
 

@@ -177,59 +177,58 @@ def add_leaving_losses(i, dx, dy, vx, vy, turn, d, memory, dt, laws, law):
 
 
 @kernel
-def add_wall_forces(d, surface, law, dt):
+def add_wall_forces(d, walls, laws, spring, load, law, dt):
     """Add the contacts of all discs with all walls; reset the springs of those that do not touch.
 
-    d: DiscArrays;  surface: Surface with walls (w, WALL);  law see contact/law.py;  dt s.  Adds to ``d.force`` N/m and
-    ``d.torque`` N m/m; overwrites ``surface.spring`` m and ``surface.load`` N/m, N m/m, the force of the discs on each
-    wall, summed in the order of discs, and its moment about the wall's point.
+    d: DiscArrays;  walls (w, WALL);  laws (w, m, COLUMNS) with each material;  law see contact/law.py;
+    dt s.  Adds to ``d.force`` N/m and ``d.torque`` N m/m; overwrites spring (w, n, 1 or 2) m and load (w, 2 or 3) N/m,
+    N m/m, the force of the discs on each wall, summed in the order of discs, and its moment about the wall's point.
     """
-    near = np.ones((surface.table.shape[0], runs_of(d.radius.shape[0])), np.uint8)
-    add_near_walls(d, surface, near, law, dt)
+    near = np.ones((walls.shape[0], runs_of(d.radius.shape[0])), np.uint8)
+    add_near_walls(d, walls, laws, spring, load, 0, near, 0, d.radius.shape[0], law, dt)
 
 
 @kernel
-def add_near_walls(d, surface, near, law, dt):
-    """As add_wall_forces, for discs of runs that are near a wall; near (w or more, runs): see mark_near.
+def add_near_walls(d, walls, laws, spring, load, row, near, first, last, law, dt):
+    """As add_wall_forces, for discs first to last in runs that are near a wall; near (w or more, runs): see mark_near.
 
-    Discs of other runs must touch nothing and have springs at rest.
+    ``first`` begins a run.  Discs of other runs must touch nothing and have springs at rest.  Overwrites rows of
+    ``load`` from ``row`` on.
     """
-    walls, load, position, radius = surface.table, surface.load, d.position, d.radius
-    force, torque, budget = d.force, d.torque, d.budget
     for w in range(walls.shape[0]):
         px, py, nx, ny = walls[w, PX], walls[w, PY], walls[w, NX], walls[w, NY]
         wall_x, wall_y, turn = walls[w, VX], walls[w, VY], walls[w, TURN]
-        memory, own = surface.spring[w], surface.laws[w]
+        memory, own = spring[w], laws[w]
         sum_x, sum_y, moments_sum = 0.0, 0.0, 0.0
-        for run in range(near.shape[1]):
+        for run in range(first // RUN, runs_of(last)):
             if not near[w, run]:
                 continue
-            for i in range(run * RUN, min((run + 1) * RUN, radius.shape[0])):
-                distance = (position[i, 0] - px) * nx + (position[i, 1] - py) * ny
-                if radius[i] - distance > 0.0:
-                    along = (position[i, 1] - py) * nx - (position[i, 0] - px) * ny
+            for i in range(run * RUN, min((run + 1) * RUN, last)):
+                distance = (d.position[i, 0] - px) * nx + (d.position[i, 1] - py) * ny
+                if d.radius[i] - distance > 0.0:
+                    along = (d.position[i, 1] - py) * nx - (d.position[i, 0] - px) * ny
                     at_x, at_y = wall_x - turn * along * nx, wall_y - turn * along * ny
                     fx, fy, moment, other = surface_contact(
                         i, -nx, -ny, distance, at_x, at_y, turn, d, memory, dt, own, law
                     )
-                    force[i, 0] += fx
-                    force[i, 1] += fy
-                    torque[i] += moment
+                    d.force[i, 0] += fx
+                    d.force[i, 1] += fy
+                    d.torque[i] += moment
                     sum_x -= fx
                     sum_y -= fy
                     moments_sum += along * (ny * fy + nx * fx) + other
-                    add_work(budget, i, SURFACES, fx * at_x + fy * at_y - other * turn, dt)
+                    add_work(d.budget, i, SURFACES, fx * at_x + fy * at_y - other * turn, dt)
                 else:
-                    if has_budget(budget) and has_history(memory, i, law):
-                        along = (position[i, 1] - py) * nx - (position[i, 0] - px) * ny
+                    if has_budget(d.budget) and has_history(memory, i, law):
+                        along = (d.position[i, 1] - py) * nx - (d.position[i, 0] - px) * ny
                         vx = d.velocity[i, 0] - wall_x + turn * along * nx
                         vy = d.velocity[i, 1] - wall_y + turn * along * ny
                         add_leaving_losses(i, -distance * nx, -distance * ny, vx, vy, turn, d, memory, dt, own, law)
                     store_history(memory, i, 0.0, 0.0, law)
-        load[w, 0] = sum_x
-        load[w, 1] = sum_y
+        load[row + w, 0] = sum_x
+        load[row + w, 1] = sum_y
         if load.shape[1] > 2:
-            load[w, 2] = moments_sum
+            load[row + w, 2] = moments_sum
 
 
 @kernel
@@ -250,40 +249,39 @@ def mark_near(position, radius, walls, way, near):
 
 
 @kernel
-def add_plate_forces(d, surface, law, dt):
-    """Add the contacts of all discs with all plates that are present; reset the springs of those that do not touch.
+def add_plate_forces(d, plates, laws, spring, load, row, first, last, law, dt):
+    """Add the contacts of discs first to last with all plates that are present; reset the springs of those that do not
+    touch.
 
-    surface: Surface with plates (p, 5) and load (p, 2) N/m.  The rest as in add_wall_forces.
+    plates (p, 5);  overwrites rows of load (p or more, 2 or 3) N/m from ``row`` on.  The rest as in add_wall_forces.
     """
-    plates, load, position, radius = surface.table, surface.load, d.position, d.radius
-    force, torque, budget = d.force, d.torque, d.budget
     for w in range(plates.shape[0]):
         sum_x, sum_y = 0.0, 0.0
         if plates[w, PRESENT] != 0.0:
             x, low, high, rise = plates[w, X], plates[w, LOW], plates[w, HIGH], plates[w, VELOCITY]
-            memory, own = surface.spring[w], surface.laws[w]
-            for i in range(radius.shape[0]):
-                dx = x - position[i, 0]
-                dy = min(max(position[i, 1], low), high) - position[i, 1]
+            memory, own = spring[w], laws[w]
+            for i in range(first, last):
+                dx = x - d.position[i, 0]
+                dy = min(max(d.position[i, 1], low), high) - d.position[i, 1]
                 square = dx * dx + dy * dy
-                if square < radius[i] * radius[i]:
+                if square < d.radius[i] * d.radius[i]:
                     distance = np.sqrt(square)
                     fx, fy, moment, _ = surface_contact(
                         i, dx / distance, dy / distance, distance, 0.0, rise, 0.0, d, memory, dt, own, law
                     )
-                    force[i, 0] += fx
-                    force[i, 1] += fy
-                    torque[i] += moment
+                    d.force[i, 0] += fx
+                    d.force[i, 1] += fy
+                    d.torque[i] += moment
                     sum_x -= fx
                     sum_y -= fy
-                    add_work(budget, i, SURFACES, fy * rise, dt)
+                    add_work(d.budget, i, SURFACES, fy * rise, dt)
                 else:
-                    if has_budget(budget) and has_history(memory, i, law):
+                    if has_budget(d.budget) and has_history(memory, i, law):
                         vx, vy = d.velocity[i, 0], d.velocity[i, 1] - rise
                         add_leaving_losses(i, dx, dy, vx, vy, 0.0, d, memory, dt, own, law)
                     store_history(memory, i, 0.0, 0.0, law)
-        load[w, 0] = sum_x
-        load[w, 1] = sum_y
+        load[row + w, 0] = sum_x
+        load[row + w, 1] = sum_y
 
 
 @inline

@@ -153,9 +153,9 @@ def _single(grains: State, kernel: Any, surface: Surface, w: int) -> Forces:
     def forces(i: Index) -> tuple[DiscArrays, Array]:
         """The discs ``i`` (c,) with the forces on them, and their springs (c,) m."""
         found, row = grains.some_discs(i), slice(w, w + 1)
-        spring, total = surface.spring[row, i].copy(), np.zeros((1, 2))
-        own = Surface(surface.table[row], surface.laws[row], spring, total)
-        kernel(found, own, grains.contact, grains.last_dt)
+        spring, total = surface[2][row, i].copy(), np.zeros((1, 2))
+        where = () if kernel is add_wall_forces else (0, 0, len(i))  # rows of the load, first and last disc
+        kernel(found, surface[0][row], surface[1][row], spring, total, *where, grains.contact, grains.last_dt)
         spent: Array = spring[0, :, 0]
         return found, spent
 

@@ -62,9 +62,8 @@ def stored_at_surface(i, overlap, radius, material, memory, laws, law):
 
 
 @kernel
-def survey_walls(d, surface, law):
+def survey_walls(d, walls, laws, spring, law):
     """(largest overlap over the radius, its disc, its wall, elastic energy J/m) over walls (w, 4)."""
-    walls, laws, spring = surface.table, surface.laws, surface.spring
     position, radius, material = d.position, d.radius, d.material
     worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
     for w in range(walls.shape[0]):
@@ -80,9 +79,8 @@ def survey_walls(d, surface, law):
 
 
 @kernel
-def survey_plates(d, surface, law):
+def survey_plates(d, plates, laws, spring, law):
     """(largest overlap over the radius, its disc, its plate, elastic energy J/m) over the plates (p, 5) present."""
-    plates, laws, spring = surface.table, surface.laws, surface.spring
     position, radius, material = d.position, d.radius, d.material
     worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
     for w in range(plates.shape[0]):
@@ -99,9 +97,8 @@ def survey_plates(d, surface, law):
 
 
 @kernel
-def survey_rectangles(d, surface, law):
+def survey_rectangles(d, rectangles, laws, spring, law):
     """(largest overlap over the radius, its disc, its rectangle, elastic energy J/m) over the rectangles (k, 6)."""
-    rectangles, laws, spring = surface.table, surface.laws, surface.spring
     position, radius, material = d.position, d.radius, d.material
     worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
     for w in range(rectangles.shape[0]):
@@ -217,8 +214,8 @@ def _survey(grains: State) -> tuple[float, int, int, float]:
 def _survey_walls(grains: State) -> tuple[float, int, int, float]:
     """survey_walls of ``grains``, corners of segments by their own measure."""
     d = grains.discs
-    walls = grains.surface("wall")
-    result: tuple[float, int, int, float] = survey_walls(grains.disc_arrays(), walls, grains.contact)
+    walls = grains.walls, grains.wall_laws, grains.wall_spring
+    result: tuple[float, int, int, float] = survey_walls(grains.disc_arrays(), *walls, grains.contact)
     if grains.segments is None or not len(grains.walls):
         return result
     # Corners may be points: what they go into a wall is held against their segments.
@@ -230,8 +227,8 @@ def _survey_walls(grains: State) -> tuple[float, int, int, float]:
 
 def _survey_plates(grains: State) -> tuple[float, int, int, float]:
     """survey_plates of ``grains``."""
-    plates = grains.surface("plate")
-    result: tuple[float, int, int, float] = survey_plates(grains.disc_arrays(), plates, grains.contact)
+    plates = grains.plates, grains.plate_laws, grains.plate_spring
+    result: tuple[float, int, int, float] = survey_plates(grains.disc_arrays(), *plates, grains.contact)
     return result
 
 
@@ -249,6 +246,6 @@ def _survey_rectangles(grains: State) -> tuple[float, int, int, float]:
     """survey_rectangles of ``grains``; nothing where there is none."""
     if not len(grains.rectangles):
         return 0.0, -1, -1, 0.0
-    rectangles = grains.surface("rectangle")
-    result: tuple[float, int, int, float] = survey_rectangles(grains.disc_arrays(), rectangles, grains.contact)
+    rectangles = grains.rectangles, grains.rectangle_laws, grains.rectangle_spring
+    result: tuple[float, int, int, float] = survey_rectangles(grains.disc_arrays(), *rectangles, grains.contact)
     return result

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.compiled.jit import by_law, inline, kernel, parallel_kernel, prange
+from porescale.common.compiled.jit import by_law, inline, parallel_kernel, prange
 from porescale.dem.contact.law import BEFORE_SPIN, BEFORE_X, BEFORE_Y, DRAG, EXTERNAL, HOLDERS, add_work
 from porescale.dem.forces.threads import BLOCK, Serial, Threads
 
@@ -27,7 +27,7 @@ class Moving(NamedTuple):
     torque: Array
 
 
-@kernel
+@inline
 def withhold(d, drag, first, budget, dt):
     """Take the force from held components, so that kick_drift leaves their velocity as it is.
 
@@ -35,19 +35,18 @@ def withhold(d, drag, first, budget, dt):
     ``first``.  Overwrites force (n, 2) and torque (n,) there with what balances the background damping ``drag`` (1/s),
     0 without.  The holder's work over ``dt`` (s) is added to ``budget``, if any.
     """
-    held, withheld, velocity, spin, force, torque = d.held, d.withheld, d.velocity, d.spin, d.force, d.torque
-    for i in range(held.shape[0]):
+    for i in range(d.held.shape[0]):
         if first:
-            withheld[i, 0], withheld[i, 1], withheld[i, 2] = 0.0, 0.0, 0.0
+            d.withheld[i, 0], d.withheld[i, 1], d.withheld[i, 2] = 0.0, 0.0, 0.0
         for a in range(2):
-            if held[i, a]:
-                withheld[i, a] += force[i, a]
-                add_work(budget, i, HOLDERS, -force[i, a] * velocity[i, a], dt)
-                force[i, a] = drag * d.mass[i] * velocity[i, a]
-        if held[i, 2]:
-            withheld[i, 2] += torque[i]
-            add_work(budget, i, HOLDERS, -torque[i] * spin[i], dt)
-            torque[i] = drag * d.inertia[i] * spin[i]
+            if d.held[i, a]:
+                d.withheld[i, a] += d.force[i, a]
+                add_work(budget, i, HOLDERS, -d.force[i, a] * d.velocity[i, a], dt)
+                d.force[i, a] = drag * d.mass[i] * d.velocity[i, a]
+        if d.held[i, 2]:
+            d.withheld[i, 2] += d.torque[i]
+            add_work(budget, i, HOLDERS, -d.torque[i] * d.spin[i], dt)
+            d.torque[i] = drag * d.inertia[i] * d.spin[i]
 
 
 @inline
@@ -66,7 +65,7 @@ def add_step_work(budget, d, drag, dt):
         budget[i, BEFORE_X], budget[i, BEFORE_Y], budget[i, BEFORE_SPIN] = u, v, w
 
 
-@kernel
+@inline
 def kick_drift(d, listed_at, limit_square, drag, dt):
     """Move all discs one step; True when one has gone further than allowed from where it was listed (or is no number).
 
@@ -74,25 +73,23 @@ def kick_drift(d, listed_at, limit_square, drag, dt):
     is left as it is.  listed_at (n, 2) m, limit_square m^2: the list's skin test;  drag 1/s: background damping
     -drag m v and -drag I w, central in time (0: none, to the bit);  dt s.
     """
-    position, velocity, force, mass = d.position, d.velocity, d.force, d.mass
     before = 1.0 - 0.5 * drag * dt
     after = 1.0 / (1.0 + 0.5 * drag * dt)
     moved = False
-    for i in range(mass.shape[0]):
-        per_mass = dt / mass[i]
-        vx = (velocity[i, 0] * before + force[i, 0] * per_mass) * after
-        vy = (velocity[i, 1] * before + force[i, 1] * per_mass) * after
-        velocity[i, 0], velocity[i, 1] = vx, vy
-        x, y = position[i, 0] + dt * vx, position[i, 1] + dt * vy
-        position[i, 0], position[i, 1] = x, y
+    for i in range(d.mass.shape[0]):
+        per_mass = dt / d.mass[i]
+        vx = (d.velocity[i, 0] * before + d.force[i, 0] * per_mass) * after
+        vy = (d.velocity[i, 1] * before + d.force[i, 1] * per_mass) * after
+        d.velocity[i, 0], d.velocity[i, 1] = vx, vy
+        x, y = d.position[i, 0] + dt * vx, d.position[i, 1] + dt * vy
+        d.position[i, 0], d.position[i, 1] = x, y
         dx, dy = x - listed_at[i, 0], y - listed_at[i, 1]
         if not (dx * dx + dy * dy <= limit_square):  # also true for nan
             moved = True
-    angle, spin, torque, inertia = d.angle, d.spin, d.torque, d.inertia
-    for i in range(angle.shape[0]):
-        w = (spin[i] * before + torque[i] * (dt / inertia[i])) * after
-        spin[i] = w
-        angle[i] += dt * w
+    for i in range(d.angle.shape[0]):
+        w = (d.spin[i] * before + d.torque[i] * (dt / d.inertia[i])) * after
+        d.spin[i] = w
+        d.angle[i] += dt * w
     return moved
 
 

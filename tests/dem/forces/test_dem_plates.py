@@ -41,7 +41,7 @@ def test_the_energy_in_the_spring_of_a_plate_is_counted():
     grains.plate_spring[0, 0] = 1e-3
     assert measure.elastic_energy(grains) == pytest.approx(0.5 * 1e6 * 2e-3**2 + 0.5 * 3e5 * 1e-3**2, rel=1e-12)
     np.testing.assert_allclose(
-        measure.survey_plates.py_func(grains.disc_arrays(), grains.surface("plate"), grains.contact),
+        measure.survey_plates.py_func(grains.disc_arrays(), *grains.surface("plate")[:3], grains.contact),
         (0.2, 0, 0, 2.15),
         rtol=1e-12,
     )
