@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 
-from continuum_sph.build.air_build import AIR
+from continuum_sph.build.air import AIR
 from continuum_sph.validation.air_trials import TrappedAir, air_pressure
 from porescale.common.evidence.validations import Measured, Validations
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from continuum_sph.build.bubble import bubble
-from continuum_sph.build.build import flow_of
+from continuum_sph.build.inclusion import inclusion_row
+from continuum_sph.build.water import water_flow
 from continuum_sph.validation import fluids_trials as trials_fluids
 from continuum_sph.validation.fluids_trials import TENSION
 from continuum_sph.validation.trials import run_until
@@ -106,15 +106,15 @@ RISE, ROUNDNESS, HEIGHT = 0.2417, 0.9013, 1.081
 
 def rising(spacing: float, seconds: float) -> tuple[float, float, float]:
     """(largest rise velocity, m/s, least circularity, height of the centre at the end, m) of Hysing's bubble."""
-    flow = flow_of(trials_fluids.hysing(spacing))
+    flow = water_flow(trials_fluids.hysing(spacing))
     swiftest, flattest = 0.0, 1.0
     while flow.time < seconds:
         flow.advance()
         if flow.step % 20 == 0:
-            said = bubble(flow)
+            said = inclusion_row(flow)
             swiftest = max(swiftest, said["bubble rise (m/s)"])
             flattest = min(flattest, said["bubble circularity ()"])
-    return swiftest, flattest, bubble(flow)["bubble centre (m)"]
+    return swiftest, flattest, inclusion_row(flow)["bubble centre (m)"]
 
 
 @VALIDATIONS.row(

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from continuum_sph.build.exit_gradient import NAME
+from continuum_sph.build.sheet_pile import NAME
 from continuum_sph.validation.pile_trials import Around, Heave
 from continuum_sph.validation.seepage_steady_trials import SheetPile
 from porescale.common.evidence.validations import Measured, Validations

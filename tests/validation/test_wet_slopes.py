@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.build.simulation import Simulation
 from continuum_sph.validation import soil_wet as verify_soil_wet
 from continuum_sph.validation.soil_wet import SEEPING, STILL
 from continuum_sph.validation.soil_wet_trials import WetSlope
@@ -55,7 +55,7 @@ def test_permeability_that_does_not_follow_porosity_is_told_apart():
 
 def series(*settings):
     """Columns of the case's series, two seconds after it settled."""
-    return continuum_cases.series(SeepageSimulation, 200, "submerged_slope", "time.end=5", *settings)
+    return continuum_cases.series(Simulation, 200, "submerged_slope", "time.end=5", *settings)
 
 
 @pytest.mark.slow
