@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.errors import no_step
+from continuum_sph.water.no_step import no_step
 from porescale.common.core.errors import Unstable
 
 Floats = NDArray[np.float64]

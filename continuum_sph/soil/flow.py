@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from continuum_sph.errors import no_step
 from continuum_sph.soil.gradient import velocity_gradients
 from continuum_sph.soil.leapfrog import kick, kick_drift
 from continuum_sph.soil.material import DENSITY, TENSION, table
@@ -24,6 +23,7 @@ from continuum_sph.soil.state import Soil
 from continuum_sph.soil.stress import deform
 from continuum_sph.soil.tension import hold_apart
 from continuum_sph.soil.walls import place_walls, show_walls
+from continuum_sph.water.no_step import no_step
 from continuum_sph.water.rates import split_rows
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.neighbors import PairList

@@ -70,16 +70,18 @@ class Soil:
         """Velocity gradients of the last step, (soil, 4) 1/s: ∂v_x/∂x, ∂v_x/∂y, ∂v_y/∂x, ∂v_y/∂y.  A view."""
         return self.record[: self.soil, GXX:]
 
-    KEPT = {name: name for name in (
-        "x", "v", "mass", "density", "stress", "force", "acceleration", "drift", "spread", "record", "matrix", "length",
-    )} | {"opening": "separation_strain", "plastic": "plastic_shear"}  # fmt: skip
-    """Attributes by their names in a checkpoint."""
+    KEPT = (
+        ("x", "x"), ("v", "v"), ("mass", "mass"), ("density", "density"), ("stress", "stress"), ("force", "force"),
+        ("acceleration", "acceleration"), ("drift", "drift"), ("spread", "spread"), ("opening", "separation_strain"),
+        ("plastic", "plastic_shear"), ("record", "record"), ("matrix", "matrix"), ("length", "length"),
+    )  # fmt: skip
+    """Names in a checkpoint, and the attributes that they are of."""
 
     def state(self) -> dict[str, Floats]:
         """Copies of the arrays that later steps depend on."""
-        return {name: getattr(self, own).copy() for name, own in self.KEPT.items()}
+        return {name: getattr(self, own).copy() for name, own in self.KEPT}
 
     def restore(self, state: dict[str, Floats]) -> None:
         """Take over what `state` of an equal soil gave."""
-        for name, own in self.KEPT.items():
+        for name, own in self.KEPT:
             getattr(self, own)[:] = state[name]

@@ -24,13 +24,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.errors import no_step
 from continuum_sph.water.density import LINEAR
 from continuum_sph.water.density_filter import filtered
 from continuum_sph.water.fluids import table
 from continuum_sph.water.image_walls import facing, show_walls, wall_rates
 from continuum_sph.water.kernel_correction import surroundings
 from continuum_sph.water.leapfrog import kick, kick_drift, pressurise
+from continuum_sph.water.no_step import no_step
 from continuum_sph.water.parameters import RULES, Law
 from continuum_sph.water.pressure_walls import load_walls
 from continuum_sph.water.rates import rates, split_rows
