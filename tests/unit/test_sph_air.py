@@ -45,7 +45,7 @@ def test_air_resists_as_much_less_as_it_is_thinner():
 def test_air_is_in_pores_that_no_water_covers():
     given = scene(water={"column": [{"bottom": 0.1, "width": 0.2, "height": 0.2}]})
     soil = np.array([[0.1, 0.05], [0.1, 0.15], [0.19, 0.09]])
-    assert dry_pores(given, soil).tolist() == [[0.1, 0.05], [0.19, 0.09]]
+    assert dry_pores(given.water.column, soil).tolist() == [[0.1, 0.05], [0.19, 0.09]]
 
 
 def test_gas_follows_the_law_of_its_section():
