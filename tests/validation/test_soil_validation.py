@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import importlib.util
 from functools import partial
-from pathlib import Path
 
 import pytest
 
 from continuum_sph.build.simulation import Simulation
+from continuum_sph.cli import validations
 from continuum_sph.validation import soil as verify_soil
-from continuum_sph.validation.validations import VALIDATIONS
 from tests.reference import continuum_cases
 from tests.reference.continuum_cases import missed
+from tests.reference.folders import CASES
 
-CASES = Path(__file__).resolve().parents[2] / "cases"
+VALIDATIONS = validations()
+
 series = partial(continuum_cases.series, Simulation, 200)
 STEEP = "soil.body=[{outline=[[0,0],[3.6,0],[3.6,0.2],[2.04,0.2],[0.5,1.2],[0,1.2]]}]"  # 33 degrees
 
