@@ -14,7 +14,7 @@ SCENES: dict[str, tuple[str, int, str | None, tuple[str, ...]]] = {
         GRAINS, 40, "draft", ("grains.packing.height=3 cm", "domain.height=4.8 cm", "gate.lift_speed=0.5"),
     ),
     "column_collapse_tank/scene.toml": (
-        GRAINS, 60, "draft", ("domain.height=7 cm", "grains.packing.height=6 cm", "rectangle.0.starts_at=0"),
+        GRAINS, 60, "draft", ("domain.height=8 cm", "grains.packing.height=6 cm", "rectangle.0.starts_at=0"),
     ),
     "cylinder_in_channel/scene.toml": (GRAINS, 200, "draft", ()),
     "dry_slope/scene.toml": (CONTINUUM, 200, "draft", ()),

@@ -170,7 +170,10 @@ GROUND = {
     "printed modulus": ('modulus = "printed"\nstress = "none"', ""),
     "clay": ('friction_angle = 0\ncohesion = 1000\ntension = 300\nsides = "hold"', "repulsion = 20"),
     "floor slips": ('floor = "slip"\nrest = 0.6', "settle = 0.05"),
-    "as published": ("", 'gradient = "plain"\ndamping_of = "approach"\ndamping = 0.001\nstress_diffusion = 0\nparting = 0'),
+    "as published": (
+        "",
+        'gradient = "plain"\ndamping_of = "approach"\ndamping = 0.001\nstress_diffusion = 0\nparting = 0',
+    ),
     "by viscosity": ("", "damping_viscosity = 0.08\nrestless_diffusion = 0.1"),
 }
 BESIDE = {"left": "0", "bottom": "0", "width": "0.3", "height": "0.26"}
@@ -197,6 +200,8 @@ def subjects() -> dict[str, Subject]:
         found[f"water/{name}"] = _model(DAM.format(numerics=numerics), 150)
     for name, settings in TANKS.items():
         found[f"water/{name}"] = _model(DAM.format(numerics=""), 150, *settings)
+    crowd = DAM.replace("spacing = 0.02", "spacing = 0.0025").format(numerics=WATER["corrected, shifted"])
+    found["water/crowd"] = _model(crowd, 15)
     for law, density in (("liquid", 500), ("adiabatic", 1.207), ("printed", 1.207)):
         for gradient, tension in (("plain", 0.0), ("corrected", 5.0)):
             text = BUBBLE.format(law=law, density=density, gradient=gradient, tension=tension, more="")

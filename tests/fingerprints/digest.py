@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-DEPTH = 2
-"""Keys that name a part: "state/grains"."""
+DEEP = ("state", "start")
+"""First keys below which parts are told apart by a second one: "state/grains"."""
 SHORT = 8
 """Hex digits of the hash of a part."""
 
@@ -46,8 +46,9 @@ def fingerprint(value: Any) -> tuple[str, dict[str, str]]:
     """Hash (64 hex digits) of ``value``, and short ones of its parts by the first keys of their paths."""
     whole, parts = hashlib.sha256(), {}
     for path, content in leaves(value):
+        part = "/".join(path[: 2 if path[:1] and path[0] in DEEP else 1])
         line = f"{'/'.join(path)}\0{len(content)}\0".encode()
-        for digest in (whole, parts.setdefault("/".join(path[:DEPTH]), hashlib.sha256())):
+        for digest in (whole, parts.setdefault(part, hashlib.sha256())):
             digest.update(line)
             digest.update(content)
     return whole.hexdigest(), {name: it.hexdigest()[:SHORT] for name, it in parts.items()}

@@ -180,8 +180,6 @@ def subjects() -> dict[str, Subject]:
     found["solid/rectangle"] = _solid(more=SLAB)
     found["solid/bodies"] = _solid(more=BODIES)
     found["solid/measured, lubrication"] = _solid(more=LOADS)
-    found["solid/hertz"] = Scene(
-        "porescale", 120,
-        text=DISCS.replace("stiffness = 1e4", 'law = "hertz"\nyoung = 2e6').replace("tangential_stiffness = 2.5e3\n", ""),
-    )  # fmt: skip
+    hertz = DISCS.replace("tangential_stiffness = 2.5e3\n", "").replace("stiffness = 1e4", 'law = "hertz"\nyoung = 2e6')
+    found["solid/hertz"] = Scene("porescale", 120, text=hertz)
     return found

@@ -51,6 +51,14 @@ poisson = 0.25
 damping_ratio = 0.1
 friction = 0.5
 """
+STRAIGHT = ("gravity=[0,-9.81]", "domain.width=5 cm")
+"""Room in which a packing settles."""
+GATE = """
+[gate]
+x = "5 cm"
+opens_at = 0.01
+friction = 0.1
+"""
 STEEL = """
 [[material]]
 name = "sand"
@@ -78,14 +86,14 @@ friction = 0.2
 """
 BODIES = """
 [[clump]]
-discs = [["-3 mm", 0, "4.5 mm"], ["3 mm", 0, "4.5 mm"]]
-at = [["5.6 cm", "1.2 cm"], ["7 cm", "1.2 cm"]]
+discs = [["-2.5 mm", 0, "3.5 mm"], ["2.5 mm", 0, "3.5 mm"]]
+at = [["5.7 cm", "1.2 cm"], ["7.2 cm", "1.2 cm"]]
 angle = [0.3, -0.2]
 [[polygon]]
 sides = 5
 diameter = "12 mm"
 thickness = "1 mm"
-at = [["5.8 cm", "3 cm"], ["7.2 cm", "3.2 cm"]]
+at = [["5.8 cm", "2.8 cm"], ["7.2 cm", "3.2 cm"]]
 [[segment]]
 chain = [["-6 mm", "6 mm"], ["-6 mm", "-4 mm"], ["6 mm", "-4 mm"]]
 thickness = "1 mm"
@@ -182,6 +190,19 @@ kind = "{kind}"
 {more}
 strain = [[0, 0], ["1 s", -0.5]]
 """
+CROWD = """
+[grains.packing]
+settle = false
+left = 0
+width = "90 cm"
+height = "90 cm"
+diameter = "6 mm"
+size_spread = 0.2
+packing_fraction = 0.7
+seed = 3
+"""
+HEAVY = ("gravity=[300,-3000]", "domain.width=90 cm", "domain.height=91 cm", "output.contacts=false")
+"""Gaps close within some steps."""
 ROLLING = ("contact.rolling_friction=0.2", "contact.rolling_stiffness=3e4", "contact.rolling_damping=1")
 ROLLING_HERTZ = ("contact.rolling_friction=0.2", "contact.rolling_stiffness_ratio=0.7")
 
@@ -218,17 +239,36 @@ def _contacts() -> dict[str, Subject]:
     }  # fmt: skip
 
 
+def _crowds() -> dict[str, Subject]:
+    """As many discs as are worth threads: 20 000 or more."""
+    linear, hertz = CROWD + LINEAR, CROWD + HERTZ
+    return {
+        "linear": _grains(linear, *HEAVY, steps=100),
+        "linear, smooth": _grains(CROWD + SMOOTH, *HEAVY, steps=100),
+        "linear, rolling": _grains(linear, *HEAVY, *ROLLING, steps=100),
+        "linear, energy": _grains(linear, *HEAVY, "output.energy=true", steps=100),
+        "linear, materials": _grains(CROWD + STEEL + LINEAR + PAIR, *HEAVY, steps=100),
+        "hertz": _grains(hertz, *HEAVY, steps=100),
+        "hertz, rolling": _grains(hertz, *HEAVY, *ROLLING_HERTZ, steps=100),
+        "bodies": _grains(CROWD.replace("left = 0", 'left = "8 cm"').replace("90 cm", "82 cm") + BODIES + LINEAR,
+                          *HEAVY, steps=100),
+        "bonds": _grains(linear + "[bonds]\nat = 0.001\n", *HEAVY, steps=100),
+    }  # fmt: skip
+
+
 def _bodies() -> dict[str, Subject]:
     """Bodies, bonds, what drives them and what is measured on them."""
-    bonds = '[[bonds]]\nat = 0.02\nbodies = ["grain"]\n[[bonds]]\nat = 0.04\ntension = 20\nwithin = [0, 0, 0.03, 0.03]\n'
+    bonds = (
+        '[[bonds]]\nat = 0.02\nbodies = ["grain"]\n[[bonds]]\nat = 0.04\ntension = 20\nwithin = [0, 0, 0.03, 0.03]\n'
+    )
     linear, hertz = PACKING + LINEAR, PACKING + HERTZ
     grown, pressed = "compress = true\npacking_fraction = 0.83", 'pressure = "5 kPa"'
     sheared = LINEAR.replace("1e5", "1e6").replace("4e4", "5e5")
     return {
-        "settled": _grains(SETTLED + LINEAR, steps=300),
-        "settled, hertz": _grains(SETTLED + HERTZ, steps=300),
-        "asleep": _grains(SETTLED + LINEAR + "[sleep]\nafter = 0.002\n", "gravity=[0,-9.81]", steps=1500),
-        "gate": _grains(SETTLED + LINEAR + '[gate]\nx = "5 cm"\nopens_at = 0.01\nfriction = 0.1\n', steps=1000),
+        "settled": _grains(SETTLED + LINEAR, *STRAIGHT, steps=300),
+        "settled, hertz": _grains(SETTLED + HERTZ, *STRAIGHT, steps=300),
+        "asleep": _grains(SETTLED + LINEAR + "[sleep]\nafter = 0.002\n", *STRAIGHT, steps=1500),
+        "gate": _grains(SETTLED + LINEAR + GATE, "gravity=[0,-9.81]", steps=1000),
         "bonds": _grains(linear + bonds),
         "bonds, hertz": _grains(hertz + bonds),
         "bodies": _grains(PACKING + BODIES + LINEAR),
@@ -237,7 +277,7 @@ def _bodies() -> dict[str, Subject]:
         "bodies, energy": _grains(PACKING + BODIES + LINEAR, "output.energy=true"),
         "bodies, bonds": _grains(PACKING + BODIES + LINEAR + "[bonds]\nat = 0.03\n"),
         "container": _grains(PACKING + CONTAINER + LINEAR),
-        "control and wall": _grains(PACKING + GRAIN + CONTROL + LINEAR),
+        "control and wall": _grains(PACKING.replace("left = 0", 'left = 0\nbottom = "5 mm"') + GRAIN + CONTROL + LINEAR),
         "measured": _grains(linear + REGIONS),
         "rectangle": _grains(linear + '[[rectangle]]\nlower = ["5.2 cm", 0]\nupper = ["5.6 cm", "7 cm"]\n'
                              'velocity = [0, "0.2 m/s"]\nfriction = 0.1\n'),
@@ -246,8 +286,8 @@ def _bodies() -> dict[str, Subject]:
         "cell, grown": _cell("rate_xy = 2", grown, sheared),
         "cell, pressed": _cell('rate_xy = 2\nstress_yy = "5 kPa"\nfastest = 1', pressed, sheared),
         "cell, stresses": _cell('stress_xx = "5 kPa"\nrate_yy = -1\nfastest = 1', pressed, sheared),
-        "rock, cells": _rock("cells", 'pressed = "2 um"'),
-        "rock, triangles": _rock("triangles", 'pressed = "2 um"\nplates = "y"'),
+        "rock, cells": _rock("cells", 'gap = "0.05 mm"\npressed = "2 um"'),
+        "rock, triangles": _rock("triangles", 'gap = "0.05 mm"\npressed = "2 um"\nplates = "y"'),
         "rock, discs": _rock("discs", ""),
     }  # fmt: skip
 
@@ -294,5 +334,6 @@ def _commands() -> dict[str, Subject]:
 def subjects() -> dict[str, Subject]:
     """All by name."""
     found = {f"contact/{name}": it for name, it in _contacts().items()}
+    found |= {f"crowd/{name}": it for name, it in _crowds().items()}
     found |= {f"grains/{name}": it for name, it in _bodies().items()}
     return found | {f"command/{name}": it for name, it in _commands().items()}
