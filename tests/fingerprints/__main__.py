@@ -54,8 +54,9 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=1, help="processes at a time")
     parser.add_argument("--threads", type=int, nargs="+", default=list(THREADS), help="numbers of threads")
     parser.add_argument("--missing", action="store_true", help="write: only what is not recorded")
-    asked = parser.parse_args()
-    names, known = chosen(asked.names, asked.quick), record.read()
+    parser.add_argument("--record", type=Path, default=record.RECORD, help="another record")
+    asked = parser.parse_intermixed_args()
+    names, known = chosen(asked.names, asked.quick), record.read(asked.record)
     if asked.command == "list":
         print("\n".join(names))
         return 0
@@ -67,7 +68,7 @@ def main() -> int:
     bad, began = 0, time.perf_counter()
     for k, (name, found) in enumerate(results(names, asked.jobs, tuple(asked.threads)), 1):
         if asked.command == "write":
-            word = record.kept(name, found, processor)
+            word = record.kept(name, found, processor, asked.record)
         else:
             word = record.compared(known["fingerprints"].get(name), found)
         bad += not word.startswith(("same", "written"))

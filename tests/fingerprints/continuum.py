@@ -183,7 +183,7 @@ STILL = 'smoothing_ratio = 2\ntension = "cut"'
 SEEPAGE = {
     "beside": (BESIDE, "", "", STILL),
     "beside, elastic": (BESIDE, "elastic = true", RESERVOIRS, STILL),
-    "rising level": (BESIDE, CARMAN, RISING, STILL),
+    "rising level": (BESIDE, "", RISING, STILL),
     "over": (OVER, "saturated = true", "", ""),
     "over, kozeny-carman": (OVER, CARMAN, "", 'gradient = "corrected"\nshifting = 1.0'),
     "pile": (OVER, "saturated = true", PILE.format(faces="slip"), STILL),

@@ -30,6 +30,7 @@ size_spread = 0.2
 packing_fraction = 0.7
 seed = 3
 """
+RAISED = PACKING.replace("left = 0", 'left = 0\nbottom = "5 mm"')
 SETTLED = PACKING.replace("settle = false", "settle = true")
 LINEAR = """
 [contact]
@@ -277,7 +278,7 @@ def _bodies() -> dict[str, Subject]:
         "bodies, energy": _grains(PACKING + BODIES + LINEAR, "output.energy=true"),
         "bodies, bonds": _grains(PACKING + BODIES + LINEAR + "[bonds]\nat = 0.03\n"),
         "container": _grains(PACKING + CONTAINER + LINEAR),
-        "control and wall": _grains(PACKING.replace("left = 0", 'left = 0\nbottom = "5 mm"') + GRAIN + CONTROL + LINEAR),
+        "control and wall": _grains(RAISED + GRAIN + CONTROL + LINEAR),
         "measured": _grains(linear + REGIONS),
         "rectangle": _grains(linear + '[[rectangle]]\nlower = ["5.2 cm", 0]\nupper = ["5.6 cm", "7 cm"]\n'
                              'velocity = [0, "0.2 m/s"]\nfriction = 0.1\n'),

@@ -69,7 +69,7 @@ class Child:
 
     def __init__(self, name: str, subject: Subject, threads: tuple[int, ...], room: Path) -> None:
         self.name, self.answer = name, room / f"{name.replace('/', '_')}.json"
-        self.process = get_context("fork").Process(target=_child, args=(subject, threads, self.answer))
+        self.process = get_context("fork").Process(target=_child, args=(subject, threads, self.answer), daemon=True)
         self.process.start()
 
     def result(self) -> dict[str, Any]:

@@ -23,7 +23,7 @@ def read(path: Path = RECORD) -> dict[str, Any]:
     return known
 
 
-def kept(name: str, found: dict[str, Any], processor: str, path: Path = RECORD) -> str:
+def kept(name: str, found: dict[str, Any], processor: str, path: Path) -> str:
     """Write what was found of a name into the record at once; says so."""
     if "error" in found:
         return f"fails: {found['error']}"
