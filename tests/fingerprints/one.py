@@ -28,6 +28,7 @@ PRELOADED = ("numba", "numpy", "scipy.spatial", "pydantic", "matplotlib.figure",
 def preload() -> None:
     """Import in the parent what no child need import again; no kernel is compiled or run here."""
     os.environ.setdefault("NUMBA_NUM_THREADS", str(max(THREADS)))
+    os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")  # threads that wait leave the cores to others
     import_module(places.KERNELS)
     for name in PRELOADED:
         import_module(name)
