@@ -48,10 +48,10 @@ SCENES: dict[str, tuple[str, int, str | None, tuple[str, ...]]] = {
 SCRIPTS: dict[str, Script] = {
     name: Script(f"{name}/{name}.py", steps)
     for name, steps in {
-        "angle_of_repose": 15_000, "biaxial_compression": 15_000, "biaxial_element": 100, "block_pushed_by_soil": 15_000,
-        "bouncing_disc": 2000, "chain_pulse": 1000, "clay_bar": 100, "clump": 3000, "consolidation": 100,
-        "demseg_chain": 2000, "demseg_clump": 2000, "demseg_control": 2000, "demseg_disc": 2000,
-        "demseg_repose": 10_000, "demseg_segment": 2000, "demseg_triangle": 2000, "dry_column_collapse": 10_000,
+        "angle_of_repose": 15_000, "biaxial_compression": 15_000, "biaxial_element": 100,
+        "block_pushed_by_soil": 15_000, "bouncing_disc": 2000, "chain_pulse": 1000, "clay_bar": 100,
+        "clump": 3000, "consolidation": 100, "demseg_chain": 2000, "demseg_clump": 2000, "demseg_control": 2000,
+        "demseg_disc": 2000, "demseg_repose": 10_000, "demseg_segment": 2000, "demseg_triangle": 2000, "dry_column_collapse": 10_000,
         "dry_levee": 60, "grain_size": 10_000, "hanging_chain": 2000, "imbibition": 60, "liquid_columns": 200,
         "micro_to_macro": 50, "oscillating_drop": 60, "rectangular_dam": 60, "rock": 15_000,
         "rolling_on_a_slope": 2000, "saturated_levee": 40, "sheet_pile": 40, "sheet_pile_failure": 40,
@@ -61,7 +61,6 @@ SCRIPTS: dict[str, Script] = {
 } | {
     "column_collapse_piv": Script("column_collapse_piv/column_collapse_piv.py", 4),
     "column_collapse_piv sweep": Script("column_collapse_piv/sweep.py", 4),
-    "column_collapse_table1": Script("column_collapse_table1/implied.py"),
     "collapsing_water_column release": Script("collapsing_water_column/release.py", 150),
     "piv_cavity": Script("piv_cavity/piv_cavity.py", 150),
     "piv_synthetic": Script("piv_synthetic/piv_synthetic.py", pairs=6, arguments=("--seeds", "1")),
@@ -70,6 +69,7 @@ SCRIPTS: dict[str, Script] = {
 NO_SUBJECT = {
     "column_collapse_piv/filmed.py": "imported by the script beside it",
     "column_collapse_piv/variants.py": "imported by the script beside it",
+    "column_collapse_table1/implied.py": "draws the numbers of a refusal",
     "column_collapse_table1/scene.toml": "is there to be refused",
     "collapsing_water_column/trade.toml": "of a study, not a scene",
     "column_collapse/trade.toml": "of a study, not a scene",

@@ -168,7 +168,7 @@ GROUND = {
     "dilatant, cohesive": ('dilatancy_angle = "5 degree"\ncohesion = 200\ntension = 100', ""),
     "elastic, stiffening": ("elastic = true\nexponent = 0.5", ""),
     "printed modulus": ('modulus = "printed"\nstress = "none"', ""),
-    "clay": ('friction_angle = 0\ncohesion = 1000\ntension = 300\nsides = "hold"', "repulsion = 20"),
+    "clay": ('friction_angle = 0\ncohesion = 5e-40\ntension = 300\nsides = "hold"', "repulsion = 20"),
     "floor slips": ('floor = "slip"\nrest = 0.6', "settle = 0.05"),
     "as published": (
         "",
@@ -206,7 +206,7 @@ def subjects() -> dict[str, Subject]:
         for gradient, tension in (("plain", 0.0), ("corrected", 5.0)):
             text = BUBBLE.format(law=law, density=density, gradient=gradient, tension=tension, more="")
             found[f"inclusion/{law}, {gradient}"] = _model(text, 100)
-    text = BUBBLE.format(law="adiabatic", density=1.207, gradient="plain", tension=0.0, more="cohesion = 100")
+    text = BUBBLE.format(law="adiabatic", density=1.207, gradient="plain", tension=0.0, more="cohesion = 5e-4")
     found["inclusion/cohesion"] = _model(text, 100)
     for name, (soil, numerics) in GROUND.items():
         found[f"soil/{name}"] = _model(SOIL.format(soil=soil, numerics=numerics), 150)

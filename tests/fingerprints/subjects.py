@@ -6,7 +6,6 @@ import contextlib
 import csv
 import functools
 import inspect
-import io
 import os
 import runpy
 import subprocess
@@ -127,7 +126,7 @@ class Watch:
 class Script:
     """A script of cases, stopped after ``steps`` steps of what it steps, or ``pairs`` measured.
 
-    One that ends before has the numbers that it judges, and one without what it says.
+    One that ends before has the numbers that it judges.
     """
 
     file: str
@@ -148,12 +147,13 @@ class Script:
                     stack.enter_context(swapped(place, functools.partial(watch.stepping, state_of=state_of)))
             stack.enter_context(swapped(places.CONCLUDE, lambda _: watch.concluding))
             stack.enter_context(swapped(places.SET_THREADS, lambda _: lambda count=None: threads))
-            said = stack.enter_context(contextlib.redirect_stdout(io.StringIO()))
             with _as_program(path, self.arguments), contextlib.suppress(Enough, SystemExit):
                 runpy.run_path(str(path), run_name="__main__")
             if "state" in watch.value:
                 watch.value["state"] = watch.value["state"]()
-        return watch.value or {"said": said.getvalue()}, watch.done
+        if not watch.value:
+            raise RuntimeError(f"{self.file} neither stepped nor concluded")
+        return watch.value, watch.done
 
 
 @dataclass(frozen=True)
