@@ -263,7 +263,7 @@ def _bodies() -> dict[str, Subject]:
         '[[bonds]]\nat = 0.02\nbodies = ["grain"]\n[[bonds]]\nat = 0.04\ntension = 20\nwithin = [0, 0, 0.03, 0.03]\n'
     )
     linear, hertz = PACKING + LINEAR, PACKING + HERTZ
-    grown, pressed = "compress = true\npacking_fraction = 0.83", 'pressure = "5 kPa"'
+    grown, pressed = "compress = true\npacking_fraction = 0.8", 'pressure = "5 kPa"'
     sheared = LINEAR.replace("1e5", "1e6").replace("4e4", "5e5")
     return {
         "settled": _grains(SETTLED + LINEAR, *STRAIGHT, steps=300),
