@@ -103,9 +103,9 @@ at = [["6.5 cm", "5 cm"]]
 CONTAINER = """
 [[container]]
 name = "drum"
-chain = [["5.2 cm", "2 mm"], ["5.2 cm", "5 cm"]]
+chain = [["5.2 cm", "5 cm"], ["5.2 cm", "3 mm"], ["7.6 cm", "3 mm"]]
 thickness = "1 mm"
-pivot = ["5.2 cm", "2 mm"]
+pivot = ["6 cm", "2 cm"]
 rotation = { displacement = [[0, 0], [0.2, -0.5]] }
 record = true
 """
