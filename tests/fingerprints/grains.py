@@ -195,14 +195,14 @@ CROWD = """
 [grains.packing]
 settle = false
 left = 0
-width = "90 cm"
-height = "90 cm"
+width = "95 cm"
+height = "95 cm"
 diameter = "6 mm"
 size_spread = 0.2
 packing_fraction = 0.7
 seed = 3
 """
-HEAVY = ("gravity=[300,-3000]", "domain.width=90 cm", "domain.height=91 cm", "output.contacts=false")
+HEAVY = ("gravity=[30,-300]", "domain.width=95 cm", "domain.height=96 cm", "output.contacts=false")
 """Gaps close within some steps."""
 ROLLING = ("contact.rolling_friction=0.2", "contact.rolling_stiffness=3e4", "contact.rolling_damping=1")
 ROLLING_HERTZ = ("contact.rolling_friction=0.2", "contact.rolling_stiffness_ratio=0.7")
@@ -243,17 +243,17 @@ def _contacts() -> dict[str, Subject]:
 def _crowds() -> dict[str, Subject]:
     """As many discs as are worth threads: 20 000 or more."""
     linear, hertz = CROWD + LINEAR, CROWD + HERTZ
+    beside = CROWD.replace('left = 0\nwidth = "95 cm"', 'left = "8 cm"\nwidth = "87 cm"')
     return {
-        "linear": _grains(linear, *HEAVY, steps=100),
-        "linear, smooth": _grains(CROWD + SMOOTH, *HEAVY, steps=100),
-        "linear, rolling": _grains(linear, *HEAVY, *ROLLING, steps=100),
-        "linear, energy": _grains(linear, *HEAVY, "output.energy=true", steps=100),
-        "linear, materials": _grains(CROWD + STEEL + LINEAR + PAIR, *HEAVY, steps=100),
-        "hertz": _grains(hertz, *HEAVY, steps=100),
-        "hertz, rolling": _grains(hertz, *HEAVY, *ROLLING_HERTZ, steps=100),
-        "bodies": _grains(CROWD.replace("left = 0", 'left = "8 cm"').replace("90 cm", "82 cm") + BODIES + LINEAR,
-                          *HEAVY, steps=100),
-        "bonds": _grains(linear + "[bonds]\nat = 0.001\n", *HEAVY, steps=100),
+        "linear": _grains(linear, *HEAVY, steps=60),
+        "linear, smooth": _grains(CROWD + SMOOTH, *HEAVY, steps=60),
+        "linear, rolling": _grains(linear, *HEAVY, *ROLLING, steps=60),
+        "linear, energy": _grains(linear, *HEAVY, "output.energy=true", steps=60),
+        "linear, materials": _grains(CROWD + STEEL + LINEAR + PAIR, *HEAVY, steps=60),
+        "hertz": _grains(hertz, *HEAVY, steps=60),
+        "hertz, rolling": _grains(hertz, *HEAVY, *ROLLING_HERTZ, steps=60),
+        "bodies": _grains(beside + BODIES + LINEAR, *HEAVY, steps=60),
+        "bonds": _grains(linear + "[bonds]\nat = 0.006\n", *HEAVY, steps=60),
     }  # fmt: skip
 
 
@@ -303,7 +303,7 @@ def _rock(kind: str, more: str) -> Scene:
 
 def _commands() -> dict[str, Subject]:
     """What commands leave in files."""
-    few = "--set grains.packing.height=12mm --set domain.height=14mm --set time.end=0.012"
+    few = "--set grains.packing.height=12mm --set domain.height=15mm --set time.end=0.012"
     run = f"porescale run {{cases}}/lifting_gate --out run --quiet --threads {{threads}} {few}"
     film = "porescale piv render run --out film --scale 0.1mm --interval 1ms --start 0.004s"
     cavity = "--quality draft --set time.end=2 --set output.snapshot_interval=0.2"
@@ -312,7 +312,8 @@ def _commands() -> dict[str, Subject]:
         "piv": Commands(
             (f"porescale run {{cases}}/lid_driven_cavity --out run --quiet --threads {{threads}} {cavity}",
              "porescale piv render run --out film --scale 5mm --interval 20ms --start 1.5s --end 1.6s",
-             "porescale piv measure film --out fields --csv field.csv --scale 5mm --interval 20ms --threads {threads}"),
+             "porescale piv measure film/frames --out fields --csv field.csv --scale 5mm --interval 20ms"
+             " --threads {threads}"),
             ("*.csv", "fields/*.csv"),
         ),
         "piv synth": Commands(
@@ -328,7 +329,7 @@ def _commands() -> dict[str, Subject]:
             ("run/*.dat", "run/*.csv"),
         ),
         "demseg convert": Commands(("porescale demseg convert {cases}/demseg_triangle --out made",), ("made/*.toml",)),
-        "film of run": Commands((run, film), ("film/*.json", "film/*.csv")),
+        "film of run": Commands((run, film), ("film/*/*.png",)),
     }  # fmt: skip
 
 

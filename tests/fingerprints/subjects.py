@@ -18,6 +18,7 @@ from typing import Any, Protocol
 
 import h5py
 import numpy as np
+from PIL import Image
 
 from tests.fingerprints import places
 
@@ -184,7 +185,9 @@ class Commands:
 
 
 def content(path: Path) -> Any:
-    """What a file says: arrays of an .h5 or .vtkhdf, rows of a .csv, else its text."""
+    """What a file says: arrays of an .h5 or .vtkhdf, values of a .png, rows of a .csv, else its text."""
+    if path.suffix == ".png":
+        return np.asarray(Image.open(path))
     if path.suffix in (".h5", ".vtkhdf"):
         found: dict[str, Any] = {}
         with h5py.File(path) as file:
