@@ -11,21 +11,23 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-KERNELS = "porescale.ground.jit"
+KERNELS = "porescale.common.compiled.jit"
 """Its import chooses the folder of compiled kernels."""
-MACHINE = "porescale.ground.machine:machine"
+MACHINE = "porescale.common.core.machine:machine"
 """() -> {"processor": …}."""
-SET_THREADS = "porescale.ground.jit:set_threads"
+SET_THREADS = "porescale.common.compiled.jit:set_threads"
 """Called by scripts that choose their threads themselves."""
-CONCLUDE = "porescale.scene.case:conclude"
+CONCLUDE = "porescale.output.case:conclude"
 """(folder, numbers, figure, out): the end of a script."""
-MEASURE = "porescale.piv.measure:measure"
+MEASURE = "porescale.piv.estimate.measure:measure"
 """(first, second, mask, settings) -> displacements of a pair of pictures."""
-OPEN_SCENE = "porescale.workbench.sections:open_scene"
+OPEN_SCENE = "porescale.common.schema.sections:open_scene"
 """(path, type of the scene, quality=, overrides=) with the attribute ``scene``."""
-CONTINUUM_TYPE = "continuum_sph.app:scene_type"
+LOAD, BUILD = "porescale.build.build:load_scene", "porescale.build.build:build"
+"""(path, quality=, settings=) -> scene -> model."""
+CONTINUUM_TYPE = "continuum_sph.cli:scene_type"
 """() -> type of a continuum scene."""
-CONTINUUM_BUILD = "continuum_sph.app:build"
+CONTINUUM_BUILD = "continuum_sph.cli:build"
 """(scene) -> model."""
 
 
@@ -41,10 +43,10 @@ def seepage_state(both: Any) -> Any:
 
 
 STEPPERS: dict[str, Callable[[Any], Any]] = {
-    "porescale.dem.system:Grains.step": plain_state,
+    "porescale.dem.grains:Grains.step": plain_state,
     "porescale.coupling.step:Coupled.advance": plain_state,
     "porescale.lbm.fluid:Fluid.advance": plain_state,
-    "continuum_sph.step:Flow.advance": plain_state,
+    "continuum_sph.water.step:Flow.advance": plain_state,
     "continuum_sph.soil.flow:SoilFlow.advance": plain_state,
     "continuum_sph.seepage.step:Seepage.advance": seepage_state,
 }
@@ -69,9 +71,7 @@ def owner(place: str) -> tuple[Any, str]:
 
 def grains_and_fluid(path: Path, quality: str | None, settings: Sequence[str]) -> Any:
     """The model of a scene of porescale."""
-    import porescale
-
-    return porescale.build(porescale.load(path, quality=quality, settings=settings))
+    return fetch(BUILD)(fetch(LOAD)(path, quality=quality, settings=settings))
 
 
 def continuum(path: Path, quality: str | None, settings: Sequence[str]) -> Any:
