@@ -8,7 +8,11 @@ from typing import Any
 
 import numpy as np
 
+<<<<<<< HEAD
 from continuum_sph.benchmarks.extremes_seepage import SEEPAGE
+=======
+from continuum_sph.build.model import Simulation
+>>>>>>> main
 from continuum_sph.build.report import report
 from continuum_sph.build.simulation import Simulation
 from continuum_sph.build.water import WaterPart
@@ -190,6 +194,5 @@ EXTREMES = Extremes(
         *(Extreme("leaving the domain", f"thrown up at {speed:g} c0", thrown(speed)) for speed in (0.3, 0.9)),
         *(Extreme("leaving the domain", f"thrown down at {speed:g} c0", thrown(-speed)) for speed in (0.3, 3.0)),
         Extreme("leaving the domain", "position lost", broken),
-        *SEEPAGE,
     ]
 )  # fmt: skip
