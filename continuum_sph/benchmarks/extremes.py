@@ -8,11 +8,6 @@ from typing import Any
 
 import numpy as np
 
-<<<<<<< HEAD
-from continuum_sph.benchmarks.extremes_seepage import SEEPAGE
-=======
-from continuum_sph.build.model import Simulation
->>>>>>> main
 from continuum_sph.build.report import report
 from continuum_sph.build.simulation import Simulation
 from continuum_sph.build.water import WaterPart
@@ -42,7 +37,7 @@ def driven(model: Simulation, end: float, judged: bool = False) -> str | Judged:
     while model.time < end:
         model.advance(CHECKED)
         model.check()
-        fastest = max(fastest, model.flow.max_speed)
+        fastest = max(fastest, model.flow.swiftest)
         if way is None and model.time >= JUDGED:
             way = front(model)
     energy = book(model.flow)["energy balance"] / start if start else 1.0

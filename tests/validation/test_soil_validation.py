@@ -7,13 +7,8 @@ from functools import partial
 
 import pytest
 
-<<<<<<< HEAD
 from continuum_sph.build.simulation import Simulation
-from continuum_sph.cli import validations
-=======
-from continuum_sph.build.soil_model import SoilSimulation
 from continuum_sph.cli import PACKAGE
->>>>>>> main
 from continuum_sph.validation import soil as verify_soil
 from tests.reference import continuum_cases
 from tests.reference.continuum_cases import missed

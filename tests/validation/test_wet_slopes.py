@@ -4,13 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-<<<<<<< HEAD
 from continuum_sph.build.simulation import Simulation
-from continuum_sph.cli import validations
-=======
-from continuum_sph.build.seepage_model import SeepageSimulation
 from continuum_sph.cli import PACKAGE
->>>>>>> main
 from continuum_sph.validation import soil_wet as verify_soil_wet
 from continuum_sph.validation.soil_wet import SEEPING, STILL, WetSlope
 from tests.reference import continuum_cases
