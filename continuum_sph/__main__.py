@@ -2,6 +2,6 @@
 
 import sys
 
-from continuum_sph.app import main
+from continuum_sph.cli import main
 
 sys.exit(main())

@@ -9,18 +9,20 @@ from __future__ import annotations
 
 from typing import Any
 
-__version__ = "0.1.0"
+from porescale.common.core.version import VERSION
+
+__version__ = VERSION
 __all__ = ["Scene", "Simulation", "__version__", "build", "load", "open_run"]
 
 
 def __getattr__(name: str) -> Any:
     """The API of a handful of names, imported when first asked for: --help must not wait for a compiler."""
     if name == "load":
-        from porescale.scene.build import load_scene
+        from porescale.build.build import load_scene
 
         return load_scene
     if name == "build":
-        from porescale.scene.build import build
+        from porescale.build.build import build
 
         return build
     if name == "Scene":
@@ -28,11 +30,11 @@ def __getattr__(name: str) -> Any:
 
         return Scene
     if name == "Simulation":
-        from porescale.scene.simulation import Simulation
+        from porescale.build.simulation import Simulation
 
         return Simulation
     if name == "open_run":
-        from porescale.runs.open_run import open_run
+        from porescale.common.record.open_run import open_run
 
         return open_run
     raise AttributeError(f"porescale has no {name!r}; it has {', '.join(__all__)}")

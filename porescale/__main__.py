@@ -2,6 +2,6 @@
 
 import sys
 
-from porescale.app.main import main
+from porescale.cli.main import main
 
 sys.exit(main())

@@ -11,14 +11,14 @@ from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from porescale.common.neighbors.placement import place
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.energy import energy_book
-from porescale.dem.rectangle import Rectangle
-from porescale.dem.system import Grains
-from porescale.dem.walls import HIGH, Box, Plate
-from porescale.particles.placement import place
-from porescale.scene.case import conclude, options, stage
+from porescale.dem.forces.rectangle import Rectangle
+from porescale.dem.forces.walls import HIGH, Box, Plate
+from porescale.dem.grains import Grains
+from porescale.dem.measures.energy import energy_book
+from porescale.output.case import conclude, options, stage
 
 Array = NDArray[np.float64]
 

@@ -14,13 +14,13 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from porescale import build, load
-from porescale.dem.contacts import contacts
 from porescale.dem.discs import make_discs
+from porescale.dem.forces.walls import PX, PY
+from porescale.dem.grains import Grains
 from porescale.dem.measures.coarse_graining import CoarseGrained, Raster
-from porescale.dem.schedule import Table
-from porescale.dem.system import Grains
-from porescale.dem.walls import PX, PY
-from porescale.scene.case import conclude, options, stage
+from porescale.dem.measures.contacts import contacts
+from porescale.dem.motion.time_function import Table
+from porescale.output.case import conclude, options, stage
 
 Array = NDArray[np.float64]
 

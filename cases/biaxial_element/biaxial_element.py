@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.scene.trials_soil_element import biaxial, confined
 from continuum_sph.soil import Material
 from continuum_sph.soil.state import XX, YY
-from porescale.scene.case import conclude, options, stage
+from continuum_sph.validation.soil_element_trials import biaxial, confined
+from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 PRESSURE = 1e5  # Pa

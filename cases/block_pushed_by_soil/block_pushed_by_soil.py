@@ -15,20 +15,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from porescale.common.core.constants import GRAVITY
+from porescale.common.neighbors.placement import place
+from porescale.common.pictures.film import write_film
+from porescale.dem.bodies.frames import chain, framed, polygon
 from porescale.dem.contact.linear import Linear
-from porescale.dem.control import Control, Moved
 from porescale.dem.discs import make_discs
-from porescale.dem.experiments_segments import OPEN, REST, weights
-from porescale.dem.frames import chain, framed, polygon
-from porescale.dem.schedule import Table
-from porescale.dem.steering import Clump
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box
-from porescale.ground.constants import GRAVITY
-from porescale.particles.placement import place
-from porescale.runs.film import write_film
-from porescale.scene.case import conclude, options, stage
-from porescale.scene.case_bodies import LARGEST, PLATE, Shot, draw_bodies, frame, pixels, shot
+from porescale.dem.forces.walls import Box
+from porescale.dem.grains import Grains
+from porescale.dem.motion.control import Control, Moved
+from porescale.dem.motion.drivers import Clump
+from porescale.dem.motion.time_function import Table
+from porescale.output.case import conclude, options, stage
+from porescale.output.case_bodies import LARGEST, PLATE, Shot, draw_bodies, frame, pixels, shot
+from porescale.validation.dem.segments_trials import OPEN, REST, weights
 
 Array = NDArray[np.float64]
 

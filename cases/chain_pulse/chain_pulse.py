@@ -12,9 +12,9 @@ from scipy.special import jn_zeros, jnp_zeros, jv
 
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box
-from porescale.scene.case import conclude, options, stage
+from porescale.dem.forces.walls import Box
+from porescale.dem.grains import Grains
+from porescale.output.case import conclude, options, stage
 
 Array = NDArray[np.float64]
 

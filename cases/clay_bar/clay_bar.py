@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from continuum_sph.scene.trials_soil import bar_that_spins, elongation
-from porescale.scene.case import conclude, options, stage
+from continuum_sph.validation.soil_trials import bar_that_spins, elongation
+from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 PULLS = (0.0045, 0.018)  # tension in the middle over E'

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from scipy.integrate import quad
 
 from porescale import build, load
-from porescale.dem.energy import energy_book
-from porescale.dem.system import Grains
-from porescale.scene.case import conclude, options, stage
+from porescale.dem.grains import Grains
+from porescale.dem.measures.energy import energy_book
+from porescale.output.case import conclude, options, stage
 
 Array = NDArray[np.float64]
 

@@ -6,12 +6,13 @@ import argparse
 
 import numpy as np
 
-from continuum_sph.layers import Layer
-from continuum_sph.scene import trials, verify
-from continuum_sph.scene.build import flow_of, wall_layers
-from continuum_sph.step import Flow
-from porescale.ground.constants import GRAVITY
-from porescale.particles import PairList, square_lattice
+from continuum_sph.build.build import flow_of, wall_layers
+from continuum_sph.validation import trials
+from continuum_sph.validation import water as verify
+from continuum_sph.water.state import Layer
+from continuum_sph.water.step import Flow
+from porescale.common.core.constants import GRAVITY
+from porescale.common.neighbors import PairList, square_lattice
 
 SCALE = (2.0 * GRAVITY) ** 0.5  # 1/s, √(2g/a), a = 1 m
 WIDTH, HEIGHT = 1.0, 2.0  # m

@@ -14,16 +14,16 @@ from filmed import BOX, FLOWS, RATE, STIRS, TANK, Place, film, lattice, named, r
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from porescale.app.run import build
-from porescale.ground.jit import set_threads
-from porescale.piv.compare import compare
-from porescale.piv.field import Field
-from porescale.piv.vortices import Vortex, vortices
-from porescale.runs.drive import drive
-from porescale.runs.open_run import open_run
-from porescale.scene.case import conclude, options
+from porescale.cli.run import build
+from porescale.common.compiled.jit import set_threads
+from porescale.common.record.drive import drive
+from porescale.common.record.open_run import open_run
+from porescale.common.schema.sections import open_scene, scene_as_dict
+from porescale.output.case import conclude, options
+from porescale.piv.fields.compare import compare
+from porescale.piv.fields.field import Field
+from porescale.piv.fields.vortices import Vortex, vortices
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import open_scene, scene_as_dict
 
 HERE = Path(__file__).resolve().parent
 FASTER = 240.0

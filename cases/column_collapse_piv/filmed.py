@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.piv.camera import Shooting, frames, shooting
-from porescale.piv.field import Field, in_metres, in_pixels
-from porescale.piv.measure import Settings, measure
-from porescale.piv.of_run import field_of_run
-from porescale.piv.synth import Camera
-from porescale.piv.vortices import Vortex, vortices
-from porescale.runs.open_run import Run, open_run
+from porescale.common.record.open_run import Run, open_run
+from porescale.piv.estimate.measure import Settings, measure
+from porescale.piv.fields.field import Field, in_metres, in_pixels
+from porescale.piv.fields.of_run import field_of_run
+from porescale.piv.fields.vortices import Vortex, vortices
+from porescale.piv.images.camera import Shooting, frames, shooting
+from porescale.piv.images.synth import Camera
 
 Array = NDArray[np.float64]
 

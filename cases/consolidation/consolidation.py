@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.scene.trials_seepage import Consolidation, isochrones, realised_modulus
-from continuum_sph.scene.verify_seepage import FACTORS, consolidation
-from porescale.scene.case import conclude, options, stage
+from continuum_sph.validation.seepage import FACTORS, consolidation
+from continuum_sph.validation.seepage_trials import Consolidation, isochrones, realised_modulus
+from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 RATIOS = (1.0, 4.0, 20.0)

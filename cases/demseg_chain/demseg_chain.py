@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from porescale.decks.build import Options
-from porescale.decks.deck import NEW, read_deck
-from porescale.decks.run import DeckRun
-from porescale.decks.tension import tensions
-from porescale.decks.trace import Trace, draw_shapes, trace
-from porescale.scene.case import conclude, options, stage
+from porescale.demseg.build import Options
+from porescale.demseg.deck import NEW, read_deck
+from porescale.demseg.run import DeckRun
+from porescale.demseg.tension import tensions
+from porescale.demseg.trace import Trace, draw_shapes, trace
+from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 PULLED = "body 20: "

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from porescale.decks.trace import draw_fall, fallen
-from porescale.scene.case import conclude, options, stage
+from porescale.demseg.trace import draw_fall, fallen
+from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 

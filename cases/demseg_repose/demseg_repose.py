@@ -10,9 +10,9 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from matplotlib.figure import Figure
 
-from porescale.decks.deck import MOVED, NEW, Body, Control, Deck, read_deck
-from porescale.decks.trace import Trace, draw_energies, draw_shapes, trace, unbalanced
-from porescale.scene.case import conclude, options, stage
+from porescale.demseg.deck import MOVED, NEW, Body, Control, Deck, read_deck
+from porescale.demseg.trace import Trace, draw_energies, draw_shapes, trace, unbalanced
+from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 MORE, FLOWING = 10_000, 100_000  # steps

@@ -15,14 +15,14 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from porescale.common.core.constants import GRAVITY
+from porescale.common.neighbors.placement import place
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.measure import centre_of_mass
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box, Plate
-from porescale.ground.constants import GRAVITY
-from porescale.particles.placement import place
-from porescale.scene.case import conclude, options, stage
+from porescale.dem.forces.walls import Box, Plate
+from porescale.dem.grains import Grains
+from porescale.dem.measures.survey import centre_of_mass
+from porescale.output.case import conclude, options, stage
 
 Array = NDArray[np.float64]
 

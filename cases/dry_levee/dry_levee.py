@@ -10,12 +10,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from continuum_sph.scene.trials_dam import POROSITY
-from continuum_sph.scene.trials_wetting import BOUSSINESQ, Levee, sag
 from continuum_sph.seepage import Seepage
-from porescale.runs.film import write_film
-from porescale.scene.case import conclude, options, stage
-from porescale.scene.case_bodies import pixels
+from continuum_sph.validation.dam_trials import POROSITY
+from continuum_sph.validation.wetting_trials import BOUSSINESQ, Levee, sag
+from porescale.common.pictures.film import write_film
+from porescale.output.case import conclude, options, stage
+from porescale.output.case_bodies import pixels
 
 Floats = NDArray[np.float64]
 

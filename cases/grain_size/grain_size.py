@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.packing import Press, kept
-from porescale.dem.rectangle import Rectangle
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box
-from porescale.scene.case import conclude, options, stage
+from porescale.dem.forces.rectangle import Rectangle
+from porescale.dem.forces.walls import Box
+from porescale.dem.grains import Grains
+from porescale.dem.prepare.compaction import Press, kept
+from porescale.output.case import conclude, options, stage
 
 Array = NDArray[np.float64]
 

@@ -10,15 +10,15 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from porescale.common.core.constants import GRAVITY
 from porescale.dem.contact.linear import Linear
-from porescale.dem.control import Moved
-from porescale.dem.experiments import MASS, RADIUS
-from porescale.dem.experiments_segments import catenary, hung, weights
-from porescale.dem.schedule import Table
-from porescale.dem.system import Grains
-from porescale.ground.constants import GRAVITY
-from porescale.scene.case import conclude, options, stage
-from porescale.scene.case_bodies import Shot, by_piece, draw_bodies, frame, shot
+from porescale.dem.grains import Grains
+from porescale.dem.motion.control import Moved
+from porescale.dem.motion.time_function import Table
+from porescale.output.case import conclude, options, stage
+from porescale.output.case_bodies import Shot, by_piece, draw_bodies, frame, shot
+from porescale.validation.dem.discs_trials import MASS, RADIUS
+from porescale.validation.dem.segments_trials import catenary, hung, weights
 
 Array = NDArray[np.float64]
 

@@ -9,11 +9,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from continuum_sph.scene.trials_infiltration import Imbibition
 from continuum_sph.seepage import Seepage
-from porescale.runs.film import write_film
-from porescale.scene.case import conclude, options, stage
-from porescale.scene.case_bodies import pixels
+from continuum_sph.validation.infiltration_trials import Imbibition
+from porescale.common.pictures.film import write_film
+from porescale.output.case import conclude, options, stage
+from porescale.output.case_bodies import pixels
 
 HERE = Path(__file__).resolve().parent
 WATCHED = (0.3, 0.6, 0.9)  # s

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from continuum_sph.scene.model import Simulation
+from continuum_sph.build.model import Simulation
 from continuum_sph.scene.sections import Scene
-from porescale.scene.case import conclude, options, stage
-from porescale.workbench.sections import validate
+from porescale.common.schema.sections import validate
+from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 WIDTH, HEIGHT, TANK = 0.05, 0.1, 0.2  # m

@@ -11,18 +11,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from continuum_sph.build.soil_build import ground_of
+from continuum_sph.build.soil_model import SoilSimulation
 from continuum_sph.scene.material_file import speed
 from continuum_sph.scene.sections import Scene as SoilScene
-from continuum_sph.scene.soil_build import ground_of
-from continuum_sph.scene.soil_model import SoilSimulation
 from continuum_sph.scene.soil_sections import Ground
-from continuum_sph.scene.trials_seepage import Permeameter, upward
-from continuum_sph.scene.trials_soil_element import biaxial
+from continuum_sph.validation.seepage_trials import Permeameter, upward
+from continuum_sph.validation.soil_element_trials import biaxial
 from porescale import build, load
-from porescale.ground.constants import GRAVITY
-from porescale.runs.model import Model
-from porescale.scene.case import conclude, options, stage
-from porescale.workbench.sections import open_scene
+from porescale.common.core.constants import GRAVITY
+from porescale.common.record.model import Model
+from porescale.common.schema.sections import open_scene
+from porescale.output.case import conclude, options, stage
 
 Array = NDArray[np.float64]
 

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.exact_drop import drop_swing, swing_period
-from continuum_sph.scene import trials_fluids
-from continuum_sph.scene.trials import run_until
-from continuum_sph.scene.trials_fluids import OUTER, SWINGING, TENSION
-from porescale.scene.case import conclude, options, stage
+from continuum_sph.validation import fluids_trials as trials_fluids
+from continuum_sph.validation.exact_drop import drop_swing, swing_period
+from continuum_sph.validation.fluids_trials import OUTER, SWINGING, TENSION
+from continuum_sph.validation.trials import run_until
+from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 RADIUS, AT_REST = 0.2, 0.25  # m

@@ -12,20 +12,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from porescale.app.run import build
-from porescale.ground.jit import set_threads
-from porescale.piv.camera import Frame, Shooting, frames, shooting
-from porescale.piv.compare import Comparison, compare
-from porescale.piv.field import Field, in_metres, in_pixels
-from porescale.piv.measure import Settings, measure
-from porescale.piv.of_run import field_of_run
-from porescale.piv.synth import Camera
-from porescale.piv.vortices import Vortex, vortices
-from porescale.runs.drive import drive
-from porescale.runs.open_run import open_run
-from porescale.scene.case import conclude, options, stage
+from porescale.cli.run import build
+from porescale.common.compiled.jit import set_threads
+from porescale.common.record.drive import drive
+from porescale.common.record.open_run import open_run
+from porescale.common.schema.sections import open_scene, scene_as_dict
+from porescale.output.case import conclude, options, stage
+from porescale.piv.estimate.measure import Settings, measure
+from porescale.piv.fields.compare import Comparison, compare
+from porescale.piv.fields.field import Field, in_metres, in_pixels
+from porescale.piv.fields.of_run import field_of_run
+from porescale.piv.fields.vortices import Vortex, vortices
+from porescale.piv.images.camera import Frame, Shooting, frames, shooting
+from porescale.piv.images.synth import Camera
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import open_scene, scene_as_dict
 
 Array = NDArray[np.float64]
 

@@ -12,13 +12,13 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from porescale.ground.jit import set_threads
-from porescale.piv import experiments as lab
-from porescale.piv import flows
-from porescale.piv.measure import Settings, measure
-from porescale.piv.synth import Camera, Pair, pair
-from porescale.runs.atomic import write_text
-from porescale.scene.case import conclude, options, stage
+from porescale.common.compiled.jit import set_threads
+from porescale.common.core.atomic import write_text
+from porescale.output.case import conclude, options, stage
+from porescale.piv.estimate.measure import Settings, measure
+from porescale.piv.images import flows
+from porescale.piv.images.synth import Camera, Pair, pair
+from porescale.validation.piv import pairs_trials as lab
 
 Array = NDArray[np.float64]
 

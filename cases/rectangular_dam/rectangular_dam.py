@@ -11,12 +11,12 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
-from continuum_sph.scene.trials_dam import STATIONS, WATER, Dam, steady
 from continuum_sph.seepage import Seepage
-from porescale.ground.constants import GRAVITY
-from porescale.runs.film import write_film
-from porescale.scene.case import conclude, options, stage
-from porescale.scene.case_bodies import pixels
+from continuum_sph.validation.dam_trials import STATIONS, WATER, Dam, steady
+from porescale.common.core.constants import GRAVITY
+from porescale.common.pictures.film import write_film
+from porescale.output.case import conclude, options, stage
+from porescale.output.case_bodies import pixels
 
 HERE = Path(__file__).resolve().parent
 SPANS = {"L = H1": (3.5, 7.0), "L = 2 H1": (6.0, 12.0), "H2 = 0.3 H1": (3.5, 7.0)}

@@ -12,12 +12,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from porescale.dem import experiments_rock as lab
-from porescale.dem.network import stiffness, voigt
-from porescale.dem.rock import Curve, Kind, Rock, load
-from porescale.runs.film import write_film
-from porescale.scene.case import conclude, options, stage
-from porescale.scene.case_bodies import Shot, by_piece, draw_bodies, draw_cracks, frame, keep, pixels, shot
+from porescale.common.pictures.film import write_film
+from porescale.dem.measures.network import stiffness, voigt
+from porescale.dem.prepare.rock import Curve, Kind, Rock, load
+from porescale.output.case import conclude, options, stage
+from porescale.output.case_bodies import Shot, by_piece, draw_bodies, draw_cracks, frame, keep, pixels, shot
+from porescale.validation.dem import rock_trials as lab
 
 Array = NDArray[np.float64]
 

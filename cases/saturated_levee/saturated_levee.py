@@ -12,11 +12,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from continuum_sph.scene.seepage_model import SeepageSimulation
-from continuum_sph.scene.trials_levee import FAR, OVER, PARTS, Levee
-from porescale.runs.film import write_film
-from porescale.scene.case import conclude, draw, options
-from porescale.scene.case_bodies import pixels
+from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.validation.levee_trials import FAR, OVER, PARTS, Levee
+from porescale.common.pictures.film import write_film
+from porescale.output.case import conclude, draw, options
+from porescale.output.case_bodies import pixels
 
 HERE = Path(__file__).resolve().parent
 COLOURS = ("#c8553d", "#c99a2e", "#3f7f4f")

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.scene.trials_seepage_steady import WATER, SheetPile, flux
-from porescale.ground.constants import GRAVITY
-from porescale.scene.case import conclude, options, stage
+from continuum_sph.validation.seepage_steady_trials import WATER, SheetPile, flux
+from porescale.common.core.constants import GRAVITY
+from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 DEPTHS = (0.25, 0.5, 0.75)

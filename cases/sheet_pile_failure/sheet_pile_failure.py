@@ -12,13 +12,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from continuum_sph.scene.seepage_model import SeepageSimulation
-from continuum_sph.scene.trials_pile import FREELY, WATER, Heave
-from continuum_sph.scene.verify_pile import BOUNDS
-from porescale.ground.constants import GRAVITY
-from porescale.runs.film import write_film
-from porescale.scene.case import conclude, options
-from porescale.scene.case_bodies import pixels
+from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.validation.pile import BOUNDS
+from continuum_sph.validation.pile_trials import FREELY, WATER, Heave
+from porescale.common.core.constants import GRAVITY
+from porescale.common.pictures.film import write_film
+from porescale.output.case import conclude, options
+from porescale.output.case_bodies import pixels
 
 HERE = Path(__file__).resolve().parent
 STAGES = {"before": 0.25, "onset": 1.0, "failure": 12.0}

@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from porescale import build, load
-from porescale.dem.contacts import contacts
-from porescale.dem.system import Grains
-from porescale.scene.case import conclude, options, stage
+from porescale.dem.grains import Grains
+from porescale.dem.measures.contacts import contacts
+from porescale.output.case import conclude, options, stage
 
 Array = NDArray[np.float64]
 

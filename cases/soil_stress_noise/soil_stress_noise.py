@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from continuum_sph.scene.soil_build import geostatic
-from continuum_sph.scene.trials_soil import in_tank, run_until
+from continuum_sph.build.soil_build import geostatic
 from continuum_sph.soil import Material, SoilFlow
 from continuum_sph.soil.state import XX, YY
-from porescale.particles import square_lattice
-from porescale.scene.case import conclude, options, stage
+from continuum_sph.validation.soil_trials import in_tank, run_until
+from porescale.common.neighbors import square_lattice
+from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 METHODS: dict[str, dict[str, float | bool]] = {

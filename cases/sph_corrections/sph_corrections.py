@@ -7,17 +7,17 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.eos import Tait
-from continuum_sph.exact import poiseuille
-from continuum_sph.layers import Layer
-from continuum_sph.scene import trials
-from continuum_sph.scene.build import flow_of
-from continuum_sph.smoothing import Smoothing
-from continuum_sph.step import Flow
-from porescale.ground.constants import GRAVITY
-from porescale.particles import PairList
-from porescale.scene.case import conclude, options, stage
-from porescale.workbench.sections import validate
+from continuum_sph.build.build import flow_of
+from continuum_sph.validation import trials
+from continuum_sph.validation.exact import poiseuille
+from continuum_sph.water.eos import Tait
+from continuum_sph.water.smoothing import Smoothing
+from continuum_sph.water.state import Layer
+from continuum_sph.water.step import Flow
+from porescale.common.core.constants import GRAVITY
+from porescale.common.neighbors import PairList
+from porescale.common.schema.sections import validate
+from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 METHODS: dict[str, dict[str, float | str | int]] = {

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from porescale.dem.experiments import MASS, RADIUS, STIFFNESS, critical_step, law_at, row_on_floor
-from porescale.scene.case import conclude, options, stage
+from porescale.output.case import conclude, options, stage
+from porescale.validation.dem.discs_trials import MASS, RADIUS, STIFFNESS, critical_step, law_at, row_on_floor
 
 Array = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
 from porescale import build, load
-from porescale.scene.case import conclude, options, stage
+from porescale.output.case import conclude, options, stage
 
 Array = NDArray[np.float64]
 

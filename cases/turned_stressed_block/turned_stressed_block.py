@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.scene.trials_soil import body, turn
 from continuum_sph.soil import Material
-from porescale.particles import square_lattice
-from porescale.scene.case import conclude, options, stage
+from continuum_sph.validation.soil_trials import body, turn
+from porescale.common.neighbors import square_lattice
+from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 SPACING = 0.05  # m

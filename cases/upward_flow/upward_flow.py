@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from continuum_sph.scene.verify_seepage import BOILING, PERMEABILITIES, boiling, darcy, ramp
-from porescale.scene.case import conclude, options, stage
+from continuum_sph.validation.seepage import BOILING, PERMEABILITIES, boiling, darcy, ramp
+from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 

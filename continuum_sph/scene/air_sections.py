@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from porescale.workbench.sections import Section, quantity
+from porescale.common.schema.sections import Section, quantity
 
 
 class Air(Section):

@@ -13,12 +13,12 @@ from typing import Any
 
 import pydantic
 
-from porescale.ground.check import Fault, InputError
-from porescale.ground.constants import GRAVITY
-from porescale.ground.units import to_si
-from porescale.workbench import scene_file
-from porescale.workbench.report import Report
-from porescale.workbench.sections import Refused, Section, quantity, validate
+from porescale.common.cli.report import Report
+from porescale.common.core.constants import GRAVITY
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.units import to_si
+from porescale.common.schema import scene_file
+from porescale.common.schema.sections import Refused, Section, quantity, validate
 
 FORMAT = 1
 """Of the files that are read here."""

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import Literal
 
-from continuum_sph.pile import Pile
-from porescale.ground.check import Fault
-from porescale.workbench.sections import Section, quantity
+from continuum_sph.seepage.sheet_pile import Pile
+from porescale.common.core.errors import Fault
+from porescale.common.schema.sections import Section, quantity
 
 
 class Sheet(Section):
     """A rigid, impermeable sheet that stands in soil and water, from its tip to the top of the tank.
 
     faces : whether they "hold" the soil or let it "slip".  One column of particles stands for it, which ends a spacing
-    above the tip: in flow around it, its thickness makes up for that (`continuum_sph.pile`).
+    above the tip: in flow around it, its thickness makes up for that (`continuum_sph.seepage.sheet_pile`).
     """
 
     x: float = quantity("m", ge=0, le=1e5, help="where it stands; its column is the one that holds x")

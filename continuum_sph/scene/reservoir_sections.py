@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pydantic
 
-from porescale.ground.check import Fault
-from porescale.workbench.sections import Section, quantity
+from porescale.common.core.errors import Fault
+from porescale.common.schema.sections import Section, quantity
 
 
 class Pool(Section):

@@ -7,15 +7,15 @@ from typing import Any, ClassVar, Literal
 
 import pydantic
 
+from continuum_sph.build.instruments import Level, Probe
 from continuum_sph.scene.air_sections import Air
-from continuum_sph.scene.instruments import Level, Probe
 from continuum_sph.scene.material_file import with_material
 from continuum_sph.scene.pile_sections import Sheet
 from continuum_sph.scene.reservoir_sections import Pool
 from continuum_sph.scene.soil_sections import Ground
-from porescale.ground.check import Fault
-from porescale.ground.constants import GRAVITY
-from porescale.workbench.sections import Refused, Section, quantity
+from porescale.common.core.constants import GRAVITY
+from porescale.common.core.errors import Fault
+from porescale.common.schema.sections import Refused, Section, quantity
 
 # Sound speed over the speed of free fall from the highest water: Mach number 0.1, so that density changes by 1 %.
 CALM_MACH = 10.0

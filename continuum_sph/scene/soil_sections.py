@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from continuum_sph.scene.material_file import Origin
 from continuum_sph.soil.material import Material
-from porescale.ground.check import Fault
-from porescale.workbench.sections import Section, quantity
+from porescale.common.core.errors import Fault
+from porescale.common.schema.sections import Section, quantity
 
 Floats = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ class Body(Section):
 
 
 class SoilNumerics(Section):
-    """What keeps particles of soil calm and evenly spread; see `continuum_sph.soil.divergence`.
+    """What keeps particles of soil calm and evenly spread; see `continuum_sph.soil.momentum`.
 
     The paper: gradient "plain", damping_of "approach" with 0.001, neither diffusion nor parting.
     damping_viscosity : what damping takes goes as alpha, the speed of sound c and h; told as their product it stays

@@ -45,9 +45,9 @@ Parts: `Skeleton`, what water sees of soil (`skeleton`);  `Overlap`, who lies ne
 `Seepage`, both layers moving (`step`).
 """
 
-from continuum_sph.seepage.drain import Drain
-from continuum_sph.seepage.level import Reservoir, Supply
 from continuum_sph.seepage.pores import PoreFlow
+from continuum_sph.seepage.pressure_face import Drain
+from continuum_sph.seepage.reservoir import Reservoir, Supply
 from continuum_sph.seepage.resistance import Resistance
 from continuum_sph.seepage.skeleton import Frame, Skeleton, skeleton_of
 from continuum_sph.seepage.step import Seepage

@@ -16,8 +16,8 @@ from continuum_sph.seepage.mixture import (
     WEIGHT,
 )
 from continuum_sph.seepage.resistance import drag
-from porescale.ground.jit import inline, parallel_kernel, prange
-from porescale.ground.lanes import LANES, lesser, nothing, put_line, take_line, take_two, total
+from porescale.common.compiled.jit import inline, parallel_kernel, prange
+from porescale.common.compiled.simd import LANES, lesser, nothing, put_line, take_line, take_two, total
 
 LONGEST = 44.0  # times of relaxation: e^-44 is less than half a unit in the last place of 1
 HALVINGS = 6  # of it, after which the series needs 12 terms: (44/64)^12/13! is 2e-12 of half such a unit

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from continuum_sph.layers import BY_SHIFTING, RHO, VOLUME, VX, VY, X, Y
 from continuum_sph.seepage.overlap import closeness
-from continuum_sph.smoothing import CUBIC, kernel_value
-from porescale.ground.jit import parallel_kernel, prange
-from porescale.ground.lanes import LANES, kept, nothing, put_line, take_four, take_rows, total
-from porescale.particles.cells import minimum_image
+from continuum_sph.water.smoothing import CUBIC, kernel_value
+from continuum_sph.water.state import BY_SHIFTING, RHO, VOLUME, VX, VY, X, Y
+from porescale.common.compiled.jit import parallel_kernel, prange
+from porescale.common.compiled.simd import LANES, kept, nothing, put_line, take_four, take_rows, total
+from porescale.common.neighbors.cells import minimum_image
 
 (
     POROSITY, ROOM, GRAINS, FLUX_X, FLUX_Y, RESISTING, MASSES, DENSITY, MASS, WEIGHT, SLIP_X, SLIP_Y, PULL_X, PULL_Y,

@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.smoothing import CUBIC, kernel_value
-from porescale.ground.jit import inline, parallel_kernel, prange
-from porescale.ground.lanes import LANES, nearest, put_line, root, take_two
-from porescale.particles import PairList
+from continuum_sph.water.smoothing import CUBIC, kernel_value
+from porescale.common.compiled.jit import inline, parallel_kernel, prange
+from porescale.common.compiled.simd import LANES, nearest, put_line, root, take_two
+from porescale.common.neighbors import PairList
 
 Floats = NDArray[np.float64]
 

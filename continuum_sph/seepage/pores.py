@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.seepage.drain import Drain, drain_walls, follow
 from continuum_sph.seepage.exchange import against_soil, brake, take
 from continuum_sph.seepage.mixture import (
     LINES,
@@ -24,10 +23,11 @@ from continuum_sph.seepage.mixture import (
     part_forces,
 )
 from continuum_sph.seepage.overlap import Overlap
+from continuum_sph.seepage.pressure_face import Drain, drain_walls, follow
 from continuum_sph.seepage.resistance import Resistance
 from continuum_sph.seepage.skeleton import Skeleton
-from continuum_sph.step import Flow
-from porescale.ground.lanes import LANES
+from continuum_sph.water.step import Flow
+from porescale.common.compiled.simd import LANES
 
 Floats = NDArray[np.float64]
 

@@ -13,8 +13,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from porescale.ground.constants import GRAVITY
-from porescale.ground.jit import inline
+from porescale.common.compiled.jit import inline
+from porescale.common.core.constants import GRAVITY
 
 CONSTANT, KOZENY_CARMAN = 0, 1
 LAWS = ("constant", "kozeny-carman")

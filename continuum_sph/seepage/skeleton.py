@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.soil import SoilFlow
-from porescale.ground.jit import parallel_kernel, prange
+from porescale.common.compiled.jit import parallel_kernel, prange
 
 Floats = NDArray[np.float64]
 

@@ -8,8 +8,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.seepage.level import Supply
 from continuum_sph.seepage.pores import PoreFlow
+from continuum_sph.seepage.reservoir import Supply
 
 SHARE = 0.25
 """Of h/c: the step's bound for sound in water and soil that move together."""

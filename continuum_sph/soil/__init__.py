@@ -30,8 +30,8 @@ Eqs 33, 35, 37 of Maeda & Sakai 2004 have K = 1 and are a choice; eq. 38 turns t
 """
 
 from continuum_sph.soil.flow import SoilFlow
-from continuum_sph.soil.law import SoilLaw
 from continuum_sph.soil.material import Material, porosity, table
+from continuum_sph.soil.parameters import SoilLaw
 from continuum_sph.soil.state import Soil
 
 __all__ = ["Material", "Soil", "SoilFlow", "SoilLaw", "porosity", "table"]

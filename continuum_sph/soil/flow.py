@@ -14,19 +14,19 @@ from typing import Any
 
 import numpy as np
 
-from continuum_sph.rates import split_rows
-from continuum_sph.soil.divergence import accelerate
+from continuum_sph.errors import no_step
 from continuum_sph.soil.gradient import velocity_gradients
-from continuum_sph.soil.law import RULES, SoilLaw
+from continuum_sph.soil.leapfrog import kick, kick_drift
 from continuum_sph.soil.material import DENSITY, TENSION, table
-from continuum_sph.soil.motion import kick, kick_drift
+from continuum_sph.soil.momentum import accelerate
+from continuum_sph.soil.parameters import RULES, SoilLaw
 from continuum_sph.soil.state import Soil
 from continuum_sph.soil.stress import deform
 from continuum_sph.soil.tension import hold_apart
 from continuum_sph.soil.walls import place_walls, show_walls
-from continuum_sph.stopped import no_step
-from porescale.ground.check import Fault, InputError
-from porescale.particles import PairList
+from continuum_sph.water.rates import split_rows
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.neighbors import PairList
 
 LASTING = 2.0
 """Times the step that diffusion was bounded for, how long it may last: one that is longer yet after a short step, or

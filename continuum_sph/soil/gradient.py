@@ -17,11 +17,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from continuum_sph.smoothing import slope_scale, slope_shape
 from continuum_sph.soil.state import GXX, GXY, GYX, GYY, VOLUME, VX, VY, X, Y
-from porescale.ground.jit import inline, parallel_kernel, prange
-from porescale.ground.lanes import LANES, nearest, nothing, root, take_rows, total
-from porescale.particles.cells import minimum_image
+from continuum_sph.water.smoothing import slope_scale, slope_shape
+from porescale.common.compiled.jit import inline, parallel_kernel, prange
+from porescale.common.compiled.simd import LANES, nearest, nothing, root, take_rows, total
+from porescale.common.neighbors.cells import minimum_image
 
 NONE, FULL = 0.25, 0.45
 

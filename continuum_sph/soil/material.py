@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.ground.jit import inline
+from porescale.common.compiled.jit import inline
 
 Floats = NDArray[np.float64]
 

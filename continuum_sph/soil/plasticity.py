@@ -31,7 +31,7 @@ from continuum_sph.soil.material import (
     YIELDS,
     softening,
 )
-from porescale.ground.jit import inline
+from porescale.common.compiled.jit import inline
 
 
 @inline

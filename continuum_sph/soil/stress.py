@@ -33,7 +33,7 @@ from continuum_sph.soil.state import (
     YY,
     ZZ,
 )
-from porescale.ground.jit import parallel_kernel, prange
+from porescale.common.compiled.jit import parallel_kernel, prange
 
 
 @parallel_kernel

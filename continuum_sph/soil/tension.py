@@ -18,10 +18,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from continuum_sph.smoothing import kernel_value, slope_scale, slope_shape
 from continuum_sph.soil.state import MASS, VOLUME, XX, XY, YY, X, Y
-from porescale.ground.jit import inline, parallel_kernel, prange
-from porescale.particles.cells import minimum_image
+from continuum_sph.water.smoothing import kernel_value, slope_scale, slope_shape
+from porescale.common.compiled.jit import inline, parallel_kernel, prange
+from porescale.common.neighbors.cells import minimum_image
 
 
 @inline

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from continuum_sph.smoothing import kernel_value
 from continuum_sph.soil.gradient import before
 from continuum_sph.soil.material import AREA, DENSITY, SHEAR
 from continuum_sph.soil.state import (
@@ -31,8 +30,9 @@ from continuum_sph.soil.state import (
     X,
     Y,
 )
-from porescale.ground.jit import parallel_kernel, prange
-from porescale.particles.cells import minimum_image
+from continuum_sph.water.smoothing import kernel_value
+from porescale.common.compiled.jit import parallel_kernel, prange
+from porescale.common.neighbors.cells import minimum_image
 
 HOLDING, SLIPPING = 0, 1
 """Materials of wall particles."""

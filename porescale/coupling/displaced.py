@@ -1,9 +1,9 @@
 """Fluid that lies within discs and clumps, as shares of the discs.
 
 Of a disc it is a disc of fluid.  Members of a clump share the mass of fluid within their union, and its moment of
-inertia, as they share those of the clump itself (dem/clumps.py): sums over members of what is done to the fluid inside
-each, m_f dU/dt of a member at its place, are then those of the rigid body, and its buoyancy acts where it must.  Cells
-that two members cover belong to both by halves (load.py), so that their loads add up.
+inertia, as they share those of the clump itself (dem/bodies/clumps.py): sums over members of what is done to the
+fluid inside each, m_f dU/dt of a member at its place, are then those of the rigid body, and its buoyancy acts where
+it must.  Cells that two members cover belong to both by halves (load.py), so that their loads add up.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.clumps import LEAST, shares
-from porescale.dem.rigid import clumps_of
-from porescale.dem.system import Grains
-from porescale.dem.union import outline
-from porescale.ground.check import Fault, InputError
+from porescale.common.core.errors import Fault, InputError
+from porescale.dem.bodies.clumps import LEAST, shares
+from porescale.dem.bodies.rigid import clumps_of
+from porescale.dem.bodies.union import outline
+from porescale.dem.grains import Grains
 
 Array = NDArray[np.float64]
 

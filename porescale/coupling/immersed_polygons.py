@@ -1,10 +1,10 @@
 """Polygons of the contact model in fluid: where they are, what the fluid does to them, and how that reaches them.
 
-A polygon is a frame (dem/frames.py), a rigid body whose corners are rows among the discs.  The fluid sees its outline,
-without the thickness of its segments: bodies that touch keep a film of both thicknesses between them.  Load, fluid
-inside and layer around are those of the body (step.py), and so is the equation of motion; what moves it is handed to
-its corners in shares like those of its mass, which add up to the force and the torque about the centroid however the
-body turns in the contact steps.
+A polygon is a frame (dem/bodies/frames.py), a rigid body whose corners are rows among the discs.  The fluid sees its
+outline, without the thickness of its segments: bodies that touch keep a film of both thicknesses between them.  Load,
+fluid inside and layer around are those of the body (step.py), and so is the equation of motion; what moves it is
+handed to its corners in shares like those of its mass, which add up to the force and the torque about the centroid
+however the body turns in the contact steps.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.coupling.shapes.polygon import Polygons
-from porescale.dem.clumps import Clumps
-from porescale.dem.frames import Frame, polygon_moments
-from porescale.dem.rigid import clumps_of
-from porescale.dem.system import Grains
-from porescale.ground.check import Fault, InputError
-from porescale.ground.jit import kernel
+from porescale.common.compiled.jit import kernel
+from porescale.common.core.errors import Fault, InputError
+from porescale.coupling.coverage.polygon import Polygons
+from porescale.dem.bodies.clumps import Clumps
+from porescale.dem.bodies.frames import Frame, polygon_moments
+from porescale.dem.bodies.rigid import clumps_of
+from porescale.dem.grains import Grains
 
 Array = NDArray[np.float64]
 

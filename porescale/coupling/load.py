@@ -7,8 +7,8 @@ Each row of a body's patch is summed when the lattice row has been collided and 
 order afterwards, so that loads do not depend on threads.
 """
 
-from porescale.coupling.coverage_rows import AHEAD, BLOCK, blocks_inside
-from porescale.ground.jit import fetch, inline, kernel, parallel_kernel, part, prange, sum_by_halves
+from porescale.common.compiled.jit import fetch, inline, kernel, parallel_kernel, part, prange, sum_by_halves
+from porescale.coupling.coverage.rows import AHEAD, BLOCK, blocks_inside
 
 total = sum_by_halves(BLOCK)
 

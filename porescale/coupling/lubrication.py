@@ -22,10 +22,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.system import Grains
-from porescale.ground.check import Fault, InputError
-from porescale.ground.jit import inline, kernel
-from porescale.particles.cells import minimum_image
+from porescale.common.compiled.jit import inline, kernel
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.neighbors.cells import minimum_image
+from porescale.dem.grains import Grains
 
 Array = NDArray[np.float64]
 

@@ -22,15 +22,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.compiled.jit import kernel
+from porescale.common.core.errors import Fault, InputError
+from porescale.coupling.coverage.overlap import overlapping
+from porescale.coupling.coverage.rectangle import Rectangle
 from porescale.coupling.displaced import displaced, whole
 from porescale.coupling.immersed_polygons import ImmersedPolygons, corners_of
 from porescale.coupling.lubrication import CELLS, Lubrication
-from porescale.coupling.overlap import overlapping
-from porescale.coupling.saturated import Saturated
-from porescale.coupling.shapes.rectangle import Rectangle
-from porescale.dem.system import Grains
-from porescale.ground.check import Fault, InputError
-from porescale.ground.jit import kernel
+from porescale.coupling.psm import Saturated
+from porescale.dem.grains import Grains
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
 

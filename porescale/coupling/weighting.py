@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from porescale.coupling.rim import SLIP_FACTOR
-from porescale.ground.jit import by_law, kernel
+from porescale.common.compiled.jit import by_law, kernel
+from porescale.coupling.coverage.soft_rim import SLIP_FACTOR
 from porescale.lbm.collision.law import numbers
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from porescale.ground.check import Fault, InputError
+from porescale.common.core.errors import Fault, InputError
 
 Array = NDArray[np.float64]
 

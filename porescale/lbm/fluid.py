@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from porescale.lbm.boundary.links import Rim
+from porescale.lbm.boundary.sides import Sides
+from porescale.lbm.boundary.thin_plate import Plate, exchange
 from porescale.lbm.collision.choose import choose, lean
 from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
 from porescale.lbm.equilibrium import equilibrium
 from porescale.lbm.moments import moment_fields
-from porescale.lbm.plate import Plate, exchange
-from porescale.lbm.rim import Rim
-from porescale.lbm.sides import Sides
 from porescale.lbm.stream import sweep
 
 Sweep = Callable[..., None]

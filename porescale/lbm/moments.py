@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.ground.jit import inline, parallel_kernel, prange
+from porescale.common.compiled.jit import inline, parallel_kernel, prange
 from porescale.lbm.collision.law import moments
 from porescale.lbm.stream import even_slots, odd_slots
 

@@ -12,18 +12,18 @@ import numpy as np
 import pydantic
 from numpy.typing import NDArray
 
-from porescale.dem.bonds import BondList, beside, bond, touched
-from porescale.dem.rigid import as_bodies
-from porescale.dem.steering import Clump as ClumpNumber
-from porescale.dem.system import Grains
-from porescale.ground.check import Fault, InputError
-from porescale.runs.atomic import write_bytes
-from porescale.runs.model import Cloud
-from porescale.scene.frame_build import Placed, disc_count
-from porescale.workbench.sections import Refused, Section, quantity
+from porescale.build.frame_build import Placed, disc_count
+from porescale.common.core.atomic import write_bytes
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.record.model import Cloud
+from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.dem.bodies.rigid import as_bodies
+from porescale.dem.forces.bonds import BondList, beside, bond, touched
+from porescale.dem.grains import Grains
+from porescale.dem.motion.drivers import Clump as ClumpNumber
 
 if TYPE_CHECKING:
-    from porescale.runs.open_run import Run
+    from porescale.common.record.open_run import Run
     from porescale.scene.sections import Scene
 
 KINDS = ("grain", "clump", "segment", "polygon", "container", "rock", "plate")

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import pydantic
 
+from porescale.common.core.errors import Fault
+from porescale.common.schema.sections import Section, quantity
 from porescale.dem.contact.hertz import Hertz
 from porescale.dem.contact.linear import Linear, damping_from_restitution
 from porescale.dem.contact.materials import MOST, Law, Materials
 from porescale.dem.contact.restitution import ratio_from_restitution
-from porescale.ground.check import Fault
-from porescale.workbench.sections import Section, quantity
 
 if TYPE_CHECKING:
     from porescale.scene.sections import Scene

@@ -7,14 +7,14 @@ from typing import Any, Literal
 
 import pydantic
 
+from porescale.common.core.errors import Fault
+from porescale.common.schema.messages import nearest
+from porescale.common.schema.sections import Refused, Section, quantity
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting import WEIGHTINGS, fitting_weight
-from porescale.ground.check import Fault
 from porescale.lbm.collision.choose import OPERATORS
 from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
 from porescale.lbm.scales import NAMES
-from porescale.workbench.faults import nearest
-from porescale.workbench.sections import Refused, Section, quantity
 
 CHOICES: dict[str, Collection[str]] = {
     "operator": OPERATORS, "solid_operator": SOLID_OPERATORS, "weighting": WEIGHTINGS,

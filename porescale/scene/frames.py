@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 import pydantic
 
-from porescale.dem.control import Control, Moved
-from porescale.ground.check import Fault, InputError
-from porescale.particles.placement import place
-from porescale.scene.courses import Component, Turning
-from porescale.workbench.sections import Refused, Section, quantity
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.neighbors.placement import place
+from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.dem.motion.control import Control, Moved
+from porescale.scene.time_function import Component, Turning
 
 PLACE: Any = {"ge": -1e3, "le": 1e3}
 LENGTH: Any = {"ge": 1e-9, "le": 1e3}

@@ -11,14 +11,14 @@ import numpy as np
 import pydantic
 from numpy.typing import NDArray
 
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.units import to_si
+from porescale.common.neighbors.grading import graded_radii, judge_curve, lognormal_radii
+from porescale.common.neighbors.placement import part
+from porescale.common.schema.sections import Refused, Section, quantity, validate
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Law
-from porescale.dem.packing import Compressed, Press, kept, read_circles, read_packing
-from porescale.ground.check import Fault, InputError
-from porescale.ground.units import to_si
-from porescale.particles.grading import graded_radii, judge_curve, lognormal_radii
-from porescale.particles.placement import part
-from porescale.workbench.sections import Refused, Section, quantity, validate
+from porescale.dem.prepare.compaction import Compressed, Press, kept, read_circles, read_packing
 
 if TYPE_CHECKING:
     from porescale.scene.sections import Packing, Scene
@@ -111,8 +111,8 @@ class Circles(Section):
         assert self.pixel
         assert self.smallest
         assert self.largest
-        from porescale.piv.film import picture  # readers of pictures and films take a while to load
-        from porescale.scene.pictured import circles_in
+        from porescale.analysis.detect_circles import circles_in
+        from porescale.piv.images.film import picture  # readers of pictures and films take a while to load
 
         seen = picture(path)
         sizes = self.smallest / self.pixel, self.largest / self.pixel

@@ -9,14 +9,14 @@ import numpy as np
 import pydantic
 from numpy.typing import NDArray
 
-from porescale.coupling.shapes.rectangle import Rectangle as LatticeRectangle
-from porescale.dem.rectangle import LEFT, RIGHT, VELOCITY_X
-from porescale.dem.rectangle import Rectangle as GrainRectangle
-from porescale.dem.system import Grains
-from porescale.dem.walls import Plate
-from porescale.ground.check import Fault
+from porescale.common.core.errors import Fault
+from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.coupling.coverage.rectangle import Rectangle as LatticeRectangle
+from porescale.dem.forces.rectangle import LEFT, RIGHT, VELOCITY_X
+from porescale.dem.forces.rectangle import Rectangle as GrainRectangle
+from porescale.dem.forces.walls import Plate
+from porescale.dem.grains import Grains
 from porescale.lbm.scales import Scales
-from porescale.workbench.sections import Refused, Section, quantity
 
 if TYPE_CHECKING:
     from porescale.coupling.step import Coupled

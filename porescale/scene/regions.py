@@ -6,8 +6,8 @@ from typing import Any, Literal
 
 import pydantic
 
-from porescale.ground.check import Fault
-from porescale.workbench.sections import Refused, Section, quantity
+from porescale.common.core.errors import Fault
+from porescale.common.schema.sections import Refused, Section, quantity
 
 PLACE: Any = {"ge": -1e3, "le": 1e3}
 LENGTH: Any = {"ge": 1e-9, "le": 1e3}

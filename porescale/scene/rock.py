@@ -2,7 +2,7 @@
 
 The packing of [grains.packing] is pressed in its rectangle, wherever that lies in the box; its discs, or polygons with
 its centres as seeds, stand there at rest and are bonded, plates and all, when the run begins.
-Source: Matsushima, DEMseg tutorial II-4; see dem/rock.py, dem/tessellate.py.
+Source: Matsushima, DEMseg tutorial II-4; see dem/prepare/rock.py, dem/prepare/tessellate.py.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ import numpy as np
 import pydantic
 from numpy.typing import NDArray
 
+from porescale.build.frame_build import FREE, HELD, PLATES, Placed, material_number
+from porescale.common.core.errors import Fault
+from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.dem.bodies.frames import chain, polygon
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Law
-from porescale.dem.control import Placed as PlacedControl
 from porescale.dem.discs import Discs, make_discs
-from porescale.dem.frames import chain, polygon
-from porescale.dem.schedule import Constant, Schedule, Sine, Table
-from porescale.dem.system import Grains
-from porescale.dem.tessellate import delaunay, shrunk, voronoi
-from porescale.ground.check import Fault
+from porescale.dem.grains import Grains
+from porescale.dem.motion.control import Placed as PlacedControl
+from porescale.dem.motion.time_function import Constant, Schedule, Sine, Table
+from porescale.dem.prepare.tessellate import delaunay, shrunk, voronoi
 from porescale.scene.contact import density_of
-from porescale.scene.courses import Course, with_courses
-from porescale.scene.frame_build import FREE, HELD, PLATES, Placed, material_number
 from porescale.scene.packing import compressed
-from porescale.workbench.sections import Refused, Section, quantity
+from porescale.scene.time_function import Course, with_courses
 
 if TYPE_CHECKING:
     from porescale.scene.sections import Scene

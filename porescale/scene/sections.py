@@ -7,27 +7,27 @@ from typing import Any, ClassVar
 
 import pydantic
 
-from porescale.ground.check import Fault
-from porescale.ground.constants import GRAVITY
+from porescale.build.checks.frame_places import judge_sections
+from porescale.build.lattice import disagreements
+from porescale.common.core.constants import GRAVITY
+from porescale.common.core.errors import Fault
+from porescale.common.schema.sections import Refused, Section, quantity
 from porescale.lbm.scales import NAMES
-from porescale.scene.asleep import Sleep, judge_sleep
-from porescale.scene.bodies import Disc, Lubrication
+from porescale.scene.bodies_of_grains import Clump, Controlled, by_hand
 from porescale.scene.bonds import Bonds, judge_bonds
+from porescale.scene.cell import Cell, judge_cell
 from porescale.scene.contact import Contact, Material, judge_contact
+from porescale.scene.discs import Disc, Lubrication
 from porescale.scene.fluid import Fluid
-from porescale.scene.frame_places import judge_sections
 from porescale.scene.frames import Container, PolygonBody, SegmentBody
-from porescale.scene.grain_bodies import Clump, Controlled, by_hand
-from porescale.scene.grain_cell import Cell, judge_cell
-from porescale.scene.grain_walls import Wall, judge_walls
-from porescale.scene.lattice import disagreements
 from porescale.scene.measures import FieldName, Flux, Homogenise, Line, Loads, Permeability, Probe
 from porescale.scene.packing import Circles, judged_grading, with_circles, with_consequences
 from porescale.scene.rectangles import Rectangle
 from porescale.scene.regions import CoarseGraining, Region
 from porescale.scene.rock import Rock, judge_rock
 from porescale.scene.sides import Domain
-from porescale.workbench.sections import Refused, Section, quantity
+from porescale.scene.sleep import Sleep, judge_sleep
+from porescale.scene.walls import Wall, judge_walls
 
 LENGTH: Any = {"ge": 1e-9, "le": 1e3}
 TIME: Any = {"ge": 1e-12, "le": 1e9}

@@ -6,11 +6,11 @@ from typing import Any, Literal, get_args
 
 import pydantic
 
-from porescale.ground.check import Fault
-from porescale.scene.courses import Course, with_courses
-from porescale.scene.grain_walls import SERVO, judge_servo
-from porescale.workbench.faults import nearest
-from porescale.workbench.sections import Refused, Section, quantity
+from porescale.common.core.errors import Fault
+from porescale.common.schema.messages import nearest
+from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.scene.time_function import Course, with_courses
+from porescale.scene.walls import SERVO, judge_servo
 
 Kind = Literal["wall", "slip", "periodic", "velocity", "pressure"]
 KINDS: tuple[str, ...] = get_args(Kind)

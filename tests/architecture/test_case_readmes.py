@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from sources import ROOT
 
-from continuum_sph.app import PACKAGE as CONTINUUM
-from porescale.app.main import PACKAGE as PORESCALE
-from porescale.workbench.sections import load
+from continuum_sph.cli import PACKAGE as CONTINUUM
+from porescale.cli.main import PACKAGE as PORESCALE
+from porescale.common.schema.sections import load
+from tests.architecture.sources import ROOT
 
 WRITER = runpy.run_path(str(ROOT / ".ci" / "tables"))
 CASES = sorted(path.parent for path in (ROOT / "cases").glob("*/expected.toml"))
@@ -93,6 +93,23 @@ def test_a_readme_that_fell_behind_is_found() -> None:  # the checks that must f
     assert wrong(table(ROWS, far), ROWS, far) == ["speed"]
     assert wrong(table(ROWS, None), ROWS, RECORD)
     assert wrong(table(ROWS, None), ROWS, None) == []
+
+
+SCRIPT = """
+from porescale.output.case import conclude, options, stage
+asked = options("x", __import__("pathlib").Path(__file__).parent)
+figure, _ = stage(1)
+raise SystemExit(conclude(asked.out.parent / "x", {"height": 1 / 3}, figure, asked.out))
+"""
+
+
+def test_what_a_script_concludes_with_is_kept_to_the_last_digit(tmp_path: Path) -> None:
+    case = tmp_path / "x"
+    case.mkdir()
+    (case / "x.py").write_text(SCRIPT, encoding="utf-8")
+    row = 'name = "height"\nvalue = 0.3\ntolerance = 0.1\nunit = "m"\nbecause = "so it is"\n'
+    (case / "expected.toml").write_text(f"[[expected]]\n{row}", encoding="utf-8")
+    assert WRITER["script_numbers"]([str(case / "x.py")], str(tmp_path)) == {"height": 1 / 3}
 
 
 def test_another_choice_is_found() -> None:

@@ -15,14 +15,14 @@ from pathlib import Path
 
 import pytest
 from cyclopts import App
-from sources import ROOT
 
-from continuum_sph.app import PACKAGE as CONTINUUM
-from porescale.app.main import PACKAGE as PORESCALE
-from porescale.app.main import commands
-from porescale.workbench.application import application
-from porescale.workbench.sections import load
-from porescale.workbench.validations import Validation, Validations
+from continuum_sph.cli import PACKAGE as CONTINUUM
+from porescale.cli.main import PACKAGE as PORESCALE
+from porescale.cli.main import commands
+from porescale.common.cli.application import application
+from porescale.common.evidence.validations import Validation, Validations
+from porescale.common.schema.sections import load
+from tests.architecture.sources import ROOT
 
 
 def page(name: str) -> str:

@@ -7,12 +7,13 @@ import re
 from collections.abc import Callable, Iterator
 
 import pytest
-from sources import ROOT, Source, functions, is_kernel, read, sources, written
+
+from tests.architecture.sources import ROOT, Source, functions, is_kernel, read, sources, written
 
 LONGEST = 400
 UNFINISHED = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b")
-JIT = "porescale.ground.jit"
-COMPILING = ("porescale.ground.compiling", "porescale.ground.lanes_code")
+JIT = "porescale.common.compiled.jit"
+COMPILING = ("porescale.common.compiled.compiling", "porescale.common.compiled.simd_code")
 
 
 def undocumented(source: Source) -> Iterator[str]:
@@ -145,7 +146,7 @@ def test_there_is_something_to_check() -> None:
     every = [node for source in sources() for node in functions(source.tree)]
     assert len(every) > 100
     assert sum(is_kernel(node) for node in every) > 10
-    assert read(ROOT / "porescale" / "ground" / "jit.py").module == JIT
+    assert read(ROOT / "porescale" / "common" / "compiled" / "jit.py").module == JIT
 
 
 DOC = '"""What it is."""\n'
@@ -189,7 +190,7 @@ GOOD = [
     (unannotated, "def f(x: int, *y: int, **z: int) -> None: ..."),
     (unannotated, "class A:\n    def f(self) -> None: ...\n    @classmethod\n    def g(cls) -> None: ..."),
     (unannotated, "@kernel\ndef f(x):\n    def g(y): return y\n    return g(x)"),
-    (compiled_elsewhere, "from porescale.ground.jit import kernel"),
+    (compiled_elsewhere, "from porescale.common.compiled.jit import kernel"),
     (too_long, "x = 1\n" * LONGEST),
     (unfinished, "try:\n    f()\nexcept Exception as error:\n    note(error)"),
     (unfinished, "try:\n    f()\nexcept KeyError:\n    pass"),

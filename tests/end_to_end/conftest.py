@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from porescale.app.main import PACKAGE
-from porescale.ground import jit
-from porescale.workbench.application import application, main
+from porescale.cli.main import PACKAGE
+from porescale.common.cli.application import application, main
+from porescale.common.compiled import jit
 from tests.reference.scenes import COLUMN, write
 
 

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from continuum_sph.app import PACKAGE as CONTINUUM
+from continuum_sph.cli import PACKAGE as CONTINUUM
 from porescale import open_run
-from porescale.app.main import PACKAGE as PORESCALE
-from porescale.workbench.application import application, main
-from porescale.workbench.package import Package
-from porescale.workbench.quantities import Columns, measured
+from porescale.cli.main import PACKAGE as PORESCALE
+from porescale.common.cli.application import application, main
+from porescale.common.cli.package import Package
+from porescale.common.studies.quantities import Columns, measured
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 FILES = sorted(path for path in CASES.glob("*/expected.toml") if (path.parent / "scene.toml").exists())

@@ -13,7 +13,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from porescale.scene.case import conclude, expected, missed, stage
+from porescale.output.case import conclude, expected, missed, stage
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 SCRIPTS = sorted(path.stem for path in CASES.glob("*/*.py") if path.stem == path.parent.name)

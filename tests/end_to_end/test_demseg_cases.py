@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from porescale.decks.build import Options
-from porescale.decks.deck import GM, NEW, read_deck
-from porescale.decks.trace import finer, first_touch, trace, unbalanced
-from porescale.scene.case import expected, missed
+from porescale.demseg.build import Options
+from porescale.demseg.deck import GM, NEW, read_deck
+from porescale.demseg.trace import finer, first_touch, trace, unbalanced
+from porescale.output.case import expected, missed
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 DECKS = sorted(path.parent for path in CASES.glob(f"demseg_*/**/{GM}"))

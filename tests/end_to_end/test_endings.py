@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from porescale import build, load, open_run
-from porescale.ground.check import Unstable
-from porescale.lbm.stability_sense import SOUND, WORST_MACH
-from porescale.runs.checkpoint import read_checkpoint
-from porescale.scene.simulation import Simulation
+from porescale.build.simulation import Simulation
+from porescale.common.core.errors import Unstable
+from porescale.common.record.checkpoint import read_checkpoint
+from porescale.lbm.sanity import SOUND, WORST_MACH
 from tests.reference.same_run import differences
 from tests.reference.scenes import COLUMN, grain, table, write
 from tests.reference.waiting import done

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from porescale import open_run
-from porescale.runs.checkpoint import read_checkpoint
-from porescale.runs.drive import CHECK_EVERY
-from porescale.workbench.sections import load
+from porescale.common.record.checkpoint import read_checkpoint
+from porescale.common.record.drive import CHECK_EVERY
+from porescale.common.schema.sections import load
 from tests.reference.programs import KINDS, PACKAGES, program
 from tests.reference.seeded import INF, NAN, put
 

@@ -8,10 +8,10 @@ import tomllib
 
 import pytest
 
-from continuum_sph.app import PACKAGE as CONTINUUM
-from porescale.app.main import commands
-from porescale.ground import jit
-from porescale.workbench.application import application, main
+from continuum_sph.cli import PACKAGE as CONTINUUM
+from porescale.cli.main import commands
+from porescale.common.cli.application import application, main
+from porescale.common.compiled import jit
 from tests.reference.scenes import COLUMN, table, write
 
 SMALL = table(COLUMN, homogenise={"pressure": 200.0, "grains": 100, "packings": 2, "strain": 0.06, "cells": 4})

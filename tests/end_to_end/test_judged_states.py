@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from porescale.runs.judge import other, senseless
+from porescale.common.record.check_state import other, senseless
 
 NAN = float("nan")
 STATE: dict[str, Any] = {

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from porescale import build, load, open_run
-from porescale.runs.checkpoint import read_checkpoint
+from porescale.common.record.checkpoint import read_checkpoint
 from tests.reference.same_run import contents, differences, state_of
 from tests.reference.scenes import STEPS
 from tests.reference.waiting import done, kill, running, talked, until
@@ -21,7 +21,7 @@ from tests.reference.waiting import done, kill, running, talked, until
 ROOT = Path(__file__).resolve().parents[2]
 KILLED = """
 import os, signal, sys
-from porescale.app.main import main
+from porescale.cli.main import main
 from porescale.coupling.step import Coupled
 
 last, step = int(sys.argv.pop(1)), Coupled.advance
@@ -37,7 +37,7 @@ sys.exit(main())
 """`porescale` in a process that is killed when ``last`` steps are done, wherever its files stand then."""
 SLOWED = """
 import sys, time
-from porescale.app.main import main
+from porescale.cli.main import main
 from porescale.coupling.step import Coupled
 
 step, done = Coupled.advance, []
@@ -167,7 +167,7 @@ def test_two_threads_give_the_bits_of_one(folder, scene, porescale, tmp_path):
 
 def test_a_state_that_differs_in_one_bit_ends_differently(folder, scene, porescale, tmp_path, monkeypatch):
     # The twin that must fail: the comparison sees a run whose first grain starts one rounding error to the right.
-    import porescale.scene.build as module
+    import porescale.build.build as module
 
     out, prepared = tmp_path / "nudged", module.prepared
 

@@ -16,9 +16,9 @@ from tests.reference.waiting import done
 ROOT = Path(__file__).resolve().parents[2]
 CHILD = """
 import os, signal, sys
-from porescale.app import demseg
-from porescale.app.main import main
-from porescale.decks.run import DeckRun
+from porescale.cli import demseg
+from porescale.cli.main import main
+from porescale.demseg.run import DeckRun
 
 last, advance = int(sys.argv.pop(1)), DeckRun.advance
 demseg.CHECKPOINT_SECONDS = 1e-3

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from porescale.runs.open_run import open_run
-from porescale.runs.series import read_series
+from porescale.common.record.open_run import open_run
+from porescale.common.record.series import read_series
 from tests.reference.same_run import differences
 from tests.reference.scenes import write
 from tests.reference.waiting import done
@@ -18,8 +18,8 @@ from tests.reference.waiting import done
 ROOT = Path(__file__).resolve().parents[2]
 CHILD = """
 import os, signal, sys
-from porescale.app.main import main
-from porescale.scene.simulation import Simulation
+from porescale.cli.main import main
+from porescale.build.simulation import Simulation
 
 last, advance = int(sys.argv.pop(1)), Simulation.advance
 

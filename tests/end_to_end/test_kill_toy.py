@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from porescale.runs.checkpoint import read_checkpoint
-from porescale.runs.open_run import open_run
+from porescale.common.record.checkpoint import read_checkpoint
+from porescale.common.record.open_run import open_run
 from tests.reference.same_run import contents
 from tests.reference.toy_model import run_toy
 from tests.reference.waiting import done, kill, running, talked, until

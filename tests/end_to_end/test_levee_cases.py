@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from porescale.scene.case import expected
+from porescale.output.case import expected
 from tests.end_to_end.test_dem_cases import CASES, script
 
 pytestmark = pytest.mark.slow

@@ -12,8 +12,8 @@ from types import ModuleType
 import pytest
 
 from porescale import load
-from porescale.scene.case import expected
-from porescale.scene.homogenise import asked_of, packing_of, pressure_of, stiffness_over_pressure
+from porescale.analysis.homogenise import asked_of, packing_of, pressure_of, stiffness_over_pressure
+from porescale.output.case import expected
 
 CASE = Path(__file__).resolve().parents[2] / "cases" / "micro_to_macro"
 

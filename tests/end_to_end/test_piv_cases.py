@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from porescale.scene.case import expected
+from porescale.output.case import expected
 
 CASE = Path(__file__).resolve().parents[2] / "cases" / "piv_synthetic"
 

@@ -9,9 +9,9 @@ import cv2
 import numpy as np
 import pytest
 
-from porescale.app.main import commands
-from porescale.ground.jit import set_threads, threads
-from porescale.workbench.application import main
+from porescale.cli.main import commands
+from porescale.common.cli.application import main
+from porescale.common.compiled.jit import set_threads, threads
 
 
 @pytest.fixture
@@ -116,8 +116,8 @@ def test_pictures_of_other_tracers_give_no_field(piv, tmp_path):
 
 
 def test_a_film_is_measured_frame_by_frame(piv, tmp_path):
-    from porescale.piv import flows
-    from porescale.piv.synth import Camera, expose, seeded
+    from porescale.piv.images import flows
+    from porescale.piv.images.synth import Camera, expose, seeded
 
     flow, camera, random = flows.uniform(1.5, 0.0), Camera((96, 128)), np.random.default_rng(0)
     x, y, light = seeded(flow, camera, random)
@@ -133,7 +133,7 @@ def test_a_film_is_measured_frame_by_frame(piv, tmp_path):
     for k in range(3):
         # A tenth of a pixel of 1.5: 15 mm/s; pictures of 96 px hold 150 vectors, each of a score of tracers.
         np.testing.assert_allclose(np.median(columns(tmp_path / "m" / f"vectors_{k:04d}.csv")["u"]), 0.015, rtol=0.07)
-    from porescale.runs import snapshots
+    from porescale.common.record import snapshots
 
     times = [next(iter(entry.values())).time for entry in snapshots.catalogue(tmp_path / "m").values()]
     assert times == pytest.approx([2.05, 2.15, 2.25])

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from porescale import open_run
-from porescale.piv.field import Field
-from porescale.piv.synth import Camera
-from porescale.scene.case import expected, missed
+from porescale.common.schema.sections import open_scene
+from porescale.output.case import expected, missed
+from porescale.piv.fields.field import Field
+from porescale.piv.images.synth import Camera
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import open_scene
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 

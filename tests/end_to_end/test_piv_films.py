@@ -11,14 +11,14 @@ import cv2
 import numpy as np
 import pytest
 
-from porescale.app import piv_measure
-from porescale.app.main import commands
-from porescale.ground.jit import set_threads, threads
-from porescale.piv import flows
-from porescale.piv.spots import add_spots, coverage
-from porescale.runs import snapshots
-from porescale.runs.film import write_film
-from porescale.workbench.application import main
+from porescale.cli import piv_measure
+from porescale.cli.main import commands
+from porescale.common.cli.application import main
+from porescale.common.compiled.jit import set_threads, threads
+from porescale.common.pictures.film import write_film
+from porescale.common.record import snapshots
+from porescale.piv.images import flows
+from porescale.piv.images.spots import add_spots, coverage
 
 ROWS, COLUMNS = 96, 128
 SPEED, DISC = 1.5, 0.2

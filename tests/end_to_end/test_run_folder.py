@@ -16,7 +16,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
 from porescale import build, load, open_run
-from porescale.runs.checkpoint import read_checkpoint
+from porescale.common.record.checkpoint import read_checkpoint
 from tests.reference.same_run import differences, leaves
 from tests.reference.scenes import COLUMN, STEPS
 
@@ -55,8 +55,8 @@ def test_the_card_says_what_was_run_with_what_and_how_it_ended(folder, scene):
 
 
 def test_the_scene_on_the_card_is_the_scene(folder, scene):
+    from porescale.common.schema.sections import validate
     from porescale.scene.sections import Scene
-    from porescale.workbench.sections import validate
 
     card = json.loads((folder / "card.json").read_text())
     assert validate(Scene, card["scene"]) == load(scene)

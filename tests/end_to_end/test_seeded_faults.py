@@ -7,11 +7,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from continuum_sph.scene.model import Simulation as Continuum
+from continuum_sph.build.model import Simulation as Continuum
 from continuum_sph.scene.sections import Scene as Tank
 from porescale import build
-from porescale.scene.simulation import Simulation
-from porescale.workbench.sections import validate
+from porescale.build.simulation import Simulation
+from porescale.common.schema.sections import validate
 from tests.reference.scenes import column
 from tests.reference.seeded import INF, NAN, Running, put, running, times
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from porescale import build
+from porescale.build.simulation import Simulation
+from porescale.common.schema.sections import validate
 from porescale.scene.sections import Scene
-from porescale.scene.simulation import Simulation
-from porescale.workbench.sections import validate
 from tests.reference.killing import ASLEEP
 from tests.reference.scenes import column, grain
 from tests.reference.seeded import INF, NAN, Running, put, running, times

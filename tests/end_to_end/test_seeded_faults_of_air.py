@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from continuum_sph.build.seepage_model import SeepageSimulation
 from continuum_sph.scene.sections import Scene
-from continuum_sph.scene.seepage_model import SeepageSimulation
 from continuum_sph.seepage.mixture import POROSITY
-from porescale.workbench.sections import load
+from porescale.common.schema.sections import load
 from tests.reference.seeded import INF, NAN, Running, crowd, put, running, step, times
 
 pytestmark = pytest.mark.slow

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from continuum_sph.scene.model import Simulation
+from continuum_sph.build.model import Simulation
 from continuum_sph.scene.sections import Scene
-from porescale.workbench.sections import load
+from porescale.common.schema.sections import load
 from tests.reference.seeded import INF, NAN, Running, crowd, put, running, step, times
 
 pytestmark = pytest.mark.slow

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from continuum_sph.build.soil_model import SoilSimulation
 from continuum_sph.scene.sections import Scene
-from continuum_sph.scene.soil_model import SoilSimulation
 from tests.reference.programs import SOIL
 from tests.reference.seeded import INF, NAN, Running, crowd, put, running, step, times
 

@@ -11,9 +11,10 @@ from typing import Any
 
 import pytest
 
-from continuum_sph.scene import trials_fluids, verify_seepage
-from porescale.scene import case as cases
-from porescale.scene.case import expected, missed
+from continuum_sph.validation import fluids_trials as trials_fluids
+from continuum_sph.validation import seepage as verify_seepage
+from porescale.output import case as cases
+from porescale.output.case import expected, missed
 from tests.end_to_end.test_dem_cases import CASES, script
 
 pytestmark = pytest.mark.slow

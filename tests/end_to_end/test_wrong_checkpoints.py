@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 import pytest
 
-from porescale.runs.checkpoint import read_checkpoint, read_header, write_checkpoint
+from porescale.common.record.checkpoint import read_checkpoint, read_header, write_checkpoint
 from tests.reference.programs import KINDS, Program, program
 from tests.reference.same_run import differences
 from tests.reference.spoiled import renumbered

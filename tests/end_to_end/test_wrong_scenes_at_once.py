@@ -12,14 +12,14 @@ from tests.reference.waiting import done
 
 ROOT = Path(__file__).resolve().parents[2]
 FIRST = {
-    "porescale": "from porescale.app.main import commands as app",
-    "continuum_sph": "from continuum_sph.app import PACKAGE\n"
-    "from porescale.workbench.application import application\napp = lambda: application(PACKAGE)",
+    "porescale": "from porescale.cli.main import commands as app",
+    "continuum_sph": "from continuum_sph.cli import PACKAGE\n"
+    "from porescale.common.cli.application import application\napp = lambda: application(PACKAGE)",
 }
 SCRIPT = """\
 import sys
 {first}
-from porescale.workbench.application import main
+from porescale.common.cli.application import main
 code = main(app(), sys.argv[1:])
 print("numba" in sys.modules)
 sys.exit(code)

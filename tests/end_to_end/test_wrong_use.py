@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from continuum_sph.app import PACKAGE as CONTINUUM
-from porescale.app.main import commands
-from porescale.workbench.application import application, main
+from continuum_sph.cli import PACKAGE as CONTINUUM
+from porescale.cli.main import commands
+from porescale.common.cli.application import application, main
 from tests.reference.programs import SOIL
 from tests.reference.scenes import COLUMN, write
 

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from continuum_sph.app import PACKAGE as CONTINUUM
-from porescale.app.main import commands
-from porescale.ground import jit
-from porescale.workbench.application import application, main
+from continuum_sph.cli import PACKAGE as CONTINUUM
+from porescale.cli.main import commands
+from porescale.common.cli.application import application, main
+from porescale.common.compiled import jit
 from tests.reference.command_lines import Line, made
 from tests.reference.waiting import done
 

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from continuum_sph.app import report
+from continuum_sph.cli import report
 from continuum_sph.scene.sections import Scene
-from porescale.ground.check import InputError
-from porescale.workbench.sections import validate
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import validate
 from tests.reference.grounds import SCENES, put
 
 KEYS = {

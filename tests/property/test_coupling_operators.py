@@ -7,15 +7,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from porescale.coupling.saturated import Saturated
+from porescale.coupling.psm import Saturated
 from porescale.coupling.solid import exact_wall
 from porescale.coupling.solid.choose import SOLID_OPERATORS, choose_solid
 from porescale.coupling.solid.law import force_share, mix, rates, taken
 from porescale.coupling.weighting import WEIGHTINGS, choose_weight, fitting_weight, weight
+from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL, odd_rate
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX, CY, WEIGHTS
-from porescale.lbm.sides import Sides
 from tests.reference import solid_operators as twin
 
 EPS = np.finfo(float).eps

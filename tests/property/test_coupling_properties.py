@@ -8,9 +8,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from porescale.coupling.saturated import Saturated
+from porescale.coupling.psm import Saturated
+from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
-from porescale.lbm.sides import Sides
 
 EPS = np.finfo(float).eps
 N = 24

@@ -6,11 +6,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.coupling.saturated import Saturated
+from porescale.coupling.psm import Saturated
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting import WEIGHTINGS
+from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
-from porescale.lbm.sides import Sides
 
 EPS = np.finfo(float).eps
 N = 20

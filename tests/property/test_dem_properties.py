@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from porescale.dem.contact.law import coulomb
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.experiments import cloud, momentum_drift
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box
+from porescale.dem.forces.walls import Box
+from porescale.dem.grains import Grains
+from porescale.validation.dem.discs_trials import cloud, momentum_drift
 
 
 def thrown(seed, mirrored=False):
@@ -91,7 +91,7 @@ def test_momentum_and_angular_momentum_are_kept_to_round_off(seed, count, fricti
 @given(st.lists(st.floats(0.0, 2 * np.pi), min_size=6, max_size=6), st.floats(0.0, 1.0))
 def test_no_set_of_neighbours_is_stiffer_than_the_packing_factor(angles, shear):
     # Single disc on contacts of twice the stiffness, as in packing_factor; 60 degrees apart or more.
-    from porescale.dem.integrate import packing_factor
+    from porescale.dem.step import packing_factor
 
     kept = []
     for angle in angles:
@@ -107,7 +107,7 @@ def test_no_set_of_neighbours_is_stiffer_than_the_packing_factor(angles, shear):
 
 
 def test_seven_neighbours_are_stiffer():  # the twin that must fail: the bound is not loose
-    from porescale.dem.integrate import packing_factor
+    from porescale.dem.step import packing_factor
 
     spin = 2.0 * 7 * 2.0  # seven contacts on the rotation, r^2/I = 2/m
     assert spin > packing_factor(1.0, 1.0)

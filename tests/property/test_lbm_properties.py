@@ -6,9 +6,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.collision.choose import OPERATORS
 from porescale.lbm.fluid import Fluid
-from porescale.lbm.sides import Sides
 
 EPS = np.finfo(float).eps
 NX, NY = 9, 7

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from porescale.particles import PairList
+from porescale.common.neighbors import PairList
 from tests.reference.pairs import neighbours, rows_of
 
 lengths = st.floats(0.01, 1.0)

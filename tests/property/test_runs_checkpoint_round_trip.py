@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from porescale.runs.checkpoint import read_checkpoint, write_checkpoint
+from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
 
 DTYPES = st.one_of(
     hnp.boolean_dtypes(),

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from porescale.ground.check import PorescaleError
+from porescale.common.core.errors import PorescaleError
 from tests.reference.failing_disk import Disk, calls, failing, whole
 from tests.reference.same_run import differences
 from tests.reference.toy_model import run_toy

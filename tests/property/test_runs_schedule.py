@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from porescale.ground.check import InputError
-from porescale.runs.schedule import Schedule, positive
+from porescale.common.core.errors import InputError
+from porescale.common.record.schedule import Schedule, positive
 
 POSITIVE = st.floats(1e-6, 1e3)
 

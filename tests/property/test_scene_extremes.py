@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from porescale.ground.check import InputError
-from porescale.scene.report import report
+from porescale.build.report import report
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import validate
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import validate
 from tests.reference.scenes import COLUMN, table
 
 LOW, HIGH = 1e-12, 1e9

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from porescale.ground.check import InputError
+from porescale.build.derive import fluid_scales
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.lbm.scales import AGREEMENT, NAMES, implied
-from porescale.scene.derive import fluid_scales
 from porescale.scene.sections import Fluid, Scene
-from porescale.workbench.sections import scene_as_dict, validate
 from tests.reference.scenes import grain, table
 
 FOURS = st.builds(

@@ -11,23 +11,23 @@ import cv2
 import numpy as np
 import pytest
 
-from continuum_sph.app import PACKAGE as CONTINUUM
-from porescale.app.main import PACKAGE as PORESCALE
-from porescale.decks.deck import read_deck
-from porescale.dem.packing import read_circles, read_packing, write_packing
-from porescale.ground.card import read_card
-from porescale.ground.check import Fault, InputError
-from porescale.piv.field import read as read_field
-from porescale.piv.film import open_film, picture
-from porescale.runs.checkpoint import read_checkpoint, write_checkpoint
-from porescale.runs.film import write_film
-from porescale.runs.open_run import open_run
+from continuum_sph.cli import PACKAGE as CONTINUUM
+from porescale.cli.main import PACKAGE as PORESCALE
+from porescale.common.cli.sweep import expected
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.pictures.film import write_film
+from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
+from porescale.common.record.open_run import open_run
+from porescale.common.record.read_card import read_card
+from porescale.common.schema.sections import open_scene
+from porescale.common.studies.front import read_front
+from porescale.common.studies.parameter_table import read_points
+from porescale.common.studies.trade_plan import read_plan
+from porescale.dem.prepare.compaction import read_circles, read_packing, write_packing
+from porescale.demseg.deck import read_deck
+from porescale.piv.fields.field import read as read_field
+from porescale.piv.images.film import open_film, picture
 from porescale.scene.packing import Circles
-from porescale.workbench.commands.sweep import expected
-from porescale.workbench.front import read_front
-from porescale.workbench.points import read_points
-from porescale.workbench.sections import open_scene
-from porescale.workbench.trade_plan import read_plan
 from tests.reference import grounds
 from tests.reference.pictures import photograph
 from tests.reference.spoiled import spoiled

@@ -14,7 +14,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from porescale.runs.film import write_film
+from porescale.common.pictures.film import write_film
 from tests.reference import grounds
 from tests.reference.pictures import photograph
 from tests.reference.spoiled import spoiled

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from continuum_sph.scene.sections import Scene
-from porescale.workbench.quantities import Columns, measured
-from porescale.workbench.sections import load
+from porescale.common.schema.sections import load
+from porescale.common.studies.quantities import Columns, measured
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 

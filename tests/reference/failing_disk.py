@@ -17,7 +17,7 @@ from unittest.mock import patch
 import h5py
 
 from porescale import open_run
-from porescale.runs.checkpoint import read_checkpoint
+from porescale.common.record.checkpoint import read_checkpoint
 
 CALLS = ("replace", "open", "fsync", "mkdir", "unlink", "rmdir", "write", "ftruncate")
 """Functions of os that touch the disk; besides these, opening a file by Python and by HDF5."""

@@ -34,8 +34,8 @@ from unittest.mock import patch
 # Numba's other layers of threads do not survive a fork; read when it is first imported.
 os.environ.setdefault("NUMBA_THREADING_LAYER", "workqueue")
 
-from porescale.runs.checkpoint import read_header
-from porescale.workbench.sections import load
+from porescale.common.record.checkpoint import read_header
+from porescale.common.schema.sections import load
 from tests.reference.failing_disk import whole
 from tests.reference.same_run import differences
 from tests.reference.scenes import COLUMN, grain, table, write
@@ -129,8 +129,8 @@ def run(package_name: str, words: list[str], marks: Marks, pictured: bool = True
     """Exit code of a command line, which says what it does."""
     from numba.core import caching, dispatcher
 
-    from porescale.runs import record, snapshots
-    from porescale.workbench.application import application, main
+    from porescale.common.cli.application import application, main
+    from porescale.common.record import record, snapshots
 
     package = _package(package_name)
 
@@ -164,9 +164,9 @@ def run(package_name: str, words: list[str], marks: Marks, pictured: bool = True
 
 def _package(name: str) -> Any:
     if name == "porescale":
-        from porescale.app.main import PACKAGE
+        from porescale.cli.main import PACKAGE
     else:
-        from continuum_sph.app import PACKAGE
+        from continuum_sph.cli import PACKAGE
     return PACKAGE
 
 

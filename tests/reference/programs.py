@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
-from continuum_sph.app import PACKAGE as CONTINUUM
-from porescale.app.main import PACKAGE as PORESCALE
-from porescale.ground import jit
-from porescale.workbench.application import application, main
+from continuum_sph.cli import PACKAGE as CONTINUUM
+from porescale.cli.main import PACKAGE as PORESCALE
+from porescale.common.cli.application import application, main
+from porescale.common.compiled import jit
 from tests.reference.killing import SCENES
 from tests.reference.scenes import write
 

@@ -9,7 +9,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from porescale.runs.checkpoint import read_checkpoint
+from porescale.common.record.checkpoint import read_checkpoint
 
 
 def contents(path: Path) -> dict[str, bytes]:

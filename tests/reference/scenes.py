@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from porescale.common.schema.sections import validate
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import validate
 
 COLUMN: dict[str, Any] = {
     "title": "A small column under water",

@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from porescale.ground.check import Unstable
-from porescale.runs.drive import CHECK_EVERY
+from porescale.common.core.errors import Unstable
+from porescale.common.record.drive import CHECK_EVERY
 
 NAN, INF = float("nan"), float("inf")
 

@@ -1,4 +1,4 @@
-"""Soft rims, slow and obvious, from the docstring of porescale/coupling/rim.py: cell by cell, disc by disc, no force.
+"""Soft rims, slow and obvious, from the docstring of porescale/coupling/coverage/soft_rim.py: cell by cell, no force.
 
 Fractions of a disc lie in the whole periodic box, so that a filter is a mean of three, once along x and once along y.
 """

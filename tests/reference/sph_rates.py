@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from continuum_sph.density import HYDROSTATIC, LINEAR
-from continuum_sph.layers import BY_SHIFTING, BY_WALLS, DIFFUSIVE, RHO, STIFF, VISCOUS, VOLUME, VX, X
-from continuum_sph.layers import P as PRESSURE
+from continuum_sph.water.density import HYDROSTATIC, LINEAR
+from continuum_sph.water.state import BY_SHIFTING, BY_WALLS, DIFFUSIVE, RHO, STIFF, VISCOUS, VOLUME, VX, X
+from continuum_sph.water.state import P as PRESSURE
 
 
 def wendland(r, h):

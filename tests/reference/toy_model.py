@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from porescale.ground.check import PorescaleError, Unstable
-from porescale.runs.drive import Outcome, drive
-from porescale.runs.model import Cloud, Grid, Snapshot
+from porescale.common.core.errors import PorescaleError, Unstable
+from porescale.common.record.drive import Outcome, drive
+from porescale.common.record.model import Cloud, Grid, Snapshot
 
 
 class Toy:

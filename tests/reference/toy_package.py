@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from porescale.ground.check import Fault, InputError, PorescaleError, Unstable
-from porescale.workbench.benchmarks import Benchmarks, Work
-from porescale.workbench.package import Package
-from porescale.workbench.report import Report
-from porescale.workbench.sections import Section, quantity
-from porescale.workbench.validations import Measured, Validations
+from porescale.common.cli.package import Package
+from porescale.common.cli.report import Report
+from porescale.common.core.errors import Fault, InputError, PorescaleError, Unstable
+from porescale.common.evidence.benchmarks import Benchmarks, Work
+from porescale.common.evidence.validations import Measured, Validations
+from porescale.common.schema.sections import Section, quantity
 
 
 class Decay(Section):

@@ -11,7 +11,7 @@ import pytest
 @pytest.fixture
 def one_thread() -> Iterator[None]:
     """Kernels on one thread: in scenes of a few cells waiting for a second one is all that is done."""
-    from porescale.ground.jit import set_threads, threads
+    from porescale.common.compiled.jit import set_threads, threads
 
     before = threads()
     set_threads(1)
@@ -22,7 +22,7 @@ def one_thread() -> Iterator[None]:
 @pytest.fixture
 def toy(tmp_path: Path, monkeypatch, capsys) -> Callable[..., tuple[int, str, list[str]]]:
     """Runs a command line in an empty folder; gives exit code, stdout, stderr lines."""
-    from porescale.workbench.application import application, main
+    from porescale.common.cli.application import application, main
     from tests.reference.toy_package import TOY
 
     monkeypatch.chdir(tmp_path)

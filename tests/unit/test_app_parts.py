@@ -14,12 +14,12 @@ import numpy as np
 import pytest
 
 import porescale
-from porescale.app import bench, new, show, verify
-from porescale.app.main import PACKAGE
-from porescale.ground.check import InputError
-from porescale.runs.model import Model, Snapshot
+from porescale.cli import bench, new, show, verify
+from porescale.cli.main import PACKAGE
+from porescale.common.core.errors import InputError
+from porescale.common.record.model import Model, Snapshot
+from porescale.common.schema.sections import LEVELS, Section, load, scene_as_dict
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import LEVELS, Section, load, scene_as_dict
 from tests.reference.scenes import column, dry, table, write
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -54,13 +54,17 @@ def test_the_package_and_its_help_wait_for_no_compiler():
     watch = "import sys; {}; sys.exit('numba' in sys.modules)"
     commands = (
         "import porescale",
-        "from porescale.app.main import PACKAGE; from porescale.workbench.application import application, main; "
+        "from porescale.cli.main import PACKAGE; from porescale.common.cli.application import application, main; "
         "main(application(PACKAGE), ['--help'])",
     )
     for command in commands:
         words = [sys.executable, "-c", watch.format(command)]
         assert subprocess.run(words, cwd=ROOT, check=False, capture_output=True).returncode == 0
-    compiled = [sys.executable, "-c", watch.format("import porescale.ground.compiling")]  # the twin: it would be seen
+    compiled = [
+        sys.executable,
+        "-c",
+        watch.format("import porescale.common.compiled.compiling"),
+    ]  # the twin: it would be seen
     assert subprocess.run(compiled, cwd=ROOT, check=False).returncode == 1
 
 
@@ -138,7 +142,7 @@ def test_the_gate_is_drawn_where_it_stands():
 
 def test_a_dry_run_is_shown_without_a_fluid(tmp_path):
     from porescale import build
-    from porescale.app.run import drive
+    from porescale.cli.run import drive
 
     scene = dry(time__end=0.002, output__snapshot_interval=0.001)
     card = {"scene": scene_as_dict(scene), "name": "dry"}
@@ -156,7 +160,7 @@ def test_a_dry_run_is_shown_without_a_fluid(tmp_path):
 
 def test_a_cache_that_cannot_be_written_fails_no_run(tmp_path, monkeypatch):
     from porescale import build
-    from porescale.app.run import drive
+    from porescale.cli.run import drive
 
     (tmp_path / "file").write_text("in the way")
     (tmp_path / "folder").mkdir()
@@ -171,8 +175,8 @@ def test_a_cache_that_cannot_be_written_fails_no_run(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("overwrite", [False, True])
 def test_both_packages_hand_on_that_a_run_may_be_replaced(tmp_path, monkeypatch, overwrite):
-    import continuum_sph.app
-    from porescale.app import run
+    import continuum_sph.cli
+    from porescale.cli import run
 
     class Asked(Exception):
         pass
@@ -180,8 +184,8 @@ def test_both_packages_hand_on_that_a_run_may_be_replaced(tmp_path, monkeypatch,
     def asked(*_, **options):
         raise Asked(options["overwrite"])
 
-    monkeypatch.setattr("porescale.runs.drive.drive", asked)
-    for part, text in ((run, new.template()), (continuum_sph.app, continuum_sph.app.template())):
+    monkeypatch.setattr("porescale.common.record.drive.drive", asked)
+    for part, text in ((run, new.template()), (continuum_sph.cli, continuum_sph.cli.template())):
         (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
         scene = load(tmp_path, part.scene_type())
         with pytest.raises(Asked, match=str(overwrite)):

@@ -6,14 +6,12 @@ import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
 
-from porescale.dem.bonds import bond
+from porescale.dem.bodies.frames import chain, framed, polygon
 from porescale.dem.discs import make_discs
-from porescale.dem.experiments_rock import DENSITY, law
-from porescale.dem.experiments_segments import OPEN
-from porescale.dem.frames import chain, framed, polygon
-from porescale.dem.walls import Box
-from porescale.scene.case import stage
-from porescale.scene.case_bodies import (
+from porescale.dem.forces.bonds import bond
+from porescale.dem.forces.walls import Box
+from porescale.output.case import stage
+from porescale.output.case_bodies import (
     DUST,
     LARGEST,
     PIECES,
@@ -26,6 +24,8 @@ from porescale.scene.case_bodies import (
     pixels,
     shot,
 )
+from porescale.validation.dem.rock_trials import DENSITY, law
+from porescale.validation.dem.segments_trials import OPEN
 
 SQUARE = np.array([(0.0, 0.0), (0.01, 0.0), (0.01, 0.01), (0.0, 0.01)])
 

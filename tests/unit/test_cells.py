@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.particles.cells import cell_of, grid_shape, minimum_image, sort_into_cells, wrapped
+from porescale.common.neighbors.cells import cell_of, grid_shape, minimum_image, sort_into_cells, wrapped
 
 
 def sort(x, columns=4, rows=3, period=(0.0, 0.0), compiled=True):

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.coupling import experiments_clumps as lab
-from porescale.coupling import verify_clumps
+from porescale.coupling.coverage.overlap import overlapping, take_off
 from porescale.coupling.displaced import displaced, whole
-from porescale.coupling.experiments_clumps import R, sunk
-from porescale.coupling.experiments_clumps import immersed_clumps as immersed
-from porescale.coupling.overlap import overlapping, take_off
 from porescale.coupling.step import buoyant_weight
-from porescale.coupling.verify_clumps import VALIDATIONS
-from porescale.dem.union import outline
+from porescale.dem.bodies.union import outline
+from porescale.validation.coupling import clumps as verify_clumps
+from porescale.validation.coupling import clumps_trials as lab
+from porescale.validation.coupling.clumps import VALIDATIONS
+from porescale.validation.coupling.clumps_trials import R, sunk
+from porescale.validation.coupling.clumps_trials import immersed_clumps as immersed
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 TWO = [[(12.0, 20.0, 5.0), (16.0, 23.0, 4.0)], [(30.0, 24.0, 5.0), (34.0, 22.0, 5.0)]]

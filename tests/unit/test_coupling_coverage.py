@@ -7,11 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from porescale.coupling import coverage, coverage_rows
-from porescale.coupling.coverage_rows import BLOCK
-from porescale.coupling.saturated import BAND_HEIGHT, Saturated
+from porescale.coupling.coverage import discs as coverage
+from porescale.coupling.coverage import rows as coverage_rows
+from porescale.coupling.coverage.rows import BLOCK
+from porescale.coupling.psm import BAND_HEIGHT, Saturated
+from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
-from porescale.lbm.sides import Sides
 from tests.reference import psm as twin
 
 EPS = np.finfo(float).eps
@@ -132,7 +133,7 @@ def test_a_disc_that_has_gone_leaves_nothing_behind():
 
 def stepped(monkeypatch, height):
     """Flow and loads after three steps of discs that share cells and cross sides, in bands of ``height`` rows."""
-    monkeypatch.setattr("porescale.coupling.saturated.BAND_HEIGHT", height)
+    monkeypatch.setattr("porescale.coupling.psm.BAND_HEIGHT", height)
     fluid = Fluid(20, 17, 0.7, sides=Sides("periodic", "periodic", "wall", "slip"))
     fluid.set_flow(0.02, -0.01)
     wet = Saturated(fluid, np.array([3.5, 3.6, 2.2]))
@@ -199,7 +200,7 @@ def test_coverage_kernels_are_the_same_uncompiled(monkeypatch):
     for name in ("list_part", "blocks_inside", "lay_row"):
         monkeypatch.setattr(coverage_rows, name, getattr(coverage_rows, name).py_func)
     for module, name in ((coverage, "cover"), (coverage_rows, "list_rows"), (coverage_rows, "lay_out")):
-        monkeypatch.setattr(f"porescale.coupling.saturated.{name}", getattr(module, name).py_func)
+        monkeypatch.setattr(f"porescale.coupling.psm.{name}", getattr(module, name).py_func)
     plain = covered(discs, nx=6, ny=5, kinds=kinds, motion=(0.1, 0.2, 0.3))
     for name in ("solid", "solid_x", "solid_y"):
         np.testing.assert_allclose(getattr(plain, name), getattr(compiled, name), rtol=0, atol=area_error(1.3))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.coupling.crossing import depth
+from porescale.coupling.coverage.interpenetration import depth
 
 SQUARE = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
 TURNED = (SQUARE - 0.5) @ np.array([(1.0, 1.0), (-1.0, 1.0)]) / np.sqrt(2.0)

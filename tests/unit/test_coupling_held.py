@@ -7,8 +7,8 @@ import copy
 import numpy as np
 import pytest
 
-from porescale.coupling import experiments as lab
-from porescale.dem import integrate
+from porescale.dem import step as integrate
+from porescale.validation.coupling import grains_trials as lab
 
 EPS = np.finfo(float).eps
 FALL = (1e-5, -5e-5)

@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from porescale.coupling import experiments as lab
+from porescale.common.core.errors import InputError
 from porescale.coupling import lubrication as law
 from porescale.coupling.step import Coupled
 from porescale.dem.discs import make_discs
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box
-from porescale.ground.check import InputError
+from porescale.dem.forces.walls import Box
+from porescale.dem.grains import Grains
+from porescale.validation.coupling import grains_trials as lab
 
 EPS = np.finfo(float).eps
 MU = 0.1

@@ -7,7 +7,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from porescale.coupling.saturated import Saturated
+from porescale.coupling.psm import Saturated
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX
 

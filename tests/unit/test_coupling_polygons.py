@@ -10,23 +10,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from porescale.coupling import experiments_polygons as lab
-from porescale.coupling.coverage import cover
-from porescale.coupling.coverage_rows import make_patches
-from porescale.coupling.saturated import Saturated
-from porescale.coupling.shapes import polygon as shapes
-from porescale.coupling.shapes.polygon import Polygons
-from porescale.coupling.stability_watch import _lightest
+from porescale.common.compiled.jit import set_threads, threads
+from porescale.common.core.errors import InputError
+from porescale.coupling.coverage import polygon as shapes
+from porescale.coupling.coverage.discs import cover
+from porescale.coupling.coverage.polygon import Polygons
+from porescale.coupling.coverage.rows import make_patches
+from porescale.coupling.divergence_check import _lightest
+from porescale.coupling.psm import Saturated
 from porescale.coupling.step import Coupled
-from porescale.dem.clumps import Body
+from porescale.dem.bodies.clumps import Body
+from porescale.dem.bodies.frames import chain, framed, polygon
 from porescale.dem.discs import make_discs
-from porescale.dem.frames import chain, framed, polygon
-from porescale.dem.walls import Box
-from porescale.ground.check import InputError
-from porescale.ground.jit import set_threads, threads
+from porescale.dem.forces.walls import Box
+from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
-from porescale.lbm.sides import Sides
+from porescale.validation.coupling import polygons_trials as lab
 from tests.reference.polygons import fractions_of
 
 EPS = np.finfo(float).eps
@@ -243,7 +243,7 @@ def test_corners_share_force_torque_and_weight_of_their_polygon():
     p, discs, clumps = coupled.polygons, coupled.grains.discs, coupled.grains.steering.clumps
     for n in range(2):
         own = clumps.discs_of(n)
-        # Shares of the mass are good to 1e-13 of their sum (dem/clumps.py).
+        # Shares of the mass are good to 1e-13 of their sum (dem/bodies/clumps.py).
         np.testing.assert_allclose(coupled.force[own].sum(axis=0), p.force[n], rtol=1e-12, atol=0)
         np.testing.assert_allclose(coupled.fluid_force[own].sum(axis=0), p.fluid_force[n], rtol=1e-12, atol=0)
         arm, force = discs.position[own] - p.position[n], coupled.force[own]

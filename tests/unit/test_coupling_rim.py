@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 from scipy.integrate import simpson
 
-from porescale.coupling import rim
-from porescale.coupling.coverage_rows import make_patches
-from porescale.coupling.experiments_fast import STARTED, started
-from porescale.coupling.saturated import Saturated
+from porescale.coupling.coverage import soft_rim as rim
+from porescale.coupling.coverage.rows import make_patches
+from porescale.coupling.psm import Saturated
+from porescale.coupling.psm_kernels import weigh_row
 from porescale.coupling.solid.choose import choose_solid
-from porescale.coupling.solid_collision import weigh_row
-from porescale.coupling.verify import VALIDATIONS
-from porescale.coupling.verify_fast import fast_starts
 from porescale.coupling.weighting import choose_weight
+from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
-from porescale.lbm.sides import Sides
+from porescale.validation.coupling.fast import fast_starts
+from porescale.validation.coupling.fast_trials import STARTED, started
+from porescale.validation.coupling.grains import VALIDATIONS
 from tests.reference.cylinder_start import CylinderStart
 
 EPS = np.finfo(float).eps

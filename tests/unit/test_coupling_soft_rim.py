@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from porescale.coupling.saturated import Saturated
+from porescale.coupling.psm import Saturated
 from porescale.coupling.solid.choose import choose_solid
 from porescale.coupling.solid.law import mix, taken
 from porescale.coupling.weighting import choose_weight, weight
+from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX, CY
-from porescale.lbm.sides import Sides
 from tests.reference import lbm, psm, soft_rim
 from tests.reference import solid_operators as solid
 

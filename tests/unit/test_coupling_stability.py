@@ -10,17 +10,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from porescale.coupling import limits, stability
-from porescale.coupling.experiments import immersed
-from porescale.coupling.saturated import Saturated
+from porescale.benchmarks import stability_psm as stability
+from porescale.common.core.errors import Unstable
+from porescale.common.evidence.stability import STABLE, UNSTABLE, Row, holds_up_to
+from porescale.coupling import limits
+from porescale.coupling.divergence_cause import Circumstances, likely_cause
+from porescale.coupling.divergence_check import Sense, worst_cell
+from porescale.coupling.psm import Saturated
 from porescale.coupling.solid.choose import SOLID_OPERATORS
-from porescale.coupling.stability_cause import Circumstances, likely_cause
-from porescale.coupling.stability_watch import Sense, worst_cell
 from porescale.coupling.weighting import WEIGHTINGS
-from porescale.ground.check import Unstable
+from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
-from porescale.lbm.sides import Sides
-from porescale.workbench.study import STABLE, UNSTABLE, Row, holds_up_to
+from porescale.validation.coupling.grains_trials import immersed
 
 MAP = Path(__file__).resolve().parents[2] / "docs" / "stability" / "stability.json"
 CALM = Circumstances("trt", False, 0.8, 0.01, 0.01, "odd-SC1", "B2", 2.5, 16.0)

@@ -9,15 +9,15 @@ import numba
 import numpy as np
 import pytest
 
-from porescale.coupling import experiments as lab
-from porescale.coupling import solid_collision
-from porescale.coupling.saturated import Saturated
+from porescale.common.compiled.jit import set_threads, threads
+from porescale.coupling import psm_kernels as solid_collision
+from porescale.coupling.psm import Saturated
 from porescale.coupling.solid.choose import choose_solid
 from porescale.coupling.weighting import choose_weight
-from porescale.ground.jit import set_threads, threads
+from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.collision.choose import third_order_rate
 from porescale.lbm.fluid import Fluid
-from porescale.lbm.sides import Sides
+from porescale.validation.coupling import grains_trials as lab
 from tests.reference import lbm as plain
 from tests.reference import psm as twin
 
@@ -296,9 +296,13 @@ def allocates(kernel):
 
 
 def test_no_kernel_of_a_step_allocates():
-    from porescale.coupling import coverage, coverage_rows, load, step
-    from porescale.dem import integrate
-    from porescale.lbm import plate, sides, stream
+    from porescale.coupling import load, step
+    from porescale.coupling.coverage import discs as coverage
+    from porescale.coupling.coverage import rows as coverage_rows
+    from porescale.dem import step as integrate
+    from porescale.lbm import stream
+    from porescale.lbm.boundary import sides
+    from porescale.lbm.boundary import thin_plate as plate
 
     coupled = lab.handful(sides=("wall", "wall"), gate=True)
     for _ in range(2):
@@ -315,7 +319,7 @@ def test_no_kernel_of_a_step_allocates():
 
 
 def test_a_kernel_that_allocates_is_found():
-    from porescale.ground.jit import kernel
+    from porescale.common.compiled.jit import kernel
 
     @kernel
     def wasteful(x):

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.coupling import experiments as lab
 from porescale.lbm import fluid
+from porescale.validation.coupling import grains_trials as lab
 
 
 @pytest.mark.parametrize("operator", ["exact-wall", "SC2"])

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.app import demseg
-from porescale.app.main import commands
-from porescale.decks.build import Options
-from porescale.decks.run import read
-from porescale.ground.check import InputError
-from porescale.scene.build import build
+from porescale.build.build import build
+from porescale.cli import demseg
+from porescale.cli.main import commands
+from porescale.common.cli.application import main
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import load
+from porescale.demseg.build import Options
+from porescale.demseg.run import read
 from porescale.scene.sections import Scene
-from porescale.workbench.application import main
-from porescale.workbench.sections import load
 from tests.reference import decks
 
 pytestmark = pytest.mark.usefixtures("one_thread")

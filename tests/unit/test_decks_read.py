@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.decks.deck import boundary_text, grains_text, read_deck
-from porescale.decks.numbers import Reader, real
-from porescale.decks.state import read_state, state_text
-from porescale.ground.check import InputError
+from porescale.common.core.errors import InputError
+from porescale.demseg.deck import boundary_text, grains_text, read_deck
+from porescale.demseg.numbers import Reader, real
+from porescale.demseg.state import read_state, state_text
 from tests.reference import decks
 
 

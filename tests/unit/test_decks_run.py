@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.decks.build import Options, random_discs
-from porescale.decks.deck import read_deck
-from porescale.decks.run import DeckRun, card_of, read
-from porescale.decks.tension import read_tensions, tension_text
-from porescale.ground.check import InputError, Unstable
-from porescale.runs.drive import drive
+from porescale.common.core.errors import InputError, Unstable
+from porescale.common.record.drive import drive
+from porescale.demseg.build import Options, random_discs
+from porescale.demseg.deck import read_deck
+from porescale.demseg.run import DeckRun, card_of, read
+from porescale.demseg.tension import read_tensions, tension_text
 from tests.reference import decks
 
 pytestmark = pytest.mark.usefixtures("one_thread")

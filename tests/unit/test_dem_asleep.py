@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.dem import asleep_kernels as kernels
-from porescale.dem import experiments_sleep as lab
-from porescale.dem.asleep import Sleep
+from porescale.common.core.constants import GRAVITY
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import validate
 from porescale.dem.discs import make_discs
-from porescale.dem.energy import energy_book
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box, Plate
-from porescale.ground.check import InputError
-from porescale.ground.constants import GRAVITY
+from porescale.dem.forces.walls import Box, Plate
+from porescale.dem.grains import Grains
+from porescale.dem.measures.energy import energy_book
+from porescale.dem.resting import sleep_kernels as kernels
+from porescale.dem.resting.sleep import Sleep
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import validate
+from porescale.validation.dem import sleep_trials as lab
 
 LONG = round(20 * lab.AFTER / 1.5e-5)
 

@@ -7,14 +7,14 @@ import copy
 import numpy as np
 import pytest
 
-from porescale.coupling import experiments as lab
-from porescale.dem import system
-from porescale.dem.at_rest import bear, clear, resting, unchanged
-from porescale.dem.cell import Still
+from porescale.dem import grains as system
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.system import Grains
-from porescale.dem.walls import PY, Box, Plate
+from porescale.dem.forces.walls import PY, Box, Plate
+from porescale.dem.grains import Grains
+from porescale.dem.motion.periodic_cell import Still
+from porescale.dem.resting.static import bear, clear, resting, unchanged
+from porescale.validation.coupling import grains_trials as lab
 
 LAW = Linear(1e4, 1.0, 2.5e3, 0.5, 0.5)
 DT = 1e-4

@@ -5,19 +5,20 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.dem import bench_segments, bonds
-from porescale.dem.bonds import bond
+from porescale.benchmarks import dem_polygons as bench_segments
+from porescale.common.core.errors import InputError
+from porescale.dem.bodies.frames import framed, polygon
 from porescale.dem.contact.linear import Linear
-from porescale.dem.contacts import contacts
-from porescale.dem.control import Moved
 from porescale.dem.discs import make_discs
-from porescale.dem.energy import energy_book
-from porescale.dem.experiments_segments import OPEN, THICKNESS, mixed_cloud, regular
-from porescale.dem.frames import framed, polygon
-from porescale.dem.steering import Clump
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box
-from porescale.ground.check import InputError
+from porescale.dem.forces import bonds
+from porescale.dem.forces.bonds import bond
+from porescale.dem.forces.walls import Box
+from porescale.dem.grains import Grains
+from porescale.dem.measures.contacts import contacts
+from porescale.dem.measures.energy import energy_book
+from porescale.dem.motion.control import Moved
+from porescale.dem.motion.drivers import Clump
+from porescale.validation.dem.segments_trials import OPEN, THICKNESS, mixed_cloud, regular
 
 K, R = 1e6, 0.01
 LAW = Linear(K)

@@ -8,19 +8,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from porescale.common.core.constants import GRAVITY
 from porescale.dem.contact.hertz import Hertz
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Materials
-from porescale.dem.contacts import contacts
 from porescale.dem.discs import make_discs
-from porescale.dem.energy import energy_book
-from porescale.dem.experiments import DENSITY, MASS, RADIUS, STIFFNESS
-from porescale.dem.experiments_bodies import clumped_cloud
+from porescale.dem.forces.walls import TURN, Box
+from porescale.dem.grains import Grains
+from porescale.dem.measures.contacts import contacts
+from porescale.dem.measures.energy import energy_book
 from porescale.dem.measures.loads import on_surface
-from porescale.dem.settle import come_to_rest, weights_of
-from porescale.dem.system import Grains
-from porescale.dem.walls import TURN, Box
-from porescale.ground.constants import GRAVITY
+from porescale.dem.prepare.settle import come_to_rest, weights_of
+from porescale.validation.dem.bodies_trials import clumped_cloud
+from porescale.validation.dem.discs_trials import DENSITY, MASS, RADIUS, STIFFNESS
 from tests.reference.pairs import neighbours, rows_of
 
 SOFT = Hertz(1e8, 0.8e8, damping_ratio=0.2155)

@@ -7,17 +7,18 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from porescale.dem import clumps, measure
-from porescale.dem.clumps import Body, Clumps
+from porescale.common.core.errors import InputError
+from porescale.dem.bodies import clumps
+from porescale.dem.bodies.clumps import Body, Clumps
+from porescale.dem.bodies.union import outline
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.join import joined
-from porescale.dem.settle import pack, unpack
-from porescale.dem.steering import Clump
-from porescale.dem.system import Grains
-from porescale.dem.union import outline
-from porescale.dem.walls import Box, Plate
-from porescale.ground.check import InputError
+from porescale.dem.forces.walls import Box, Plate
+from porescale.dem.grains import Grains
+from porescale.dem.measures import survey as measure
+from porescale.dem.motion.drivers import Clump
+from porescale.dem.prepare.merge import joined
+from porescale.dem.prepare.settle import pack, unpack
 from tests.reference import dem_bodies
 from tests.reference.dem import Body as Disc
 from tests.reference.dem import World
@@ -187,8 +188,8 @@ def test_a_clump_of_one_disc_is_that_disc():
 def test_a_restart_with_clumps_and_controls_equals_the_uninterrupted_run(before, tmp_path):
     def made():
         grains = cloud(plates=[Plate(0.045, 0.0, 0.04)])
-        from porescale.dem.control import Moved, Pushed
-        from porescale.dem.schedule import Sine
+        from porescale.dem.motion.control import Moved, Pushed
+        from porescale.dem.motion.time_function import Sine
 
         grains.steering.control(Clump(1), x=Moved(Sine(0.3, 50.0)), rotation=Pushed(1e-2))
         grains.steering.control(8, y=Pushed(3.0))

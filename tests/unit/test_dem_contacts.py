@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from porescale.dem.contact.linear import Linear
-from porescale.dem.contacts import contacts
 from porescale.dem.discs import make_discs
-from porescale.dem.rectangle import Rectangle
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box, Plate
+from porescale.dem.forces.rectangle import Rectangle
+from porescale.dem.forces.walls import Box, Plate
+from porescale.dem.grains import Grains
+from porescale.dem.measures.contacts import contacts
 
 LAW = Linear(1e6, 20.0, 2.5e5, 5.0, 0.4)
 DT = 2e-6

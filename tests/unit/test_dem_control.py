@@ -7,16 +7,17 @@ import math
 import numpy as np
 import pytest
 
-from porescale.dem import control, schedule, servo
+from porescale.common.core.errors import InputError
 from porescale.dem.contact.linear import Linear
-from porescale.dem.control import Moved, Placed, Pushed
 from porescale.dem.discs import make_discs
-from porescale.dem.measure import kinetic_energy
-from porescale.dem.schedule import Constant, Sine, Table, schedule_rows, value_at
-from porescale.dem.steering import Clump
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box
-from porescale.ground.check import InputError
+from porescale.dem.forces.walls import Box
+from porescale.dem.grains import Grains
+from porescale.dem.measures.survey import kinetic_energy
+from porescale.dem.motion import control, servo
+from porescale.dem.motion import time_function as schedule
+from porescale.dem.motion.control import Moved, Placed, Pushed
+from porescale.dem.motion.drivers import Clump
+from porescale.dem.motion.time_function import Constant, Sine, Table, schedule_rows, value_at
 
 LAW = Linear(1e6, 5.0, 3e5, 4.0, 0.4)
 FREE = Box((-1.0, -1.0), (1.0, 1.0), "open", "open", "open", "open")

@@ -8,15 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from porescale.common.core.errors import InputError
 from porescale.dem.contact.hertz import Hertz
 from porescale.dem.contact.law import contact
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Materials
 from porescale.dem.discs import make_discs
-from porescale.dem.integrate import packing_limit
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box
-from porescale.ground.check import InputError
+from porescale.dem.forces.walls import Box
+from porescale.dem.grains import Grains
+from porescale.dem.step import packing_limit
 from tests.reference.dem_contact import HertzContact
 
 STEEL = Linear(2e6, 10.0, 5e5, 3.0, 0.5, rolling_friction=0.1, rolling_stiffness=1e5)

@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from porescale.dem.contacts import contacts
+from porescale.common.core.errors import InputError
 from porescale.dem.measures import coarse_graining as graining
 from porescale.dem.measures.coarse_graining import CoarseGrained, Raster
+from porescale.dem.measures.contacts import contacts
 from porescale.dem.measures.fabric import coordination, fabric, force_distribution, rattlers, rose
 from porescale.dem.measures.loads import on_discs, on_surface
 from porescale.dem.measures.motion import motion
 from porescale.dem.measures.porosity import disc_areas, porosity, void_ratio
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import kinetic_stress, principal
-from porescale.ground.check import InputError
 from tests.unit.test_dem_contacts import crowd
 
 RNG = np.random.default_rng(0)

@@ -7,9 +7,9 @@ import pytest
 
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.integrate import ASK_AGAIN, WAY
-from porescale.dem.system import Grains
-from porescale.dem.walls import NX, PX, RUN, Box, ask_near, runs_of
+from porescale.dem.forces.walls import NX, PX, RUN, Box, ask_near, runs_of
+from porescale.dem.grains import Grains
+from porescale.dem.step import ASK_AGAIN, WAY
 
 SMOOTH, ROUGH = Linear(1e5, 2.0), Linear(1e5, 2.0, 2.5e4, 1.0, 0.5)
 DT = 1e-5

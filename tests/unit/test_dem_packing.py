@@ -5,12 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from porescale.common.core.errors import InputError
+from porescale.common.neighbors.grading import graded_radii
+from porescale.common.neighbors.placement import part
 from porescale.dem.contact.linear import Linear
-from porescale.dem.contacts import contacts
+from porescale.dem.measures.contacts import contacts
 from porescale.dem.measures.fabric import rattlers
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress
-from porescale.dem.packing import (
+from porescale.dem.prepare.compaction import (
     BALANCE,
     NEAR,
     Press,
@@ -21,9 +24,6 @@ from porescale.dem.packing import (
     read_packing,
     write_packing,
 )
-from porescale.ground.check import InputError
-from porescale.particles.grading import graded_radii
-from porescale.particles.placement import part
 
 LAW = Linear.from_restitution(0.5, 1e-3, 1e6, 2.5e5, 20.0, 0.5)
 SIZE = (0.012, 0.012)

@@ -7,13 +7,14 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from porescale.dem import integrate, measure
+from porescale.common.core.errors import Unstable
+from porescale.dem import step as integrate
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.join import joined
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box, Plate
-from porescale.ground.check import Unstable
+from porescale.dem.forces.walls import Box, Plate
+from porescale.dem.grains import Grains
+from porescale.dem.measures import survey as measure
+from porescale.dem.prepare.merge import joined
 
 LAW = Linear(1e6, 0.0, 3e5, 0.0, 0.4)
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from porescale.common.core.errors import InputError
 from porescale.dem.contact.law import LinearSliding
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.rectangle import Rectangle, add_rectangle_forces
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box
-from porescale.ground.check import InputError
+from porescale.dem.forces.rectangle import Rectangle, add_rectangle_forces
+from porescale.dem.forces.walls import Box
+from porescale.dem.grains import Grains
 
 LAW = Linear(1e5, 0.0, 0.0, 0.0, 0.0)
 RUBBING = Linear(1e5, 5.0, 2.5e4, 1.0, 0.5)

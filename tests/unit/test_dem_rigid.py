@@ -7,21 +7,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from porescale.dem import strain
+from porescale.dem.bodies.rigid import areas, arms, as_bodies, body_of
+from porescale.dem.bodies.union import outline
 from porescale.dem.contact.linear import Linear
-from porescale.dem.contacts import contacts
 from porescale.dem.discs import make_discs
-from porescale.dem.experiments import DENSITY, MASS, RADIUS, STIFFNESS
-from porescale.dem.experiments_bodies import clumped_cell, energy_of_bodies, stored
-from porescale.dem.measure import coordination
+from porescale.dem.forces.walls import Box
+from porescale.dem.grains import Grains
+from porescale.dem.measures.contacts import contacts
 from porescale.dem.measures.fabric import LEAST_WITH_FRICTION, rattlers
 from porescale.dem.measures.porosity import disc_areas
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress, kinetic_stress
-from porescale.dem.rigid import areas, arms, as_bodies, body_of
-from porescale.dem.system import Grains
-from porescale.dem.union import outline
-from porescale.dem.walls import Box
+from porescale.dem.measures.survey import coordination
+from porescale.dem.motion import affine_strain as strain
+from porescale.validation.dem.bodies_trials import clumped_cell, energy_of_bodies, stored
+from porescale.validation.dem.discs_trials import DENSITY, MASS, RADIUS, STIFFNESS
 
 EPS = np.finfo(float).eps
 LAW = Linear(1e7)

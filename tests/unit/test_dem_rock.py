@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.dem.bonds import bond, pieces
+from porescale.common.core.errors import InputError
+from porescale.dem.bodies.frames import framed, polygon
 from porescale.dem.discs import make_discs
-from porescale.dem.experiments_rock import DENSITY, GAP, PRESSED, STIFFNESS, law, packing, sample
-from porescale.dem.frames import framed, polygon
-from porescale.dem.network import stiffness, voigt
-from porescale.dem.rock import Curve, load, rock
-from porescale.dem.walls import Box
-from porescale.ground.check import InputError
+from porescale.dem.forces.bonds import bond, pieces
+from porescale.dem.forces.walls import Box
+from porescale.dem.measures.network import stiffness, voigt
+from porescale.dem.prepare.rock import Curve, load, rock
+from porescale.validation.dem.rock_trials import DENSITY, GAP, PRESSED, STIFFNESS, law, packing, sample
 
 COUNT, SEED = 40, 3
 SQUARE = np.array([(0.0, 0.0), (0.01, 0.0), (0.01, 0.01), (0.0, 0.01)])

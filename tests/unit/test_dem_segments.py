@@ -8,23 +8,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from porescale.dem import bench_segments, measure, segments
-from porescale.dem.bonds import bond
-from porescale.dem.cell import Still
+from porescale.benchmarks import dem_polygons as bench_segments
+from porescale.common.core.errors import InputError, Unstable
+from porescale.dem.bodies.frames import Frame, chain, framed, from_ends, polygon, polygon_moments
 from porescale.dem.contact.hertz import Hertz
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Materials
-from porescale.dem.control import Moved
 from porescale.dem.discs import make_discs
-from porescale.dem.energy import energy_book
-from porescale.dem.experiments_segments import mixed_cloud, regular
-from porescale.dem.frames import Frame, chain, framed, from_ends, polygon, polygon_moments
-from porescale.dem.rectangle import Rectangle
-from porescale.dem.settle import pack, unpack
-from porescale.dem.steering import Clump
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box, Plate
-from porescale.ground.check import InputError, Unstable
+from porescale.dem.forces import segments
+from porescale.dem.forces.bonds import bond
+from porescale.dem.forces.rectangle import Rectangle
+from porescale.dem.forces.walls import Box, Plate
+from porescale.dem.grains import Grains
+from porescale.dem.measures import survey as measure
+from porescale.dem.measures.energy import energy_book
+from porescale.dem.motion.control import Moved
+from porescale.dem.motion.drivers import Clump
+from porescale.dem.motion.periodic_cell import Still
+from porescale.dem.prepare.settle import pack, unpack
+from porescale.validation.dem.segments_trials import mixed_cloud, regular
 from tests.reference import dem_segments as slow
 
 K = 1e6

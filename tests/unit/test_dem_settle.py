@@ -7,13 +7,14 @@ import dataclasses
 import numpy as np
 import pytest
 
-from porescale.dem import measure, settle
-from porescale.dem.bench import BENCHMARKS
+from porescale.benchmarks.dem import BENCHMARKS
+from porescale.common.core.errors import InputError
 from porescale.dem.contact.linear import Linear
-from porescale.dem.settle import Pile, prepare, weights_of
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box, Plate
-from porescale.ground.check import InputError
+from porescale.dem.forces.walls import Box, Plate
+from porescale.dem.grains import Grains
+from porescale.dem.measures import survey as measure
+from porescale.dem.prepare import settle
+from porescale.dem.prepare.settle import Pile, prepare, weights_of
 
 PILE = Pile((0.04, 0.0), 0.02, 120, 1.5e-3, 2500.0, seed=4)
 BOX = Box((0.0, 0.0), (0.06, 0.1), top="open")

@@ -8,10 +8,10 @@ import pytest
 from porescale.dem.contact.law import LinearSliding, LinearSmooth
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.rectangle import Rectangle
-from porescale.dem.smooth import law_of_steps, turning
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box, Plate
+from porescale.dem.forces.rectangle import Rectangle
+from porescale.dem.forces.walls import Box, Plate
+from porescale.dem.grains import Grains
+from porescale.dem.resting.frictionless import law_of_steps, turning
 
 SMOOTH, ROUGH = Linear(1e5, 2.0), Linear(1e5, 2.0, 2.5e4, 1.0, 0.5)
 

@@ -5,17 +5,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.dem import forces, strain
-from porescale.dem.cell import Still, Straining
+from porescale.common.core.errors import InputError
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.experiments_bodies import lattice, random_cell, stored
-from porescale.dem.measure import kinetic_energy, max_overlap
-from porescale.dem.settle import pack, unpack
-from porescale.dem.steering import COMPONENTS
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box
-from porescale.ground.check import InputError
+from porescale.dem.forces import pairs as forces
+from porescale.dem.forces.walls import Box
+from porescale.dem.grains import Grains
+from porescale.dem.measures.survey import kinetic_energy, max_overlap
+from porescale.dem.motion import affine_strain as strain
+from porescale.dem.motion.drivers import COMPONENTS
+from porescale.dem.motion.periodic_cell import Still, Straining
+from porescale.dem.prepare.settle import pack, unpack
+from porescale.validation.dem.bodies_trials import lattice, random_cell, stored
 
 LAW = Linear(1e7, 20.0, 5e6, 10.0, 0.5)
 EPS = np.finfo(float).eps

@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from porescale.build.grain_fields import _moving
 from porescale.dem.contact.linear import Linear
-from porescale.dem.contacts import contacts
 from porescale.dem.discs import make_discs
-from porescale.dem.experiments_bodies import random_cell
 from porescale.dem.measures.coarse_graining import CoarseGrained, Raster
+from porescale.dem.measures.contacts import contacts
 from porescale.dem.measures.fabric import fabric
 from porescale.dem.measures.porosity import disc_areas, porosity
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress, kinetic_stress
-from porescale.scene.grain_fields import _moving
+from porescale.validation.dem.bodies_trials import random_cell
 
 LAW = Linear(1e7, 20.0, 5e6, 10.0, 0.5)
 EPS = np.finfo(float).eps

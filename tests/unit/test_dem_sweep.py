@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.dem import sweep
-from porescale.dem.cell import Still
+from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.contact.law import BOOK, LinearSliding
 from porescale.dem.contact.linear import Linear
-from porescale.dem.forces import pair_forces, start_forces
-from porescale.particles.pairs import PairList
+from porescale.dem.forces import threads as sweep
+from porescale.dem.forces.pairs import pair_forces, start_forces
+from porescale.dem.motion.periodic_cell import Still
 
 LAW = Linear(1e6, 5.0, 3e5, 4.0, 0.4)
 

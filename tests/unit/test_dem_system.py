@@ -5,13 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.dem import forces, integrate, kick, measure, walls
+from porescale.common.core.errors import InputError, Unstable
+from porescale.dem import step as integrate
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.settle import pack, unpack
-from porescale.dem.system import Grains
-from porescale.dem.walls import Box, Plate
-from porescale.ground.check import InputError, Unstable
+from porescale.dem.forces import pairs as forces
+from porescale.dem.forces import walls
+from porescale.dem.forces.walls import Box, Plate
+from porescale.dem.grains import Grains
+from porescale.dem.measures import survey as measure
+from porescale.dem.motion import leapfrog as kick
+from porescale.dem.prepare.settle import pack, unpack
 from tests.reference.dem import Body, World
 
 DENSITY = 2000.0

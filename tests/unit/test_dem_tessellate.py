@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.dem.tessellate import area, delaunay, shrunk, voronoi
-from porescale.ground.check import InputError
+from porescale.common.core.errors import InputError
+from porescale.dem.prepare.tessellate import area, delaunay, shrunk, voronoi
 
 LOWER, UPPER = (0.5, -1.0), (3.5, 1.0)
 

@@ -9,8 +9,8 @@ import sys
 import time
 from pathlib import Path
 
-from porescale.ground import jit
-from porescale.ground.cache import DAY, cache_root, hash_of, keep_only_used
+from porescale.common.compiled import jit
+from porescale.common.compiled.cache import DAY, cache_root, hash_of, keep_only_used
 
 
 def test_the_cache_lies_where_the_desktop_standard_says_and_an_empty_variable_counts_as_unset(monkeypatch, tmp_path):
@@ -56,7 +56,7 @@ def test_kernel_folders_unused_for_a_month_go_but_never_the_current_one(tmp_path
 
 
 def test_kernels_are_kept_below_the_cache_unless_a_folder_is_named(tmp_path):
-    ask = "from porescale.ground import jit; print(jit.compiler().numba.config.CACHE_DIR)"
+    ask = "from porescale.common.core import jit; print(jit.compiler().numba.config.CACHE_DIR)"
     old = tmp_path / "porescale" / "kernels-old"
     old.mkdir(parents=True)
     os.utime(old, (0, 0))
@@ -82,7 +82,7 @@ def test_kernels_are_kept_below_the_cache_unless_a_folder_is_named(tmp_path):
 
 def test_kernels_work_where_no_cache_can_be_written(tmp_path):
     (tmp_path / "file").write_text("in the way")
-    ask = "from porescale.particles.cells import minimum_image as k; print(k(0.9, 1.0), type(k._cache).__name__)"
+    ask = "from porescale.common.neighbors.cells import minimum_image as k; print(k(0.9, 1.0), type(k._cache).__name__)"
     root = Path(jit.__file__).resolve().parents[2]
     for place, cache in (("file", "NullCache"), ("folder", "FunctionCache")):  # the second is the twin
         environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / place), "NUMBA_CACHE_DIR": ""}

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.ground.jit import fetch, kernel, part, set_threads, sum_by_halves, threads
+from porescale.common.compiled.jit import fetch, kernel, part, set_threads, sum_by_halves, threads
+from porescale.common.core.errors import InputError
 
 
 @pytest.mark.usefixtures("one_thread")

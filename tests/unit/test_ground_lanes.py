@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.ground.jit import kernel
-from porescale.ground.lanes import (
+from porescale.common.compiled.jit import kernel
+from porescale.common.compiled.simd import (
     COLUMNS,
     LANES,
     greater,

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from porescale.coupling.bench import bench_psm
-from porescale.ground.check import InputError
-from porescale.lbm.bench import (
+from porescale.benchmarks.lbm import (
     CELLS_A_CALL,
     MOST_STEPS,
     SIZE,
@@ -17,6 +15,8 @@ from porescale.lbm.bench import (
     side_of,
     steps_of,
 )  # fmt: skip
+from porescale.benchmarks.psm import bench_psm
+from porescale.common.core.errors import InputError
 from porescale.lbm.collision.choose import OPERATORS
 
 
@@ -40,7 +40,7 @@ def test_a_call_takes_an_even_number_of_steps_and_never_more_than_an_end_can_be_
 
 @pytest.mark.usefixtures("one_thread")
 def test_the_smallest_box_counts_its_cell_steps(monkeypatch):
-    monkeypatch.setattr("porescale.lbm.bench.MOST_STEPS", 2)
+    monkeypatch.setattr("porescale.benchmarks.lbm.MOST_STEPS", 2)
     works = [
         bench_lbm(SMALLEST, 1, "float32"),
         *bench_operators(SMALLEST, 1, "float32"),

@@ -7,9 +7,9 @@ import itertools
 import numpy as np
 import pytest
 
+from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX, CY
-from porescale.lbm.sides import Sides
 from tests.reference import lbm as twin
 
 EPS = np.finfo(float).eps
@@ -247,7 +247,8 @@ def test_sides_are_periodic_together():
 def test_a_step_of_plain_python_is_the_compiled_one(monkeypatch):
     # Rows of 4 cells; the same operations but for fused multiply-adds: 60 eps a step, as above.
     from porescale.lbm import fluid as room
-    from porescale.lbm import moments, rim, stream
+    from porescale.lbm import moments, stream
+    from porescale.lbm.boundary import links as rim
     from porescale.lbm.collision import law, trt
 
     def made():

@@ -7,9 +7,9 @@ import tracemalloc
 import numpy as np
 import pytest
 
+from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX
-from porescale.lbm.sides import Sides
 
 SIDE = 1000
 PAPER_SIDE = 12_000

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.lbm import observe
+from porescale.lbm import fields as observe
+from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
-from porescale.lbm.sides import Sides
 
 EPS = np.finfo(float).eps
 PERIODIC = Sides("periodic", "periodic", "periodic", "periodic")

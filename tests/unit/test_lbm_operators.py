@@ -7,10 +7,10 @@ import importlib
 import numpy as np
 import pytest
 
+from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.collision.choose import OPERATORS, choose
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX, CY, OPPOSITE
-from porescale.lbm.sides import Sides
 from tests.reference import lbm as twin
 from tests.reference import lbm_operators as dense
 

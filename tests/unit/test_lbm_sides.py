@@ -7,9 +7,9 @@ import itertools
 import numpy as np
 import pytest
 
+from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX, CY
-from porescale.lbm.sides import Sides
 from tests.reference import lbm as twin
 
 EPS = np.finfo(float).eps
@@ -162,15 +162,17 @@ def test_a_restored_fluid_with_open_sides_goes_on_bit_for_bit(steps):
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_open_sides_stay_in_the_dtype_of_the_populations(dtype):
-    from porescale.lbm.open_links import OpenLinks
-    from porescale.lbm.sides import Bounds
+    from porescale.lbm.boundary.pressure import OpenLinks
+    from porescale.lbm.boundary.sides import Bounds
 
     links = OpenLinks(Bounds(4, 3, Sides("pressure", "pressure")), dtype)
     assert {a.dtype for a in (links.along, links.weight, links.excess)} == {np.dtype(dtype)}
 
 
 def test_a_step_with_open_sides_of_plain_python_is_the_compiled_one(monkeypatch):
-    from porescale.lbm import open_links, rim, velocity_links
+    from porescale.lbm.boundary import links as rim
+    from porescale.lbm.boundary import pressure as open_links
+    from porescale.lbm.boundary import velocity as velocity_links
 
     compiled, _ = pair("velocity", "pressure", "pressure", "wall", nx=NX, ny=NY)
     names = [(rim, "fill_halo"), (rim, "empty_halo"), (open_links, "_let_in")]

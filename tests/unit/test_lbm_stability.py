@@ -7,13 +7,13 @@ import json
 import numpy as np
 import pytest
 
-from porescale.app.main import PACKAGE
-from porescale.lbm import stability
+from porescale.benchmarks import stability_lbm as stability
+from porescale.cli.main import PACKAGE
+from porescale.common.cli.application import application, main
+from porescale.common.evidence.stability import RIGHT, STABLE, UNSTABLE
 from porescale.lbm.collision.choose import OPERATORS
 from porescale.lbm.fluid import Fluid
-from porescale.lbm.stability_sense import sane
-from porescale.workbench.application import application, main
-from porescale.workbench.study import RIGHT, STABLE, UNSTABLE
+from porescale.lbm.sanity import sane
 
 
 def test_every_operator_is_tried_in_every_way():

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.workbench.front import read_front
-from porescale.workbench.levels import APART, apart, compared, picked
+from porescale.common.core.errors import InputError
+from porescale.common.studies.front import read_front
+from porescale.common.studies.levels import APART, apart, compared, picked
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -51,8 +51,8 @@ def test_a_front_without_a_point_for_a_level_is_said(tmp_path, more):
 
 
 def packages():
-    from continuum_sph.app import PACKAGE as continuum
-    from porescale.app.main import PACKAGE as grains
+    from continuum_sph.cli import PACKAGE as continuum
+    from porescale.cli.main import PACKAGE as grains
 
     return {"column_collapse": grains, "collapsing_water_column": continuum}
 

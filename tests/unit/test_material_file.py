@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
+from continuum_sph.build.soil_report import soil_report
 from continuum_sph.scene.material_file import DENSITY, VISCOSITY
 from continuum_sph.scene.sections import Scene, Water
-from continuum_sph.scene.soil_report import soil_report
-from porescale.decks.convert import toml
-from porescale.ground.check import InputError
-from porescale.ground.constants import GRAVITY
-from porescale.scene.material import Known, known, tables
-from porescale.workbench.sections import open_scene, scene_as_dict, validate
+from porescale.analysis.material import Known, known, tables
+from porescale.common.core.constants import GRAVITY
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import open_scene, scene_as_dict, validate
+from porescale.demseg.convert import toml
 
 ROWS = [
     {"porosity": 0.18, "peak friction angle": 0.40, "peak dilatancy angle": 0.10, "critical friction angle": 0.30,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from porescale.coupling.saturated import Saturated
+from porescale.build.build import build
+from porescale.common.schema.sections import validate
+from porescale.coupling.psm import Saturated
 from porescale.lbm.fluid import Fluid
-from porescale.scene.build import build
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import validate
 
 
 def stirred(places: list[np.ndarray], anew: bool) -> tuple[np.ndarray, np.ndarray]:

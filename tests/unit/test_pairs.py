@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.ground.jit import set_threads
-from porescale.particles import PairList, drift, pairs, search
+from porescale.common.compiled.jit import set_threads
+from porescale.common.core.errors import InputError
+from porescale.common.neighbors import PairList, search
+from porescale.common.neighbors import pair_list as pairs
+from porescale.common.neighbors import skin as drift
 from tests.reference.pairs import neighbours, rows_of
 
 LOWER, UPPER = (0.0, -1.0), (10.0, 7.0)

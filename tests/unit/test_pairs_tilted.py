@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from porescale.particles import PairList, pairs, search
-from porescale.particles.cells import minimum_image, tilted_image, untilted
+from porescale.common.neighbors import PairList, search
+from porescale.common.neighbors import pair_list as pairs
+from porescale.common.neighbors.cells import minimum_image, tilted_image, untilted
 from tests.reference.dem_bodies import tilted_neighbours
 from tests.reference.pairs import rows_of
 

@@ -6,18 +6,18 @@ import cv2
 import numpy as np
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.piv.camera import Shooting, fastest, frames, shooting
-from porescale.piv.field import in_metres, in_pixels
-from porescale.piv.filmed import write_frames
-from porescale.piv.flows import Discs
-from porescale.piv.measure import measure
-from porescale.piv.moving import Between, instant, nearest, pushed_out
-from porescale.piv.spots import coverage
-from porescale.piv.synth import Camera
-from porescale.runs import snapshots
-from porescale.runs.model import Cloud, Grid, Snapshot
-from porescale.runs.open_run import Run
+from porescale.common.core.errors import InputError
+from porescale.common.record import snapshots
+from porescale.common.record.model import Cloud, Grid, Snapshot
+from porescale.common.record.open_run import Run
+from porescale.piv.estimate.measure import measure
+from porescale.piv.fields.field import in_metres, in_pixels
+from porescale.piv.images.camera import Shooting, fastest, frames, shooting
+from porescale.piv.images.filmed import write_frames
+from porescale.piv.images.flows import Discs
+from porescale.piv.images.moving import Between, instant, nearest, pushed_out
+from porescale.piv.images.spots import coverage
+from porescale.piv.images.synth import Camera
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 CELLS, SIDE = 64, 0.032  # a square of 32 mm
@@ -145,10 +145,10 @@ def test_what_cannot_be_filmed_is_refused(run):
 
 
 def test_the_command_films_and_says_how_to_measure(run, tmp_path, monkeypatch, capsys):
-    from porescale.app.main import commands
-    from porescale.workbench.application import main
+    from porescale.cli.main import commands
+    from porescale.common.cli.application import main
 
-    monkeypatch.setattr("porescale.runs.open_run.open_run", lambda folder: run)
+    monkeypatch.setattr("porescale.common.record.open_run.open_run", lambda folder: run)
     given = ["piv", "render", str(run.folder), "--out", str(tmp_path / "f"), "--scale", "0.2 mm", "--end", "0.05 s"]
     assert main(commands(), [*given, "--interval", "25 ms", "--grains", "dark"]) == 0
     said = capsys.readouterr().out

@@ -7,23 +7,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from porescale.app.main import commands
-from porescale.piv import experiments as lab
-from porescale.piv import surface
-from porescale.piv.camera import Shooting, frames, shooting
-from porescale.piv.compare import compare
-from porescale.piv.field import in_metres, in_pixels
-from porescale.piv.flows import Discs
-from porescale.piv.measure import measure
-from porescale.piv.of_run import field_of_run, surface_of_run
-from porescale.piv.series import as_grid
-from porescale.piv.synth import Camera
-from porescale.piv.verify import VALIDATIONS
-from porescale.piv.vortices import Vortex, matched
-from porescale.runs import snapshots
-from porescale.runs.model import Cloud, Grid, Snapshot
-from porescale.runs.open_run import Run
-from porescale.workbench.application import main
+from porescale.cli.main import commands
+from porescale.common.cli.application import main
+from porescale.common.record import snapshots
+from porescale.common.record.model import Cloud, Grid, Snapshot
+from porescale.common.record.open_run import Run
+from porescale.piv.estimate.measure import measure
+from porescale.piv.estimate.series import as_grid
+from porescale.piv.fields import surface
+from porescale.piv.fields.compare import compare
+from porescale.piv.fields.field import in_metres, in_pixels
+from porescale.piv.fields.of_run import field_of_run, surface_of_run
+from porescale.piv.fields.vortices import Vortex, matched
+from porescale.piv.images.camera import Shooting, frames, shooting
+from porescale.piv.images.flows import Discs
+from porescale.piv.images.synth import Camera
+from porescale.validation.piv import pairs_trials as lab
+from porescale.validation.piv.pairs import VALIDATIONS
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 SIDE, CELLS, TURN = 0.032, 64, 2.0
@@ -85,7 +85,7 @@ def test_a_run_is_compared_with_the_film_of_it(tmp_path, monkeypatch, capsys):
     for k in range(2):
         snapshots.write_part(folder, turning(0.1 * k, k))
     run = Run(folder, {"name": "turning"}, snapshots.catalogue(folder))
-    monkeypatch.setattr("porescale.piv.of_run.open_run", lambda folder: run)
+    monkeypatch.setattr("porescale.piv.fields.of_run.open_run", lambda folder: run)
     scale, pause = SIDE / 256, 0.02
     shot = shooting(run, Shooting(Camera(noise=1.0), scale, pause, 0.0, pause))
     first, second = list(frames(run, shot))

@@ -8,19 +8,19 @@ import cv2
 import numpy as np
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.piv import flows
-from porescale.piv.compare import compare
-from porescale.piv.field import COLUMNS, in_metres, read, write_csv, write_openpiv
-from porescale.piv.film import background, open_film, picture
-from porescale.piv.masks import bitmap, masks, polygon, segmented
-from porescale.piv.of_run import field_of_run
-from porescale.piv.series import Shots, as_grid, averaged, measured
-from porescale.piv.synth import Camera, Pair, exact, expose, pair, seeded
-from porescale.piv.vortices import gammas, matched, vortices
-from porescale.runs import snapshots
-from porescale.runs.film import write_film
-from porescale.runs.model import Snapshot
+from porescale.common.core.errors import InputError
+from porescale.common.pictures.film import write_film
+from porescale.common.record import snapshots
+from porescale.common.record.model import Snapshot
+from porescale.piv.estimate.series import Shots, as_grid, averaged, measured
+from porescale.piv.fields.compare import compare
+from porescale.piv.fields.field import COLUMNS, in_metres, read, write_csv, write_openpiv
+from porescale.piv.fields.of_run import field_of_run
+from porescale.piv.fields.vortices import gammas, matched, vortices
+from porescale.piv.images import flows
+from porescale.piv.images.film import background, open_film, picture
+from porescale.piv.images.masks import bitmap, masks, polygon, segmented
+from porescale.piv.images.synth import Camera, Pair, exact, expose, pair, seeded
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 SIZE = (96, 128)
@@ -144,7 +144,7 @@ def test_a_still_background_goes_and_the_flow_stays(tmp_path):
 
 
 def replace_settings(**changes):
-    from porescale.piv.measure import Settings
+    from porescale.piv.estimate.measure import Settings
 
     return replace(Settings(), **changes)
 
@@ -225,8 +225,8 @@ def test_a_synthetic_pair_is_the_same_for_the_same_seed_and_loses_what_it_says()
 
 
 def test_any_number_of_threads_gives_the_same_bits():
-    from porescale.ground.jit import most_threads, set_threads
-    from porescale.piv.measure import measure
+    from porescale.common.compiled.jit import most_threads, set_threads
+    from porescale.piv.estimate.measure import measure
 
     made = pair(
         flows.past_discs(SIZE, 1.0, flows.Discs(np.array([60.0]), np.array([48.0]), np.array([14.0]))), Camera(SIZE)
@@ -240,7 +240,7 @@ def test_any_number_of_threads_gives_the_same_bits():
 
 
 def test_small_and_odd_pictures_are_measured_too():
-    from porescale.piv.measure import measure
+    from porescale.piv.estimate.measure import measure
 
     for size in ((17, 40), (33, 65), (101, 67)):
         made = pair(flows.uniform(1.5, -0.5), Camera(size, noise=0.0, lost=0.0), 2)
@@ -252,7 +252,7 @@ def test_small_and_odd_pictures_are_measured_too():
 
 
 def test_brightness_and_contrast_may_change_between_pictures():
-    from porescale.piv.measure import measure
+    from porescale.piv.estimate.measure import measure
 
     made = pair(flows.uniform(1.5, -0.5), Camera((128, 128), lost=0.0), 2)
     plain = measure(made.first, made.second)
@@ -261,7 +261,7 @@ def test_brightness_and_contrast_may_change_between_pictures():
 
 
 def test_the_bench_measures_pairs_of_its_sizes():
-    from porescale.piv.bench import LARGEST, SMALLEST, bench_piv
+    from porescale.benchmarks.piv import LARGEST, SMALLEST, bench_piv
 
     (work,) = bench_piv(SMALLEST, 1, "float32")
     work.call()

@@ -9,11 +9,13 @@ import pytest
 from scipy.interpolate import make_interp_spline
 from scipy.ndimage import map_coordinates, spline_filter
 
-from porescale.piv import fit, interpolate, lattice, outliers, spots
-from porescale.piv.correlate import Layout, block_products, correlation, peaks
-from porescale.piv.grid import Grid, expand, spline_matrix
-from porescale.piv.rims import rims
-from porescale.piv.smooth import smoothed
+from porescale.piv.estimate import fit, interpolate, outliers
+from porescale.piv.estimate import splines as lattice
+from porescale.piv.estimate.correlate import Layout, block_products, correlation, peaks
+from porescale.piv.estimate.grid import Grid, expand, spline_matrix
+from porescale.piv.estimate.rims import rims
+from porescale.piv.estimate.smoothing import smoothed
+from porescale.piv.images import spots
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 RNG = np.random.default_rng(6)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.particles import place, square_lattice, triangular_lattice
-from porescale.particles.placement import glide, repel
+from porescale.common.core.errors import InputError
+from porescale.common.neighbors import place, square_lattice, triangular_lattice
+from porescale.common.neighbors.placement import glide, repel
 from tests.reference.pairs import nearest_image
 
 

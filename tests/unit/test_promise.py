@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from porescale.workbench.front import Choice, FrontPoint, read_front
-from porescale.workbench.promise import Promise, benchmark, error_of, judged, settings
+from porescale.common.studies.budget_check import Promise, benchmark, error_of, judged, settings
+from porescale.common.studies.front import Choice, FrontPoint, read_front
 
 POINT = FrontPoint("10", None, ("numerics.spacing=0.1",), 0.05, 0.01, 1.0, 0.8, 1e-3, 1.0, {"front": 0.04})
 

@@ -8,8 +8,8 @@ import h5py
 import numpy as np
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.runs.checkpoint import read_checkpoint, read_header, write_checkpoint
+from porescale.common.core.errors import InputError
+from porescale.common.record.checkpoint import read_checkpoint, read_header, write_checkpoint
 
 STATE = {"step": 3, "state": {"x": np.arange(4000.0).reshape(-1, 4), "on": True, "name": "a/b.c"}}
 

@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from porescale.runs.cost import PACED, UNCOUNTED, Cost
+from porescale.common.record.cost import PACED, UNCOUNTED, Cost
 
 
 def counted(*blocks: tuple[int, float]) -> Cost:

@@ -9,14 +9,14 @@ import threading
 import numpy as np
 import pytest
 
-from porescale.ground.check import InputError, Unstable
-from porescale.runs import card as cards
-from porescale.runs import snapshots
-from porescale.runs.atomic import owned
-from porescale.runs.checkpoint import read_checkpoint
-from porescale.runs.model import Model
-from porescale.runs.open_run import open_run
-from porescale.runs.stop import polite_stop
+from porescale.common.core.atomic import owned
+from porescale.common.core.errors import InputError, Unstable
+from porescale.common.record import card as cards
+from porescale.common.record import snapshots
+from porescale.common.record.checkpoint import read_checkpoint
+from porescale.common.record.model import Model
+from porescale.common.record.open_run import open_run
+from porescale.common.record.stop import polite_stop
 from tests.reference.toy_model import Toy, run_toy
 
 
@@ -180,14 +180,14 @@ def test_a_dear_unfinished_run_is_not_overwritten(tmp_path, monkeypatch):
     card = open_run(tmp_path).card
     assert card["outcome"] == "failed"
     assert card["problem"] == "OSError: disk full"
-    monkeypatch.setattr("porescale.runs.record.WORTH_KEEPING", 0.0)
+    monkeypatch.setattr("porescale.common.record.record.WORTH_KEEPING", 0.0)
     with pytest.raises(InputError, match=r"unfinished run.*--overwrite"):
         run_toy(tmp_path)
     assert run_toy(tmp_path, resume=True).outcome == "finished"
 
 
 def test_a_dear_unfinished_run_is_overwritten_on_request_and_nothing_of_it_stays(tmp_path, monkeypatch):
-    monkeypatch.setattr("porescale.runs.record.WORTH_KEEPING", 0.0)
+    monkeypatch.setattr("porescale.common.record.record.WORTH_KEEPING", 0.0)
     with pytest.raises(Unstable):
         run_toy(tmp_path, model=Toy(breaks_at=75), checkpoint_seconds=0.0)
     card = json.loads((tmp_path / "card.json").read_text()) | {"outcome": "running"}  # as a kill leaves it
@@ -226,13 +226,13 @@ def test_a_run_of_another_package_is_not_resumed_and_named(tmp_path):
 def test_going_on_with_other_sources_or_versions_is_warned_of_and_every_session_is_on_the_card(
     tmp_path, monkeypatch, capsys
 ):
-    monkeypatch.setattr("porescale.ground.jit.source_hash", lambda: "aaa")
+    monkeypatch.setattr("porescale.common.compiled.jit.source_hash", lambda: "aaa")
     run_toy(tmp_path, duration=0.05)
     run_toy(tmp_path, duration=0.1, resume=True)
     assert capsys.readouterr().err == ""  # the twin: nothing changed
-    monkeypatch.setattr("porescale.ground.jit.source_hash", lambda: "bbb")
+    monkeypatch.setattr("porescale.common.compiled.jit.source_hash", lambda: "bbb")
     versions = {**cards.versions(), "numpy": "0.1", "h5py": "0.2"}  # h5py moves bits, it does not make them
-    monkeypatch.setattr("porescale.runs.card.versions", lambda: versions)
+    monkeypatch.setattr("porescale.common.record.card.versions", lambda: versions)
     run_toy(tmp_path, duration=0.15, resume=True)
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("warning: resumed with other sources aaa -> bbb, numpy ")

@@ -11,9 +11,10 @@ import sys
 import numpy as np
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.runs import atomic, card
-from porescale.runs.series import Series, read_series
+from porescale.common.core import atomic
+from porescale.common.core.errors import InputError
+from porescale.common.record import card
+from porescale.common.record.series import Series, read_series
 
 
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):

@@ -14,17 +14,17 @@ import h5py
 import numpy as np
 import pytest
 
-from continuum_sph.app import PACKAGE as CONTINUUM
+from continuum_sph.cli import PACKAGE as CONTINUUM
 from continuum_sph.scene.sections import Scene as Ground
-from porescale.app.main import PACKAGE as PORESCALE
-from porescale.ground.card import read_card
-from porescale.ground.check import InputError
-from porescale.runs.checkpoint import read_checkpoint, read_header
-from porescale.runs.open_run import open_run
+from porescale.cli.main import PACKAGE as PORESCALE
+from porescale.common.cli.application import application, main
+from porescale.common.cli.package import Package
+from porescale.common.core.errors import InputError
+from porescale.common.record.checkpoint import read_checkpoint, read_header
+from porescale.common.record.open_run import open_run
+from porescale.common.record.read_card import read_card
+from porescale.common.schema.sections import Section, load, scene_as_dict, validate
 from porescale.scene.sections import Scene
-from porescale.workbench.application import application, main
-from porescale.workbench.package import Package
-from porescale.workbench.sections import Section, load, scene_as_dict, validate
 from tests.reference.spoiled import renumbered
 from tests.reference.toy_model import run_toy
 

@@ -11,11 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from porescale.ground.check import InputError, PorescaleError
-from porescale.runs.checkpoint import read_checkpoint
-from porescale.runs.open_run import open_run
-from porescale.runs.record import Gone
-from porescale.runs.stop import Interrupted
+from porescale.common.core.errors import InputError, PorescaleError
+from porescale.common.record.checkpoint import read_checkpoint
+from porescale.common.record.open_run import open_run
+from porescale.common.record.record import Gone
+from porescale.common.record.stop import Interrupted
 from tests.reference.failing_disk import Disk, failing, whole
 from tests.reference.same_run import differences
 from tests.reference.toy_model import Toy, run_toy
@@ -155,7 +155,7 @@ def test_a_second_stop_does_not_wait_and_loses_nothing(tmp_path, untouched):
 
 def test_a_run_without_the_watch_would_have_ended_well_without_its_folder(tmp_path, monkeypatch):
     # The twin that must fail: what happened before runs looked after their folder.
-    from porescale.runs.record import Record
+    from porescale.common.record.record import Record
 
     folder = tmp_path / "run"
     monkeypatch.setattr(Record, "refuse_gone", lambda self: None)

@@ -10,12 +10,12 @@ import cv2
 import numpy as np
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.runs import card, snapshots
-from porescale.runs.film import encoder, film, write_film
-from porescale.runs.look import GRAIN, WALL, Look, length_unit, rgb, scale, survey, time_text
-from porescale.runs.model import Cloud, Grid, Snapshot
-from porescale.runs.picture import Painter, paint, pictures
+from porescale.common.core.errors import InputError
+from porescale.common.pictures.film import encoder, film, write_film
+from porescale.common.pictures.look import GRAIN, WALL, Look, length_unit, rgb, scale, survey, time_text
+from porescale.common.pictures.picture import Painter, paint, pictures
+from porescale.common.record import card, snapshots
+from porescale.common.record.model import Cloud, Grid, Snapshot
 
 NY, NX, DX = 30, 50, 1e-3
 
@@ -223,6 +223,8 @@ def test_a_run_without_snapshots_is_told_so(tmp_path):
 
 
 def test_painting_needs_no_display():
-    words = "from porescale.runs.picture import Painter; import sys; print('matplotlib.pyplot' in sys.modules)"
+    words = (
+        "from porescale.common.pictures.picture import Painter; import sys; print('matplotlib.pyplot' in sys.modules)"
+    )
     done = subprocess.run([sys.executable, "-c", words], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"

@@ -8,8 +8,8 @@ import time
 import pytest
 from rich.console import Console
 
-from porescale.runs import progress
-from porescale.runs.progress import COMPILING, Watch, duration
+from porescale.common.record import progress
+from porescale.common.record.progress import COMPILING, Watch, duration
 
 
 def watched(monkeypatch, *, terminal=False, quiet=False) -> str:

@@ -10,8 +10,8 @@ import pytest
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
-from porescale.runs import snapshots, vtkhdf
-from porescale.runs.model import Cloud, Grid, Snapshot
+from porescale.common.record import snapshots, vtkhdf
+from porescale.common.record.model import Cloud, Grid, Snapshot
 
 COUNTS = [3, 0, 0, 7, 7]
 

@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from porescale.dem.rock import rock as made_by_hand
-from porescale.ground.check import InputError
-from porescale.scene.build import build
-from porescale.scene.derive import derive
-from porescale.scene.frame_pictures import cracks
+from porescale.build.build import build
+from porescale.build.derive import derive
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import scene_as_dict, validate
+from porescale.dem.prepare.rock import rock as made_by_hand
+from porescale.output.frame_pictures import cracks
+from porescale.output.rock_pictures import drawn, write_rock_picture
 from porescale.scene.rock import rock_discs
-from porescale.scene.rock_pictures import drawn, write_rock_picture
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import scene_as_dict, validate
 from tests.reference.scenes_of_grains import assert_same_bits, framed, resumed
 
 pytestmark = pytest.mark.usefixtures("one_thread")

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.ground.constants import GRAVITY
-from porescale.scene.build import build
-from porescale.scene.derive import derive
-from porescale.scene.frame_build import placed_frames
-from porescale.scene.report import report
+from porescale.build.build import build
+from porescale.build.derive import derive
+from porescale.build.frame_build import placed_frames
+from porescale.build.report import report
+from porescale.common.core.constants import GRAVITY
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import scene_as_dict, validate
 from tests.reference.scenes import grain, water
 from tests.reference.scenes_of_grains import BOX, assert_same_bits, framed, lines, loose, resumed
 
@@ -226,7 +226,7 @@ def test_a_polygon_behind_a_wall_is_refused():
 
 
 def test_lines_and_polygons_come_back_from_the_file(tmp_path):
-    from porescale.runs.vtkhdf import frames_of, join, read_frame, write_frame
+    from porescale.common.record.vtkhdf import frames_of, join, read_frame, write_frame
 
     simulation = build(framed(polygon=[{**SQUARE, "at": [[4e-3, 2e-3]]}], container=[FLOOR]))
     made = simulation.snapshot().clouds["frames"]
@@ -245,7 +245,7 @@ def test_lines_and_polygons_come_back_from_the_file(tmp_path):
 def test_vtk_sees_the_polygon_and_the_floor(tmp_path):
     from vtkmodules.vtkIOHDF import vtkHDFReader
 
-    from porescale.runs.vtkhdf import frames_of, join, write_frame
+    from porescale.common.record.vtkhdf import frames_of, join, write_frame
 
     simulation = build(framed(polygon=[{**SQUARE, "at": [[4e-3, 2e-3]]}], container=[FLOOR]))
     paths = [tmp_path / f"{k}.vtkhdf" for k in range(3)]
@@ -301,8 +301,8 @@ def test_breaks_are_written_by_time_with_place_and_bodies(tmp_path):
 
 
 def test_a_region_sees_the_exact_area_of_polygons_and_whom_they_touch(resting):
+    from porescale.build.frame_measures import clipped_area, solid_in
     from porescale.dem.measures.region import Region
-    from porescale.scene.frame_measures import clipped_area, solid_in
 
     frames, grains = resting.frames, resting.grains
     x, y = grains.steering.clumps.position[0]
@@ -316,8 +316,8 @@ def test_a_region_sees_the_exact_area_of_polygons_and_whom_they_touch(resting):
 
 
 def test_pictures_of_contacts_show_discs_and_polygons_alike(tmp_path):
-    from porescale.runs.look import Look
-    from porescale.scene.grain_pictures import all_points, branches, chains, numbers, write_chains
+    from porescale.common.pictures.look import Look
+    from porescale.output.grain_pictures import all_points, branches, chains, numbers, write_chains
 
     scene = framed(
         polygon=[{**SQUARE, "at": [[4e-3, 1.1495e-3]]}], container=[FLOOR], output__contacts=True,

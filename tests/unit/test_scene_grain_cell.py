@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from porescale.scene.build import build
-from porescale.scene.grain_pictures import branches
+from porescale.build.build import build
+from porescale.common.schema.sections import scene_as_dict, validate
+from porescale.output.grain_pictures import branches
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import scene_as_dict, validate
 from tests.reference.scenes import grain
 from tests.reference.scenes_of_grains import assert_same_bits, lines, loose, resumed
 

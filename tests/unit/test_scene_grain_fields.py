@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.runs.drive import drive
-from porescale.runs.open_run import open_run
-from porescale.scene.build import build
-from porescale.workbench.sections import scene_as_dict
+from porescale.build.build import build
+from porescale.common.core.errors import InputError
+from porescale.common.record.drive import drive
+from porescale.common.record.open_run import open_run
+from porescale.common.schema.sections import scene_as_dict
 from tests.reference.scenes import dry, grain, water
 
 pytestmark = pytest.mark.usefixtures("one_thread")

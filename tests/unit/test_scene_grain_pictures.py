@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
-from porescale.runs.look import Look
-from porescale.runs.model import Cloud, Snapshot
-from porescale.scene.build import build
-from porescale.scene.grain_pictures import branches, chains, numbers, rose_of, write_chains, write_grain_pictures
+from porescale.build.build import build
+from porescale.common.pictures.look import Look
+from porescale.common.record.model import Cloud, Snapshot
+from porescale.output.grain_pictures import branches, chains, numbers, rose_of, write_chains, write_grain_pictures
 from tests.reference.scenes import dry, grain
 
 pytestmark = pytest.mark.usefixtures("one_thread")

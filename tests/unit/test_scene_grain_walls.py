@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from porescale.ground.constants import GRAVITY
-from porescale.scene.build import build
-from porescale.scene.report import report
+from porescale.build.build import build
+from porescale.build.report import report
+from porescale.common.core.constants import GRAVITY
+from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import scene_as_dict, validate
 from tests.reference.scenes import grain
 from tests.reference.scenes_of_grains import assert_same_bits, lines, loose, resumed
 

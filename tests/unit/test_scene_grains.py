@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from porescale.build.build import build
+from porescale.build.derive import derive
+from porescale.common.core.constants import GRAVITY
+from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.dem.contact.hertz import Hertz
 from porescale.dem.contact.law import CR, KN, KR, MU, MUR
 from porescale.dem.contact.linear import Linear
-from porescale.ground.constants import GRAVITY
-from porescale.scene.build import build
-from porescale.scene.derive import derive
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import scene_as_dict, validate
 from tests.reference.scenes import column, dry, grain
 from tests.reference.scenes_of_grains import assert_same_bits, lines, loose, resumed
 

@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.scene import verify
-from porescale.scene.biaxial import WINDOW, numbers, running
-from porescale.scene.homogenise import WAVES, asked_of, pressure_of, ramp_of, specimen, stiffness_over_pressure
+from porescale.analysis.biaxial import WINDOW, numbers, running
+from porescale.analysis.homogenise import WAVES, asked_of, pressure_of, ramp_of, specimen, stiffness_over_pressure
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import validate
 from porescale.scene.sections import Scene
-from porescale.scene.verify import VALIDATIONS
-from porescale.workbench.sections import validate
+from porescale.validation import homogenise as verify
+from porescale.validation.homogenise import VALIDATIONS
 from tests.reference.scenes import column, dry
 
 

@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.runs.drive import drive
-from porescale.runs.open_run import open_run
-from porescale.scene.build import build
-from porescale.scene.lines import write_lines
-from porescale.scene.observe import vorticity
-from porescale.scene.permeability import gebart, kozeny_carman, measure
-from porescale.scene.sample import Sampler, along, midpoints
-from porescale.workbench.sections import scene_as_dict
+from porescale.analysis.permeability import gebart, kozeny_carman, measure
+from porescale.build.build import build
+from porescale.build.observe import vorticity
+from porescale.common.core.errors import InputError
+from porescale.common.record.drive import drive
+from porescale.common.record.open_run import open_run
+from porescale.common.schema.sections import scene_as_dict
+from porescale.output.lines import write_lines
+from porescale.output.sample import Sampler, along, midpoints
 from tests.reference.scenes import dry, water
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -110,7 +110,7 @@ def test_an_absent_instrument_writes_no_table(left_out, tables):
 
 
 def test_without_instruments_nothing_is_measured(monkeypatch):
-    from porescale.scene import instruments, simulation
+    from porescale.build import instruments, simulation
 
     def refuse(*args: Any, **options: Any) -> None:
         raise AssertionError("measured")

@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
+from porescale.build.checks.limits import TAU_COARSE
+from porescale.build.derive import derive
+from porescale.common.evidence.stability import RIGHT, Row
 from porescale.coupling import limits
-from porescale.scene.derive import derive
-from porescale.scene.limits import TAU_COARSE
 from porescale.scene.sections import Scene
-from porescale.workbench.study import RIGHT, Row
 from tests.reference.scenes import column, grain, table, water
 
 MAP = Path(__file__).resolve().parents[2] / "docs" / "stability" / "stability.json"

@@ -8,11 +8,11 @@ import math
 import numpy as np
 import pytest
 
+from porescale.build import cost, observe
+from porescale.build.build import build
+from porescale.build.derive import derive
+from porescale.build.regime import terminal_speed
 from porescale.lbm.scales import Scales
-from porescale.scene import cost, observe
-from porescale.scene.build import build
-from porescale.scene.derive import derive
-from porescale.scene.regime import terminal_speed
 from tests.reference.scenes import column, dry, grain, water
 
 pytestmark = pytest.mark.usefixtures("one_thread")

@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from porescale.build.build import build
+from porescale.build.derive import derive
+from porescale.common.core.errors import InputError
+from porescale.common.neighbors.grading import percent_finer
+from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.dem.measures.porosity import porosity, void_ratio
 from porescale.dem.measures.region import Region
-from porescale.dem.packing import mean_stress, write_packing
-from porescale.ground.check import InputError
-from porescale.particles.grading import percent_finer
-from porescale.scene.build import build
-from porescale.scene.derive import derive
+from porescale.dem.prepare.compaction import mean_stress, write_packing
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import scene_as_dict, validate
 from tests.reference.scenes import dry, table
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -149,7 +149,7 @@ def test_a_packing_of_a_material_is_kept_and_found_again(monkeypatch):
             "grains__packing__material": "sand", "contact__wall_material": "steel",
             "grains__grain": [{"x": 0.002, "y": 0.002, "diameter": 0.001}]}  # fmt: skip
     made = grains_of(dry(**keys))
-    monkeypatch.setattr("porescale.dem.settle.settle", None)  # it must not be settled again
+    monkeypatch.setattr("porescale.dem.prepare.settle.settle", None)  # it must not be settled again
     found = grains_of(dry(**keys))
     assert found.material.tolist() == [1] * (found.discs.count - 1) + [0]
     np.testing.assert_allclose(found.discs.mass[:-1], 2000 * found.discs.area[:-1], rtol=1e-12)

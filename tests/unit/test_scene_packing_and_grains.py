@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from porescale.dem.measure import elastic_energy
-from porescale.ground.check import InputError
-from porescale.scene.build import build, load_scene
-from porescale.scene.report import report
+from porescale.build.build import build, load_scene
+from porescale.build.report import report
+from porescale.common.core.errors import InputError
+from porescale.dem.measures.survey import elastic_energy
 from tests.reference.scenes import dry, grain
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -62,7 +62,7 @@ def test_a_grain_placed_into_a_settled_bed_is_named():
 
 
 def test_the_template_with_its_grain_uncommented_is_checked_and_built(tmp_path: Path):
-    text = files("porescale.app").joinpath("template.toml").read_text()
+    text = files("porescale.cli").joinpath("template.toml").read_text()
     block = text[text.index("# [[grains.grain]]") : text.index("[contact]")]
     whole = text.replace(block, re.sub(r"^# ", "", block, flags=re.MULTILINE))
     assert len(tomllib.loads(whole)["grains"]["grain"]) == 1

@@ -11,19 +11,19 @@ from typing import Any, NoReturn
 import numpy as np
 import pytest
 
-import porescale.coupling.saturated
+import porescale.build.build
+import porescale.common.neighbors.pair_list
+import porescale.coupling.psm
 import porescale.coupling.step
-import porescale.dem.system
+import porescale.dem.grains
+import porescale.lbm.boundary.thin_plate
 import porescale.lbm.fluid
-import porescale.lbm.plate
-import porescale.particles.pairs
-import porescale.scene.build
-from porescale.scene.simulation import Simulation
+from porescale.build.simulation import Simulation
 from tests.reference.same_run import leaves
 from tests.reference.scenes import column, dry, grain, table, water
 
 pytestmark = pytest.mark.usefixtures("one_thread")
-build = porescale.scene.build.build
+build = porescale.build.build.build
 STEPS = 60
 """Past the opening of the gate, a rebuild of the list and an odd and even step."""
 

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from porescale.ground.check import InputError
-from porescale.particles.placement import place
-from porescale.scene.build import build
+from porescale.analysis.detect_circles import _peaks, circles_in
+from porescale.build.build import build
+from porescale.common.core.errors import InputError
+from porescale.common.neighbors.placement import place
+from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.scene.packing import Circles
-from porescale.scene.pictured import _peaks, circles_in
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import scene_as_dict, validate
 from tests.reference.pictures import photograph
 from tests.reference.scenes import table
 

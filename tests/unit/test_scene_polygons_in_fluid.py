@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.scene.build import build
-from porescale.scene.derive import derive
-from porescale.scene.polygons_in_fluid import too_few_cells, widths
+from porescale.build.build import build
+from porescale.build.checks.polygons_in_fluid import too_few_cells, widths
+from porescale.build.derive import derive
+from porescale.common.core.errors import InputError
 from tests.reference.scenes import column, grain
 
 SQUARE = {"sides": 4, "diameter": 0.0014, "thickness": 2e-5, "at": [[0.004, 0.005]], "angle": [0.3]}

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.scene.build import load_scene
-from porescale.scene.derive import derive
-from porescale.scene.report import report
+from porescale.build.build import load_scene
+from porescale.build.derive import derive
+from porescale.build.report import report
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import LEVELS, scene_as_dict, validate
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import LEVELS, scene_as_dict, validate
 from tests.reference.scenes import COLUMN, column, table, write
 
 CASES = Path(__file__).resolve().parents[2] / "cases"

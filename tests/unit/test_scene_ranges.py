@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.scene import cost
-from porescale.scene.build import build, load_scene
-from porescale.scene.report import report
+from porescale.build import cost
+from porescale.build.build import build, load_scene
+from porescale.build.report import report
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import validate
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import validate
 from tests.reference.scenes import column, dry, table
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -7,17 +7,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from porescale.dem.measure import elastic_energy, max_overlap, survey_rectangles
-from porescale.ground.check import InputError, Unstable
-from porescale.runs.checkpoint import read_checkpoint, write_checkpoint
+from porescale.build.build import build
+from porescale.build.checks.rectangle_places import Body, first_meeting, nearest
+from porescale.build.derive import derive
+from porescale.build.report import report
+from porescale.common.core.errors import InputError, Unstable
+from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
+from porescale.common.schema.sections import scene_as_dict, validate
+from porescale.dem.measures.survey import elastic_energy, max_overlap, survey_rectangles
 from porescale.scene import rectangles
-from porescale.scene.build import build
-from porescale.scene.derive import derive
-from porescale.scene.rectangle_places import Body, first_meeting, nearest
 from porescale.scene.rectangles import Rectangle, outline
-from porescale.scene.report import report
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import scene_as_dict, validate
 from tests.reference.scenes import column, dry, grain, water
 
 pytestmark = pytest.mark.usefixtures("one_thread")

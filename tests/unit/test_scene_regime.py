@@ -6,8 +6,8 @@ import math
 
 import pytest
 
-from porescale.scene.derive import derive
-from porescale.scene.regime import column_height, fall, terminal_speed
+from porescale.build.derive import derive
+from porescale.build.regime import column_height, fall, terminal_speed
 from tests.reference.scenes import column, dry, grain, water
 
 ONE = {"grains": {"density": 2500, "hydraulic_radius_ratio": 1.0, "grain": [grain(0.003, 0.002)]}, "gate": None}

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.scene.build import build, lattice_sides
-from porescale.scene.derive import derive
-from porescale.scene.report import report
+from porescale.build.build import build, lattice_sides
+from porescale.build.derive import derive
+from porescale.build.report import report
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.scene.sections import Scene
-from porescale.workbench.sections import scene_as_dict, validate
 from tests.reference.scenes import column, dry, grain, water
 
 pytestmark = pytest.mark.usefixtures("one_thread")

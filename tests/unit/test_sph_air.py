@@ -7,18 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.eos import Gas, Tait
-from continuum_sph.fluids import Fluid
-from continuum_sph.law import Law
-from continuum_sph.scene.air_build import AIR, dry_pores, gas, thickness, with_air
+from continuum_sph.build.air_build import AIR, dry_pores, gas, thickness, with_air
+from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.build.seepage_report import seepage_report
 from continuum_sph.scene.sections import Scene
-from continuum_sph.scene.seepage_model import SeepageSimulation
-from continuum_sph.scene.seepage_report import seepage_report
-from continuum_sph.scene.trials_air import TrappedAir
-from continuum_sph.smoothing import Smoothing
-from porescale.ground.check import InputError
-from porescale.ground.constants import GRAVITY
-from porescale.workbench.sections import validate
+from continuum_sph.validation.air_trials import TrappedAir
+from continuum_sph.water.eos import Gas, Tait
+from continuum_sph.water.fluids import Fluid
+from continuum_sph.water.parameters import Law
+from continuum_sph.water.smoothing import Smoothing
+from porescale.common.core.constants import GRAVITY
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import validate
 
 
 def scene(**changes):

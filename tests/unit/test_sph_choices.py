@@ -7,18 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.artificial_viscosity import artificial
-from continuum_sph.boundary_paper import STEEPEST, facing, image
-from continuum_sph.correction import inverse
-from continuum_sph.density import LINEAR
-from continuum_sph.energy import book
-from continuum_sph.eos import Gas, Tait, printed_gas
-from continuum_sph.fluids import Fluid
-from continuum_sph.scene import trials
-from continuum_sph.scene.build import flow_of
-from continuum_sph.smoothing import WENDLAND, kernel_slope
-from continuum_sph.viscosity import central, laminar, mutual
-from porescale.workbench.sections import validate
+from continuum_sph.build.build import flow_of
+from continuum_sph.validation import trials
+from continuum_sph.water.artificial_viscosity import artificial
+from continuum_sph.water.density import LINEAR
+from continuum_sph.water.energy_budget import book
+from continuum_sph.water.eos import Gas, Tait, printed_gas
+from continuum_sph.water.fluids import Fluid
+from continuum_sph.water.image_walls import STEEPEST, facing, image
+from continuum_sph.water.kernel_correction import inverse
+from continuum_sph.water.smoothing import WENDLAND, kernel_slope
+from continuum_sph.water.viscosity import central, laminar, mutual
+from porescale.common.schema.sections import validate
 
 eps = np.finfo(float).eps
 

@@ -5,19 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph import law as laws
-from continuum_sph.density import HYDROSTATIC, PLAIN, haste_of, pace
-from continuum_sph.eos import Tait
-from continuum_sph.fluids import Fluid
-from continuum_sph.law import Law
-from continuum_sph.layers import Layer
-from continuum_sph.scene.build import flow_of
-from continuum_sph.scene.endurance import still
-from continuum_sph.scene.model import Simulation
-from continuum_sph.scene.trials import column_scene
-from continuum_sph.smoothing import CUBIC, WENDLAND, Smoothing, kernel_slope
-from continuum_sph.step import Flow
-from porescale.particles import PairList, square_lattice
+from continuum_sph.benchmarks.endurance import still
+from continuum_sph.build.build import flow_of
+from continuum_sph.build.model import Simulation
+from continuum_sph.validation.trials import column_scene
+from continuum_sph.water import parameters as laws
+from continuum_sph.water.density import HYDROSTATIC, PLAIN, haste_of, pace
+from continuum_sph.water.eos import Tait
+from continuum_sph.water.fluids import Fluid
+from continuum_sph.water.parameters import Law
+from continuum_sph.water.smoothing import CUBIC, WENDLAND, Smoothing, kernel_slope
+from continuum_sph.water.state import Layer
+from continuum_sph.water.step import Flow
+from porescale.common.neighbors import PairList, square_lattice
 
 SPACING, RATIO, DEPTH, GRAVITY = 0.05, 1.3, 1.0, 9.81
 H = RATIO * SPACING
@@ -72,7 +72,7 @@ def test_plain_diffusion_drains_the_floor_into_the_surface():  # the twin that m
 
 
 def growth(share):
-    """Largest amplification per step of a wave of which diffusion takes this share: `continuum_sph.law.CALMED`."""
+    """Largest amplification per step of a wave of which diffusion takes this share: `parameters.CALMED`."""
     return float(np.abs(np.roots([1.0, 3.0 * share - 1.0, -3.0 * share, share])).max())
 
 

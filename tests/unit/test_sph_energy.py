@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.scene.model import Simulation
+from continuum_sph.build.model import Simulation
 from continuum_sph.scene.sections import Scene
-from porescale.ground.check import InputError
-from porescale.runs.checkpoint import read_checkpoint, write_checkpoint
-from porescale.workbench.parts import bytes_of
-from porescale.workbench.sections import validate
+from porescale.common.core.errors import InputError
+from porescale.common.evidence.overhead import bytes_of
+from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
+from porescale.common.schema.sections import validate
 
 SHIFTED = {"numerics": {"spacing": 0.1, "gradient": "corrected", "shifting": 2.0}}
 PULLED = {

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from continuum_sph.scene.extremes import EXTREMES
-from porescale.workbench.extremes import REFUSED, STOPPED
+from continuum_sph.benchmarks.extremes import EXTREMES
+from porescale.common.evidence.extremes import REFUSED, STOPPED
 
 
 def found(axis, value):

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.app import scene_type
-from continuum_sph.energy import book
-from continuum_sph.scene import trials_fluids
-from continuum_sph.scene.bubble import bubble, pieces
-from continuum_sph.scene.model import Simulation
-from continuum_sph.scene.report import report
-from continuum_sph.scene.trials_fluids import TENSION
-from porescale.ground.check import InputError
-from porescale.workbench.sections import validate
+from continuum_sph.build.bubble import bubble, pieces
+from continuum_sph.build.model import Simulation
+from continuum_sph.build.report import report
+from continuum_sph.cli import scene_type
+from continuum_sph.validation import fluids_trials as trials_fluids
+from continuum_sph.validation.fluids_trials import TENSION
+from continuum_sph.water.energy_budget import book
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import validate
 
 
 def scene(walls="slip", numerics=None, **inclusion):

@@ -7,12 +7,12 @@ import csv
 import numpy as np
 import pytest
 
-from continuum_sph.scene.instruments import Cloud, Level, fit, surface, tables
-from continuum_sph.scene.model import Simulation
+from continuum_sph.build.instruments import Cloud, Level, fit, surface, tables
+from continuum_sph.build.model import Simulation
 from continuum_sph.scene.sections import Scene
-from porescale.particles import square_lattice
-from porescale.runs.drive import drive
-from porescale.workbench.sections import validate
+from porescale.common.neighbors import square_lattice
+from porescale.common.record.drive import drive
+from porescale.common.schema.sections import validate
 
 eps = np.finfo(float).eps
 SPACING = 0.05

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.fluids import VISCOSITY
-from continuum_sph.layers import VISCOUS, VOLUME
-from continuum_sph.scene import trials_fluids
-from continuum_sph.scene.bubble import circularity
-from continuum_sph.viscosity import STIFFER
+from continuum_sph.build.bubble import circularity
+from continuum_sph.validation import fluids_trials as trials_fluids
+from continuum_sph.water.fluids import VISCOSITY
+from continuum_sph.water.state import VISCOUS, VOLUME
+from continuum_sph.water.viscosity import STIFFER
 
 RADIUS, ACROSS = 0.25, 40
 THICK, THIN = 1.0, 0.1  # Pa s, of the disc and around it

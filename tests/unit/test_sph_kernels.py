@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.artificial_viscosity import artificial
-from continuum_sph.eos import Tait, tait, tait_density
-from continuum_sph.exact import couette, drop_period, poiseuille, released_pressure
-from continuum_sph.scene.verify import LATTICE
-from continuum_sph.smoothing import (
+from continuum_sph.validation.exact import couette, drop_period, poiseuille, released_pressure
+from continuum_sph.validation.water import LATTICE
+from continuum_sph.water.artificial_viscosity import artificial
+from continuum_sph.water.eos import Tait, tait, tait_density
+from continuum_sph.water.smoothing import (
     CUBIC,
     WENDLAND,
     Smoothing,
@@ -18,7 +18,7 @@ from continuum_sph.smoothing import (
     value_scale,
     value_shape,
 )
-from continuum_sph.viscosity import laminar
+from continuum_sph.water.viscosity import laminar
 
 eps = np.finfo(float).eps
 
@@ -108,7 +108,7 @@ def test_viscosity_brakes_and_never_drives():
 
 
 def leapfrog_growth(phase, extrapolated):
-    """Largest amplification of sound per step at ω Δt = ``phase`` in the scheme of `continuum_sph.step`.
+    """Largest amplification of sound per step at ω Δt = ``phase`` in the scheme of `continuum_sph.water.step`.
 
     Unknowns v½, ρ, D, D_before: ρ* = ρ + Δt(2D - D_before) (or ρ + Δt D), D' = ω v½, ρ' = ρ + Δt D', v' = v½ - ω Δt ρ*.
     """

@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.layers import Layer
-from continuum_sph.scene.instruments import Cloud, Level, discharge
+from continuum_sph.build.instruments import Cloud, Level, discharge
+from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.build.seepage_report import seepage_report
 from continuum_sph.scene.sections import Scene
-from continuum_sph.scene.seepage_model import SeepageSimulation
-from continuum_sph.scene.seepage_report import seepage_report
 from continuum_sph.seepage import Reservoir, Supply
-from continuum_sph.seepage.level import berths, moor, sound_out
-from porescale.ground.check import InputError
-from porescale.ground.jit import set_threads
-from porescale.particles import square_lattice
-from porescale.workbench.sections import validate
+from continuum_sph.seepage.reservoir import berths, moor, sound_out
+from continuum_sph.water.state import Layer
+from porescale.common.compiled.jit import set_threads
+from porescale.common.core.errors import InputError
+from porescale.common.neighbors import square_lattice
+from porescale.common.schema.sections import validate
 
 SPACING, ROUND = 0.1, 2.3e-16
 

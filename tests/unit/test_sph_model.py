@@ -5,20 +5,21 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph import correction, rates, shifting, step
-from continuum_sph.boundary import tank_walls
-from continuum_sph.eos import Tait
-from continuum_sph.fluids import Fluid, table
-from continuum_sph.layers import RHO, VOLUME
-from continuum_sph.motion import pressurise
-from continuum_sph.scene import trials
-from continuum_sph.scene.model import Simulation
-from continuum_sph.scene.report import report
-from porescale.ground.check import InputError, Unstable
-from porescale.ground.jit import set_threads
-from porescale.runs.checkpoint import read_checkpoint, write_checkpoint
-from porescale.runs.model import Model
-from porescale.workbench.sections import validate
+from continuum_sph.build.model import Simulation
+from continuum_sph.build.report import report
+from continuum_sph.validation import trials
+from continuum_sph.water import kernel_correction as correction
+from continuum_sph.water import rates, shifting, step
+from continuum_sph.water.eos import Tait
+from continuum_sph.water.fluids import Fluid, table
+from continuum_sph.water.leapfrog import pressurise
+from continuum_sph.water.pressure_walls import tank_walls
+from continuum_sph.water.state import RHO, VOLUME
+from porescale.common.compiled.jit import set_threads
+from porescale.common.core.errors import InputError, Unstable
+from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
+from porescale.common.record.model import Model
+from porescale.common.schema.sections import validate
 from tests.reference.memory import growth
 
 

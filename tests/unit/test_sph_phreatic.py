@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from continuum_sph.scene.instruments import Cloud
-from continuum_sph.scene.phreatic import FIRST, line_of, phreatic_row, places, top
-from porescale.particles import square_lattice
-from porescale.runs.model import Cloud as Points
-from porescale.runs.model import Snapshot
+from continuum_sph.build.instruments import Cloud
+from continuum_sph.build.phreatic import FIRST, line_of, phreatic_row, places, top
+from porescale.common.neighbors import square_lattice
+from porescale.common.record.model import Cloud as Points
+from porescale.common.record.model import Snapshot
 
 SPACING, WIDTH = 0.1, 4.0
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from continuum_sph.pile import FREE, LEFT, RIGHT, UNDER, PartedList, Pile, hold_back, part, side_of
-from continuum_sph.scene.exit_gradient import NAME, beside
+from continuum_sph.build.exit_gradient import NAME, beside
+from continuum_sph.build.seepage_model import SeepageSimulation
 from continuum_sph.scene.sections import Scene
-from continuum_sph.scene.seepage_model import SeepageSimulation
-from continuum_sph.smoothing import CUBIC, kernel_value
-from porescale.particles import PairList, square_lattice
+from continuum_sph.seepage.sheet_pile import FREE, LEFT, RIGHT, UNDER, PartedList, Pile, hold_back, part, side_of
+from continuum_sph.water.smoothing import CUBIC, kernel_value
+from porescale.common.neighbors import PairList, square_lattice
 
 SPACING = 0.1
 PILE = Pile.instead_of(0.75, 0.4, SPACING, rough=False)

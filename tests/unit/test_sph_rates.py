@@ -7,16 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph import rates, rates_walls
-from continuum_sph import step as steps
-from continuum_sph.density import LINEAR, PLAIN
-from continuum_sph.eos import Tait
-from continuum_sph.fluids import Fluid
-from continuum_sph.scene import trials
-from continuum_sph.scene.build import flow_of
-from continuum_sph.scene.trials import column_scene, open_box
-from continuum_sph.scene.trials_fluids import drop
-from porescale.workbench.sections import validate
+from continuum_sph.build.build import flow_of
+from continuum_sph.validation import trials
+from continuum_sph.validation.fluids_trials import drop
+from continuum_sph.validation.trials import column_scene, open_box
+from continuum_sph.water import rates, rates_walls
+from continuum_sph.water import step as steps
+from continuum_sph.water.density import LINEAR, PLAIN
+from continuum_sph.water.eos import Tait
+from continuum_sph.water.fluids import Fluid
+from porescale.common.schema.sections import validate
 from tests.reference.sph_rates import pair_sums
 
 eps = np.finfo(float).eps

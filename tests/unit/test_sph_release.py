@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.exact import released_pressure
-from continuum_sph.scene.release import lattice_pressure
-from porescale.ground.constants import GRAVITY
-from porescale.particles import square_lattice
+from continuum_sph.build.release import lattice_pressure
+from continuum_sph.validation.exact import released_pressure
+from porescale.common.core.constants import GRAVITY
+from porescale.common.neighbors import square_lattice
 
 
 @pytest.mark.parametrize(("size", "lid"), [((0.5, 1.0), True), ((0.5, 1.2), False)])

@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 from reference import seepage as slow
 
-from continuum_sph.layers import RHO, VOLUME, VX, VY, P, X, Y
 from continuum_sph.seepage import Frame, Resistance, exchange, mixture
 from continuum_sph.seepage import overlap as overlaps
-from continuum_sph.seepage.drain import drain_walls
 from continuum_sph.seepage.exchange import against_soil, brake, relaxed, take
 from continuum_sph.seepage.mixture import LINES, POROSITY, PULL_X, SLIP_X, SLIP_Y, bear, blend, meet, part_forces
 from continuum_sph.seepage.overlap import Overlap, closeness, overlap_weights
+from continuum_sph.seepage.pressure_face import drain_walls
 from continuum_sph.seepage.resistance import drag
 from continuum_sph.seepage.skeleton import show_soil, weigh
-from continuum_sph.smoothing import WENDLAND, kernel_value
-from porescale.ground.lanes import LANES
+from continuum_sph.water.smoothing import WENDLAND, kernel_value
+from continuum_sph.water.state import RHO, VOLUME, VX, VY, P, X, Y
+from porescale.common.compiled.simd import LANES
 
 eps = np.finfo(float).eps
 H, GRAVITY, POROUS = 0.13, 9.81, 0.4

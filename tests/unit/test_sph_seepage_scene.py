@@ -5,18 +5,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.app import PACKAGE
-from continuum_sph.scene import seepage_build
-from continuum_sph.scene.exit_gradient import NAME
+from continuum_sph.build import seepage_build
+from continuum_sph.build.exit_gradient import NAME
+from continuum_sph.build.seepage_model import DRY, WET, SeepageSimulation
+from continuum_sph.build.seepage_report import seepage_report
+from continuum_sph.cli import PACKAGE
 from continuum_sph.scene.sections import Scene
-from continuum_sph.scene.seepage_model import DRY, WET, SeepageSimulation
-from continuum_sph.scene.seepage_report import seepage_report
-from continuum_sph.scene.trials_seepage import saturated_box
 from continuum_sph.soil.state import YY
-from porescale.ground.check import InputError
-from porescale.ground.constants import GRAVITY
-from porescale.ground.jit import set_threads
-from porescale.workbench.sections import validate
+from continuum_sph.validation.seepage_trials import saturated_box
+from porescale.common.compiled.jit import set_threads
+from porescale.common.core.constants import GRAVITY
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import validate
 from tests.reference.same_run import leaves
 
 OUTLINE = [[0, 0], [0.3, 0], [0.3, 0.2], [0, 0.2]]

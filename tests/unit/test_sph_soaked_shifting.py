@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.layers import BY_SHIFTING
-from continuum_sph.scene.trials_seepage_steady import held_ground
+from continuum_sph.validation.seepage_steady_trials import held_ground
+from continuum_sph.water.state import BY_SHIFTING
 
 eps = np.finfo(float).eps
 GRAVITY = 9.81

@@ -7,27 +7,28 @@ import math
 import numpy as np
 import pytest
 
+from continuum_sph.build.soil_build import geostatic, soil_law
+from continuum_sph.build.soil_model import SoilSimulation
+from continuum_sph.build.soil_report import soil_report
 from continuum_sph.scene.sections import Scene
-from continuum_sph.scene.soil_build import geostatic, soil_law
-from continuum_sph.scene.soil_model import SoilSimulation
-from continuum_sph.scene.soil_report import soil_report
 from continuum_sph.scene.soil_sections import Body
-from continuum_sph.scene.trials_soil import body, in_tank
-from continuum_sph.scene.trials_soil_element import Element
-from continuum_sph.smoothing import slope_shape
-from continuum_sph.soil import Material, divergence, gradient, porosity
-from continuum_sph.soil.divergence import accelerate
+from continuum_sph.soil import Material, gradient, porosity
+from continuum_sph.soil import momentum as divergence
 from continuum_sph.soil.gradient import inverse, velocity_gradients
+from continuum_sph.soil.momentum import accelerate
 from continuum_sph.soil.plasticity import returned
 from continuum_sph.soil.state import MASS, VOLUME, XX, YY, X
 from continuum_sph.soil.stress import deform
 from continuum_sph.soil.tension import hold_apart
-from porescale.ground.check import InputError, Unstable
-from porescale.ground.jit import set_threads
-from porescale.particles import square_lattice
-from porescale.runs.checkpoint import read_checkpoint, write_checkpoint
-from porescale.runs.model import Model
-from porescale.workbench.sections import validate
+from continuum_sph.validation.soil_element_trials import Element
+from continuum_sph.validation.soil_trials import body, in_tank
+from continuum_sph.water.smoothing import slope_shape
+from porescale.common.compiled.jit import set_threads
+from porescale.common.core.errors import InputError, Unstable
+from porescale.common.neighbors import square_lattice
+from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
+from porescale.common.record.model import Model
+from porescale.common.schema.sections import validate
 from tests.reference.memory import growth
 
 ELASTIC = Material(1e7, 1600.0, yields=False)

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.scene.trials_soil import RATIO, body
-from continuum_sph.smoothing import Smoothing, kernel_slope
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
 from continuum_sph.soil import flow as flow_module
 from continuum_sph.soil.state import GROWN, GXX, SHEARING, VOLUME, YY
 from continuum_sph.soil.stress import deform
-from porescale.ground.check import InputError
-from porescale.particles import PairList, square_lattice
+from continuum_sph.validation.soil_trials import RATIO, body
+from continuum_sph.water.smoothing import Smoothing, kernel_slope
+from porescale.common.core.errors import InputError
+from porescale.common.neighbors import PairList, square_lattice
 
 SPACING = 0.1
 ELASTIC = Material(1e7, 1600.0, yields=False)

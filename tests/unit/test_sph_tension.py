@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.exact_drop import drop_swing, swing_period
-from continuum_sph.layers import RHO, VOLUME
-from continuum_sph.scene import trials_fluids
-from continuum_sph.scene.trials_fluids import OUTER, TENSION
+from continuum_sph.validation import fluids_trials as trials_fluids
+from continuum_sph.validation.exact_drop import drop_swing, swing_period
+from continuum_sph.validation.fluids_trials import OUTER, TENSION
+from continuum_sph.water.state import RHO, VOLUME
 
 RADIUS = 0.2  # m
 LAMB = 2.0 * np.pi * ((1.0 + OUTER) * RADIUS**3 / (6.0 * TENSION)) ** 0.5  # s

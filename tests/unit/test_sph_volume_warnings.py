@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from continuum_sph.scene import trials
-from continuum_sph.scene.report import report
+from continuum_sph.build.report import report
+from continuum_sph.validation import trials
 
 
 def warnings(height, **numerics):

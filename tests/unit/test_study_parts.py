@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.bench_plain import PlainColumn
-from continuum_sph.scene.parts import scene, started
-from porescale.coupling.bench_plain import PlainWet
-from porescale.coupling.experiments import immersed
-from porescale.dem.bench_plain import PlainDiscs
+from continuum_sph.benchmarks.minimal_sph import PlainColumn
+from continuum_sph.benchmarks.overhead import scene, started
+from porescale.benchmarks.minimal_dem import PlainDiscs
+from porescale.benchmarks.minimal_lbm import PlainWater
+from porescale.benchmarks.minimal_psm import PlainWet
+from porescale.common.evidence.overhead import SMALLEST, Built, Kind, Kinds, bytes_of, markdown, measure
 from porescale.dem.contact.linear import Linear
-from porescale.dem.experiments_sleep import heap
-from porescale.lbm.bench_plain import PlainWater
 from porescale.lbm.fluid import Fluid
-from porescale.workbench.parts import SMALLEST, Built, Kind, Kinds, bytes_of, markdown, measure
+from porescale.validation.coupling.grains_trials import immersed
+from porescale.validation.dem.sleep_trials import heap
 
 ROUGH = Linear(5e5, 2.0, 1.25e5, 1.0, 0.5)
 SMOOTH = Linear(5e5, 2.0)

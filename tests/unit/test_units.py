@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from porescale.ground.units import to_si
+from porescale.common.core.units import to_si
 
 PREFIXES = {"km": 3, "m": 0, "dm": -1, "cm": -2, "mm": -3, "um": -6, "nm": -9}
 
@@ -82,6 +82,6 @@ def test_what_is_no_quantity_is_refused_in_words(value: object, unit: str, words
 
 
 def test_numbers_never_load_pint() -> None:
-    code = "import sys; from porescale.ground.units import to_si; to_si(1.0, 'm'); print('pint' in sys.modules)"
+    code = "import sys; from porescale.common.core.units import to_si; to_si(1.0, 'm'); print('pint' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"

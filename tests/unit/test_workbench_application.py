@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from porescale.workbench.sections import load
+from porescale.common.schema.sections import load
 from tests.reference.toy_package import ToyScene
 
 
@@ -160,8 +160,8 @@ def test_help_and_version(toy) -> None:
 
 def test_asking_for_help_imports_nothing_heavy() -> None:
     code = (
-        "import sys; from porescale.workbench.application import application, main\n"
-        "from porescale.workbench.package import Package\n"
+        "import sys; from porescale.common.cli.application import application, main\n"
+        "from porescale.common.cli.package import Package\n"
         "f = lambda *a, **k: 1 / 0\n"
         "code = main(application(Package('toy', 's', '1', f, f, f, f, f, f, f, f, f)), ['--help'])\n"
         "heavy = {'numba', 'numpy', 'pint', 'pydantic', 'matplotlib', 'h5py'} & set(sys.modules)\n"
@@ -173,9 +173,9 @@ def test_asking_for_help_imports_nothing_heavy() -> None:
 
 def test_a_reader_that_leaves_is_no_traceback(tmp_path: Path) -> None:
     code = (
-        "import sys; from porescale.workbench.application import application, main\n"
-        "from porescale.workbench.package import Package\n"
-        "from porescale.workbench.sections import Section\n"
+        "import sys; from porescale.common.cli.application import application, main\n"
+        "from porescale.common.cli.package import Package\n"
+        "from porescale.common.schema.sections import Section\n"
         "f = lambda *a, **k: 1 / 0\n"
         "show = lambda folder: (folder / str(i) for i in range(100000))\n"
         "toy = Package('toy', 's', '1', lambda: Section, f, f, f, f, show, f, f, f)\n"

@@ -6,8 +6,8 @@ import json
 
 import pytest
 
-from porescale.ground.check import Fault, InputError, Unstable
-from porescale.workbench.extremes import REFUSED, RIGHT, STABLE, STOPPED, Extreme, Extremes, Judged, write
+from porescale.common.core.errors import Fault, InputError, Unstable
+from porescale.common.evidence.extremes import REFUSED, RIGHT, STABLE, STOPPED, Extreme, Extremes, Judged, write
 
 
 def refused():

@@ -12,14 +12,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
-from porescale.ground.check import InputError
-from porescale.workbench import benchmarks, validations
-from porescale.workbench.bandwidth import Copy, flip
-from porescale.workbench.benchmarks import Benchmarks, Work, copy_bandwidth
-from porescale.workbench.names import choose
-from porescale.workbench.report import Report
-from porescale.workbench.timing import interleaved, rate
-from porescale.workbench.validations import Measured, Validations
+from porescale.common.cli.report import Report
+from porescale.common.core.errors import InputError
+from porescale.common.evidence import benchmarks, validations
+from porescale.common.evidence.bandwidth import Copy, flip
+from porescale.common.evidence.benchmarks import Benchmarks, Work, copy_bandwidth
+from porescale.common.evidence.select import choose
+from porescale.common.evidence.timing import interleaved, rate
+from porescale.common.evidence.validations import Measured, Validations
 
 
 def printed(thing) -> str:
@@ -162,7 +162,7 @@ class Clock:
 @pytest.fixture
 def clock(monkeypatch) -> Clock:
     made = Clock()
-    monkeypatch.setattr("porescale.workbench.timing.time.perf_counter", lambda: made.now)
+    monkeypatch.setattr("porescale.common.evidence.timing.time.perf_counter", lambda: made.now)
     return made
 
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from porescale.workbench.application import application, main
-from porescale.workbench.report import Report
+from porescale.common.cli.application import application, main
+from porescale.common.cli.report import Report
 from tests.reference.toy_package import TEMPLATE, TOY
 
 

@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import Field, model_validator
 
-from porescale.ground.check import Fault, InputError
-from porescale.workbench.faults import dotted, every_key, parse_key
-from porescale.workbench.scene_file import assign, holds, merge, parse_setting
-from porescale.workbench.sections import (
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.schema.messages import dotted, every_key, parse_key
+from porescale.common.schema.scene_file import assign, holds, merge, parse_setting
+from porescale.common.schema.sections import (
     Quantity,
     Refused,
     Section,

@@ -7,9 +7,9 @@ import json
 
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.workbench.study import RIGHT, STABLE, UNSTABLE, Axis, Row, Stability, Tried, holds_up_to
-from porescale.workbench.study_files import csv_text, markdown, write
+from porescale.common.core.errors import InputError
+from porescale.common.evidence.stability import RIGHT, STABLE, UNSTABLE, Axis, Row, Stability, Tried, holds_up_to
+from porescale.common.evidence.stability_files import csv_text, markdown, write
 
 X = Axis("strain", (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0), (1.0, 64.0))
 Y = Axis("heat", (0.1, 0.2), (0.1,))

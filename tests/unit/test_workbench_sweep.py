@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.workbench import sweep_files
-from porescale.workbench.campaign import Campaign, Ended
-from porescale.workbench.commands.sweep import expected, refuse_wrong_points
-from porescale.workbench.points import Point, crossed, named, read_points, varied
+from porescale.common.cli.sweep import expected, refuse_wrong_points
+from porescale.common.core.errors import InputError
+from porescale.common.studies import sweep_files
+from porescale.common.studies.parameter_table import Point, crossed, named, read_points, varied
+from porescale.common.studies.runner import Campaign, Ended
 from tests.reference.toy_package import TOY
 
 SCENE = "[decay]\nrate = 3\n[quality.fine.decay]\nstart = 2\n"

@@ -11,16 +11,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from porescale.ground.check import InputError
-from porescale.workbench import trade_files
-from porescale.workbench.campaign import Ended
-from porescale.workbench.commands.pick import _seconds, _share
-from porescale.workbench.front import FrontPoint, Here, begun, choose, pace_of, read_front
-from porescale.workbench.points import Point
-from porescale.workbench.quantities import curve, measured
-from porescale.workbench.sections import validate
-from porescale.workbench.trade import Judge, Traded, distance, front
-from porescale.workbench.trade_plan import Plan, read_plan
+from porescale.common.cli.pick import _seconds, _share
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import validate
+from porescale.common.studies import trade_files
+from porescale.common.studies.front import FrontPoint, Here, begun, choose, pace_of, read_front
+from porescale.common.studies.parameter_table import Point
+from porescale.common.studies.quantities import curve, measured
+from porescale.common.studies.runner import Ended
+from porescale.common.studies.trade import Judge, Traded, distance, front
+from porescale.common.studies.trade_plan import Plan, read_plan
 
 PLAN = """
 [over]

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from continuum_sph.scene import verify_air
-from continuum_sph.scene.validations import VALIDATIONS
-from continuum_sph.scene.verify_air import CLOSED, OPEN
+from continuum_sph.validation import air as verify_air
+from continuum_sph.validation.air import CLOSED, OPEN
+from continuum_sph.validation.validations import VALIDATIONS
 
 
 def tolerance(name):

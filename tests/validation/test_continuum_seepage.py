@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.scene import verify_seepage
-from continuum_sph.scene.trials_seepage import realised_modulus
-from continuum_sph.scene.validations import VALIDATIONS
-from continuum_sph.scene.verify_seepage import LAYER
 from continuum_sph.seepage import Resistance, exchange, pores
+from continuum_sph.validation import seepage as verify_seepage
+from continuum_sph.validation.seepage import LAYER
+from continuum_sph.validation.seepage_trials import realised_modulus
+from continuum_sph.validation.validations import VALIDATIONS
 
 
 def tolerance(name):

@@ -7,11 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from porescale.coupling import experiments_arrays as lab
-from porescale.coupling import saturated, verify_arrays
-from porescale.coupling.experiments import Method
-from porescale.coupling.experiments_towed import square_array_drag
-from porescale.coupling.verify import VALIDATIONS
+from porescale.coupling import psm as saturated
+from porescale.validation.coupling import arrays as verify_arrays
+from porescale.validation.coupling import arrays_trials as lab
+from porescale.validation.coupling.grains import VALIDATIONS
+from porescale.validation.coupling.grains_trials import Method
+from porescale.validation.coupling.towed_trials import square_array_drag
 from tests.reference.stokes_array import Array, square
 
 PRINTED = Method("odd-SC1")

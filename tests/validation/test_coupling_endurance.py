@@ -6,13 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from porescale.coupling import endurance, verify_endurance
-from porescale.coupling.experiments import handful
-from porescale.coupling.verify import VALIDATIONS as ALL
-from porescale.coupling.verify_endurance import VALIDATIONS
-from porescale.ground.check import Unstable
-from porescale.runs.drive import CHECK_EVERY
-from porescale.workbench.endurance import (
+from porescale.benchmarks import endurance
+from porescale.common.core.errors import Unstable
+from porescale.common.evidence.endurance import (
     ASK_EVERY,
     FOUND,
     MARKS,
@@ -24,6 +20,11 @@ from porescale.workbench.endurance import (
     picture,
     write,
 )
+from porescale.common.record.drive import CHECK_EVERY
+from porescale.validation.coupling import endurance as verify_endurance
+from porescale.validation.coupling.endurance import VALIDATIONS
+from porescale.validation.coupling.grains import VALIDATIONS as ALL
+from porescale.validation.coupling.grains_trials import handful
 
 
 @pytest.mark.slow

@@ -10,9 +10,11 @@ import math
 import numpy as np
 import pytest
 
-from porescale.coupling import experiments_polygons as lab
-from porescale.coupling import saturated, verify_arrays, verify_polygons
-from porescale.coupling.verify import VALIDATIONS
+from porescale.coupling import psm as saturated
+from porescale.validation.coupling import arrays as verify_arrays
+from porescale.validation.coupling import polygons as verify_polygons
+from porescale.validation.coupling import polygons_trials as lab
+from porescale.validation.coupling.grains import VALIDATIONS
 from tests.reference.shapes import fractions
 from tests.reference.stokes_polygons import Turning, regular
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from porescale.coupling import verify_rings
-from porescale.coupling.experiments_rings import RADII, torques
-from porescale.coupling.experiments_shapes import couette_error, piston_flux
-from porescale.coupling.verify import VALIDATIONS as ALL
-from porescale.coupling.verify_rings import VALIDATIONS
+from porescale.validation.coupling import rings as verify_rings
+from porescale.validation.coupling.grains import VALIDATIONS as ALL
+from porescale.validation.coupling.rings import VALIDATIONS
+from porescale.validation.coupling.rings_trials import RADII, torques
+from porescale.validation.coupling.shapes_trials import couette_error, piston_flux
 
 
 def tolerance(name: str) -> float:
@@ -47,7 +47,7 @@ def test_a_rectangle_of_the_older_operator_does_not_slide_exactly():
 
 
 def test_a_piston_whose_side_rests_pushes_out_less(monkeypatch):
-    from porescale.coupling.shapes.bodies import Bodies
+    from porescale.coupling.coverage.bodies import Bodies
 
     place = Bodies.place
 

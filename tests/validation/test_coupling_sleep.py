@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from porescale.coupling import experiments_sleep as lab
-from porescale.coupling import verify_sleep
-from porescale.coupling.verify import VALIDATIONS as ALL
-from porescale.coupling.verify_sleep import VALIDATIONS
+from porescale.validation.coupling import sleep as verify_sleep
+from porescale.validation.coupling import sleep_trials as lab
+from porescale.validation.coupling.grains import VALIDATIONS as ALL
+from porescale.validation.coupling.sleep import VALIDATIONS
 
 pytestmark = pytest.mark.slow
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.coupling import experiments_falling as falls
-from porescale.coupling import experiments_moving as moving
-from porescale.coupling import experiments_towed as towed
-from porescale.coupling import verify_moving, verify_towed
-from porescale.coupling.experiments import faxen, weighing
-from porescale.coupling.verify import VALIDATIONS
+from porescale.validation.coupling import falling_trials as falls
+from porescale.validation.coupling import moving as verify_moving
+from porescale.validation.coupling import moving_trials as moving
+from porescale.validation.coupling import towed as verify_towed
+from porescale.validation.coupling import towed_trials as towed
+from porescale.validation.coupling.grains import VALIDATIONS
+from porescale.validation.coupling.grains_trials import faxen, weighing
 from tests.reference.stokes_box import Box, Enclosed, point_forces
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.coupling import exact
-from porescale.coupling import experiments as lab
-from porescale.coupling.verify import FALL, RATIOS, TIMES, VALIDATIONS
+from porescale.validation.coupling import exact
+from porescale.validation.coupling import grains_trials as lab
+from porescale.validation.coupling.grains import FALL, RATIOS, TIMES, VALIDATIONS
 from tests.reference import psm as twin
 
 # Laplace transform inverted by an independent code: v/((s - 1) g a²/nu) at nu t/a² = 0.05, 0.1, 0.2, 0.5

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.dem import experiments_bodies as lab
-from porescale.dem import experiments_energy as boxed
-from porescale.dem.control import Moved
-from porescale.dem.experiments import momentum_drift
-from porescale.dem.steering import Clump
-from porescale.dem.verify_bodies import VALIDATIONS
-from porescale.ground.constants import GRAVITY
+from porescale.common.core.constants import GRAVITY
+from porescale.dem.motion.control import Moved
+from porescale.dem.motion.drivers import Clump
+from porescale.validation.dem import bodies_trials as lab
+from porescale.validation.dem import energy_trials as boxed
+from porescale.validation.dem.bodies import VALIDATIONS
+from porescale.validation.dem.discs_trials import momentum_drift
 
 ROWS = {row.name: row for row in VALIDATIONS}
 

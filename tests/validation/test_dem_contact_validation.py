@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from scipy.special import jv
 
-from porescale.dem import experiments_contact as lab
+from porescale.common.core.constants import GRAVITY
 from porescale.dem.contact import hertz
 from porescale.dem.contact.hertz import Hertz
 from porescale.dem.discs import FIELDS
-from porescale.dem.energy import energy_book
-from porescale.dem.experiments import MASS, RADIUS, STIFFNESS, cloud, law_at, momentum_drift
-from porescale.dem.verify_contact import TANGENTIAL, VALIDATIONS
-from porescale.ground.constants import GRAVITY
+from porescale.dem.measures.energy import energy_book
+from porescale.validation.dem import contact_trials as lab
+from porescale.validation.dem.contact import TANGENTIAL, VALIDATIONS
+from porescale.validation.dem.discs_trials import MASS, RADIUS, STIFFNESS, cloud, law_at, momentum_drift
 
 
 def tolerance(name):

@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from porescale.dem import experiments as lab
-from porescale.dem import experiments_measures as measured
-from porescale.dem.contacts import contacts
-from porescale.dem.experiments_bodies import random_cell
+from porescale.dem.measures.contacts import contacts
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress
-from porescale.dem.verify_measures import VALIDATIONS
+from porescale.validation.dem import discs_trials as lab
+from porescale.validation.dem import measures_trials as measured
+from porescale.validation.dem.bodies_trials import random_cell
+from porescale.validation.dem.measures import VALIDATIONS
 
 
 @pytest.fixture(scope="module")

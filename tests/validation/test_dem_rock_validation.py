@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from porescale.dem import experiments_rock as lab
 from porescale.dem.contact.linear import Linear
-from porescale.dem.network import stiffness
-from porescale.dem.rock import load
-from porescale.dem.verify_rock import FAST, SEEDS, VALIDATIONS
+from porescale.dem.measures.network import stiffness
+from porescale.dem.prepare.rock import load
+from porescale.validation.dem import rock_trials as lab
+from porescale.validation.dem.rock import FAST, SEEDS, VALIDATIONS
 
 ROWS = {row.name: row for row in VALIDATIONS}
 

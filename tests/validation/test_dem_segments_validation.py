@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.dem import experiments_segments as lab
+from porescale.dem.bodies.frames import rod_moments
 from porescale.dem.discs import make_discs
-from porescale.dem.experiments import momentum_drift
-from porescale.dem.frames import rod_moments
-from porescale.dem.verify_segments import VALIDATIONS
+from porescale.validation.dem import segments_trials as lab
+from porescale.validation.dem.discs_trials import momentum_drift
+from porescale.validation.dem.segments import VALIDATIONS
 
 ROWS = {row.name: row for row in VALIDATIONS}
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from porescale.dem import experiments_sleep as lab
-from porescale.dem import verify_sleep
-from porescale.dem.verify import VALIDATIONS as ALL
-from porescale.dem.verify_sleep import VALIDATIONS
+from porescale.validation.dem import sleep as verify_sleep
+from porescale.validation.dem import sleep_trials as lab
+from porescale.validation.dem.discs import VALIDATIONS as ALL
+from porescale.validation.dem.sleep import VALIDATIONS
 
 
 @pytest.mark.parametrize(

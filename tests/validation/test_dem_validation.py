@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from porescale.dem import experiments as lab
-from porescale.dem.verify import VALIDATIONS
-from porescale.ground.constants import GRAVITY
+from porescale.common.core.constants import GRAVITY
+from porescale.validation.dem import discs_trials as lab
+from porescale.validation.dem.discs import VALIDATIONS
 from tests.reference.dem import Body, World
 
 ROWS = [pytest.param(row, id=row.name, marks=[pytest.mark.slow] if row.slow else []) for row in VALIDATIONS]

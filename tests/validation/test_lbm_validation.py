@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.lbm import experiments as lab
-from porescale.lbm import experiments_cavity as cavities
-from porescale.lbm import experiments_open as opened
-from porescale.lbm import experiments_operators as operators
-from porescale.lbm import verify_operators
-from porescale.lbm.verify import HEIGHT, OTHER_MAGIC, VALIDATIONS, VISCOSITIES
+from porescale.validation.lbm import cavity_flows as cavities
+from porescale.validation.lbm import channels_flows as lab
+from porescale.validation.lbm import open_sides_flows as opened
+from porescale.validation.lbm import operators as verify_operators
+from porescale.validation.lbm import operators_flows as operators
+from porescale.validation.lbm.channels import HEIGHT, OTHER_MAGIC, VALIDATIONS, VISCOSITIES
 
 EPS = np.finfo(float).eps
 

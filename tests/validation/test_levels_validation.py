@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.scene import verify_levels
-from continuum_sph.scene.trials_dam import STATIONS, SURFACE, Dam
-from continuum_sph.scene.validations import VALIDATIONS
-from continuum_sph.scene.verify_levels import DAM, DRAWN
 from continuum_sph.seepage import Resistance, Supply
+from continuum_sph.validation import levels as verify_levels
+from continuum_sph.validation.dam_trials import STATIONS, SURFACE, Dam
+from continuum_sph.validation.levels import DAM, DRAWN
+from continuum_sph.validation.validations import VALIDATIONS
 from tests.reference.dam import surface
 
 PRINTED = DRAWN.porosity / (1.0 - DRAWN.porosity)

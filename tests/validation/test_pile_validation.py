@@ -7,10 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.scene.trials_pile import Around, rests
-from continuum_sph.scene.trials_seepage_steady import SheetPile
-from continuum_sph.scene.validations import VALIDATIONS
-from continuum_sph.scene.verify_pile import (
+from continuum_sph.validation.pile import (
     APART,
     AROUND,
     BOUNDS,
@@ -23,6 +20,9 @@ from continuum_sph.scene.verify_pile import (
     one_side,
     rising,
 )
+from continuum_sph.validation.pile_trials import Around, rests
+from continuum_sph.validation.seepage_steady_trials import SheetPile
+from continuum_sph.validation.validations import VALIDATIONS
 from tests.reference.sheet_pile import around, bounds, seen, weakest_prism
 
 ROW = VALIDATIONS["continuum.heave_behind_pile"]

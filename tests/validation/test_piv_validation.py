@@ -9,18 +9,19 @@ import numpy as np
 import pytest
 from scipy.ndimage import map_coordinates
 
-from porescale.piv import experiments as lab
-from porescale.piv import fit, flows, spots
-from porescale.piv.measure import Settings, measure
-from porescale.piv.synth import pair
-from porescale.piv.verify import VALIDATIONS
+from porescale.piv.estimate import fit
+from porescale.piv.estimate.measure import Settings, measure
+from porescale.piv.images import flows, spots
+from porescale.piv.images.synth import pair
+from porescale.validation.piv import pairs_trials as lab
+from porescale.validation.piv.pairs import VALIDATIONS
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 
 
 @pytest.fixture
 def one_thread():
-    from porescale.ground.jit import set_threads, threads
+    from porescale.common.compiled.jit import set_threads, threads
 
     before = threads()
     set_threads(1)
@@ -154,7 +155,7 @@ def _surer(found):
 @pytest.mark.slow
 def test_unvalidated_vectors_of_lost_pairs_are_far_off(monkeypatch):
     flow, _ = lab.TABLE["uniform"]
-    monkeypatch.setattr("porescale.piv.measure._outliers", lambda *those: np.zeros(those[0].shape, bool))
+    monkeypatch.setattr("porescale.piv.estimate.measure._outliers", lambda *those: np.zeros(those[0].shape, bool))
     loose = Settings(smooth=False, least_correlation=-2.0)
     assert lab.trial(flow, lab.Camera(lab.SIZE, lost=0.4), range(1), loose).largest > tolerance("ten_per_cent_lost")
 

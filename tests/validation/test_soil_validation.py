@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from continuum_sph.scene import verify_soil
-from continuum_sph.scene.soil_model import SoilSimulation
-from continuum_sph.scene.validations import VALIDATIONS
+from continuum_sph.build.soil_model import SoilSimulation
+from continuum_sph.validation import soil as verify_soil
+from continuum_sph.validation.validations import VALIDATIONS
 from tests.reference import continuum_cases
 from tests.reference.continuum_cases import missed
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from porescale import build
-from porescale.lbm.bench_plain import largest_of_rows
+from porescale.benchmarks.minimal_lbm import largest_of_rows
 from tests.reference.scenes import column
 
 SLOW = 1e-6

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from continuum_sph.scene import verify_soil_wet
-from continuum_sph.scene.seepage_model import SeepageSimulation
-from continuum_sph.scene.trials_soil_wet import WetSlope
-from continuum_sph.scene.validations import VALIDATIONS
-from continuum_sph.scene.verify_soil_wet import SEEPING, STILL
+from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.validation import soil_wet as verify_soil_wet
+from continuum_sph.validation.soil_wet import SEEPING, STILL
+from continuum_sph.validation.soil_wet_trials import WetSlope
+from continuum_sph.validation.validations import VALIDATIONS
 from tests.reference import continuum_cases
 from tests.reference.continuum_cases import missed
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike
 
-from porescale.coupling.rim import SLIP_FACTOR
+from porescale.coupling.coverage.soft_rim import SLIP_FACTOR
 from porescale.coupling.solid.exact_wall import ONSET, SMOOTHING, ExactWall, SoftWall
 from porescale.coupling.solid.sc1 import OddSc1, Sc1
 from porescale.coupling.solid.sc2 import Sc2

@@ -27,8 +27,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from porescale.common.compiled.jit import by_law, inline
 from porescale.coupling.solid.law import collide_beside, force_share, is_soft, mix, rates, taken
-from porescale.ground.jit import by_law, inline
 from porescale.lbm.collision.law import add_shares, collide_in_shares, numbers
 
 ONSET = 0.05

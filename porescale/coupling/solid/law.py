@@ -9,7 +9,7 @@ with half the force that acts, h.  Those of the literature are of the form
 with the share 1 - B.  A fluid operator relaxes the odd moments that are not momentum with the rate ``third_order``.
 """
 
-from porescale.ground.jit import by_law, inline
+from porescale.common.compiled.jit import by_law, inline
 from porescale.lbm.collision.law import collide, numbers
 
 

@@ -27,6 +27,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.law import (
     CN,
     CR,
@@ -44,7 +45,6 @@ from porescale.dem.contact.law import (
 )
 from porescale.dem.contact.linear import Linear, series
 from porescale.dem.contact.restitution import contact_phase, ratio_from_restitution, refuse, restitution_of
-from porescale.ground.check import Fault, InputError
 
 TANGENT = 2.0 * math.sqrt(5.0 / 6.0)
 """Damping over sqrt(m dF/dd) and ratio h: of a d^(1/4) = TANGENT h sqrt(m 3/2 K sqrt(d))."""

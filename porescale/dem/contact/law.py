@@ -30,7 +30,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.ground.jit import by_law, inline
+from porescale.common.compiled.jit import by_law, inline
 
 Array = NDArray[np.float64]
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.law import (
     CN,
     CR,
@@ -28,7 +29,6 @@ from porescale.dem.contact.law import (
     stored_normal,
 )
 from porescale.dem.contact.restitution import contact_phase, ratio_from_restitution, refuse, restitution_of
-from porescale.ground.check import Fault, InputError
 
 
 @stiffness.of(LinearSliding, LinearRolling, LinearSmooth)

@@ -17,9 +17,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.hertz import Hertz
 from porescale.dem.contact.linear import Linear
-from porescale.ground.check import Fault, InputError
 
 Law = Linear | Hertz
 MOST = 255  # materials: discs name theirs in a byte

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from porescale.ground.check import Fault, InputError
+from porescale.common.core.errors import Fault, InputError
 
 
 def contact_phase(h: float, release: str) -> float:

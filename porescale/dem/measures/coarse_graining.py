@@ -30,12 +30,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.cell import Straining, period_of
-from porescale.dem.contacts import Contacts
+from porescale.common.compiled.jit import inline, kernel
+from porescale.common.core.errors import Fault, InputError
 from porescale.dem.discs import Discs
+from porescale.dem.measures.contacts import Contacts
 from porescale.dem.measures.region import Region
-from porescale.ground.check import Fault, InputError
-from porescale.ground.jit import inline, kernel
+from porescale.dem.motion.periodic_cell import Straining, period_of
 
 Array = NDArray[np.float64]
 

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.contacts import Contacts
 from porescale.dem.discs import Discs
+from porescale.dem.measures.contacts import Contacts
 
 Array = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.ground.check import Fault, InputError
+from porescale.common.core.errors import Fault, InputError
 
 Array = NDArray[np.float64]
 Period = tuple[float, float] | tuple[float, float, float]

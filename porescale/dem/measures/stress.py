@@ -19,8 +19,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.contacts import Contacts
 from porescale.dem.discs import Discs
+from porescale.dem.measures.contacts import Contacts
 from porescale.dem.measures.porosity import disc_areas
 from porescale.dem.measures.region import Period, Region
 

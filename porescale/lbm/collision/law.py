@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.ground.jit import by_law, by_precision, inline
+from porescale.common.compiled.jit import by_law, by_precision, inline
 
 
 class Numbers(NamedTuple):

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.ground.jit import inline
+from porescale.common.compiled.jit import inline
 from porescale.lbm.collision.law import (
     collide,
     collide_in_shares,

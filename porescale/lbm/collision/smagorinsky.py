@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from porescale.ground.jit import inline
+from porescale.common.compiled.jit import inline
 from porescale.lbm.collision.law import numbers, shear_rate, stress
 
 CONSTANT = 0.1

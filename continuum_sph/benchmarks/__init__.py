@@ -1,0 +1,1 @@
+"""Rates, minimal kernels, extremes, endurance, overhead of the parts of a scene."""

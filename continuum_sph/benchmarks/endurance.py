@@ -1,0 +1,159 @@
+"""Small tanks for very long: water at rest, that sloshes until it rests, stirred; ground, and ground under water."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from continuum_sph.build.model import Simulation
+from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.build.soil_model import SoilSimulation
+from continuum_sph.scene.sections import Scene
+from continuum_sph.validation.trials import open_box
+from continuum_sph.water.step import Flow
+from porescale.common.evidence.endurance import Endurance, Endurances, Held
+from porescale.common.schema.sections import validate
+
+EPS = float(np.finfo(float).eps)
+SPACING = 0.05  # m
+DEPTH = 1.0  # m
+Table = dict[str, Any]
+
+OUTPUT: Table = {"snapshot_interval": 1.0, "series_interval": 1.0}
+NUMERICS: Table = {"spacing": SPACING, "artificial_viscosity": 0.1, "gradient": "corrected"}
+GROUND: Table = {
+    "stiffness": 2e6, "friction_angle": "30 degree",
+    "body": [{"outline": [[0, 0], [0.5, 0], [0.5, 1], [0, 1]]}],
+}  # fmt: skip
+
+
+def tank(**sections: Any) -> Scene:
+    """A tank of 0.5 x 1.2 m, open at the top."""
+    table: Table = {
+        "tank": {"width": 0.5, "height": 1.2, "lid": False}, "numerics": NUMERICS, "time": {"end": 1e9},
+        "output": OUTPUT,
+    }  # fmt: skip
+    return validate(Scene, table | sections)
+
+
+def still(**numerics: Any) -> Scene:
+    """200 particles of water, 20 rows, with the pressure of their weight."""
+    return tank(water={"column": [{"width": 0.5, "height": DEPTH}]}, numerics=NUMERICS | numerics)
+
+
+def sloshing() -> Scene:
+    """200 particles of water that fall down from one half of a tank and go to and fro."""
+    column = {"width": 0.5, "height": DEPTH}
+    given: Table = {"width": 1.0, "height": 1.5, "lid": True}
+    return tank(tank=given, water={"column": [column], "pressure": "released"})
+
+
+def ground() -> Scene:
+    """200 particles of level ground with the stress of their weight."""
+    return tank(soil=GROUND, numerics={"spacing": SPACING})
+
+
+def wet_ground() -> Scene:
+    """Level ground of 0.5 m, 100 particles, beneath 0.3 m of water and full of it."""
+    soil = GROUND | {"permeability": 1e-3, "body": [{"outline": [[0, 0], [0.5, 0], [0.5, 0.5], [0, 0.5]]}]}
+    water = {"column": [{"width": 0.5, "height": 0.8}], "sound_speed": 80.0}
+    return tank(soil=soil, water=water, numerics={"spacing": SPACING, "artificial_viscosity": 0.1})
+
+
+class Tank:
+    """What is read of a scene's model: mass, where water and soil stand, how fast they go."""
+
+    def __init__(self, model: Simulation | SoilSimulation | SeepageSimulation, names: Mapping[str, str]) -> None:
+        """names : columns of the model's series, by what they are called here."""
+        self.model, self._names = model, dict(names)
+
+    def advance(self, steps: int) -> None:
+        """More steps."""
+        self.model.advance(steps)
+
+    def check(self) -> None:
+        """As a run asks."""
+        self.model.check()
+
+    def read(self) -> Mapping[str, float]:
+        """Chosen columns of the series."""
+        row = self.model.series()
+        return {name: row[column] for name, column in self._names.items()}
+
+
+class Box:
+    """What is read of a periodic box of water without weight: mass, and momentum."""
+
+    def __init__(self, flow: Flow) -> None:
+        self.flow = flow
+        layer, n = flow.layer, flow.layer.fluid
+        self._size = float((layer.mass[:n, None] * np.abs(layer.v[:n])).sum())
+
+    def advance(self, steps: int) -> None:
+        """More steps."""
+        for _ in range(steps):
+            self.flow.advance()
+
+    def check(self) -> None:
+        """Nothing is asked: `Flow.advance` raises where a number is none."""
+
+    def read(self) -> Mapping[str, float]:
+        """Mass, and momentum over the sum of all sizes at the start."""
+        layer, n = self.flow.layer, self.flow.layer.fluid
+        x, y = (layer.mass[:n, None] * layer.v[:n]).sum(axis=0) / self._size
+        return {MASS: float(layer.mass[:n].sum())} | dict(zip(MOMENTUM, (float(x), float(y)), strict=True))
+
+
+MASS, LEVEL, FASTEST, MOVED = "mass (kg/m)", "mean height (m)", "fastest (m/s)", "largest displacement (m)"
+SOIL_MASS = "mass of soil (kg/m)"
+MOMENTUM = tuple(f"momentum {axis} over Σ m|v| at the start ()" for axis in "xy")
+WATER = {MASS: MASS, LEVEL: LEVEL, FASTEST: FASTEST}
+SOIL = {MASS: MASS, MOVED: MOVED, FASTEST: FASTEST}
+BOTH = {
+    MASS: MASS,
+    LEVEL: LEVEL,
+    FASTEST: FASTEST,
+    SOIL_MASS: "soil: mass (kg/m)",
+    MOVED: "soil: largest displacement (m)",
+}
+
+
+def exact(name: str) -> Held:
+    """A quantity that no step changes."""
+    return Held(name, lambda steps: 0.0, "particles keep their mass")
+
+
+def held(name: str, allowed: float, because: str) -> Held:
+    """A quantity that may change by this, however long it takes."""
+    return Held(name, lambda steps: allowed, because)
+
+
+def rounded(steps: int) -> float:
+    """What round-off may do to momentum."""
+    return 2 * EPS * steps
+
+
+STAYS = held(LEVEL, 1e-3 * DEPTH, "a fiftieth of a spacing: no row is gained or lost")
+RESTS = held(FASTEST, 0.05, "at rest: a thousandth of the speed of sound, 44 m/s")
+LIES = held(MOVED, 0.02 * SPACING, "a fiftieth of a spacing, as of water's level")
+ROUNDING = "round-off: both kicks of a step round every velocity, all one way: 2 eps a step"
+
+ENDURANCES = Endurances([
+    Endurance("still water", "200 particles of water rest in a tank",
+              lambda: Tank(Simulation(still()), WATER), (exact(MASS), STAYS, RESTS)),
+    Endurance("still water without density diffusion", "the same, whose densities follow from its motion alone",
+              lambda: Tank(Simulation(still(density_diffusion=0.0)), WATER), (exact(MASS), STAYS, RESTS)),
+    Endurance("sloshing water", "200 particles of water slosh in a tank and come to rest within half of the run",
+              lambda: Tank(Simulation(sloshing()), WATER), (exact(MASS), STAYS, RESTS), settles=10),
+    Endurance("stirred water", "225 particles of water are stirred in a periodic box, without weight",
+              lambda: Box(open_box(15, 1)), (exact(MASS), *(Held(name, rounded, ROUNDING) for name in MOMENTUM)),
+              settles=0),
+    Endurance("ground", "200 particles of level ground rest",
+              lambda: Tank(SoilSimulation(ground()), SOIL), (exact(MASS), LIES, RESTS)),
+    Endurance("ground under water", "100 particles of ground rest beneath water, for a fifth of the steps",
+              lambda: Tank(SeepageSimulation(wet_ground()), BOTH), (exact(MASS), exact(SOIL_MASS), STAYS, LIES, RESTS),
+              share=0.2),
+])  # fmt: skip
+"""What `continuum-sph study endurance` runs."""

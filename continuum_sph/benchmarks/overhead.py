@@ -1,0 +1,154 @@
+"""Kinds of continuum scenes for `study parts`: a column of water on its way down, and what each choice adds to it; soil
+of the same size, water in it, and air in the lower half of its pores."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from continuum_sph.benchmarks.minimal_sph import PlainColumn
+from continuum_sph.build.model import Simulation
+from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.build.soil_model import SoilSimulation
+from continuum_sph.scene.sections import Scene
+from porescale.common.evidence.overhead import SMALLEST, Built, Kind, Kinds
+from porescale.common.schema.sections import validate
+
+SPACING = 1.0 / 32.0  # m: 2048 particles of water
+WARM = 200
+"""Steps before timing: water in motion."""
+Table = dict[str, Any]
+
+NUMERICS: Table = {"spacing": SPACING}
+COLUMN: Table = {"width": 1.0, "height": 2.0}
+PLAIN, SMOOTHED = "water only", "water with XSPH"
+SOIL, SOAKED = "soil", "soil and water"
+
+
+def scene(numerics: Table | None = None, tank: Table | None = None, **more: Any) -> Scene:
+    """A column in a closed tank."""
+    table: Table = {
+        "tank": {"width": 4.0, "height": 3.0} | (tank or {}), "water": {"column": [COLUMN]},
+        "numerics": NUMERICS | (numerics or {}), "time": {"end": 1.0},
+        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
+    }  # fmt: skip
+    return validate(Scene, table | more)
+
+
+def parts_of(it: Scene) -> list[str]:
+    """What the scene builds beyond particles, walls and their list."""
+    numerics = it.numerics
+    chosen = {
+        "water": bool(it.water.column), "second fluid": it.inclusion is not None,
+        "surface tension": it.inclusion is not None and it.inclusion.surface_tension > 0.0,
+        "corrected gradients": numerics.gradient == "corrected", "shifting": numerics.shifting > 0.0,
+        "energy book": it.output.energy, "XSPH": numerics.xsph > 0.0, "walls that hold": it.tank.walls != "slip",
+        "walls of images": it.tank.wall_particles == "images", "soil": it.soil is not None,
+        "air": it.air is not None,
+    }  # fmt: skip
+    return [name for name, there in chosen.items() if there]
+
+
+def started(it: Scene) -> Simulation:
+    """The simulation of a scene, on its way."""
+    made = Simulation(it)
+    made.advance(WARM)
+    return made
+
+
+def added(name: str, because: str = "", **more: Any) -> Kind:
+    """A scene with something more, beside water alone."""
+
+    def make() -> Built:
+        """Both scenes, started."""
+        it = scene(**more)
+        own, other = started(it), started(scene())
+        return Built(own, parts_of(it), own.flow.layer.fluid, own.advance, other.advance)
+
+    return Kind(name, "particle", PLAIN, make, because=because)
+
+
+def alone(**more: Any) -> Built:
+    """Water alone, with ``more`` in its scene, beside the smallest kernels for it."""
+    it = scene(**more)
+    made = started(it)
+    return Built(made, parts_of(it), made.flow.layer.fluid, made.advance, PlainColumn(made.flow).advance)
+
+
+def ground(**more: Any) -> Scene:
+    """Soil at rest in a tank, of the size of the column of water."""
+    body = {"outline": [[0, 0], [1, 0], [1, 2], [0, 2]]}
+    table: Table = {
+        "tank": {"width": 1.0, "height": 2.5, "lid": False},
+        "soil": {"density": 1590.0, "porosity": 0.4, "stiffness": 2e6, "permeability": 0.01, "stress": "geostatic",
+                 "sides": "slip", "body": [body]},
+        "numerics": NUMERICS, "time": {"end": 1.0}, "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
+    }  # fmt: skip
+    return validate(Scene, table | more)
+
+
+def settled(it: Scene) -> tuple[SoilSimulation | SeepageSimulation, int]:
+    """The simulation of a scene with soil, on its way, and how many particles it has."""
+    made: SoilSimulation | SeepageSimulation = SeepageSimulation(it) if it.water.column else SoilSimulation(it)
+    made.advance(SETTLING)
+    if isinstance(made, SoilSimulation):
+        return made, made.flow.soil.soil
+    return made, made.both.water.layer.fluid + made.both.water.skeleton.count
+
+
+def soil_beside_water() -> Built:
+    """As many particles of soil as there are of water."""
+    it = ground()
+    made, count = settled(it)
+    return Built(made, parts_of(it), count, made.advance, started(scene()).advance)
+
+
+def in_soil(other: Table, **more: Any) -> Callable[[], Built]:
+    """Soil with more in its pores, beside soil with an ``other``."""
+
+    def make() -> Built:
+        """Both scenes, started."""
+        it = ground(**more)
+        made, count = settled(it)
+        return Built(made, parts_of(it), count, made.advance, settled(ground(**other))[0].advance)
+
+    return make
+
+
+SETTLING, FEWER = 40, 10
+"""Steps before timing, and at a time: those of soil take ten times those of water."""
+WET: Table = {"water": {"pressure": "hydrostatic", "column": [COLUMN]}}
+ABOVE: Table = {"pressure": "hydrostatic", "column": [{"bottom": 1.0, "width": 1.0, "height": 1.0}]}
+UNSATURATED: Table = {"water": ABOVE, "air": {"density": 20.0, "pressure": 5e4}}
+DISC: Table = {"density": 500.0, "law": "liquid", "disc": [{"x": 0.5, "y": 1.0, "radius": 0.2}]}
+BOOK: Table = {"snapshot_interval": 1.0, "series_interval": 1.0, "energy": True}
+SHIFTED: Table = {"gradient": "corrected", "shifting": 2.0}
+
+KINDS = Kinds([
+    Kind(PLAIN, "particle", SMALLEST, alone,
+         because="1 to 5 % from process to process: what calls hand over 1.5 %; Python between kernels 1.5 %; stops at "
+                 "walls counted, densities and pressures kept for others 1 %; the pass over pairs 1 %"),
+    Kind(SMOOTHED, "particle", SMALLEST, lambda: alone(numerics={"xsph": 0.5}),
+         because="as of water only, and 3 % in the pass over pairs"),
+    added("water only, twice", "a run beside its like: what the method of measuring makes of nothing"),
+    added("energy book", "sums of pressure apart from the rest 8 %, the book's own lines 5 %, taken up 3 %",
+          output=BOOK),
+    added("walls that hold", tank={"walls": "stick"}),
+    added("walls of images", "walls have densities of their own, by a sum of their own",
+          tank={"wall_particles": "images"}),
+    added("XSPH", "a kernel's value, a division and two sums a pair: its smallest kernel has them too",
+          numerics={"xsph": 0.5}),
+    added("corrected gradients", "a pass over pairs before the one that reads what it finds",
+          numerics={"gradient": "corrected"}),
+    added("corrected gradients and shifting", "three passes: moments, with two sums of their own; rates; the surface",
+          numerics=SHIFTED),
+    added("second fluid", "number and viscosity of the partner, a comparison, a division a pair", inclusion=DISC),
+    added("second fluid with surface tension", "five passes over what is near the interface",
+          inclusion=DISC | {"surface_tension": 1.0}),
+    Kind(SOIL, "particle", PLAIN, soil_beside_water, FEWER,
+         "two passes over pairs, gradients of velocity and divergence of stress, and stresses of walls"),
+    Kind(SOAKED, "particle", SOIL, in_soil({}, **WET), FEWER, "twice the particles, in three kinds of pairs"),
+    Kind("air in soil", "particle", SOAKED, in_soil(WET, **UNSATURATED), FEWER,
+         "a second fluid, and powers of its density"),
+])  # fmt: skip
+"""What `continuum-sph study parts` measures."""

@@ -1,0 +1,123 @@
+"""What is measured in a tank, as sections, and what they read: probes.csv and levels.csv.
+
+A probe takes the straight line through the particles about it (moving least squares with W as the weight), which is
+exact for linear fields; beside fewer than three it takes their mean, and without any it has no value.
+
+A level is where a column of water is half full: the highest y at which Σ V_i w(y - y_i)/breadth over the particles in a
+strip falls to one half, w the cubic spline on a line.  A drop of one particle is no surface.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pydantic
+from numpy.typing import NDArray
+
+from porescale.common.schema.sections import Section, quantity
+
+Floats = NDArray[np.float64]
+
+SUPPORT = 2.0  # of the kernels, in smoothing lengths
+THIN = 1e-3  # of a mean square distance: particles on a line give no slope across it
+
+
+class Probe(Section):
+    """A point where pressure and velocity of the water are recorded over time: probes.csv."""
+
+    name: str = pydantic.Field("", description="name in the columns (default: its number)")
+    x: float = quantity("m", ge=0, le=1e5, help="place")
+    y: float = quantity("m", ge=0, le=1e5, help="place")
+
+
+class Level(Section):
+    """A strip in which the height of the free surface is recorded over time: levels.csv."""
+
+    name: str = pydantic.Field("", description="name in the columns (default: its number)")
+    x: float = quantity("m", ge=0, le=1e5, help="middle of the strip")
+    breadth: float | None = quantity("m", None, ge=1e-6, le=1e5, help="breadth of the strip (default: 4 spacings)")
+
+
+@dataclass(frozen=True)
+class Cloud:
+    """Water to be measured.  x (n, 2) m;  volume (n,) m², grains between it included;  pressure (n,) Pa;  v (n, 2) m/s;
+    length : of smoothing, m;  spacing m;  width : of the tank, m."""
+
+    x: Floats
+    volume: Floats
+    pressure: Floats
+    v: Floats
+    length: float
+    spacing: float
+    width: float
+
+
+def fit(at: tuple[float, float], cloud: Cloud) -> Floats:
+    """Pressure (Pa) and velocity (m/s) at a point, (3,); no numbers where there is no water."""
+    away = cloud.x - np.array(at)
+    q = np.hypot(away[:, 0], away[:, 1]) / cloud.length
+    near = q < SUPPORT
+    if not near.any():
+        return np.full(3, np.nan)
+    rest = 1.0 - 0.5 * q[near]
+    weight = cloud.volume[near] * rest**4 * (1.0 + 2.0 * q[near])
+    values = np.column_stack((cloud.pressure[near], cloud.v[near]))
+    columns = np.column_stack((np.ones(len(rest)), away[near] / cloud.length))
+    moments = columns.T @ (weight[:, None] * columns)
+    spread = moments[1:, 1:] / moments[0, 0] - np.outer(moments[0, 1:], moments[0, 1:]) / moments[0, 0] ** 2
+    if len(rest) < 3 or np.linalg.eigvalsh(spread)[0] < THIN:
+        mean: Floats = weight @ values / moments[0, 0]
+        return mean
+    line: Floats = np.linalg.solve(moments, columns.T @ (weight[:, None] * values))
+    value: Floats = line[0]
+    return value
+
+
+def surface(level: Level, cloud: Cloud) -> float:
+    """Height (m) of the free surface in the strip of ``level``; 0 where there is no water."""
+    half = 0.5 * (level.breadth if level.breadth is not None else 4.0 * cloud.spacing)
+    left, right = max(0.0, level.x - half), min(cloud.width, level.x + half)
+    inside = (cloud.x[:, 0] >= left) & (cloud.x[:, 0] <= right)
+    if not inside.any() or right <= left:
+        return 0.0
+    y, share = cloud.x[inside, 1], cloud.volume[inside] / (right - left)
+    h = cloud.length
+    heights = np.arange(max(0.0, float(y.min())), float(y.max()) + SUPPORT * h + cloud.spacing, 0.1 * cloud.spacing)
+    q = np.abs(heights[:, None] - y) / h
+    kernel = (np.maximum(0.0, 2.0 - q) ** 3 - 4.0 * np.maximum(0.0, 1.0 - q) ** 3) / (6.0 * h)
+    full = kernel @ share - 0.5
+    over = np.flatnonzero(full > 0.0)
+    if not over.size:
+        return 0.0
+    top = int(over[-1])
+    return float(heights[top] + (heights[top + 1] - heights[top]) * full[top] / (full[top] - full[top + 1]))
+
+
+def discharge(level: Level, cloud: Cloud, share: Floats) -> float:
+    """Flow of water to the right (m²/s) through a section: Σ V_i s_i u_i/breadth over the strip of ``level``;
+    ``share`` (n,): s, of each particle's volume that is water."""
+    half = 0.5 * (level.breadth if level.breadth is not None else 4.0 * cloud.spacing)
+    left, right = max(0.0, level.x - half), min(cloud.width, level.x + half)
+    inside = (cloud.x[:, 0] >= left) & (cloud.x[:, 0] <= right)
+    return float((cloud.volume * share * cloud.v[:, 0])[inside].sum()) / (right - left) if right > left else 0.0
+
+
+def tables(
+    time: float, probes: tuple[Probe, ...], levels: tuple[Level, ...], cloud: Cloud
+) -> dict[str, dict[str, float]]:
+    """A row of probes.csv and of levels.csv, of those that a scene asks for."""
+    rows: dict[str, dict[str, float]] = {}
+    if probes:
+        row = rows["probes"] = {"time (s)": time}
+        for k, probe in enumerate(probes):
+            name = probe.name or f"probe {k}"
+            p, u, v = fit((probe.x, probe.y), cloud)
+            row[f"{name} pressure (Pa)"] = float(p)
+            row[f"{name} velocity x (m/s)"] = float(u)
+            row[f"{name} velocity y (m/s)"] = float(v)
+    if levels:
+        row = rows["levels"] = {"time (s)": time}
+        for k, level in enumerate(levels):
+            row[f"{level.name or f'level {k}'} (m)"] = surface(level, cloud)
+    return rows

@@ -1,0 +1,227 @@
+"""The command line ``continuum-sph``, made from the same workbench as ``porescale``."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from porescale.common.cli import application
+from porescale.common.cli.package import Package
+from porescale.common.core.version import VERSION
+
+if TYPE_CHECKING:
+    from continuum_sph.scene.sections import Scene
+    from porescale.common.cli.report import Report
+    from porescale.common.evidence.benchmarks import Benchmarks
+    from porescale.common.evidence.endurance import Endurances
+    from porescale.common.evidence.extremes import Extremes
+    from porescale.common.evidence.overhead import Kinds
+    from porescale.common.evidence.validations import Validations
+    from porescale.common.record.drive import Outcome
+    from porescale.common.record.model import Array, Model
+
+
+FORMERLY = {"numerics": {"noise_floor": 0.0}}
+"""What was done before keys were there whose defaults do something else: no run changes its physics when resumed."""
+
+
+def scene_type() -> type[Scene]:
+    """The type of a continuum scene."""
+    from continuum_sph.scene.sections import Scene
+
+    return Scene
+
+
+def template() -> str:
+    """The text of the scene that ``new`` writes."""
+    return Path(__file__).with_name("template.toml").read_text(encoding="utf-8")
+
+
+def build(scene: Scene) -> Model:
+    """The simulation of a scene that `report` does not refuse."""
+    from continuum_sph.build.model import Simulation
+    from continuum_sph.build.seepage_model import SeepageSimulation
+    from continuum_sph.build.soil_model import SoilSimulation
+
+    if scene.soil is None:
+        return Simulation(scene)
+    return SoilSimulation(scene) if dry(scene) else SeepageSimulation(scene)
+
+
+def dry(scene: Scene) -> bool:
+    """Whether there is soil and no water, now or later."""
+    return scene.soil is not None and not (scene.water.column or scene.reservoir)
+
+
+def drive(
+    model: Model,
+    folder: Path,
+    scene: Scene,
+    *,
+    card: dict[str, Any],
+    resume: bool,
+    quiet: bool,
+    overwrite: bool = False,
+) -> Outcome:
+    """Run the model to the scene's end and write the run folder."""
+    from porescale.common.record.drive import drive as drive_model
+    from porescale.common.schema.migrations import completing
+
+    return drive_model(
+        model,
+        folder,
+        scene.time.end,
+        snapshot_interval=scene.output.snapshot_interval,
+        series_interval=scene.output.series_interval,
+        checkpoint_seconds=scene.output.checkpoint_seconds,
+        card=card,
+        resume=resume,
+        overwrite=overwrite,
+        quiet=quiet,
+        after=show,
+        today=completing(scene_type(), card, FORMERLY),
+    )
+
+
+def judge(folder: Path, card: dict[str, Any]) -> None:
+    """InputError where the run in ``folder`` cannot be gone on with as ``card`` asks."""
+    from porescale.common.record.drive import refuse_resume
+    from porescale.common.schema.migrations import completing
+
+    refuse_resume(folder, card, today=completing(scene_type(), card, FORMERLY))
+
+
+def report(scene: Scene) -> Report:
+    """Every derived number of a scene; raises InputError with all refusals."""
+    from continuum_sph.build.report import report as scene_report
+    from continuum_sph.build.seepage_report import seepage_report
+    from continuum_sph.build.soil_report import soil_report
+
+    if scene.soil is None:
+        return scene_report(scene)
+    return soil_report(scene) if dry(scene) else seepage_report(scene)
+
+
+def show(folder: Path) -> list[Path]:
+    """Write pictures and film of the run in ``folder``; returns their paths."""
+    from dataclasses import replace
+
+    from continuum_sph.build.phreatic import NAME, line_of
+    from porescale.common.pictures.film import film
+    from porescale.common.pictures.look import Look
+    from porescale.common.pictures.picture import paint_last, pictures
+    from porescale.common.record.open_run import open_run
+
+    run = open_run(folder)
+    scene = run.card["scene"]
+    width, height = scene["tank"]["width"], scene["tank"]["height"]
+    corners = [(0.0, height), (0.0, 0.0), (width, 0.0), (width, height)]
+    if scene["tank"]["lid"]:
+        corners.append(corners[0])
+    margin = 0.02 * width
+    look = Look(
+        title=scene["title"] or run.card.get("name", ""),
+        cloud="particles",
+        colour="fluid" if scene["inclusion"] else "velocity",
+        kinds=TWO if scene["inclusion"] else {},
+        lines=list(pairwise(corners)),
+        dot=0.5 * scene["numerics"]["spacing"],
+        view=(-margin, width + margin, -margin, height + margin),
+    )
+    if scene["soil"] and not (scene["water"]["column"] or scene.get("reservoir")):
+        look = replace(look, colour="displacement")
+        more = [paint_last(folder, name, replace(look, colour=name)) for name in SOIL]
+        return [*pictures(folder, look), *more, film(folder, look)]
+    if scene["soil"]:
+        line = line_of(run.table(NAME), scene["numerics"]["spacing"])
+        look = replace(look, colour="layer", kinds=LAYERS | (AIR if scene.get("air") else {}) | LINE, marks=line)
+        more = [paint_last(folder, name, replace(look, colour=name, kinds={})) for name in SEEPAGE]
+        return [*pictures(folder, look), *more, film(folder, look)]
+    return [*pictures(folder, look), film(folder, look)]
+
+
+SEEPAGE = ("pressure", "velocity", "porosity")
+"""What is shown of soil and water at the end, besides where they are."""
+LAYERS = {0: ("water", "#5b8fd0"), 1: ("dry soil", "#d9bd82"), 2: ("wet soil", "#8a6d3b")}
+"""Names and colours of water and soil."""
+LINE = {-1: ("phreatic", "#c0182b")}
+"""Of the surface of the water in soil, which is no particle's layer."""
+AIR = {3: ("air", "#e2e2e2")}
+"""And of air in it."""
+SOIL = ("mean_stress", "plastic_strain", "velocity")
+"""What is shown of soil at the end, besides how far it has come."""
+TWO = {0: ("water", "#5b8fd0"), 1: ("second fluid", "#e8a33d")}
+"""Names and colours of two fluids."""
+
+
+def table(folder: Path, name: str) -> dict[str, Array]:
+    """Columns of a table of the run in ``folder``, "series" for series.csv; {} when there is none."""
+    from porescale.common.record.series import read_series
+
+    return read_series(folder / f"{name}.csv")
+
+
+def validations() -> Validations:
+    """All rows of ``verify``."""
+    from continuum_sph.validation.validations import VALIDATIONS
+
+    return VALIDATIONS
+
+
+def benchmarks() -> Benchmarks:
+    """All rows of ``bench``."""
+    from continuum_sph.benchmarks.rates import BENCHMARKS
+    from porescale.common.evidence.benchmarks import Benchmarks
+    from porescale.common.studies.budget_check import benchmark
+
+    rows = Benchmarks()
+    rows.include(BENCHMARKS)
+    rows.include(benchmark(PACKAGE, Path(__file__).resolve().parents[1] / "cases" / "collapsing_water_column"))
+    return rows
+
+
+def extremes() -> Extremes:
+    """What `study extremes` tries."""
+    from continuum_sph.benchmarks.extremes import EXTREMES
+
+    return EXTREMES
+
+
+def endurance() -> Endurances:
+    """What runs for a million steps."""
+    from continuum_sph.benchmarks.endurance import ENDURANCES
+
+    return ENDURANCES
+
+
+def parts() -> Kinds:
+    """Kinds of scenes for `study parts`."""
+    from continuum_sph.benchmarks.overhead import KINDS
+
+    return KINDS
+
+
+PACKAGE = Package(
+    name="continuum-sph",
+    summary="Soil, water and air as layers of smoothed particles (water and soil in a tank, seepage, bubbles).",
+    version=VERSION,
+    scene=scene_type,
+    template=template,
+    build=build,
+    drive=drive,
+    report=report,
+    show=show,
+    table=table,
+    validations=validations,
+    benchmarks=benchmarks,
+    extremes=extremes,
+    endurance=endurance,
+    parts=parts,
+    judge=judge,
+)
+
+
+def main() -> int:
+    """Run ``continuum-sph`` with the arguments of the process; returns the exit code."""
+    return application.main(application.application(PACKAGE))

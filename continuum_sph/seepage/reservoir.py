@@ -1,0 +1,217 @@
+"""Water kept at a level: strips of open water in which particles come and go, every one of them booked.
+
+What stands in a strip is measured by its weight,
+
+    level = bottom + Σ w(x_i) m_i/(ρ0 ∫ w dx)          (i: above the bottom)
+
+so that the head on what lies below is exact, however the particles are packed.  w is 1 but for cosine ramps at the ends
+that lie in the water: a column of particles that crosses an end would else change the level by its whole share.  While
+more than half a particle is missing one is put on the lowest place of the surface, at rest, unless that stands far over
+the level already; while more than half a particle is over the highest of the strip is taken out.  A level at the bottom
+takes out whatever comes.
+
+Arrays keep their lengths: particles that are not in the tank have no mass and wait at berths of their own over it, so
+far from each other and from all else that they meet nobody.  Rows without mass are the only memory of who waits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from continuum_sph.water.state import Layer
+from porescale.common.compiled.jit import kernel
+
+Floats = NDArray[np.float64]
+
+RAMP = 3.0  # spacings: of a lattice that passes, w takes in the same mass to a thousandth
+BERTH = 1.5  # cutoffs between berths
+HEAP = 0.1
+"""Of the depth: how much higher than its level a surface may stand to make up for what its particles leave empty; a
+column of water that falls is not topped up beyond."""
+
+
+@kernel
+def moor(fluid, x, v, mass, density, predicted, berth, density0):
+    """Puts particles without mass back where they wait, at rest; overwrites their ``x``, ``v`` (n, 2), ``density`` and
+    ``predicted`` (fluid,) kg/m³;  berth (fluid, 2) m;  density0 kg/m³."""
+    for i in range(fluid):
+        if mass[i] == 0.0:
+            x[i, 0] = berth[i, 0]
+            x[i, 1] = berth[i, 1]
+            v[i, 0] = 0.0
+            v[i, 1] = 0.0
+            density[i] = density0
+            predicted[i] = density0
+
+
+@kernel
+def sound_out(fluid, x, mass, material, left, right, ramp_left, ramp_right, bottom, spacing, least, tops):
+    """(Σ w m over the strip above its bottom, kg/m;  number of its highest particle of a w over
+    ``least``, -1 for none);  overwrites ``tops``
+    (columns,) m, the highest particle near the middle of each column of the strip, half a spacing below the bottom
+    where there is none.
+
+    x (n, 2) m;  mass (n,) kg/m, 0: not there;  material (n,), water is 0;  left, right, bottom, ramps, spacing: m.
+    """
+    columns = tops.shape[0]
+    breadth = (right - left) / columns
+    for c in range(columns):
+        tops[c] = bottom - 0.5 * spacing
+    total = 0.0
+    highest = -1
+    for i in range(fluid):
+        if mass[i] == 0.0 or material[i] != 0 or x[i, 0] < left or x[i, 0] > right or x[i, 1] < bottom:
+            continue
+        weight = 1.0
+        if x[i, 0] < left + ramp_left:
+            weight = 0.5 - 0.5 * np.cos(np.pi * (x[i, 0] - left) / ramp_left)
+        elif x[i, 0] > right - ramp_right:
+            weight = 0.5 - 0.5 * np.cos(np.pi * (right - x[i, 0]) / ramp_right)
+        total += weight * mass[i]
+        if weight > least and (highest < 0 or x[i, 1] > x[highest, 1]):
+            highest = i
+        at = (x[i, 0] - left) / breadth
+        first = max(0, int(np.floor(at - 1.25)))
+        for c in range(first, min(columns, first + 3)):
+            if abs(at - c - 0.5) < 0.75:
+                tops[c] = max(tops[c], x[i, 1])
+    return total, highest
+
+
+@dataclass
+class Reservoir:
+    """A strip whose water is kept at a level.
+
+    left, right, bottom : m;  times (k,) s and levels (k,) m : straight lines between them, constant before and after;
+    walls : whether each end lies at a wall of the tank;  let_in, let_out : mass booked so far, kg/m;  level : of the
+    last step, m.
+    """
+
+    name: str
+    left: float
+    right: float
+    bottom: float
+    times: Floats
+    levels: Floats
+    walls: tuple[bool, bool] = (False, False)
+    let_in: float = 0.0
+    let_out: float = 0.0
+    level: float = 0.0
+    tops: Floats = field(default_factory=lambda: np.zeros(0))
+    ramps: tuple[float, float] = (0.0, 0.0)
+
+    def fit(self, spacing: float) -> None:
+        """Columns and ramps for particles of a ``spacing``, m."""
+        breadth = self.right - self.left
+        self.tops = np.zeros(max(1, round(breadth / spacing)))
+        ramp = min(RAMP * spacing, 0.5 * breadth)
+        self.ramps = (0.0 if self.walls[0] else ramp, 0.0 if self.walls[1] else ramp)
+
+    @property
+    def width(self) -> float:
+        """∫ w dx, m."""
+        return self.right - self.left - 0.5 * sum(self.ramps)
+
+    def wanted(self, time: float) -> float:
+        """Level (m) at a ``time`` (s)."""
+        return float(np.interp(time, self.times, self.levels))
+
+
+class Supply:
+    """The reservoirs of a layer, and those of its particles that wait.
+
+    berth : (fluid, 2) m, where each would wait.
+    """
+
+    def __init__(
+        self, layer: Layer, reservoirs: Sequence[Reservoir], berth: Floats, spacing: float, density: float,
+        stiffness: float, gravity: float,
+    ) -> None:  # fmt: skip
+        """spacing m;  density : ρ0, kg/m³;  stiffness : ρ0 c0², Pa, for pressures of new particles;  gravity m/s²."""
+        assert berth.shape == (layer.fluid, 2)
+        self.layer, self.reservoirs, self.berth, self.spacing = layer, list(reservoirs), berth, spacing
+        self.density, self.stiffness, self.gravity = density, stiffness, gravity
+        self.whole = density * spacing * spacing  # kg/m, of a new particle
+        for reservoir in self.reservoirs:
+            reservoir.fit(spacing)
+
+    def keep(self, time: float) -> None:
+        """Bring every reservoir to its level of ``time`` (s), between drift and forces of a step.
+
+        Raises ValueError when more water is wanted than there are particles.
+        """
+        layer = self.layer
+        for reservoir in self.reservoirs:
+            self._level(reservoir, time)
+        moor(
+            layer.fluid, layer.x, layer.v, layer.mass, layer.density, layer.predicted, self.berth, self.density
+        )  # fmt: skip
+
+    def _level(self, pool: Reservoir, time: float) -> None:
+        """Add or take particles until ``pool`` is within half a particle of its level."""
+        layer, target = self.layer, pool.wanted(time)
+        full = self.density * pool.width
+        while True:
+            held, highest = sound_out(
+                layer.fluid, layer.x, layer.mass, layer.material, pool.left, pool.right, *pool.ramps, pool.bottom,
+                self.spacing, -1.0 if target <= pool.bottom else 0.5, pool.tops,
+            )  # fmt: skip
+            over = held - full * (target - pool.bottom)
+            pool.level = pool.bottom + held / full
+            if highest >= 0 and (over > 0.5 * layer.mass[highest] or target <= pool.bottom):
+                pool.let_out += float(layer.mass[highest])
+                layer.mass[highest] = 0.0
+            elif over > -0.5 * self.whole or not self._fill(pool, target, round(-over / self.whole)):
+                return
+
+    def _fill(self, pool: Reservoir, target: float, count: int) -> bool:
+        """Put ``count`` particles, at most a row, on the lowest places of the surface of ``pool``, unless these are as
+        high as they may be; whether one was put."""
+        layer, columns = self.layer, len(pool.tops)
+        most = target + HEAP * (target - pool.bottom)
+        if float(pool.tops.min()) + 0.5 * self.spacing > most:
+            return False
+        free = np.flatnonzero(layer.mass[: layer.fluid] == 0.0)
+        for i in free[: min(count, columns)]:
+            c = int(np.argmin(pool.tops))
+            if pool.tops[c] + 0.5 * self.spacing > most:
+                break
+            height = pool.tops[c] = pool.tops[c] + self.spacing
+            layer.x[i] = pool.left + (c + 0.5) * (pool.right - pool.left) / columns, height
+            layer.v[i] = layer.smoothed[i] = layer.drift[i] = 0.0
+            depth = max(0.0, target - height)
+            layer.density[i] = layer.predicted[i] = self.density * (
+                1.0 + self.density * self.gravity * depth / self.stiffness
+            )
+            layer.rate[i] = layer.rate_before[i] = 0.0
+            layer.mass[i] = self.whole
+            pool.let_in += self.whole
+        if not len(free):
+            raise ValueError(f"reservoir {pool.name}: no particles left to bring it to {target} m")
+        return True
+
+    def state(self) -> dict[str, Any]:
+        """What was booked; who waits is known by its mass."""
+        return {
+            "let_in": np.array([pool.let_in for pool in self.reservoirs]),
+            "let_out": np.array([pool.let_out for pool in self.reservoirs]),
+            "level": np.array([pool.level for pool in self.reservoirs]),
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go on from the ``state`` of a supply of the same reservoirs."""
+        rows = zip(self.reservoirs, state["let_in"], state["let_out"], state["level"], strict=True)
+        for pool, let_in, let_out, level in rows:
+            pool.let_in, pool.let_out, pool.level = float(let_in), float(let_out), float(level)
+
+
+def berths(count: int, width: float, floor: float, pitch: float) -> Floats:
+    """Places (count, 2) m, ``pitch`` (m) apart, in rows of a ``width`` (m) over a height ``floor`` (m)."""
+    row = max(1, int(width / pitch))
+    number = np.arange(count)
+    return np.column_stack(((number % row + 0.5) * pitch, floor + (number // row + 1.0) * pitch))

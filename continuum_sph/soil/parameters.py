@@ -1,0 +1,78 @@
+"""What the particles of a soil obey, in numbers, and the steps that it allows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from continuum_sph.soil.material import Material
+from continuum_sph.water.smoothing import Smoothing
+from porescale.common.core.errors import Fault, InputError
+
+FALL = 7.0
+"""2 · 2π W(0) h² of Wendland C2: what a zig-zag from particle to particle falls by at most, over χ and shear strain."""
+RULES = ("sound", "acceleration", "other layers")
+
+
+@dataclass(frozen=True)
+class SoilLaw:
+    """Numbers in SI.
+
+    smoothing : kernel and h;  spacing : of the particles, m;  materials : by the numbers that particles carry;
+    gravity : (x, y) m/s²;  damping : α, of the part of velocity differences that is not linear in place, or with
+    ``printed_damping`` of all of it between particles that approach (eq. 36);  corrected : gradients exact for linear
+    fields;  diffusion : χ of stress and volume, per shear strain, see `divergence`;  restless : the same per passage of
+    sound through h, which never rests (for comparison);  apart : A, how fast particles nearer than a spacing part, per
+    shear strain;  repulsion : A of `tension`, where soil bears tension;  drag : 1/s, of all motion until ``settle``
+    (s), so that a start finds its equilibrium;  printed_spin : turn stress as eq. 38 has it, the wrong way;  courant :
+    the 0.25 of eq. 49.
+    """
+
+    smoothing: Smoothing
+    spacing: float
+    materials: tuple[Material, ...]
+    gravity: tuple[float, float]
+    damping: float = 0.2
+    printed_damping: bool = False
+    corrected: bool = True
+    diffusion: float = 100.0
+    restless: float = 0.0
+    apart: float = 4.0
+    repulsion: float = 10.0
+    drag: float = 0.0
+    settle: float = 0.0
+    printed_spin: bool = False
+    courant: float = 0.25
+
+    def __post_init__(self) -> None:
+        """InputError when diffusion at the pace of sound takes more of a zig-zag in a step than there is."""
+        most = 1.0 / (FALL * self.courant)
+        if self.restless > most:
+            key = "soil.numerics.restless_diffusion"
+            repair = "or lower numerics.courant"
+            raise InputError(Fault(key, self.restless, "swings ever wider", "", f"<= {most:.3g}", repair))
+
+    @property
+    def most(self) -> float:
+        """Shear strain of one step that diffusion, and parting with it, follows.
+
+        A zig-zag from particle to particle falls by up to 2 · 2π W(0) h² χ = 7 χ times that (W(0) = 7/4πh² of Wendland
+        C2, the spline has less), and would swing ever wider beyond 2: σ_zz does, which no strength bounds.  It may
+        vanish in a step.  Of a particle's volume half at most is then exchanged, spacing² Σ -(1/r) W' being the
+        integral 2π W(0): volumes stay between those around, so above zero, up to twice the lattice's particles in a
+        place, and calm down up to four times.  What diffuses by sound is part of it.
+        """
+        left = 1.0 - FALL * self.courant * self.restless
+        return max(0.0, left) / (FALL * self.diffusion) if self.diffusion > 0.0 else float("inf")
+
+    def limits(self, acceleration: float, pace: float, others: float) -> tuple[float, float, float]:
+        """Steps allowed by sound, acceleration (m/s²) and other layers (s), s: eq. 49.
+
+        0.25/max(c/h), 0.25 √(h/|a|);  ``pace``: the largest c/h, 1/s.  The third of eq. 49, h²/8ν with ν = α c h/8 of
+        the damping, is h/(α c) and never less than the first for α up to 4.
+        """
+        h, infinite = self.smoothing.length, float("inf")
+        return (
+            self.courant / pace if pace > 0.0 else infinite,
+            self.courant * (h / acceleration) ** 0.5 if acceleration > 0.0 else infinite,
+            others,
+        )

@@ -1,0 +1,1 @@
+"""Validations: experiment, exact answer and rows of `verify`, one topic a file."""

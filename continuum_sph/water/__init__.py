@@ -1,0 +1,1 @@
+"""Water and air as layers of smoothed particles."""

@@ -1,0 +1,53 @@
+"""Rate of density of a pair: continuity (eq. 25 of Maeda & Sakai 2004) and diffusion against acoustic noise.
+
+Continuity with the partner's volume, dρ_i/dt = ρ_i Σ V_j v_ij · ∇W, not its mass (eq. 25): the same within one fluid
+but for density differences of 1 %, and right beside a fluid of another density.
+
+Diffusion: Molteni & Colagrossi, Comput. Phys. Commun. 180 (2009) 861 ("plain"); of the departure from the hydrostatic
+density only, so that water at rest stays: Fourtakas et al., Computers & Fluids 190 (2019) 346 ("hydrostatic"); of the
+departure from a linear field: Antuono et al., Comput. Phys. Commun. 181 (2010) 532 ("linear", δ-SPH).
+
+What it gives one particle of a pair it takes from the other, Σ V dρ/dt = 0 in all three.  It moves no particle, and so
+parts densities from how closely particles lie: with γ = n m/ρ (n: particles per area), 1 on the lattice,
+
+    d ln γ/dt = -(1/ρ) diffusion,     Σ V (p_i + p_j) ∇W ≈ ∇p + A p ∇ln γ
+
+(A = 2, or 1 with corrected gradients).  Water at rest whose γ is uneven, as settling leaves it next to walls and the
+surface, has pressures off the hydrostatic by A p ∇ln γ; diffusion levels these, and γ with them, as fast as
+δ h c0 A p/(ρ c0²).  At the pace of sound, as published, that takes minutes of a metre of water, c0 = 44 m/s and
+δ = 0.1, 4·10⁵ steps, and lifts its mean height by 2·10⁻⁴ of the depth per 10⁵ steps.  "Linear" lets ρ have any slope,
+so nothing holds long waves of γ: water sinks by 3·10⁻³ per 10⁵ steps, and the pressure on the floor by 6 %.
+
+So a pair goes at its own pace, as soil does (`soil.divergence`): that of sound where it closes or parts as quickly as
+in noise that counts, less where it is slower, none at rest.  (|v_ij · x_ij|/r in place of sound keeps gas in
+hydrostatic equilibrium from conducting its heat away: Wadsley, Veeravalli & Couchman, Mon. Not. R. Astron. Soc. 387
+(2008) 427; Price et al., Publ. Astron. Soc. Aust. 35 (2018) e031.)  Noise of a pressure p' moves at p'/(ρ c0).  If what
+counts is a thousandth of the weight of a metre of water, then what levels γ moves pairs at 10⁻³ of that, and stops
+itself.  Under "linear" water in the open stays restless at five times such speeds and goes on sinking, 2.8 in place of
+3.9·10⁻³ in 10⁵ steps; among grains, whose drag calms it, it stands.
+"""
+
+from __future__ import annotations
+
+from porescale.common.compiled.jit import inline
+from porescale.common.compiled.simd import greater, lesser
+
+PLAIN, HYDROSTATIC, LINEAR = range(3)
+NAMES = ("plain", "hydrostatic", "linear")
+
+
+@inline
+def pace(approach, haste, restless):
+    """Share of the speed of sound at which the densities of a pair diffuse: min(1, restless + haste |v_ij · x_ij|).
+
+    approach v_ij · x_ij, m²/s;  haste, s/m², and restless: see `haste_of`.
+    """
+    return lesser(restless + haste * greater(approach, -approach), 1.0)
+
+
+@inline
+def haste_of(calm, h):
+    """haste and restless of `pace`: 1/(h calm) and 0;  of a ``calm`` (m/s) of 0 0 and 1, the pace of sound always."""
+    if calm > 0.0:
+        return 1.0 / (h * calm), 0.0
+    return 0.0, 1.0

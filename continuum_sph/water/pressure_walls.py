@@ -1,0 +1,103 @@
+"""Walls of dummy particles that carry the pressure of the fluid in front of them.
+
+Source: Adami, Hu & Adams, J. Comput. Phys. 231 (2012) 7057, eqs 22, 23, 27: pressure and velocity of a wall particle
+are kernel averages over the fluid, the pressure with the hydrostatic difference from fluid to wall particle.  It
+stands in for eqs 50, 51 of Maeda & Sakai 2004 (Morris' image velocities), which need a straight wall's distance.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from continuum_sph.water.smoothing import kernel_value
+from continuum_sph.water.state import RHO, VOLUME, VX, VY, P, X, Y
+from porescale.common.compiled.jit import inline, parallel_kernel, prange
+from porescale.common.neighbors.cells import minimum_image
+
+Floats = NDArray[np.float64]
+
+
+@inline
+def wall_row(
+    w, start, end, partner, x, v, record, pressure, kind, h, gx, gy, period_x, period_y
+):  # fmt: skip
+    """Pressure (Pa) and mean fluid velocity (m/s) at wall particle w from fluid partners ``start`` … ``end``-1.
+
+    p_w = Σ (p_f + ρ_f g · (x_w - x_f)) W / Σ W.  Not below zero: a wall does not pull on a free surface's fluid.
+    """
+    wraps = period_x > 0.0 or period_y > 0.0
+    weight = 0.0
+    p = 0.0
+    ux = 0.0
+    uy = 0.0
+    for k in range(np.uint64(start), np.uint64(end)):
+        j = np.uint64(partner[k])
+        dx = x[w, 0] - record[j, X]
+        dy = x[w, 1] - record[j, Y]
+        if wraps:
+            dx = minimum_image(dx, period_x)
+            dy = minimum_image(dy, period_y)
+        value = kernel_value(kind, np.sqrt(dx * dx + dy * dy) / h, h)
+        weight += value
+        p += (pressure[j] + record[j, RHO] * (gx * dx + gy * dy)) * value
+        ux += record[j, VX] * value
+        uy += record[j, VY] * value
+    if weight > 0.0:
+        return max(0.0, p / weight), ux / weight, uy / weight
+    return 0.0, v[w, 0], v[w, 1]
+
+
+@parallel_kernel
+def load_walls(
+    fluid, start, split, partner, x, v, mass, record, pressure, ghost, kind, h, gx, gy, density0, period_x, period_y
+):  # fmt: skip
+    """Give wall particles (rows ``fluid`` on) the pressure and velocity of the fluid before them.
+
+    Overwrites the rows of ``record`` (n, 8) and ``ghost`` (n, 2) of those that have fluid for partners, and all of
+    their ``pressure`` (n,);  ghost: 2 v_wall - mean fluid velocity: the average of fluid and ghost is then the wall's
+    velocity at the wall;  None where no wall holds the fluid.  Their volume stays mass/density0, the square of the
+    spacing, as that of fluid at the start.
+    """
+    for w in prange(fluid, x.shape[0]):
+        if start[w] == split[w]:
+            pressure[w] = 0.0  # and no fluid reads the rest
+            continue
+        p, ux, uy = wall_row(
+            w, start[w], split[w], partner, x, v, record, pressure, kind, h, gx, gy, period_x, period_y
+        )  # fmt: skip
+        pressure[w] = p
+        record[w, X] = x[w, 0]
+        record[w, Y] = x[w, 1]
+        record[w, VX] = v[w, 0]
+        record[w, VY] = v[w, 1]
+        record[w, RHO] = density0
+        record[w, P] = p
+        record[w, VOLUME] = mass[w] / density0
+        if ghost is not None:
+            ghost[w, 0] = 2.0 * v[w, 0] - ux
+            ghost[w, 1] = 2.0 * v[w, 1] - uy
+
+
+def tank_walls(
+    width: float,
+    height: float,
+    spacing: float,
+    layers: int,
+    *,
+    sides: bool = True,
+    floor: bool = True,
+    lid: bool = False,
+) -> Floats:
+    """Positions (n, 2) m of the wall particles around the rectangle 0 … width, 0 … height, ``layers`` deep.
+
+    The wall's surface lies half a ``spacing`` before its first layer.  Without ``sides`` (periodic) floor and lid
+    are as long as the width; with them they reach round the corners.
+    """
+    columns, rows = round(width / spacing), round(height / spacing)
+    i = np.arange(-layers if sides else 0, columns + (layers if sides else 0))
+    j = np.arange(-layers if floor else 0, rows + (layers if lid else 0))
+    grid_i, grid_j = np.meshgrid(i, j)
+    inside = (grid_i >= 0) & (grid_i < columns) & (grid_j >= 0) & (grid_j < rows)
+    centres: Floats = np.column_stack((grid_i[~inside], grid_j[~inside])).astype(np.float64)
+    return (centres + 0.5) * spacing

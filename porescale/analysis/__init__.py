@@ -1,0 +1,1 @@
+"""Numbers from scenes and finished runs: permeability, soil tests, circles in pictures."""

@@ -1,0 +1,85 @@
+"""The permeability of a run's bed at its first and its last snapshot: permeability.csv."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from porescale.analysis.permeability import Measured, gebart, kozeny_carman, measure
+from porescale.build.derive import fluid_scales
+from porescale.common.core.atomic import write_bytes
+from porescale.common.record.model import Cloud
+from porescale.common.schema.sections import validate
+from porescale.scene.sections import Scene
+
+if TYPE_CHECKING:
+    from porescale.common.record.open_run import Run
+
+
+def write_permeability(run: Run, folder: Path) -> list[Path]:
+    """Measure the bed and write permeability.csv, a row a snapshot; [] if the scene does not ask for it.
+
+    Raises InputError where the window holds no grain.  Takes seconds: flow through the bed is driven until steady.
+    """
+    if not run.card["scene"].get("permeability"):
+        return []
+    scene = validate(Scene, run.card["scene"])
+    assert scene.grains
+    ratio = scene.grains.hydraulic_radius_ratio or 1.0
+    rows = []
+    for k in sorted({0, len(run) - 1}):
+        snapshot = run.snapshot(k, cells=("velocity",))
+        rows.append(row(snapshot.time, ratio, measure_window(scene, snapshot.clouds["grains"])))
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(rows[0])
+    table.writerows([repr(value) for value in it.values()] for it in rows)
+    path = folder / "permeability.csv"
+    write_bytes(path, text.getvalue().encode())
+    return [path]
+
+
+def measure_window(scene: Scene, grains: Cloud) -> Measured:
+    """The permeability of the window that a scene names, or of its packing's rectangle, as its lattice has it."""
+    assert scene.permeability
+    assert scene.fluid
+    window = scene.permeability.window or (scene.grains.packing if scene.grains else None)
+    assert window  # the scene has made sure
+    scales, (periodic_x, periodic_y) = fluid_scales(scene.fluid), scene.domain.periodic
+    spacing = scene.permeability.spacing or scales.spacing
+    lower = window.left, window.bottom
+    upper = lower[0] + window.width, lower[1] + window.height
+    near = 0.5 * spacing
+    box = (scene.domain.width, scene.domain.height)
+    across, low, high = (1, "bottom", "top") if scene.permeability.direction == "x" else (0, "left", "right")
+    walls = (
+        lower[across] < near and scene.domain.sides[low].kind == "wall",
+        upper[across] > box[across] - near and scene.domain.sides[high].kind == "wall",
+    )
+    return measure(
+        grains.position, grains.data["hydraulic_radius"], lower, upper, spacing,
+        direction=scene.permeability.direction, periodic=(
+            periodic_x and window.width > scene.domain.width - near,
+            periodic_y and window.height > scene.domain.height - near,
+        ),
+        walls=walls, relaxation_time=scales.relaxation_time, laws=scene.fluid.laws, solid_laws=scene.fluid.solid_laws,
+    )  # fmt: skip
+
+
+def row(time: float, ratio: float, found: Measured) -> dict[str, float]:
+    """The columns of a measurement, SI, with what regular arrays and beds of this solid fraction have."""
+    c, square = found.solid_fraction, (0.5 * found.diameter) ** 2
+    return {
+        "time (s)": float(time),
+        "permeability (m²)": found.permeability,
+        "permeability over hydraulic diameter² ()": found.relative,
+        "hydraulic radius ratio ()": float(ratio),
+        "hydraulic solid fraction ()": c,
+        "cells per hydraulic diameter ()": found.cells,
+        "Gebart, square array (m²)": gebart(c) * square,
+        "Gebart, hexagonal array (m²)": gebart(c, hexagonal=True) * square,
+        "Kozeny-Carman (m²)": kozeny_carman(c) * square,
+        "steady ()": float(found.steady),
+    }

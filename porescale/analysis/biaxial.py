@@ -1,0 +1,119 @@
+"""What a biaxial test of a cell says of its soil: strength, dilatancy, stiffness.
+
+Axial strain a = -ε_yy and volume strain v = ε_xx + ε_yy, logarithmic, dilation positive; stresses are compression.
+
+    sin φ = (σ_yy - σ_xx)/(σ_yy + σ_xx)      mobilised friction angle, means over 1 % of strain
+    sin ψ = D/(2 + D),  D = dv/da            dilatancy angle, by straight lines over 1 %
+
+Peak: where the mean over all tests is largest, what each test has there; the largest of each test alone would be the
+largest of its swings, which loose soil has, too.  Critical: the mean of the last third of a test.
+
+Stiffness is that of the first loading to half of the largest deviator q = σ_yy - σ_xx, under constant σ_xx in plane
+strain: q = a E/(1 - ν²) and ε_xx = a ν/(1 - ν), both slopes by least squares through the origin (E50 of practice).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.core.errors import Fault, InputError
+
+Array = NDArray[np.float64]
+
+WINDOW = 0.01
+"""Of axial strain, over which peak and dilatancy are taken."""
+LATE = 2.0 / 3.0
+"""Share of the strain from where on a test is in its critical state."""
+LEAST = 4
+"""Rows of the first loading, below which no slope is told from swings."""
+
+
+def running(strain: Array, values: Array) -> tuple[Array, Array]:
+    """Mean and slope of ``values`` (r,) over ``strain`` (r,), ascending, within half a WINDOW of each row, both (r,);
+    nan where the window reaches beyond the test."""
+    half = 0.5 * WINDOW
+    low = np.searchsorted(strain, strain - half)
+    high = np.searchsorted(strain, strain + half, side="right")
+    inside = (strain - half >= strain[0] - 1e-12) & (strain + half <= strain[-1] + 1e-12)
+    mean, slope = np.full_like(strain, np.nan), np.full_like(strain, np.nan)
+    for k in np.flatnonzero(inside):
+        x, y = strain[low[k] : high[k]], values[low[k] : high[k]]
+        mean[k] = y.mean()
+        slope[k] = float(np.sum((x - x.mean()) * y) / np.sum((x - x.mean()) ** 2))
+    return mean, slope
+
+
+def curves(series: Mapping[str, Array]) -> dict[str, Array]:
+    """Axial strain, volume strain, sine of the mobilised angle, deviator (Pa), strain across, of every row of a test
+    but the first, which comes before its first step."""
+    across, axial = series["strain xx ()"][1:], -series["strain yy ()"][1:]
+    side, along = series["stress xx (Pa)"][1:], series["stress yy (Pa)"][1:]
+    return {
+        "strain": axial, "volume": across - axial, "sine": (along - side) / (along + side), "deviator": along - side,
+        "across": across, "fraction": series["solid fraction ()"][1:], "side": side,
+    }  # fmt: skip
+
+
+def numbers(tests: Sequence[Mapping[str, Array]]) -> list[dict[str, float]]:
+    """The numbers of each of several tests of one soil, angles in rad, from the columns of their series.csv.
+
+    Raises InputError for a test without strength: one that ended before it began to shear.
+    """
+    every = [curves(series) for series in tests]
+    if any(len(it["strain"]) < 10 * LEAST or not it["strain"][-1] > 3.0 * WINDOW for it in every):
+        raise InputError(Fault("series.csv", None, "holds no test", repair="remove that run folder"))
+    sines, openings = peaks(every)
+    return [
+        {
+            "porosity": 1.0 - float(series["solid fraction ()"][0]),
+            "peak friction angle": math.asin(sine),
+            "peak dilatancy angle": math.asin(opening / (2.0 + opening)),
+            **_alone(it),
+        }
+        for series, it, sine, opening in zip(tests, every, sines.tolist(), openings.tolist(), strict=True)
+    ]
+
+
+def peaks(every: Sequence[Mapping[str, Array]]) -> tuple[Array, Array]:
+    """Sine of the friction angle and dilatancy dv/da of each test, (n,), where their means over tests are largest."""
+    end = min(float(it["strain"][-1]) for it in every)
+    at = np.arange(WINDOW, end - 0.5 * WINDOW, 0.1 * WINDOW)  # before WINDOW contacts close, or a test begins
+    found = []
+    for name, which in (("sine", 0), ("volume", 1)):
+        rows = []
+        for it in every:
+            values = running(it["strain"], it[name])[which]
+            sound = np.isfinite(values)
+            rows.append(np.interp(at, it["strain"][sound], values[sound]))
+        table = np.array(rows)
+        found.append(table[:, int(table.mean(axis=0).argmax())])
+    return found[0], found[1]
+
+
+def _alone(it: Mapping[str, Array]) -> dict[str, float]:
+    """Numbers of one test that need no other."""
+    late = it["strain"] > LATE * it["strain"][-1]
+    stiffness, poisson = first_loading(it)
+    return {
+        "critical friction angle": math.asin(float(it["sine"][late].mean())),
+        "critical porosity": 1.0 - float(it["fraction"][late].mean()),
+        "stiffness": stiffness,
+        "Poisson's ratio": poisson,
+    }
+
+
+def first_loading(it: Mapping[str, Array]) -> tuple[float, float]:
+    """E (Pa) and ν of the rows before half of the largest deviator; nan where they are too few."""
+    peak = float(np.nanmax(running(it["strain"], it["deviator"])[0]))
+    before = slice(0, int(np.argmax(it["deviator"] >= 0.5 * peak)))
+    a, q, across = (it[name][before] for name in ("strain", "deviator", "across"))
+    if len(a) < LEAST:
+        return math.nan, math.nan
+    squares = float(np.sum(a * a))
+    ratio = float(np.sum(a * across)) / squares
+    poisson = ratio / (1.0 + ratio)
+    return float(np.sum(a * q)) / squares * (1.0 - poisson**2), poisson

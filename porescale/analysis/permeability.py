@@ -1,0 +1,157 @@
+"""The permeability of a bed as it stands: grains held, a body force drives slow flow through them.
+
+Darcy: K = mu U/G,  U superficial velocity (that of the conserved flux, without half the force), G what drives it.
+Where the window is the whole of a periodic box the flow is periodic and G the body force itself.  Any other window is
+followed along the flow by its mirror image, which has pressure constant over both faces, and has slip on its flanks,
+as between mirrors; discs are cut by the faces, those with their centre beyond are left out, so G is read as in a
+permeameter: body force less pressure gradient, fitted to the mean pressure of the rows at least a diameter inside.
+
+Compared to  Gebart 1992, flow across regular arrays of cylinders of solid fraction c,
+K/R² = C (sqrt(c_max/c) - 1)^(5/2),  square C = 16/(9 pi sqrt 2), c_max = pi/4,  hexagonal 16/(9 pi sqrt 6) and
+pi/(2 sqrt 3);  and Kozeny & Carman,  K/R² = (1 - c)³/(4 k c²),  k = 5.  R, d and c are what the fluid sees: lambda
+times the grains'.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.core.errors import Fault, InputError
+from porescale.coupling.psm import Saturated
+from porescale.lbm.boundary.sides import Kind, Sides
+from porescale.lbm.fluid import Fluid
+from porescale.lbm.lattice import viscosity
+
+Array = NDArray[np.floating]
+
+TAU = 0.6
+"""Relaxation time unless told otherwise: drag depends least on it where it is small."""
+SLOWNESS = 1e-6
+"""Body force over viscosity: Reynolds numbers of the pores stay below 1e-4."""
+STEADY = 2e-5
+"""Relative change of the flux over the last fifth of the steps, below which it is steady."""
+FIRST, MOST = 500, 200_000
+"""Steps before the flux is looked at for the first time, and at most: a sealed bed never gets steady."""
+KOZENY = 5.0
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Permeability of a window.  Lengths and areas as the measurement was asked for: m.
+
+    permeability : K, m²;  relative : K/d²;  solid_fraction : c of what the fluid sees;  diameter : mean d of it, m;
+    cells : per diameter;  steady : whether the flux was;  steps : of the lattice.
+    """
+
+    permeability: float
+    relative: float
+    solid_fraction: float
+    diameter: float
+    cells: float
+    steady: bool
+    steps: int
+
+
+def gebart(solid_fraction: float, *, hexagonal: bool = False) -> float:
+    """K/R² across a regular array of cylinders (Gebart 1992); 0 where they touch."""
+    constant, densest = (6.0, math.pi / (2 * math.sqrt(3))) if hexagonal else (2.0, math.pi / 4)
+    gap = math.sqrt(densest / solid_fraction) - 1
+    return float(16 / (9 * math.pi * math.sqrt(constant)) * max(gap, 0.0) ** 2.5)
+
+
+def kozeny_carman(solid_fraction: float) -> float:
+    """K/R² of a bed of cylinders by its hydraulic radius, Kozeny constant 5."""
+    return (1 - solid_fraction) ** 3 / (4 * KOZENY * solid_fraction**2)
+
+
+def measure(
+    position: Array,
+    radius: Array,
+    lower: tuple[float, float],
+    upper: tuple[float, float],
+    spacing: float,
+    *,
+    direction: str = "y",
+    periodic: tuple[bool, bool] = (False, False),
+    walls: tuple[bool, bool] = (False, False),
+    relaxation_time: float = TAU,
+    laws: Mapping[str, Any] | None = None,
+    solid_laws: Mapping[str, Any] | None = None,
+) -> Measured:
+    """Permeability of the discs at ``position`` (n, 2) m with the ``radius`` (n,) m that the fluid sees.
+
+    lower, upper : corners of the window, m;  spacing : of the lattice, m;  direction : of the flow, "x" or "y";
+    periodic : whether the window is a whole period along x and y;  walls : whether a no-slip wall stands at its lower
+    and its upper flank (otherwise the bed goes on like its mirror image);  relaxation_time, laws, solid_laws : of the
+    lattice, keyword arguments of ``Fluid`` and ``Saturated``: a run's own show what its bed lets through in that run.
+
+    Raises InputError for a window without discs or, unless it is periodic, shorter than four diameters.
+    """
+    order = [0, 1] if direction == "x" else [1, 0]  # the flow runs along the first axis
+    at = (np.asarray(position, float) - lower)[:, order] / spacing
+    size = (np.asarray(radius, float)) / spacing
+    whole = [periodic[k] for k in order]
+    cells = [round((upper[k] - lower[k]) / spacing - 1e-6) for k in order]
+    inside = np.ones(len(at), bool)
+    for axis, length in enumerate(cells):
+        reach = 0.0 if axis == 0 else size  # flanks cut discs; faces take those whose centre is inside
+        if not whole[axis]:
+            inside &= (at[:, axis] > -reach) & (at[:, axis] < length + reach)
+    at, size = at[inside], size[inside]
+    if len(at) == 0:
+        raise InputError(Fault("permeability.window", None, "holds no grain", repair="move it into the bed"))
+    across = 2 * float(size.mean())
+    margin = 0 if whole[0] else math.ceil(across)
+    if not whole[0] and cells[0] < 4 * across:
+        problem = f"is {cells[0] / across:.2g} diameters long"
+        raise InputError(Fault("permeability.window", None, problem, allowed=">= 4 diameters along the flow",
+                               repair="make it longer"))  # fmt: skip
+    length = cells[0]
+    if not whole[0]:
+        at = np.concatenate([at, np.stack([2 * length - at[:, 0], at[:, 1]], axis=1)])
+        size = np.concatenate([size, size])
+    low: Kind = "periodic" if whole[1] else "wall" if walls[0] else "slip"
+    high: Kind = "periodic" if whole[1] else "wall" if walls[1] else "slip"
+    nu = viscosity(relaxation_time)
+    fluid = Fluid(
+        length if whole[0] else 2 * length, cells[1], relaxation_time, force=(SLOWNESS * nu, 0.0),
+        sides=Sides("periodic", "periodic", low, high), **(laws or {}),
+    )  # fmt: skip
+    wet = Saturated(fluid, size, **(solid_laws or {}))
+    k, share, steady = _flow(fluid, wet, at, length, margin)
+    return Measured(
+        k * spacing**2, k / across**2, share, across * spacing, across, steady, fluid.step,
+    )  # fmt: skip
+
+
+def _flow(fluid: Fluid, wet: Saturated, at: Array, length: int, margin: int) -> tuple[float, float, bool]:
+    """K (cells²), solid fraction and whether steady, of discs held at ``at`` in flow along x, driven until steady.
+
+    length : columns of the sample;  margin : of these, columns at each face that are left out of the gradient.
+    """
+    rest, no_spin = np.zeros_like(at), np.zeros(len(at))
+    nu, force = viscosity(fluid.relaxation_time), fluid.force[0]
+    flux, change, block = 0.0, 1.0, FIRST
+    while abs(change) > STEADY and fluid.step < MOST:
+        for _ in range(block):
+            wet.advance(fluid, at, rest, no_spin)
+        now = fluid.momentum()[0] / (fluid.nx * fluid.ny)
+        flux, change = now, 1 - flux / now
+        block = max(FIRST, fluid.step // 4 // 2 * 2)
+    wet.covering_radius = wet.radius  # only looked at from here on: what is solid, without what walls need
+    wet.cover(at, rest, no_spin)
+    free = 1 - np.minimum(wet.solid[:, :length], 1)
+    gradient = 0.0
+    if margin:
+        rho = fluid.fields()[0][:, :length]
+        pressure = ((rho - 1) * free).sum(axis=0) / free.sum(axis=0) / 3
+        x = np.arange(length)[margin : length - margin]
+        gradient = float(np.polyfit(x, pressure[margin : length - margin], 1)[0])
+    share = 1 - free[:, margin : length - margin or None]
+    return nu * flux / (force - gradient), float(share.mean()), abs(change) <= STEADY

@@ -1,0 +1,276 @@
+"""The smallest kernels that do the job of discs moving in water: one thread, one law of each kind; nothing is chosen.
+
+They are what `study parts` holds a scene of grains in water against: TRT without a body force, exact walls
+(solid/exact_wall.py) in the cells that discs cover, bounce-back at four sides, and dry discs
+(benchmarks/minimal_dem.py). Row by row: the discs that lie in it are laid out, its cells collide, and the discs take
+their loads at once.  The areas of cells under a disc are coverage.py's: there is nothing in them to leave out.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.benchmarks.minimal_dem import PlainDiscs
+from porescale.benchmarks.minimal_lbm import PlainWater, plain_cells, slots_of
+from porescale.common.compiled.jit import inline, kernel, part, sum_by_halves
+from porescale.coupling.coverage.discs import SCRATCH, cover_disc
+from porescale.coupling.coverage.rows import BLOCK, whole_blocks
+from porescale.coupling.psm import LOW_PASS
+from porescale.coupling.solid.exact_wall import ONSET, SMOOTHING
+from porescale.coupling.step import FOLLOWING, Coupled
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+total = sum_by_halves(BLOCK)
+
+
+@kernel
+def cover_all(
+    position, velocity, spin, reach, spacing, step, centre, motion, corner, rows, highest, width, fraction, lines,
+    start, listed,
+):  # fmt: skip
+    """Where discs lie: position (n, 2) m, velocity m/s, spin rad/s, reach (n,) cells; spacing m, step s.
+
+    Overwrites centre (n, 2) cells, motion (n, 3) in lattice units, corner (n, 2), fraction (n * highest * width,) of
+    the cells under each disc, rows (n,) of which are in use, and lists, row by row of the lattice, the discs in it:
+    start (ny + 1,), listed.  lines: scratch.
+    """
+    ny, pace = start.shape[0] - 1, step / spacing
+    start[:] = 0
+    for n in range(reach.shape[0]):
+        centre[n, 0], centre[n, 1] = position[n, 0] / spacing, position[n, 1] / spacing
+        motion[n, 0], motion[n, 1], motion[n, 2] = velocity[n, 0] * pace, velocity[n, 1] * pace, spin[n] * step
+        x0, y0 = int(np.floor(centre[n, 0] - reach[n])), int(np.floor(centre[n, 1] - reach[n]))
+        corner[n, 0], corner[n, 1] = x0, y0
+        patch = fraction[n * highest * width : (n * highest + rows[n]) * width]
+        cover_disc(centre[n, 0], centre[n, 1], reach[n], x0, y0, rows[n], width, patch, lines)
+        for y in range(max(y0, 0), min(y0 + rows[n], ny)):
+            start[y + 1] += 1
+    for y in range(ny):
+        start[y + 1] += start[y]
+    for n in range(reach.shape[0]):
+        for y in range(max(corner[n, 1], 0), min(corner[n, 1] + rows[n], ny)):
+            listed[start[y]] = n
+            start[y] += 1
+    for y in range(ny, 0, -1):
+        start[y] = start[y - 1]
+    start[0] = 0
+
+
+@inline
+def lay(n, y, centre, motion, turned, corner, highest, width, fraction, s, sx, sy):
+    """Add disc n in row y: its fractions e to s, e times velocity to sx and sy; arguments as in wet_rows."""
+    rx, ry = corner[n, 0] + 0.5 - centre[n, 0], y + 0.5 - centre[n, 1]
+    vx, cx = motion[n, 0] - motion[n, 2] * ry, turned[n, 0] - turned[n, 2] * ry
+    vy, cy = motion[n, 1] + motion[n, 2] * rx, turned[n, 1] + turned[n, 2] * rx
+    w, c = motion[n, 2], turned[n, 2]
+    first = (n * highest + y - corner[n, 1]) * width
+    for at in range(0, width, BLOCK):
+        x = corner[n, 0] + at + BLOCK
+        e, t, tx, ty = part(fraction, first + at, BLOCK), part(s, x, BLOCK), part(sx, x, BLOCK), part(sy, x, BLOCK)
+        for i in range(BLOCK):
+            t[i] += e[i]
+            tx[i] += e[i] * (vx + e[i] * cx)
+            ty[i] += e[i] * (vy + w * (at + i) + e[i] * (cy + c * (at + i)))
+
+
+@inline
+def take(n, y, centre, motion, turned, corner, highest, width, fraction, s, sx, sy, partial, load):
+    """Add what row y does to disc n to load (n, 5): force, torque, mass and inertia that answer.  s, sx, sy: as
+    wet_cells leaves them;  partial: scratch."""
+    rx, ry = corner[n, 0] + 0.5 - centre[n, 0], y + 0.5 - centre[n, 1]
+    vx, cx = motion[n, 0] - motion[n, 2] * ry, turned[n, 0] - turned[n, 2] * ry
+    w, c = motion[n, 2], turned[n, 2]
+    first = (n * highest + y - corner[n, 1]) * width
+    for at in range(0, width, BLOCK):
+        x = corner[n, 0] + at + BLOCK
+        e, rho, jx, jy = part(fraction, first + at, BLOCK), part(s, x, BLOCK), part(sx, x, BLOCK), part(sy, x, BLOCK)
+        for i in range(BLOCK):
+            arm = rx + (at + i)
+            gx = e[i] * (jx[i] - rho[i] * (vx + e[i] * cx))
+            gy = e[i] * (jy[i] - rho[i] * (motion[n, 1] + w * arm + e[i] * (turned[n, 1] + c * arm)))
+            m = e[i] * rho[i]
+            partial[i] = gx
+            partial[BLOCK + i] = gy
+            partial[2 * BLOCK + i] = arm * gy - ry * gx
+            partial[3 * BLOCK + i] = m
+            partial[4 * BLOCK + i] = m * (arm * arm + ry * ry)
+        for q in range(5):
+            load[n, q] += total(partial, q * BLOCK)
+
+
+@inline
+def wet_cells(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, share, b, evenly, kept, k, spread):
+    """Collide and stream cells that discs cover: slots a_i (n,), sums s, sx, sy (n,) of ``lay``, all overwritten, the
+    sums with what loads are made of.  share, b, evenly, kept (n,): scratch;  k, spread: tau - 1/2, lambda0."""
+    onset, smooth, wall = ONSET, SMOOTHING * SMOOTHING, 0.375 / k
+    for x in range(a0.shape[0]):
+        sum_e = s[x]
+        share[x] = 1.0 / (sum_e if sum_e * sum_e > 0.0 else 1.0)
+        e = min(1.0, sum_e)
+        sx[x] *= share[x]
+        sy[x] *= share[x]
+        t, n = 1.0 - e, k * e
+        b[x] = n / (n + 0.75 * t * t)
+        one, two = e + onset, t * t + smooth
+        turns = one * two
+        dip = t * (spread * turns + e * ((wall - spread) * (1.0 + onset) * two + 0.5 * one))
+        q = (0.5 * n + 0.75 * t * t) * turns + 2.0 * n * dip
+        beneath, above = (0.5 * t + k) * q - 0.75 * t * n * turns, 0.5 * turns + dip
+        both = 1.0 / (beneath * above)
+        evenly[x] = t * q * both * above
+        kept[x] = turns * both * beneath
+    for x in range(a0.shape[0]):
+        f0, f1, f2, f3, f4, f5, f6, f7, f8 = a0[x], a1[x], a2[x], a3[x], a4[x], a5[x], a6[x], a7[x], a8[x]
+        d = f0 + ((f1 + f2) + (f3 + f4)) + ((f5 + f6) + (f7 + f8))
+        jx, jy = (f1 - f2) + ((f5 - f6) - (f7 - f8)), (f3 - f4) + ((f5 - f6) + (f7 - f8))
+        rho = 1.0 + d
+        lightness = 1.0 / rho
+        held, he, lost = b[x], evenly[x], kept[x]
+        # What leaves the odd half but is not lost to q is momentum: j less what relaxes, and what the disc gives.
+        px = lost * jx + held * (rho * sx[x] - jx)
+        py = lost * jy + held * (rho * sy[x] - jy)
+        xx, yy, xy = 4.5 * jx * jx * lightness, 4.5 * jy * jy * lightness, 9.0 * jx * jy * lightness
+        rest = d - (xx + yy) / 3.0
+        side, diagonal = 1.0 / 9.0, 1.0 / 36.0
+        a0[x] = f0 + he * (4.0 / 9.0 * rest - f0)
+        p, m = he * (side * (rest + xx) - 0.5 * (f1 + f2)), 3.0 * side * px - 0.5 * lost * (f1 - f2)
+        a2[x], a1[x] = f1 + p + m, f2 + p - m
+        p, m = he * (side * (rest + yy) - 0.5 * (f3 + f4)), 3.0 * side * py - 0.5 * lost * (f3 - f4)
+        a4[x], a3[x] = f3 + p + m, f4 + p - m
+        full = rest + xx + yy
+        p, m = he * (diagonal * (full + xy) - 0.5 * (f5 + f6)), 3.0 * diagonal * (px + py) - 0.5 * lost * (f5 - f6)
+        a6[x], a5[x] = f5 + p + m, f6 + p - m
+        p, m = he * (diagonal * (full - xy) - 0.5 * (f7 + f8)), 3.0 * diagonal * (py - px) - 0.5 * lost * (f7 - f8)
+        a8[x], a7[x] = f7 + p + m, f8 + p - m
+        held *= share[x]
+        s[x], sx[x], sy[x] = held * rho, held * jx, held * jy
+
+
+@kernel
+def wet_rows(
+    f, parity, even, odd, centre, motion, turned, corner, highest, width, fraction, start, listed, sums, spare, partial,
+    load,
+):  # fmt: skip
+    """Collide and stream all cells: overwrites f (9, ny + 2, nx + 2) and load (n, 5), see ``take``.
+
+    even, odd: rates;  turned (n, 3): half-step correction of motion;  sums (3, BLOCK + nx + more): zero before and
+    after;  spare (4, nx), partial (5 * BLOCK,): scratch;  the rest as in cover_all.
+    """
+    nx, k, spread = f.shape[2] - 2, 1.0 / even - 0.5, 1.0 / odd - 0.5
+    load[:, :] = 0.0
+    for y in range(f.shape[1] - 2):
+        a0, a1, a2, a3, a4, a5, a6, a7, a8 = slots_of(f, y + 1, parity)
+        s, sx, sy = sums[0], sums[1], sums[2]
+        left, right = nx, 0
+        for entry in range(start[y], start[y + 1]):
+            n = listed[entry]
+            left, right = min(left, corner[n, 0]), max(right, corner[n, 0] + width)
+            lay(n, y, centre, motion, turned, corner, highest, width, fraction, s, sx, sy)
+        if left < right:  # whole blocks, or the ends run cell by cell
+            left, right = max(left, 0) // BLOCK * BLOCK, min((right + BLOCK - 1) // BLOCK * BLOCK, nx)
+        else:
+            left, right = nx, nx
+        for end in range(2):
+            m, o = (right, nx) if end else (0, left)
+            plain_cells(
+                part(a0, m, o - m), part(a1, m, o - m), part(a2, m, o - m), part(a3, m, o - m), part(a4, m, o - m),
+                part(a5, m, o - m), part(a6, m, o - m), part(a7, m, o - m), part(a8, m, o - m), even, odd,
+            )  # fmt: skip
+        if left < right:
+            sums[:, :BLOCK] = 0.0
+            sums[:, BLOCK + nx :] = 0.0
+            m, n = left, right - left
+            wet_cells(
+                part(a0, m, n), part(a1, m, n), part(a2, m, n), part(a3, m, n), part(a4, m, n), part(a5, m, n),
+                part(a6, m, n), part(a7, m, n), part(a8, m, n), part(s, m + BLOCK, n), part(sx, m + BLOCK, n),
+                part(sy, m + BLOCK, n), part(spare[0], 0, n), part(spare[1], 0, n), part(spare[2], 0, n),
+                part(spare[3], 0, n), k, spread,
+            )  # fmt: skip
+            for entry in range(start[y], start[y + 1]):
+                take(
+                    listed[entry], y, centre, motion, turned, corner, highest, width, fraction, s, sx, sy, partial, load
+                )  # fmt: skip
+            sums[:, BLOCK + left : BLOCK + right] = 0.0
+
+
+@kernel
+def answer(load, slow, turned, velocity, spin, weight, inner, inner_mass, units, step, force, turning):
+    """What discs are given: force (n, 2) N/m with ``weight``, turning (n,) N m/m, the fluid inside given back.
+
+    As half_step_correction of load.py and total_load of step.py.  Overwrites slow, turned, inner (n, 3): the load
+    low-passed, the correction, and the motion of the fluid inside, of inner_mass (n, 2) kg/m, kg m²/m;  units (4,)
+    N/m, N m/m, kg/m, kg m²/m.
+    """
+    for n in range(spin.shape[0]):
+        for a in range(3):
+            round_about = a // 2
+            size = load[n, 3 + round_about]
+            slow[n, a] += LOW_PASS * (load[n, a] - slow[n, a])
+            turned[n, a] = -slow[n, a] / (2.0 * size) if size > 0.0 else 0.0
+            mass = inner_mass[n, round_about]
+            follows = FOLLOWING * min(1.0, size * units[2 + round_about] / mass)
+            change = follows * ((spin[n] if round_about else velocity[n, a]) - inner[n, a])
+            inner[n, a] += change
+            given = load[n, a] * units[round_about] + mass * change / step
+            if round_about:
+                turning[n] = given
+            else:
+                force[n, a] = weight[n, a] + given
+
+
+class PlainWet:
+    """The water and the discs of ``coupled`` in a closed box, before an even step, by the smallest kernels for them.
+
+    They go on from where they are now; ``coupled`` stays as it is.  water, dry: the two; discs that need a virtual
+    mass, clumps and other bodies are not known.
+    """
+
+    def __init__(self, coupled: Coupled) -> None:
+        fluid, wet, scales, grains = coupled.fluid, coupled.saturated, coupled.scales, coupled.grains
+        assert np.all(coupled.uptake == 1.0)
+        assert coupled.lubrication is None
+        assert not any((fluid.step % 2, *fluid.force, len(grains.held), grains.steered, len(wet.pairs)))
+        self._scales, self._contact_steps = scales, coupled.contact_steps
+        self.water = PlainWater(fluid.populations, fluid.relaxation_time)
+        self.dry = PlainDiscs(grains, coupled.force.copy(), scales.step / coupled.contact_steps)
+        count, self._reach = grains.discs.count, wet.covering_radius
+        cells = (np.floor(2 * self._reach) + 2).astype(np.int64)
+        self._width, self._highest = int(whole_blocks(cells + 1).max()), int(cells.max())
+        self._rows, self._start = cells, np.zeros(fluid.ny + 1, np.int64)
+        self._listed, self._corner = np.zeros(int(cells.sum()), np.int64), np.zeros((count, 2), np.int64)
+        self._centre, self._motion = np.zeros((count, 2)), np.zeros((count, 3))
+        self._fraction = np.zeros(count * self._highest * self._width)
+        self._lines, self._load = np.zeros((SCRATCH, self._width + BLOCK)), np.zeros((count, 5))
+        self._sums, self._spare = np.zeros((3, fluid.nx + self._width + 2 * BLOCK)), np.zeros((4, fluid.nx))
+        self._partial = np.zeros(5 * BLOCK)
+        state = wet.state()
+        self._slow, self._turned = state["slow_load"].copy(), state["shift"].copy()
+        self._inner = np.column_stack((coupled.inner_velocity, coupled.inner_spin))
+        self._inner_mass = np.column_stack((coupled.inner_mass, coupled.inner_inertia))
+        mass = scales.density * scales.spacing**2
+        self._units = np.array([scales.force, scales.torque, mass, mass * scales.spacing**2])
+        self._weight = coupled.weight
+
+    def advance(self, steps: int) -> None:
+        """So many steps of the water, each with its contact steps."""
+        s, d, water = self._scales, self.dry.discs, self.water
+        for _ in range(steps):
+            cover_all(
+                d["position"], d["velocity"], d["spin"], self._reach, s.spacing, s.step, self._centre, self._motion,
+                self._corner, self._rows, self._highest, self._width, self._fraction, self._lines, self._start,
+                self._listed,
+            )  # fmt: skip
+            wet_rows(
+                water.populations, water.step % 2, water.even, water.odd, self._centre, self._motion, self._turned,
+                self._corner, self._highest, self._width, self._fraction, self._start, self._listed, self._sums,
+                self._spare, self._partial, self._load,
+            )  # fmt: skip
+            water.close()
+            answer(
+                self._load, self._slow, self._turned, d["velocity"], d["spin"], self._weight, self._inner,
+                self._inner_mass, self._units, s.step, self.dry.weight, self.dry.turning,
+            )  # fmt: skip
+            self.dry.advance(self._contact_steps)

@@ -1,0 +1,75 @@
+"""Rate of the fluid with grains in it: coverage anew, saturated cells and loads in each step; plain fluid beside it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from porescale.benchmarks.lbm import RELAXATION_TIME, bytes_of, side_of, steps_of
+from porescale.common.evidence.benchmarks import PLAIN, Benchmarks, Dtype, Work
+from porescale.coupling.psm import Saturated
+from porescale.lbm.fluid import Fluid
+
+BENCHMARKS = Benchmarks()
+
+SOLID = 0.22  # of the cells, about what the column of Saito et al. is of its box
+DIAMETER = 12.0  # cells, about: between draft (5) and standard (15) of the column collapse
+SPEED = 0.02  # cells per step
+
+
+def stirred(side: int, dtype: Dtype) -> Callable[[int], None]:
+    """Does so many steps of a box of ``side``² cells, ``SOLID`` of it in discs that move and spin.
+
+    The discs swing about the points of a square lattice, so that their coverage is new in every step.
+    """
+    fluid = Fluid(side, side, RELAXATION_TIME, dtype=dtype)
+    across = max(1, round(side * math.sqrt(4 * SOLID / math.pi) / DIAMETER))
+    pitch = side / across
+    x, y = np.meshgrid((np.arange(across) + 0.5) * pitch, (np.arange(across) + 0.5) * pitch)
+    home = np.stack((x, y), axis=-1).reshape(-1, 2)
+    count = len(home)
+    phase = np.random.default_rng(1).uniform(0, 2 * np.pi, count)
+    velocity = SPEED * np.stack((np.cos(phase), np.sin(phase)), axis=-1)
+    centre, spin = home.copy(), SPEED / DIAMETER * np.cos(3 * phase)
+    wet = Saturated(fluid, np.full(count, pitch * math.sqrt(SOLID / math.pi)))
+
+    def run(steps: int) -> None:
+        """So many steps; discs turn round every 64."""
+        for _ in range(steps):
+            if fluid.step % 64 == 32:
+                np.negative(velocity, out=velocity)
+            np.add(centre, velocity, out=centre)
+            wet.advance(fluid, centre, velocity, spin)
+
+    return run
+
+
+def plain(side: int, dtype: Dtype) -> Callable[[int], None]:
+    """Does so many steps of the same box without discs."""
+    fluid = Fluid(side, side, RELAXATION_TIME, dtype=dtype)
+    fluid.set_flow(0.01, 0.005)
+
+    def run(steps: int) -> None:
+        """So many steps of the fluid alone."""
+        for _ in range(steps):
+            fluid.advance()
+
+    return run
+
+
+@BENCHMARKS.row("psm")
+def bench_psm(size: int | None, threads: int, dtype: Dtype) -> list[Work]:
+    """A box of ``size`` by ``size`` cells, 22 % of it solid and moving, and ``psm.plain``: the same box without discs.
+
+    The ratio of their rates, measured in turns, is what the discs leave of the fluid's rate.
+    """
+    side = side_of(size)
+    steps = steps_of(side**2)
+    wet, dry = stirred(side, dtype), plain(side, dtype)
+    updates, moved = float(steps * side**2), bytes_of(dtype)
+    return [
+        Work(lambda: wet(steps), updates, "cells/s", side, moved),
+        Work(lambda: dry(steps), updates, "cells/s", side, moved, PLAIN),
+    ]

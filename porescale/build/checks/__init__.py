@@ -1,0 +1,1 @@
+"""What a scene must not imply, found before anything is built."""

@@ -1,0 +1,1 @@
+"""The commands of porescale, one a file; what both packages share is in common.cli."""

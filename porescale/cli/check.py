@@ -1,0 +1,16 @@
+"""``porescale check``: what a scene means before it runs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from porescale.common.cli.report import Report
+    from porescale.scene.sections import Scene
+
+
+def report(scene: Scene) -> Report:
+    """Every derived number of a scene; raises InputError with all refusals."""
+    from porescale.build.report import report as scene_report
+
+    return scene_report(scene)

@@ -1,0 +1,179 @@
+"""``porescale demseg``: a deck of DEMseg as it is, or as a scene."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from cyclopts import App, Parameter
+
+from porescale.common.cli.options import Threads, use_threads
+from porescale.common.cli.run import refuse_folder, summary
+from porescale.common.core.errors import Fault, InputError
+
+if TYPE_CHECKING:
+    from porescale.common.record.drive import Outcome
+    from porescale.demseg.run import DeckRun
+
+PACKAGE = "porescale demseg"
+CHECKPOINT_SECONDS = 30.0
+"""Wall-clock time between checkpoints."""
+Folder = Annotated[Path, Parameter(help="folder with in_gm.dat and in_bc.dat")]
+Seed = Annotated[int, Parameter(help="of the random discs of mode 0")]
+
+
+def command() -> App:
+    """The `demseg` command with its own commands."""
+    app = App(name="demseg", help="Run a deck of DEMseg, Matsushima's program, in its own units, or make it a scene.")
+    app.command(run)
+    app.command(convert)
+    return app
+
+
+def run(
+    folder: Folder,
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(help="run folder; runs/ and the name of the deck's if not given")] = None,
+    seed: Seed = 0,
+    release: Annotated[
+        Literal["overlap", "force"], Parameter(help="contacts end without overlap, or without force")
+    ] = "overlap",
+    rule: Annotated[Literal["outline", "each", "printed"], Parameter(help="of contacts with segments")] = "outline",
+    rod: Annotated[float | None, Parameter(help="width of segments that weigh; 2 thick, or 0.1, if not given")] = None,
+    threads: Threads = None,
+    resume: Annotated[bool, Parameter(help="go on with the run in the run folder")] = False,
+    overwrite: Annotated[bool, Parameter(help="replace the run in the run folder")] = False,
+    quiet: Annotated[bool, Parameter(help="no progress, no summary")] = False,
+) -> int:
+    """Run a deck: run folder, energy.dat, f-d_curve.dat and new_in_*.dat for the run that goes on from its end."""
+    from porescale.common.record.drive import refuse_resume
+    from porescale.demseg.build import Options
+    from porescale.demseg.deck import read_deck
+    from porescale.demseg.run import DeckRun, card_of
+
+    if rod is not None and not rod > 0.0:
+        raise InputError(Fault("--rod", rod, "is out of range", allowed="> 0"))
+    if seed < 0:
+        raise InputError(Fault("--seed", seed, "is out of range", allowed=">= 0"))
+    options = Options(seed, release, rule, rod)
+    deck = read_deck(folder)
+    name = folder.resolve().name
+    where = out or Path("runs") / name
+    refuse_folder(where, PACKAGE, resume=resume, overwrite=overwrite)
+    scene = card_of(deck, options)
+    if resume:
+        refuse_resume(where, {"package": PACKAGE, "name": name, "scene": scene})
+    use_threads(threads)
+    model = DeckRun(deck, options, folder)
+    outcome = drive_deck(model, where, name, scene, resume=resume, overwrite=overwrite, quiet=quiet)
+    if not quiet:
+        print(summary("porescale", name, where, outcome).rsplit("\n", 1)[0])
+    return 0
+
+
+def drive_deck(
+    model: DeckRun,
+    folder: Path,
+    name: str,
+    scene: dict[str, object],
+    *,
+    resume: bool = False,
+    overwrite: bool = False,
+    quiet: bool = True,
+) -> Outcome:
+    """Drive a deck to its last step and write the run folder, pictures, film and the deck's own files."""
+    from porescale.common.record.drive import drive
+
+    deck = model.deck
+
+    def after(finished: Path) -> None:
+        """Leave the pictures and the deck's own files."""
+        show(finished)
+        model.write(finished)
+
+    return drive(
+        model,
+        folder,
+        deck.nstep * deck.dt,
+        snapshot_interval=deck.nprn1 * deck.dt,
+        series_interval=deck.nprn2 * deck.dt,
+        card={"package": PACKAGE, "name": name, "scene": scene},
+        checkpoint_seconds=CHECKPOINT_SECONDS,
+        resume=resume,
+        overwrite=overwrite,
+        quiet=quiet,
+        after=after,
+        meanwhile=model.write_tables,
+    )
+
+
+def show(folder: Path) -> list[Path]:
+    """Write pictures and a film of the deck's run in ``folder``, finished or not; returns their paths."""
+    from porescale.common.pictures.film import film
+    from porescale.common.pictures.look import Look
+    from porescale.common.pictures.picture import pictures
+    from porescale.common.record.open_run import open_run
+
+    run = open_run(folder)
+    x1, x2, y1, y2 = (float(value) for value in run.card["scene"]["deck"]["domain"])
+    sides = [((x1, y1), (x2, y1)), ((x2, y1), (x2, y2)), ((x2, y2), (x1, y2)), ((x1, y2), (x1, y1))]
+    look = Look(title=run.name, cloud="grains", shapes="ends", colour="velocity", lines=sides, view=(x1, x2, y1, y2),
+                plain=True)  # fmt: skip
+    return [*pictures(folder, look), film(folder, look)]
+
+
+def convert(
+    folder: Folder,
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(help="scene file; NAME.toml here if not given")] = None,
+    units: Annotated[
+        Literal["plain", "cgs", "mm-g"],
+        Parameter(help="of the deck; plain: its numbers are taken as SI. Densities of mm-g are g/mm^3"),
+    ] = "plain",
+    seed: Seed = 0,
+    release: Annotated[
+        Literal["overlap", "force"], Parameter(help="contacts end without overlap, or without force")
+    ] = "overlap",
+    rod: Annotated[float | None, Parameter(help="width of segments that weigh; 2 thick, or 0.1, if not given")] = None,
+    overwrite: Annotated[bool, Parameter(help="replace the file")] = False,
+) -> int:
+    """Make a scene of a deck that does not go on from another run."""
+    from porescale.common.cli.folders import refuse_unwritable
+    from porescale.common.core.atomic import write_text
+    from porescale.demseg.build import Options, build, with_bodies
+    from porescale.demseg.convert import UNITS, scene_of, toml
+    from porescale.demseg.deck import BONDED, CF0, read_deck
+    from porescale.demseg.tension import read_tensions
+
+    name = folder.resolve().name
+    file = out or Path(f"{name}.toml")
+    refuse_unwritable(file.parent, "--out")
+    if file.exists() and not overwrite:
+        raise InputError(Fault("--out", str(file), "is there already", repair="name another, or --overwrite it"))
+    deck = with_bodies(read_deck(folder), seed)
+    bonded = deck.jclid == BONDED
+    bonds = read_tensions(folder / CF0, build(deck, Options(seed, release, rod=rod))) if bonded else None
+    text = toml(scene_of(deck, name, release, UNITS[units], bonds, rod))
+    _refuse_what_scenes_refuse(text)
+    write_text(file, text)
+    print(f"{file}: check it with porescale check {file}")
+    return 0
+
+
+def _refuse_what_scenes_refuse(text: str) -> None:
+    """InputError where the scene of a deck is beyond what scenes allow."""
+    from tempfile import TemporaryDirectory
+
+    from porescale.common.schema.sections import load
+    from porescale.scene.sections import Scene
+
+    with TemporaryDirectory() as place:
+        file = Path(place) / "scene.toml"
+        file.write_text(text, encoding="utf-8")
+        try:
+            load(file, Scene)
+        except InputError as error:
+            raise InputError([replace(fault, file="the deck as a scene") for fault in error.faults]) from None

@@ -1,0 +1,198 @@
+"""``porescale homogenise``: what soil a packing of grains makes, as a material file that continuum-sph reads."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from porescale.common.cli.options import Quality, Scene, Settings, Threads, refuse_no_scene, use_threads
+from porescale.common.cli.sweep import Again, Jobs, Scheduler, chosen_folder, conclude, enlist, laid_over, say
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.version import VERSION
+
+if TYPE_CHECKING:
+    from porescale.common.studies.runner import Campaign, Ended
+    from porescale.scene.sections import Scene as Tables
+
+SPECIMEN, PORES = "specimen.toml", "permeability.json"
+HEAD = """\
+# What soil these grains make; a scene of continuum-sph takes it over with
+#   [soil]
+#   material = "material.toml"
+"""
+
+
+def homogenise(
+    scene: Scene,
+    /,
+    *,
+    quality: Quality = None,
+    settings: Settings = None,
+    out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _soil if not given")] = None,
+    jobs: Jobs = 1,
+    threads: Threads = 1,
+    scheduler: Scheduler = None,
+    again: Again = False,
+) -> int:
+    """Measure the soil that a scene's packing makes: strength, stiffness, porosity and permeability, with error bars.
+
+    Several packings are compressed in periodic cells (biaxial tests) and flow is driven through them, as [homogenise]
+    of the scene says.  material.toml is what `[soil] material = "material.toml"` of a continuum-sph scene reads;
+    homogenise.csv and .png show what it stands on.  What was stopped goes on when called again.
+    """
+    refuse_no_scene(scene)
+    from porescale.analysis.homogenise import asked_of, specimen
+    from porescale.common.schema.sections import open_scene
+    from porescale.common.studies.parameter_table import Point
+    from porescale.common.studies.runner import Campaign
+    from porescale.demseg.convert import toml
+    from porescale.scene.sections import Scene as SceneType
+
+    opened = open_scene(scene, SceneType, quality=quality, overrides=settings or ())
+    test = specimen(opened.scene)
+    asked = asked_of(opened.scene)
+    if jobs < 1:
+        raise InputError(Fault("--jobs", jobs, "is none", "", ">= 1"))
+    folder = chosen_folder(out, f"{opened.name}_soil")
+    file = _specimen_file(folder, toml(test))
+    first = test["grains"]["packing"]["seed"]
+    points = [
+        Point(f"packing-{seed}", (f"grains.packing.seed={seed}",)) for seed in range(first, first + asked.packings)
+    ]
+    campaign = Campaign("porescale", file, folder / "specimens", threads=threads or 1, again=again)
+    slots = enlist(campaign, jobs, scheduler)
+    found = {ended.point.name: ended for ended in campaign.all(points, slots, say)}
+    ends = [found[point.name] for point in points]
+    if code := conclude(ends):
+        say(f"no material file: finish these first, by the same command in {folder}")
+        return code
+    use_threads(threads)
+    rows = _numbers(opened.scene, ends, asked.cells)
+    words = ["porescale", "homogenise", str(scene), *laid_over(quality, settings)]
+    print(write(folder, opened.scene, shlex.join(words), campaign, ends, rows))
+    return 0
+
+
+def _specimen_file(folder: Path, text: str) -> Path:
+    """The scene of the specimens in ``folder``; InputError where another one was begun there."""
+    from porescale.common.cli.folders import unusable, write_whole
+
+    file = folder / SPECIMEN
+    try:
+        if file.exists() and file.read_text(encoding="utf-8", errors="replace") != text:
+            repair = "name another --out, or remove that folder"
+            raise InputError(Fault("--out", str(folder), "holds specimens of another scene", repair=repair))
+        folder.mkdir(parents=True, exist_ok=True)
+        if not file.exists():
+            write_whole(file, text.encode())
+    except OSError as error:
+        raise unusable(folder, "--out", error) from None
+    return file
+
+
+def _numbers(scene: Tables, ends: Sequence[Ended], cells: int) -> list[dict[str, float]]:
+    """All numbers of the finished specimens: of their tests, and of the flow through them where lambda is stated."""
+    from porescale.analysis.biaxial import numbers
+    from porescale.common.record.series import read_series
+
+    made = numbers([read_series(ended.folder / "series.csv") for ended in ends])
+    ratio = scene.grains.hydraulic_radius_ratio if scene.grains else None
+    if ratio is None:
+        return made
+    return [row | _pores(ended.folder, ratio, cells) for row, ended in zip(made, ends, strict=True)]
+
+
+def _pores(folder: Path, ratio: float, cells: int) -> dict[str, float]:
+    """Numbers of the flow through the packing that a specimen starts with; kept beside it once they are measured."""
+    from porescale.analysis.soil_pores import flow_numbers
+    from porescale.common.cli.folders import write_whole
+    from porescale.common.record.open_run import open_run
+
+    kept, of = folder / PORES, {"lambda": ratio, "cells": cells}
+    try:
+        known = json.loads(kept.read_text(encoding="utf-8"))
+        if known["of"] == of:
+            return {str(name): float(value) for name, value in known["numbers"].items()}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        pass  # not there, torn or of another question: measured anew
+    run = open_run(folder)
+    side = float(run.card["scene"]["domain"]["width"])
+    grains = run.snapshot(0).clouds["grains"]
+    made = flow_numbers(grains.position, ratio * grains.data["radius"], side, cells)
+    write_whole(kept, json.dumps({"of": of, "numbers": made}, indent=1).encode())
+    say(f"{folder.name}: K = {made['permeability']:.3g} m^2 at {made['cells']:.3g} cells")
+    return made
+
+
+def write(
+    folder: Path,
+    scene: Tables,
+    command: str,
+    campaign: Campaign,
+    ends: Sequence[Ended],
+    rows: Sequence[Mapping[str, float]],
+) -> str:
+    """Write homogenise.csv, homogenise.png and, last, material.toml; gives what to say about them."""
+    from porescale.analysis.biaxial import curves
+    from porescale.analysis.homogenise import packing_of, pressure_of
+    from porescale.analysis.material import NAME, UNITS, known, tables, text
+    from porescale.cli.homogenise_picture import picture
+    from porescale.common.cli.folders import write_whole
+    from porescale.common.record.series import read_series
+    from porescale.common.studies.sweep_files import csv_text
+    from porescale.demseg.convert import toml
+    from porescale.scene.contact import density_of
+
+    found = known(rows)
+    titles = {name: f"{name} ({unit})" if unit else name for name, unit in UNITS.items() if name in found}
+    seeds = [int(ended.point.value("grains.packing.seed")) for ended in ends]
+    lines = [
+        {"seed": seed, **{titles[name]: row[name] for name in titles}} for seed, row in zip(seeds, rows, strict=True)
+    ]
+    write_whole(folder / "homogenise.csv", csv_text(lines).encode())
+    tests = [curves(read_series(ended.folder / "series.csv")) for ended in ends]
+    write_whole(folder / "homogenise.png", picture(tests, found))
+    made = about(scene, command, ends, rows, seeds)
+    whole = tables(found, density_of(scene, packing_of(scene).material), pressure_of(scene), made)
+    write_whole(folder / NAME, (HEAD + toml(whole)).encode())
+    warned = [f"warning: {problem}" for problem in made["doubts"]]
+    return "\n".join([text(found), *warned, f"{folder / NAME}, homogenise.csv, homogenise.png"])
+
+
+def about(
+    scene: Tables, command: str, ends: Sequence[Ended], rows: Sequence[Mapping[str, float]], seeds: Sequence[int]
+) -> dict[str, Any]:
+    """Where the numbers come from: [made] of the material file."""
+    from porescale.analysis.homogenise import HARD, asked_of, packing_of, pressure_of, stiffness_over_pressure
+    from porescale.common.core.machine import machine
+    from porescale.scene.contact import density_of
+
+    assert scene.grains
+    packing, asked, fluid = packing_of(scene), asked_of(scene), scene.fluid
+    commit = ends[0].card.get("commit") or {}
+    hard, ratio = stiffness_over_pressure(scene), scene.grains.hydraulic_radius_ratio
+    doubts = []
+    if hard < HARD:
+        doubts.append(f"contacts are {hard:.3g} times as stiff as the pressure: below {HARD:g} angles follow them")
+    if ratio is None:
+        doubts.append("no permeability: grains.hydraulic_radius_ratio, which it follows, is not stated")
+    if not all(row.get("steady", 1.0) for row in rows):
+        doubts.append("flow did not become steady in every packing: K is a bound from below")
+    made: dict[str, Any] = {
+        "package": "porescale", "version": VERSION, "commit": str(commit.get("hash", "")),
+        "sources": str(ends[0].card.get("sources", "")), "command": command, "machine": machine()["processor"],
+        "seeds": list(seeds), "grains": asked.grains, "diameter": packing.diameter,
+        "grain_density": density_of(scene, packing.material), "settling_friction": packing.settling_friction,
+        "pressure": pressure_of(scene), "stiffness_over_pressure": hard, "inertial_number": asked.inertial_number,
+        "strain": asked.strain, "doubts": doubts,
+    }  # fmt: skip
+    if ratio is not None:
+        made |= {"lambda": ratio, "cells": rows[0]["cells"]}
+    if fluid is not None:
+        made |= {"fluid_density": fluid.density}
+    return made

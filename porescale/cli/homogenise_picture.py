@@ -1,0 +1,55 @@
+"""The picture of `porescale homogenise`: the tests of all packings, and every number with its error bar."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from porescale.analysis.biaxial import running
+from porescale.analysis.material import Known
+from porescale.dem.prepare.compaction import Array
+
+EVERY = 5
+"""Rows between points of a curve."""
+BARS = ("peak friction angle", "peak dilatancy angle", "critical friction angle", "porosity", "stiffness",
+        "Poisson's ratio", "permeability")  # fmt: skip
+
+
+def picture(tests: Sequence[Mapping[str, Array]], found: Mapping[str, Known]) -> bytes:
+    """Friction angle and volume over strain of every packing, and numbers over their means, as a PNG."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(12.0, 3.6), layout="constrained")
+    FigureCanvasAgg(figure)
+    left, middle, right = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 1.2))
+    for test in tests:
+        angle = np.degrees(np.arcsin(running(test["strain"], test["sine"])[0]))
+        left.plot(test["strain"][::EVERY], angle[::EVERY], color="#2a6f97", lw=0.7)
+        middle.plot(test["strain"][::EVERY], 100.0 * test["volume"][::EVERY], color="#2a6f97", lw=0.7)
+    for name, colour in (("peak friction angle", "#8c1c2f"), ("critical friction angle", "#3b4552")):
+        mean, error = np.degrees(found[name].mean), np.degrees(found[name].error)
+        left.axhspan(
+            mean - error, mean + error, color=colour, alpha=0.35, lw=0, label=f"{name} {mean:.1f}° ± {error:.1f}°"
+        )
+    left.set(xlabel="axial strain", ylabel="mobilised friction angle, degrees", ylim=(0.0, None))
+    left.legend(fontsize=7, frameon=False, loc="lower right")
+    middle.set(xlabel="axial strain", ylabel="volume, %")
+    names = [name for name in BARS if name in found and found[name].mean != 0.0]
+    for place, name in enumerate(names):
+        it = found[name]
+        right.plot(np.array(it.values) / it.mean, np.full(len(it.values), place), ".", color="#9fb8c8", ms=5)
+        right.errorbar(1.0, place, xerr=it.error / abs(it.mean), fmt="o", color="#8c1c2f", ms=4, capsize=4)
+    right.set_yticks(range(len(names)), [f"{name}\n{_shown(found[name])}" for name in names], fontsize=7)
+    right.invert_yaxis()
+    right.set_xlabel("of the mean; dots: packings, bars: standard error")
+    out = io.BytesIO()
+    figure.savefig(out, dpi=100, metadata={"Software": None})
+    return out.getvalue()
+
+
+def _shown(it: Known) -> str:
+    scale, unit = (180.0 / np.pi, "°") if it.unit == "rad" else (1.0, f" {it.unit}" if it.unit else "")
+    return f"{scale * it.mean:.3g} ± {scale * it.error:.1g}{unit}"

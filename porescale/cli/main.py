@@ -1,0 +1,45 @@
+"""The command line ``porescale``."""
+
+from __future__ import annotations
+
+from cyclopts import App
+
+from porescale.cli import bench, check, demseg, homogenise, new, piv, run, show, study, verify
+from porescale.common.cli import application
+from porescale.common.cli.package import Package
+from porescale.common.core.version import VERSION
+
+PACKAGE = Package(
+    name="porescale",
+    summary="Round grains in a viscous fluid at the scale of single pores: DEM, lattice Boltzmann, and films of both.",
+    version=VERSION,
+    scene=run.scene_type,
+    template=new.template,
+    build=run.build,
+    drive=run.drive,
+    report=check.report,
+    show=show.show,
+    table=run.table,
+    validations=verify.validations,
+    benchmarks=bench.benchmarks,
+    stability=study.stability,
+    endurance=study.endurance,
+    parts=study.parts,
+    judge=run.judge,
+    also={demseg.PACKAGE: demseg.show},
+    features=study.features,
+)
+
+
+def commands() -> App:
+    """All commands: those that every package has, `piv`, `demseg` and `homogenise`."""
+    app = application.application(PACKAGE)
+    app.command(piv.command())
+    app.command(demseg.command())
+    app.command(homogenise.homogenise)
+    return app
+
+
+def main() -> int:
+    """Run ``porescale`` with the arguments of the process; returns the exit code."""
+    return application.main(commands())

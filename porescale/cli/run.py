@@ -1,0 +1,83 @@
+"""``porescale run``: a scene, its model and its run folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from porescale.build.simulation import Simulation
+    from porescale.common.record.drive import Outcome
+    from porescale.common.record.model import Array
+    from porescale.scene.sections import Scene
+
+
+def scene_type() -> type[Scene]:
+    """The type of a porescale scene."""
+    from porescale.scene.sections import Scene
+
+    return Scene
+
+
+def build(scene: Scene) -> Simulation:
+    """The simulation of a scene."""
+    from porescale.build.build import build as build_scene
+
+    return build_scene(scene)
+
+
+def drive(
+    model: Simulation,
+    folder: Path,
+    scene: Scene,
+    *,
+    card: dict[str, Any],
+    resume: bool,
+    quiet: bool,
+    overwrite: bool = False,
+) -> Outcome:
+    """Run the model to the scene's end, write the run folder, and note how fast this machine is."""
+    from porescale.analysis.bed_permeability import write_permeability
+    from porescale.build.cost import remember
+    from porescale.cli.show import show
+    from porescale.common.record.drive import drive as drive_model
+    from porescale.common.record.open_run import open_run
+    from porescale.common.schema.migrations import completing
+
+    def after(finished: Path) -> None:
+        """Leave the pictures, and the permeability of the bed if there is one."""
+        show(finished)
+        write_permeability(open_run(finished), finished)
+
+    packing = scene.grains.packing if scene.grains else None
+    outcome = drive_model(
+        model,
+        folder,
+        scene.time.end,
+        snapshot_interval=scene.output.snapshot_interval,
+        series_interval=scene.output.series_interval,
+        checkpoint_seconds=scene.output.checkpoint_seconds,
+        card={**card, "seeds": {"grains.packing.seed": packing.seed} if packing else {}},
+        resume=resume,
+        overwrite=overwrite,
+        quiet=quiet,
+        after=after,
+        today=completing(scene_type(), card),
+    )
+    remember(model.derived, outcome.steps_per_second)
+    return outcome
+
+
+def judge(folder: Path, card: dict[str, Any]) -> None:
+    """InputError where the run in ``folder`` cannot be gone on with as ``card`` asks."""
+    from porescale.common.record.drive import refuse_resume
+    from porescale.common.schema.migrations import completing
+
+    refuse_resume(folder, card, today=completing(scene_type(), card))
+
+
+def table(folder: Path, name: str) -> dict[str, Array]:
+    """Columns of a table of the run in ``folder``, "series" for series.csv; {} when there is none."""
+    from porescale.common.record.series import read_series
+
+    return read_series(folder / f"{name}.csv")

@@ -1,0 +1,90 @@
+"""``porescale show``: pictures, a film, the pile's surface and the profiles of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from porescale.common.pictures.look import Line
+    from porescale.common.record.model import Snapshot
+
+
+def show(folder: Path) -> list[Path]:
+    """Write pictures, film, surface and profiles of the run in ``folder``; returns their paths."""
+    from porescale.common.pictures.film import film
+    from porescale.common.pictures.look import Look
+    from porescale.common.pictures.picture import paint_last, pictures
+    from porescale.common.record.open_run import open_run
+    from porescale.output.frame_clouds import FRAMES
+    from porescale.output.frame_pictures import cracks
+    from porescale.output.grain_pictures import write_grain_pictures
+    from porescale.output.lines import write_lines
+    from porescale.output.rock_pictures import write_rock_picture
+    from porescale.output.surface import write_surface
+    from porescale.scene.bonds import write_breaks
+
+    run = open_run(folder)
+    scene = run.card["scene"]
+    look = Look(
+        title=title(scene, run.name),
+        cloud="grains",
+        label="speed of the fluid",
+        lines=solid_lines(scene),
+        walls="solid_fraction" if scene.get("rectangle") else "",
+        streamlines=scene.get("fluid") is not None,
+        colour="velocity" if scene.get("fluid") is None else None,
+        shapes=FRAMES,
+        marks=cracks,
+        view=(0.0, scene["domain"]["width"], 0.0, scene["domain"]["height"]),
+    )
+    written = [*pictures(folder, look), film(folder, look)]
+    for name in scene["output"].get("fields", ()):
+        written.append(paint_last(folder, name, replace(look, field=name, label="")))
+    if scene.get("grains") is not None:
+        written += [write_surface(run, folder)] if "grains" in run.clouds else []
+        written += write_grain_pictures(run, folder, look)
+    written += [*write_breaks(run, folder), *write_rock_picture(run, folder)]
+    return [*written, *write_lines(run, folder)]
+
+
+def title(scene: dict[str, Any], name: str) -> str:
+    """The scene's title, and lambda where grains lie in fluid: every picture carries it."""
+    words = scene.get("title") or name
+    ratio = (scene.get("grains") or {}).get("hydraulic_radius_ratio")
+    return f"{words}, λ = {ratio:g}" if ratio else words
+
+
+def gate_lines(scene: dict[str, Any]) -> Callable[[Snapshot], list[Line]]:
+    """The gate as a line, at any time, from the scene on a run card."""
+    gate, height = scene.get("gate"), scene["domain"]["height"]
+
+    def lines(snapshot: Snapshot) -> list[Line]:
+        """What is left of the gate."""
+        if gate is None:
+            return []
+        since = snapshot.time - gate["opens_at"]
+        if since >= 0 and gate["lift_speed"] is None and snapshot.step > 0:
+            return []
+        low = max(0.0, since) * (gate["lift_speed"] or 0.0)
+        return [((gate["x"], low), (gate["x"], height))] if low < height else []
+
+    return lines
+
+
+def solid_lines(scene: dict[str, Any]) -> Callable[[Snapshot], list[Line]]:
+    """The gate and the outlines of rectangles, at any time, from the scene on a run card."""
+    from porescale.scene.rectangles import outline
+
+    gate, size = gate_lines(scene), (scene["domain"]["width"], scene["domain"]["height"])
+
+    def lines(snapshot: Snapshot) -> list[Line]:
+        """The gate, and each rectangle where it is by then."""
+        found = gate(snapshot)
+        for section in scene.get("rectangle") or ():
+            found += outline(section, snapshot.time, size)
+        return found
+
+    return lines

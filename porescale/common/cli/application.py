@@ -1,0 +1,89 @@
+"""The command line that every package has, and how a command ends."""
+
+from __future__ import annotations
+
+import errno
+import os
+import sys
+from collections.abc import Sequence
+from typing import Any, get_args
+
+from cyclopts import App, CycloptsError, Parameter, Token, convert
+
+from porescale.common.cli import bench, check, new, run, show, study, sweep, verify
+from porescale.common.cli.package import Package
+from porescale.common.core.errors import InputError, PorescaleError
+
+INTERRUPTED = 130
+"""Exit code after Ctrl-C, as shells have it: 128 + SIGINT."""
+
+OF_THE_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EPERM, errno.EROFS, errno.EIO, errno.EFBIG)
+"""What the system may answer to any call, even where it names no file."""
+
+
+def application(package: Package) -> App:
+    """The package's app with the commands that all have; more may be added to it."""
+    app = App(
+        name=package.name,
+        help=package.summary,
+        version=package.version,
+        default_parameter=Parameter(negative=(), converter=_whole),
+        result_action="return_value",
+        suppress_keyboard_interrupt=False,
+        print_error=False,
+        exit_on_error=False,
+    )
+    for part in (run, check, show, new, sweep, verify, bench):
+        app.command(part.command(package))
+    app.command(study.command(package))
+    return app
+
+
+def _whole(kind: Any, tokens: Sequence[Token]) -> Any:
+    """What the words of an option say; ValueError for 1.5 where a whole number is asked, which would be rounded."""
+    if int in (kind, *get_args(kind)):
+        for token in tokens:
+            if "." in token.value:
+                raise ValueError(f'"{token.value}" is no whole number')
+    return convert(kind, tokens)
+
+
+def main(app: App, tokens: Sequence[str] | None = None) -> int:
+    """Run a command line (``sys.argv`` if None) and give its exit code.
+
+    0 done, 1 a check or run failed, 2 wrong use or input, 3 unstable, 130 interrupted.  What people can cause is
+    said in one line each on stderr; any other exception is a bug of ours and keeps its traceback.
+    """
+    try:
+        result = app(list(sys.argv[1:] if tokens is None else tokens))
+        sys.stdout.flush()
+        return result if isinstance(result, int) else 0
+    except CycloptsError as error:
+        _say(f"{app.name[0]}: {error}")
+        return InputError.code
+    except InputError as error:
+        for fault in error.faults:
+            _say(fault.line())
+        return error.code
+    except PorescaleError as error:
+        _say(str(error))
+        return error.code
+    except KeyboardInterrupt:
+        _say("interrupted")
+        return INTERRUPTED
+    except MemoryError as error:
+        _say(f"not enough memory ({error}); make the scene coarser or smaller" if str(error) else "not enough memory")
+        return PorescaleError.code
+    except BrokenPipeError:  # the reader of our output left, as `| head` does
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return PorescaleError.code
+    except OSError as error:
+        if error.filename is None and error.errno not in OF_THE_MACHINE:
+            raise
+        _say(f"{error.filename if error.filename is not None else 'writing'}: {error.strerror or error}")
+        return PorescaleError.code
+
+
+def _say(text: str) -> None:
+    """One line on stderr."""
+    print(" ".join(text.split()), file=sys.stderr)

@@ -1,0 +1,48 @@
+"""`bench [NAME…]`: rates."""
+
+from __future__ import annotations
+
+import json as json_text
+import sys
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+from cyclopts import Parameter
+
+from porescale.common.cli.options import Json, Threads
+from porescale.common.cli.package import Package
+
+
+def command(package: Package) -> Callable[..., int]:
+    """The `bench` command of a package."""
+
+    def bench(
+        *names: Annotated[str, Parameter(help="benchmarks; all if not given")],
+        size: Annotated[int | None, Parameter(help="cells along a side, discs, …; each one's own if not given")] = None,
+        threads: Threads = None,
+        dtype: Annotated[Literal["float32", "float64"], Parameter(help="type of the fields")] = "float64",
+        list_: Annotated[bool, Parameter(name="--list", help="only say which there are")] = False,
+        json: Json = False,
+    ) -> int:
+        """Measure rates, in updates per second, and their share of the memory bandwidth measured beside them."""
+        register = package.benchmarks()
+        if list_:
+            print("\n".join(register))
+            return 0
+        rows = []
+        for row in register.run(names, size=size, threads=threads, dtype=dtype):
+            rows.append(row)
+            print(f"{row.name}: {row.rate:.4g} {row.unit}", file=sys.stderr, flush=True)
+        if json:
+            print(json_text.dumps([row.as_dict() for row in rows], indent=1, allow_nan=False))
+        else:
+            from rich.console import Console
+
+            from porescale.common.evidence.benchmarks import table
+
+            Console().print(table(rows))
+        for remark in register.remarks:
+            print(remark, file=sys.stderr if json else sys.stdout)
+        return 0
+
+    return bench

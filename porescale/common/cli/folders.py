@@ -1,0 +1,50 @@
+"""Folders that a command is told to write: tried before anything is built."""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from pathlib import Path
+
+from porescale.common.core.errors import Fault, InputError
+
+
+def refuse_unwritable(folder: Path, key: str) -> None:
+    """InputError naming ``key`` unless ``folder`` can be made and written; leaves nothing behind."""
+    made: list[Path] = []
+    probe = folder / f".{os.getpid()}.writable"
+    try:
+        for part in [*reversed(folder.parents), folder]:
+            if not part.exists():
+                part.mkdir()
+                made.append(part)
+        probe.touch(exist_ok=False)
+    except OSError as error:
+        raise unusable(folder, key, error) from error
+    finally:
+        with suppress(OSError):  # somebody else's folder or file by now, or never made
+            probe.unlink()
+        with suppress(OSError):
+            for part in reversed(made):
+                part.rmdir()
+
+
+def write_whole(path: Path, content: bytes) -> None:
+    """Write a small file, whole or not at all."""
+    beside = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        beside.write_bytes(content)
+        os.replace(beside, path)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+def unusable(folder: Path, key: str, error: OSError) -> InputError:
+    """What the system says about ``folder``, as a fault of the input."""
+    problem = f"cannot be written ({error.strerror or error})"
+    return InputError(Fault(key, _shortened(str(folder)), problem, repair="name another folder"))
+
+
+def _shortened(path: str, longest: int = 120) -> str:
+    """``path`` in one line of a terminal."""
+    return path if len(path) <= longest else f"{path[:60]}…{path[-40:]}"

@@ -1,0 +1,35 @@
+"""Options that several commands share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import Parameter
+
+Scene = Annotated[Path, Parameter(help="TOML file, or folder with scene.toml")]
+Quality = Annotated[
+    Literal["draft", "standard", "fine"] | None,
+    Parameter(help="level of the scene's [quality.…] tables; its quality_default if not given"),
+]
+Settings = Annotated[
+    list[str] | None,
+    Parameter(name="--set", help="section.key=value, over the scene and its quality; repeatable"),
+]
+Threads = Annotated[int | None, Parameter(help="threads of the kernels; all cores if not given")]
+Json = Annotated[bool, Parameter(name="--json", help="print JSON instead of tables")]
+
+
+def use_threads(count: int | None) -> int:
+    """Set the number of kernel threads and give it; InputError when this machine has no such number."""
+    from porescale.common.compiled.jit import set_threads
+
+    return set_threads(count)
+
+
+def refuse_no_scene(path: Path) -> None:
+    """InputError unless ``path`` leads to a TOML file: said at once, before the sections of a scene and the compiler
+    that their rooms bring along are imported."""
+    from porescale.common.schema import scene_file
+
+    scene_file.read(scene_file.find(path))

@@ -1,0 +1,110 @@
+"""What a package hands to the workbench to get its commands.  Every part is a function, so that nothing is
+imported before a command needs it: `--help` must not wait for a compiler.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from porescale.common.cli.report import Report
+    from porescale.common.evidence.benchmarks import Benchmarks
+    from porescale.common.evidence.endurance import Endurances
+    from porescale.common.evidence.extremes import Extremes
+    from porescale.common.evidence.overhead import Kinds
+    from porescale.common.evidence.stability import Stability
+    from porescale.common.evidence.validations import Validations
+    from porescale.common.schema.sections import Section
+
+
+class Outcome(Protocol):
+    """How a run ended."""
+
+    @property
+    def outcome(self) -> str:
+        """ "finished", "already finished"."""
+
+    @property
+    def step(self) -> int:
+        """Steps done."""
+
+    @property
+    def time(self) -> float:
+        """Time reached, s."""
+
+    @property
+    def seconds(self) -> float:
+        """Wall-clock time of the run, all sessions together."""
+
+    @property
+    def snapshots(self) -> int:
+        """Snapshots on disk."""
+
+    @property
+    def steps_per_second(self) -> float:
+        """Speed of this session; 0 if nothing was left to do."""
+
+
+class Drive(Protocol):
+    """Takes a model through the time its scene asks for, keeping the record in a run folder."""
+
+    def __call__(
+        self,
+        model: Any,
+        folder: Path,
+        scene: Any,
+        *,
+        card: dict[str, Any],
+        resume: bool,
+        quiet: bool,
+        overwrite: bool = False,
+    ) -> Outcome:
+        """Run, or go on with the run in ``folder``.
+
+        card : what card.json must hold of the request: package, name, scene (full, with defaults), scene_file,
+        quality, settings;  quiet : no progress;  overwrite : replace the run there, whatever it cost.
+        """
+
+
+@dataclass(frozen=True)
+class Package:
+    """A simulator's parts.
+
+    name : of the command;  summary : one line for --help;  version;
+    scene : gives the scene type;  template : gives the commented scene.toml that `new` writes;
+    build : scene -> model, of scenes that report did not refuse;  drive : runs it;  report : scene -> what `check`
+    says, warnings and all (it may raise InputError);
+    show : makes pictures and a film in a run folder and gives their paths;
+    table : columns of a table of a run folder by its name, "series" for series.csv;
+    also : the same as show for runs of other commands, by what their cards call them;
+    validations, benchmarks : give the registers;  stability : that of the flows of a stability map, extremes : what
+    `study extremes` tries, endurance : what `study endurance` runs, parts : what `study parts` measures, None if there
+    is none;  judge : InputError where the run in a folder cannot be gone on with as a card asks, None if only a model
+    can say;  features : what trade studies make of a run folder at a time (None: its last snapshot), by name, None if
+    there is nothing.
+    """
+
+    name: str
+    summary: str
+    version: str
+    scene: Callable[[], type[Section]]
+    template: Callable[[], str]
+    build: Callable[[Any], Any]
+    drive: Drive
+    report: Callable[[Any], Report]
+    show: Callable[[Path], Iterable[Path]]
+    table: Callable[[Path, str], Mapping[str, NDArray[Any]]]
+    validations: Callable[[], Validations]
+    benchmarks: Callable[[], Benchmarks]
+    stability: Callable[[], Stability] | None = None
+    extremes: Callable[[], Extremes] | None = None
+    endurance: Callable[[], Endurances] | None = None
+    parts: Callable[[], Kinds] | None = None
+    judge: Callable[[Path, dict[str, Any]], None] | None = None
+    also: Mapping[str, Callable[[Path], Iterable[Path]]] = field(default_factory=dict)
+    features: Callable[[], Mapping[str, Callable[[Path, float | None], NDArray[Any]]]] | None = None

@@ -1,0 +1,145 @@
+"""`run SCENE`: a simulation and its run folder."""
+
+from __future__ import annotations
+
+import resource
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from porescale.common.cli import pick
+from porescale.common.cli.folders import refuse_unwritable, unusable
+from porescale.common.cli.options import Quality, Scene, Settings, Threads, refuse_no_scene, use_threads
+from porescale.common.cli.package import Outcome, Package
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.record.read_card import NAME as CARD
+from porescale.common.record.read_card import read_card
+
+if TYPE_CHECKING:
+    from porescale.common.schema.sections import Opened
+
+
+def command(package: Package) -> Callable[..., int]:
+    """The `run` command of a package."""
+
+    def run(
+        scene: Scene,
+        /,
+        *,
+        out: Annotated[str | None, Parameter(help="run folder; runs/ and the name of the scene if not given")] = None,
+        quality: Quality = None,
+        settings: Settings = None,
+        threads: Threads = None,
+        resume: Annotated[bool, Parameter(help="go on with the run in the run folder")] = False,
+        overwrite: Annotated[bool, Parameter(help="replace the run in the run folder")] = False,
+        error: Annotated[
+            str | None, Parameter(help="5%: the cheapest point of the scene's front that is as good")
+        ] = None,
+        budget: Annotated[str | None, Parameter(help="3min: the best point of its front that takes no longer")] = None,
+        quiet: Annotated[bool, Parameter(help="no progress, no summary")] = False,
+    ) -> int:
+        """Run a scene and write its run folder."""
+        from porescale.common.schema.sections import open_scene
+
+        refuse_no_scene(scene)
+        chosen = None
+        if error is not None or budget is not None:
+            refuse_choices(quality, resume)
+            use_threads(threads)
+            chosen = pick.pick(package, scene, error, budget, settings or (), quiet=quiet)
+            settings = [*chosen.point.settings, *(settings or ())]
+        level = chosen.point.quality if chosen else quality
+        opened = open_scene(scene, package.scene(), quality=level, overrides=settings or ())
+        if out == "":
+            raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
+        folder = Path(out) if out is not None else Path("runs") / opened.name
+        refuse_folder(folder, package.name, resume=resume, overwrite=overwrite)
+        card = card_of(package, opened)
+        if chosen is not None:
+            card["picked"] = chosen.as_dict()
+        begun = time.perf_counter()
+        warnings = package.report(opened.scene).warnings  # what contradicts itself is refused
+        if resume and package.judge is not None:
+            package.judge(folder, card)
+        use_threads(threads)  # numba counts them; unless moving frames were to be judged, it is imported only now
+        for warning in warnings:
+            print(f"warning: {warning}", file=sys.stderr)
+        model = package.build(opened.scene)
+        outcome = package.drive(model, folder, opened.scene, card=card, resume=resume, quiet=quiet, overwrite=overwrite)
+        if not quiet:
+            print(summary(package.name, opened.name, folder, outcome))
+            if chosen is not None:
+                print(f"expected {chosen.seconds:.3g} s, took {time.perf_counter() - begun:.3g} s")
+        return 0
+
+    return run
+
+
+def card_of(package: Package, opened: Opened[Any]) -> dict[str, Any]:
+    """What a run card says of the request."""
+    from porescale.common.schema.sections import scene_as_dict
+
+    return {
+        "package": package.name,
+        "name": opened.name,
+        "scene": scene_as_dict(opened.scene),
+        "scene_file": str(opened.file.resolve()),
+        "quality": opened.quality,
+        "settings": list(opened.settings),
+    }
+
+
+def refuse_choices(quality: str | None, resume: bool) -> None:
+    """InputError where what a front picks is given, too."""
+    for option, given in (("--quality", quality), ("--resume", resume)):
+        if given:
+            repair = "leave one of them out; a run that was picked is resumed with the --quality and --set on its card"
+            raise InputError(Fault(option, None, "contradicts --error and --budget", repair=repair))
+
+
+def refuse_folder(folder: Path, package: str, *, resume: bool, overwrite: bool) -> None:
+    """InputError unless a run may and can be written to ``folder``: nothing that is there is lost by accident."""
+    if resume and overwrite:
+        raise InputError(Fault("--resume", None, "contradicts --overwrite", repair="give one of them"))
+    try:
+        _refuse_content(folder, package, resume=resume, overwrite=overwrite)
+    except OSError as error:  # a name too long, a folder that may not be looked into
+        raise unusable(folder, "--out", error) from error
+    refuse_unwritable(folder, "--out")
+
+
+def _refuse_content(folder: Path, package: str, *, resume: bool, overwrite: bool) -> None:
+    """InputError when what is in ``folder`` does not go with what is asked."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError(Fault("--out", str(folder), "is a file", repair="name a folder"))
+    if (folder / CARD).is_dir():
+        raise InputError(Fault("--out", str(folder), f"{CARD} there is a folder", repair="name another folder"))
+    if resume:
+        if not (folder / CARD).is_file():
+            repair = f"no {CARD} there; name the run's folder with --out, or leave --resume out"
+            raise InputError(Fault("--out", str(folder), "holds no run to resume", repair=repair))
+        read_card(folder, package)
+    elif folder.is_dir() and any(folder.iterdir()) and not overwrite:
+        problem = "already holds a run" if (folder / CARD).is_file() else "is not empty"
+        repair = "choose another --out, --resume the run, or --overwrite it"
+        if problem == "is not empty":
+            repair = "choose another --out, or --overwrite to write beside what is there"
+        raise InputError(Fault("--out", str(folder), problem, repair=repair))
+
+
+def summary(command: str, name: str, folder: Path, outcome: Outcome) -> str:
+    """What the run cost and where to look, for people."""
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+    speed = f", {outcome.steps_per_second:.4g} steps/s" if outcome.steps_per_second else ""
+    names = [path.name for path in folder.iterdir() if path.is_file()] if folder.is_dir() else []
+    files = ", ".join(sorted(it for it in names if not it.startswith(".")))
+    return (
+        f"{name}: {outcome.outcome} at t = {outcome.time:.6g} s, step {outcome.step}; "
+        f"{outcome.seconds:.3g} s{speed}, {outcome.snapshots} snapshots, {peak / 2**20:.0f} MiB at most\n"
+        f"look at {folder}: {files}\n"
+        f"more pictures: {command} show {folder}"
+    )

@@ -1,0 +1,183 @@
+"""`sweep SCENE [TABLE]`: any keys of a scene varied, the runs compared."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from porescale.common.cli.folders import refuse_unwritable
+from porescale.common.cli.options import Quality, Scene, Settings, Threads, refuse_no_scene
+from porescale.common.cli.package import Package
+from porescale.common.core.errors import Fault, InputError
+
+if TYPE_CHECKING:
+    from porescale.common.studies.parameter_table import Point
+    from porescale.common.studies.runner import Campaign, Ended
+
+Vary = Annotated[list[str] | None, Parameter(name="--vary", help="section.key=a,b,c; repeatable: all combinations")]
+Jobs = Annotated[int, Parameter(help="runs at a time")]
+Scheduler = Annotated[
+    str | None, Parameter(help="address of a dask scheduler, tcp://host:8786, whose workers take the runs")
+]
+Again = Annotated[bool, Parameter(help="retry points that went unstable or failed")]
+
+
+def command(package: Package) -> Callable[..., int]:
+    """The `sweep` command of a package."""
+
+    def sweep(
+        scene: Scene,
+        table: Annotated[Path | None, Parameter(help="CSV or TOML file, a run for each row")] = None,
+        /,
+        *,
+        vary: Vary = None,
+        quality: Quality = None,
+        settings: Settings = None,
+        out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _sweep if not given")] = None,
+        jobs: Jobs = 1,
+        threads: Threads = 1,
+        scheduler: Scheduler = None,
+        again: Again = False,
+    ) -> int:
+        """Run a scene with keys varied from a table, and compare the runs.
+
+        Every point has its run folder; sweep.csv, .md and .png compare what expected.toml beside the scene asks for,
+        else how every column of the series ends.  A sweep that was stopped goes on when called again.
+        """
+        from porescale.common.studies import sweep_files
+        from porescale.common.studies.runner import Campaign
+
+        refuse_no_scene(scene)
+        points = chosen_points(table, vary or ())
+        file, name = refuse_wrong_points(package, scene, points, quality, settings or ())
+        folder = chosen_folder(out, f"{name}_sweep")
+        campaign = Campaign(module_of(package), file, folder, tuple(settings or ()), quality, threads or 1, again)
+        jobs = enlist(campaign, jobs, scheduler)
+        rows, ends, order = expected(file), [], {point.name: at for at, point in enumerate(points)}
+        varying = [word for text in vary or () for word in ("--vary", text)]
+        asked = [package.name, "sweep", str(scene), *([str(table)] if table else []), *varying]
+        words = shlex.join([*asked, *laid_over(quality, settings)])
+        for ended in campaign.all(points, jobs, say):
+            ends.append(ended)
+            ends.sort(key=lambda one: order[one.point.name])
+            asks = rows or columns_at_end(package, ends)
+            sweep_files.write(folder, words, ends, asks, package.table)
+        print(f"{folder / sweep_files.NAME}.csv, .md, .png")
+        return conclude(ends)
+
+    return sweep
+
+
+def chosen_points(table: Path | None, vary: Sequence[str]) -> list[Point]:
+    """The points of a table, of options, or of both crossed; InputError if there is neither."""
+    from porescale.common.studies.parameter_table import crossed, read_points, varied
+
+    if table is None and not vary:
+        raise InputError(Fault("sweep", None, "varies nothing", repair="give a table, or --vary section.key=a,b,c"))
+    options = varied(vary) if vary else []
+    if table is None:
+        return options
+    points = read_points(table)
+    return crossed(points, options) if options else points
+
+
+def refuse_wrong_points(
+    package: Package, scene: Path, points: Sequence[Point], quality: str | None, settings: Sequence[str]
+) -> tuple[Path, str]:
+    """File and name of the scene; InputError with what is wrong with any of the points, before any of them runs."""
+    from porescale.common.schema.sections import open_scene
+
+    faults: dict[str, Fault] = {}  # by what they say: what is wrong with every point is said of the first
+    for point in points:
+        try:
+            overrides = (*settings, *point.settings)
+            opened = open_scene(scene, package.scene(), quality=point.quality or quality, overrides=overrides)
+            package.report(opened.scene)
+        except InputError as error:
+            for fault in error.faults:
+                place = f"{point.name}, {fault.file}" if fault.file else point.name
+                faults.setdefault(fault.line(), replace(fault, file=place))
+    if faults:
+        raise InputError(list(faults.values()))
+    return opened.file, opened.name
+
+
+def laid_over(quality: str | None, settings: Sequence[str] | None) -> list[str]:
+    """The options of quality and settings as they were written."""
+    level = ["--quality", quality] if quality else []
+    return level + [word for text in settings or () for word in ("--set", text)]
+
+
+def chosen_folder(out: str | None, name: str) -> Path:
+    """The folder to write; InputError if it cannot be written."""
+    if out == "":
+        raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
+    folder = Path(out) if out is not None else Path("runs") / name
+    refuse_unwritable(folder, "--out")
+    return folder
+
+
+def enlist(campaign: Campaign, jobs: int, scheduler: str | None) -> int:
+    """How many points at a time; with a scheduler its workers take them."""
+    if jobs < 1:
+        raise InputError(Fault("--jobs", jobs, "is none", "", ">= 1"))
+    if scheduler is None:
+        return jobs
+    from porescale.common.studies.cluster import connect
+
+    campaign.run, slots = connect(scheduler, campaign.module)
+    return slots
+
+
+def module_of(package: Package) -> str:
+    """What ``python -m`` calls the package."""
+    return package.name.replace("-", "_")
+
+
+def expected(scene: Path) -> list[dict[str, Any]]:
+    """The rows of expected.toml beside the scene file that say where to read a number, none where there is none.
+
+    Raises InputError with what is wrong with any of them.
+    """
+    from porescale.common.schema.scene_file import read
+    from porescale.common.studies.quantities import wrong
+
+    file = scene.parent / "expected.toml"
+    if not file.is_file():
+        return []
+    rows = read(file).get("expected", [])
+    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+        raise InputError(Fault("expected", None, "is no list of tables", repair="write [[expected]]", file=str(file)))
+    asked = [row for row in rows if {"name", "column", "at"} <= row.keys()]
+    faults = [Fault(f"expected {row['name']!r}", None, said, file=str(file)) for row in asked if (said := wrong(row))]
+    if faults:
+        raise InputError(faults)
+    return asked
+
+
+def columns_at_end(package: Package, ends: Sequence[Ended]) -> list[dict[str, Any]]:
+    """How every column of the series ends, in the first point that has one."""
+    for ended in ends:
+        if ended.outcome == "finished":
+            names = list(package.table(ended.folder, "series"))[1:]
+            return [{"name": name, "column": name, "at": "end"} for name in names]
+    return []
+
+
+def say(text: str) -> None:
+    """One line of progress."""
+    print(text, file=sys.stderr, flush=True)
+
+
+def conclude(ends: Sequence[Ended]) -> int:
+    """Say which points did not finish; the exit code."""
+    bad = [ended for ended in ends if ended.outcome != "finished"]
+    for ended in bad:
+        say(f"{ended.point.name}: {ended.outcome}: {ended.problem}")
+    return 1 if bad else 0

@@ -1,0 +1,105 @@
+"""`study trade SCENE`: speed against accuracy over a scene's knobs."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from porescale.common.cli.options import Scene, Settings, Threads, use_threads
+from porescale.common.cli.package import Package
+from porescale.common.cli.sweep import (
+    Again,
+    Jobs,
+    Scheduler,
+    chosen_folder,
+    conclude,
+    enlist,
+    laid_over,
+    module_of,
+    refuse_wrong_points,
+    say,
+)
+from porescale.common.core.errors import Fault, InputError
+
+
+def command(package: Package) -> Callable[..., int]:
+    """The `study trade` command of a package."""
+
+    def trade(
+        scene: Scene,
+        /,
+        *,
+        plan: Annotated[Path | None, Parameter(help="what is asked and varied; trade.toml beside the scene")] = None,
+        settings: Settings = None,
+        out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _trade if not given")] = None,
+        jobs: Jobs = 1,
+        threads: Threads = 1,
+        scheduler: Scheduler = None,
+        again: Again = False,
+    ) -> int:
+        """Measure error, core-seconds and memory of a scene over its knobs, and find the front.
+
+        front.json, trade.csv, .md and .png; put front.json beside the scene, and `run --error 5%` or `--budget 3min`
+        pick from it.  A study that was stopped goes on when called again.
+        """
+        from porescale.common.schema.scene_file import find
+        from porescale.common.studies import trade_files
+        from porescale.common.studies.runner import Campaign
+        from porescale.common.studies.trade import Judge, front
+        from porescale.common.studies.trade_plan import read_plan
+
+        asked, _ = read_plan(find(scene), plan)
+        features = package.features() if package.features else {}
+        unknown = [quantity.feature for quantity in asked.quantity if quantity.feature not in ("", *features)]
+        if unknown:
+            known = ", ".join(features) or "none"
+            raise InputError(Fault("quantity.feature", unknown[0], "is not known", "", known))
+        reference = asked.reference_point()
+        variants = asked.variants()
+        truth = asked.repeats(reference) if reference else []
+        groups = [asked.repeats(point) for _, _, point in variants]
+        points = [*truth, *(point for group in groups for point in group)]
+        file, name = refuse_wrong_points(package, scene, points, None, settings or ())
+        folder = chosen_folder(out, f"{name}_trade")
+        campaign = Campaign(module_of(package), file, folder / "runs", tuple(settings or ()), None, threads or 1, again)
+        slots = enlist(campaign, jobs, scheduler)
+        ends = {ended.point.name: ended for ended in campaign.all(points, slots, say)}
+        if code := conclude([ends[point.name] for point in truth]):
+            say("the reference did not finish: nothing to hold the others against")
+            return code
+        judged = [ends[point.name] for point in truth]
+        judge = Judge(asked, package.table, features, judged)
+        traded = front(
+            [judge.trade(knob, label, point, [ends[one.name] for one in group])
+             for (knob, label, point), group in zip(variants, groups, strict=True)]
+        )  # fmt: skip
+        use_threads(threads)
+        words = [package.name, "study", "trade", str(scene), *(["--plan", str(plan)] if plan else [])]
+        about = circumstances(package, shlex.join([*words, *laid_over(None, settings)]), threads or 1)
+        about["quantities"] = [one.model_dump(mode="json", exclude_none=True) for one in asked.quantity]
+        about["references"] = judge.told()
+        if reference:
+            about["reference"] = trade_files.as_dict(judge.trade("", "reference", reference, judged))
+        if asked.draft is not None:
+            about["draft"] = asked.draft
+        trade_files.write(folder, about, traded, judge.packings(), asked.caveats())
+        print(f"{folder / trade_files.FRONT}, {trade_files.NAME}.csv, .md, .png")
+        return conclude(list(ends.values()))
+
+    return trade
+
+
+def circumstances(package: Package, command: str, threads: int) -> dict[str, Any]:
+    """What made the numbers: command, version, machine, date."""
+    from porescale.common.core.machine import machine
+
+    return {
+        "command": command, "package": package.name, "version": package.version, "threads": threads,
+        "machine": machine(),
+        "date": datetime.now(UTC).date().isoformat(),
+    }  # fmt: skip

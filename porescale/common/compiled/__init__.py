@@ -1,0 +1,1 @@
+"""Compiled kernels: how functions are compiled, cached, dispatched on a law, vectorised."""

@@ -1,0 +1,152 @@
+"""The one place that configures numba; imported when the first kernel is called, by jit.py.
+
+``error_model="numpy"`` because the default division check stops vectorisation.  Fast-math is off: results must not
+depend on how a loop was cut into vectors.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from types import FunctionType
+from typing import Any
+
+# Threads that wait at the end of a loop spin for milliseconds by default.  On a machine with other work that costs a
+# factor of 20 (measured, two threads beside eight busy processes); this many turns, some 10 us, cost a quiet one
+# nothing.
+os.environ.setdefault("GOMP_SPINCOUNT", "3000")
+
+import llvmlite.binding as llvm
+import numba
+from llvmlite import ir
+from numba.extending import intrinsic, overload
+
+from porescale.common.compiled.cache import writable
+from porescale.common.compiled.jit import cache_folder, fetch, part, prange, thread
+
+# A row kernel reads and writes nine population rows: LLVM must compare 36 pairs of them before it vectorises,
+# and gives up at 8 by default.
+llvm.set_option("porescale", "-runtime-memory-check-threshold=256")
+
+# Where the folder cannot be written numba would cache beside the sources, or give up: compile anew then.
+_FLAGS: dict[str, Any] = {"error_model": "numpy", "cache": writable(cache_folder()), "nogil": True}
+_INLINED: Any = {"error_model": "numpy", "nogil": True, "forceinline": True}
+_MEANT = {"prange": (prange, numba.prange), "thread": (thread, vars(numba)["get_thread_id"])}
+"""What kernels import from jit.py under names that numba knows by its own objects only."""
+
+
+def dispatcher(function: FunctionType, options: dict[str, Any]) -> Any:
+    """numba's dispatcher of a function; in the function's module, names of jit.py come to mean numba's own objects."""
+    names = function.__globals__
+    for name, (ours, own) in _MEANT.items():
+        if name in function.__code__.co_names and names.get(name) is ours:
+            names[name] = own
+    return numba.njit(**options, **_FLAGS)(function)
+
+
+def choose_by_law(chosen: Callable[..., Any], bodies: dict[type, Any]) -> None:
+    """Let ``chosen`` mean, in kernels, the body for the type of its last argument."""
+
+    def choose(*types: Any) -> Any:
+        """The body for the types of the arguments."""
+        body = bodies.get(getattr(types[-1], "instance_class", type(None)))
+        return None if body is None else body.compiled.py_func
+
+    overload(chosen, strict=False, jit_options=_INLINED)(choose)
+
+
+def choose_by_precision(chosen: Callable[..., Any], constants: dict[int, Any]) -> None:
+    """Let ``chosen`` mean, in kernels, the constants for the bits of its argument."""
+
+    def choose(number: Any) -> Any:
+        """A function of the constants of the number's precision."""
+        known = constants.get(getattr(number, "bitwidth", 0))
+        return None if known is None else lambda number: known
+
+    overload(chosen, strict=False, jit_options=_INLINED)(choose)
+
+
+def _view(typing: Any, array: Any, first: Any, count: Any) -> Any:
+    """``part`` in kernels."""
+    if not isinstance(array, numba.types.Array) or array.ndim != 1 or array.layout != "C":
+        return None
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        """An array of the same memory, from an entry on."""
+        whole, made = (
+            context.make_array(array)(context, builder, values[0]),
+            context.make_array(array)(context, builder),
+        )
+        size = context.get_constant(numba.intp, context.get_abi_sizeof(context.get_data_type(array.dtype)))
+        context.populate_array(
+            made, data=builder.gep(whole.data, [values[1]], inbounds=True), shape=[values[2]], strides=[size],
+            itemsize=size, meminfo=None,
+        )  # fmt: skip
+        return made._getvalue()
+
+    return array(array, numba.intp, numba.intp), code
+
+
+_part: Any = intrinsic(_view)
+
+
+@overload(part, strict=False, jit_options=_INLINED)
+def _choose_part(array: Any, first: Any, count: Any) -> Any:
+    return lambda array, first, count: _part(array, first, count)
+
+
+def _prefetch(typing: Any, array: Any, at: Any) -> Any:
+    """``fetch`` in kernels."""
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        """The machine's own word for it."""
+        data = context.make_array(array)(context, builder, values[0]).data
+        byte, number = ir.IntType(8).as_pointer(), ir.IntType(32)
+        kind = ir.FunctionType(ir.VoidType(), [byte, number, number, number])
+        ask = builder.module.declare_intrinsic("llvm.prefetch", (byte,), kind)
+        place = builder.bitcast(builder.gep(data, [values[1]]), byte)
+        builder.call(ask, [place, number(0), number(3), number(1)])  # to read, near, data
+        return context.get_dummy_value()
+
+    return numba.types.none(array, numba.intp), code
+
+
+_fetch: Any = intrinsic(_prefetch)
+
+
+@overload(fetch, strict=False, jit_options=_INLINED)
+def _choose_fetch(array: Any, at: Any) -> Any:
+    return lambda array, at: _fetch(array, at)
+
+
+def teach_sum_by_halves(total: Callable[..., Any], count: int) -> None:
+    """Let ``total`` (array, first) of ``sum_by_halves`` mean vector additions in kernels."""
+
+    def vector(typing: Any, array: Any, first: Any) -> Any:
+        """``total`` in kernels."""
+
+        def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            """One load, then halves of the vector added until one number is left."""
+            start = builder.gep(context.make_array(array)(context, builder, values[0]).data, [values[1]], inbounds=True)
+            kind = ir.VectorType(context.get_data_type(array.dtype), count)
+            left = builder.load(builder.bitcast(start, kind.as_pointer()), align=4)
+            size = count
+            while size > 1:
+                size //= 2
+                none = ir.Constant(left.type, ir.Undefined)
+                halves = [
+                    builder.shuffle_vector(left, none, ir.Constant(ir.VectorType(ir.IntType(32), size), lanes))
+                    for lanes in (list(range(size)), list(range(size, 2 * size)))
+                ]
+                left = builder.fadd(*halves)
+            return builder.extract_element(left, ir.Constant(ir.IntType(32), 0))
+
+        return array.dtype(array, numba.intp), code
+
+    vector_total: Any = intrinsic(vector)
+
+    def choose(array: Any, first: Any) -> Any:
+        """``total`` in kernels: the vector additions."""
+        return lambda array, first: vector_total(array, first)
+
+    overload(total, strict=False, jit_options=_INLINED)(choose)

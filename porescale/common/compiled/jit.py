@@ -1,0 +1,241 @@
+"""How functions become kernels: compiled by numba when they are first called, and not before.
+
+numba takes longer to import than a wrong scene takes to be found wrong, so what is defined here waits for it: a
+`Kernel` until it is called, and what is told of other functions (`by_law`, `part` …) until the first kernel is.
+compiling.py does the work then, and lanes_code.py for lanes.py.
+
+Kernels are compiled once and kept on disk.  numba stamps a cached kernel with its own file only, so an edited contact
+law would survive inside a cached pair loop; the cache folder is therefore named after a hash of all sources of both
+packages.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+from functools import cached_property, update_wrapper
+from importlib import import_module
+from pathlib import Path
+from threading import RLock
+from typing import Any, TypeVar, cast
+
+import numpy as np
+
+from porescale.common.compiled.cache import cache_root, hash_of, keep_only_used
+from porescale.common.core.errors import Fault, InputError
+
+PACKAGES = ("porescale", "continuum_sph")
+
+
+def source_hash() -> str:
+    """Hash (12 hex digits) of every Python source of both packages."""
+    root = Path(__file__).resolve().parents[3]
+    return hash_of(root / package for package in PACKAGES)
+
+
+def cache_folder() -> Path:
+    """Folder for compiled kernels: ``$NUMBA_CACHE_DIR`` if set, else one named after the sources' hash."""
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    if given:
+        return Path(given)
+    return cache_root() / f"kernels-{source_hash()}-py{sys.version_info.major}{sys.version_info.minor}"
+
+
+if not os.environ.get("NUMBA_CACHE_DIR"):
+    KERNELS = cache_folder()
+    os.environ["NUMBA_CACHE_DIR"] = str(KERNELS)
+    keep_only_used(KERNELS, "kernels-*")
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+_WAITING: list[Callable[[Any], object]] = []
+_LOCK = RLock()
+_compiler: Any = None
+
+
+def when_compiling(teach: Callable[[Any], object]) -> None:
+    """Call ``teach`` with compiling.py before any kernel is compiled: at once if one may have been already."""
+    with _LOCK:
+        _WAITING.append(teach)
+        if _compiler is not None:
+            compiler()
+
+
+def compiler() -> Any:
+    """compiling.py, once all that has waited for it is told; numba is imported by the first call."""
+    global _compiler
+    with _LOCK:
+        if _compiler is None:
+            _compiler = import_module(f"{__package__}.compiling")
+        while _WAITING:
+            _WAITING.pop(0)(_compiler)
+    return _compiler
+
+
+class Kernel:
+    """A function that is compiled when it is first called; also from within other kernels.
+
+    py_func : the function in plain Python;  compiled : what numba makes of it, whose attributes it has as well.
+    """
+
+    def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
+        update_wrapper(self, function)
+        self.py_func, self._options = function, options
+
+    @cached_property
+    def compiled(self) -> Any:
+        """numba's dispatcher."""
+        return compiler().dispatcher(self.py_func, self._options)
+
+    @property
+    def _numba_type_(self) -> Any:
+        """Type of this as a name in a kernel: that of the dispatcher."""
+        return self.compiled._numba_type_
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Compile it for the types of these arguments, if that is still to be done, and run it."""
+        return self.compiled(*arguments)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):  # asked by those who want to know what this is
+            raise AttributeError(name)
+        return getattr(self.compiled, name)
+
+    def __reduce__(self) -> str:
+        return cast(str, vars(self)["__qualname__"])  # copied and pickled by name, as functions are
+
+
+def _decorator(**options: Any) -> Callable[[F], F]:
+    """A decorator that makes a kernel with these options of numba's."""
+    return lambda function: cast(Any, Kernel(function, options))
+
+
+def kernel(function: F) -> F:
+    """Compile a serial kernel over arrays and numbers."""
+    return _decorator()(function)
+
+
+def parallel_kernel(function: F) -> F:
+    """Compile a kernel whose ``prange`` loops run over threads; it must give the same bits at any count."""
+    return _decorator(parallel=True)(function)
+
+
+def inline(function: F) -> F:
+    """Compile a small function that LLVM merges into the kernels that call it."""
+    return _decorator(forceinline=True)(function)
+
+
+def by_law(signature: F) -> Any:
+    """Make an inline kernel whose body depends on the type of its last argument, the law: a NamedTuple of numbers.
+
+    A sweep that takes a law and hands it on is compiled once for each law in use, and kept on disk, which it is not for
+    functions as arguments.  ``signature`` lends name and docstring; ``@name.of(Law, ...)`` adds a body.  A law must be
+    flat: loops over threads take no tuples within tuples.
+    """
+    bodies: dict[type, Any] = {}
+
+    def chosen(*arguments: Any) -> Any:
+        """The body for the type of the last argument, on these arguments."""
+        return bodies[type(arguments[-1])](*arguments)
+
+    def plain(*arguments: Any) -> Any:
+        """The same in plain Python."""
+        return bodies[type(arguments[-1])].py_func(*arguments)
+
+    def of(*laws: type) -> Callable[[F], F]:
+        """Take the decorated function as body for ``laws``; returns it compiled."""
+
+        def add(body: F) -> F:
+            """Compile ``body`` unless it is a kernel, and keep it for the laws."""
+            compiled = body if hasattr(body, "py_func") else inline(body)
+            bodies.update(dict.fromkeys(laws, compiled))
+            return compiled
+
+        return add
+
+    vars(chosen).update(__name__=signature.__name__, __doc__=signature.__doc__, of=of, py_func=plain)
+    when_compiling(lambda machine: machine.choose_by_law(chosen, bodies))
+    return chosen
+
+
+def by_precision(build: Callable[[type], Any]) -> Any:
+    """Make an inline kernel of one number that returns ``build(np.float32)`` or ``build(np.float64)`` as constants.
+
+    A float64 literal promotes a float32 kernel; what this returns for a number of the kernel's own precision does not.
+    """
+    constants = {32: build(np.float32), 64: build(np.float64)}
+
+    def chosen(number: Any) -> Any:
+        """The constants of the precision of ``number``."""
+        return constants[8 * np.dtype(type(number)).itemsize]
+
+    vars(chosen).update(__name__=build.__name__, __doc__=build.__doc__)
+    when_compiling(lambda machine: machine.choose_by_precision(chosen, constants))
+    return chosen
+
+
+def part(array: Any, first: Any, count: Any) -> Any:
+    """``count`` entries of a one-dimensional array from ``first`` on; for loops that take many short parts.
+
+    In kernels a view that owns nothing: a slice made the usual way counts references and is cut to the array, which
+    costs more than a part of a dozen entries.  Not checked: that the part lies in the array.
+    """
+    return array[first : first + count]
+
+
+def fetch(array: Any, at: Any) -> None:
+    """Ask for the entry ``at`` of a contiguous array, counted as if it were flat, to be brought to the nearest cache.
+
+    For entries that a loop comes to in an order that no machine foresees.  Does nothing else, nor in plain Python.
+    """
+
+
+def sum_by_halves(count: int) -> Any:
+    """Make an inline kernel (array, first) that sums ``count`` entries, a power of two, from ``first`` on.
+
+    The second half is added to the first until one is left: vector additions, in an order that no machine changes.
+    """
+
+    def total(array: Any, first: Any) -> Any:
+        """Sum of ``count`` entries from ``first`` on."""
+        left = array[first : first + count]
+        while left.shape[0] > 1:
+            half = left.shape[0] // 2
+            left = left[:half] + left[half:]
+        return left[0]
+
+    vars(total)["py_func"] = total
+    when_compiling(lambda machine: machine.teach_sum_by_halves(total, count))
+    return total
+
+
+prange: Any = range
+"""``range`` over iterations that threads share, in a `parallel_kernel`; plain `range` elsewhere."""
+
+
+def thread() -> int:
+    """Number, below ``most_threads()``, of the thread that runs an iteration of a prange loop: for scratch, not
+    results.
+    """
+    return 0
+
+
+def set_threads(count: int | None) -> int:
+    """Use ``count`` threads (None: all cores) in parallel kernels; returns it.  InputError unless there are as many."""
+    limit = most_threads()
+    chosen = limit if count is None else count
+    if not 1 <= chosen <= limit:
+        raise InputError(Fault("--threads", count, "is out of range", allowed=f"1 to {limit}"))
+    compiler().numba.set_num_threads(chosen)
+    return chosen
+
+
+def most_threads() -> int:
+    """Most threads that parallel kernels can be given."""
+    return int(vars(compiler().numba.config)["NUMBA_NUM_THREADS"])
+
+
+def threads() -> int:
+    """Number of threads that parallel kernels use now."""
+    return int(compiler().numba.get_num_threads())

@@ -1,0 +1,1 @@
+"""Errors, units, constants, machine.  No physics."""

@@ -1,0 +1,1 @@
+"""Rows of validations and benchmarks, timing, memory bandwidth, maps of stability."""

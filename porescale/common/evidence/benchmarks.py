@@ -1,0 +1,210 @@
+"""Benchmarks: rates in updates per second, and the share of the memory bandwidth measured beside them."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+from porescale.common.cli.report import shown
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.evidence.select import choose
+from porescale.common.evidence.timing import Comparison, Timing, interleaved, rate, seconds_of
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+__all__ = [
+    "Benchmarks",
+    "Comparison",
+    "Row",
+    "Timing",
+    "Work",
+    "copy_bandwidth",
+    "interleaved",
+    "rate",
+    "table",
+]
+
+Dtype = Literal["float32", "float64"]
+LARGEST = 10_000_000
+"""Size that may be asked for: of discs some 10 GiB, of cells along a side more than any machine holds."""
+
+
+@dataclass(frozen=True)
+class Work:
+    """Something to time.
+
+    call : does it once;  updates : cells, discs, particles or image pairs that a call updates;
+    unit : "cells/s" and so on;  size : as in the row;  bytes : what one update must move between memory and
+    processor (0: not bound by memory);  variant : added to the row's name when a benchmark times several;  remark :
+    what else is to be said, found once.
+    """
+
+    call: Callable[[], object]
+    updates: float
+    unit: str
+    size: int
+    bytes: float = 0.0
+    variant: str = ""
+    remark: Callable[[], str] | None = None
+
+
+PLAIN = "plain"
+"""Variant of the work that the others of its benchmark are held against."""
+
+Prepare = Callable[[int | None, int, Dtype], Work | Sequence[Work]]
+
+
+@dataclass(frozen=True)
+class Row:
+    """A measured rate; the fields are the JSON keys.
+
+    rate : updates per second, median;  seconds : of one call, median;  bytes : per update;
+    share_of_bandwidth : rate * bytes over the in-place bandwidth measured in turns with it; None if bytes is 0.
+    """
+
+    name: str
+    size: int
+    threads: int
+    dtype: str
+    rate: float
+    unit: str
+    seconds: float
+    bytes: float
+    share_of_bandwidth: float | None
+
+    def as_dict(self) -> dict[str, Any]:
+        """JSON-able."""
+        return asdict(self)
+
+
+class Benchmarks:
+    """A register of benchmarks, in the order of registration.
+
+    remarks : of the last ``run``: what part of the rate of its ``PLAIN`` work a benchmark has, measured in turns.
+    """
+
+    def __init__(self) -> None:
+        self._known: dict[str, Prepare] = {}
+        self.remarks: list[str] = []
+
+    def row(self, name: str) -> Callable[[Prepare], Prepare]:
+        """Register the decorated function: ``(size | None, threads, dtype) -> Work``, one or several.
+
+        ``size`` None means the benchmark's own size; the number of threads is already set for kernels.
+        """
+        assert name not in self._known, f"two benchmarks named {name}"
+
+        def register(prepare: Prepare) -> Prepare:
+            """Keep ``prepare`` under the name; returns it."""
+            self._known[name] = prepare
+            return prepare
+
+        return register
+
+    def include(self, other: Benchmarks) -> None:
+        """Add all of another register."""
+        assert not self._known.keys() & other._known.keys()
+        self._known |= other._known
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._known)
+
+    def run(
+        self,
+        names: Sequence[str] = (),
+        *,
+        size: int | None = None,
+        threads: int | None = None,
+        dtype: Dtype = "float64",
+        min_seconds: float = 1.0,
+    ) -> Iterator[Row]:
+        """Time the benchmarks named (all without names), one after another, giving each row as it is known.
+
+        Raises InputError on unknown names, sizes below 1 and threads that this machine does not have, before anything
+        is timed; a benchmark may refuse more.
+        """
+        from porescale.common.compiled.jit import set_threads
+
+        chosen = choose(names, self._known, "benchmark")
+        if size is not None and not 1 <= size <= LARGEST:
+            raise InputError(Fault("--size", size, "is out of range", "", f"1 to {LARGEST}"))
+        self.remarks = []
+        return self._rows(chosen, size, set_threads(threads), dtype, min_seconds)
+
+    def _rows(
+        self, names: Sequence[str], size: int | None, count: int, dtype: Dtype, min_seconds: float
+    ) -> Iterator[Row]:
+        """Prepare and time each benchmark."""
+        for name in names:
+            made = self._known[name](size, count, dtype)
+            works = [made] if isinstance(made, Work) else list(made)
+            titles = [f"{name}.{work.variant}" if work.variant else name for work in works]
+            for title, work in zip(titles, works, strict=True):
+                yield _measured(title, work, count, dtype, min_seconds)
+                if work.remark is not None:
+                    self.remarks.append(f"{title}: {work.remark()}")
+            for title, work in zip(titles[:-1], works, strict=False) if works[-1].variant == PLAIN else ():
+                self.remarks.append(f"{title}: {_part_of(works[-1], work):.2f} of the rate of {name}.{PLAIN}, in turns")
+
+
+def _part_of(plain: Work, work: Work) -> float:
+    """Rate of ``work`` over that of ``plain``, the median of rounds in which both are timed."""
+    return interleaved(work.call, plain.call).ratio * work.updates / plain.updates
+
+
+def _measured(name: str, work: Work, threads: int, dtype: Dtype, min_seconds: float) -> Row:
+    """Time one piece of work; if it is bound by memory, in turns with the copy that gives the bandwidth."""
+    share = None
+    if work.bytes:
+        from porescale.common.evidence.bandwidth import Copy
+
+        copy = Copy(threads, dtype)
+        work.call()
+        copy()
+        spent: list[float] = []
+        shares: list[float] = []
+        total = 0.0
+        while len(spent) < 5 or total < min_seconds:
+            spent.append(seconds_of(work.call))
+            total += spent[-1]
+            ceiling = copy.bytes / seconds_of(copy)
+            shares.append(work.updates * work.bytes / spent[-1] / ceiling)
+        seconds, share = statistics.median(spent), statistics.median(shares)
+    else:
+        seconds = rate(work.call, work.updates, min_seconds).seconds
+    return Row(name, work.size, threads, dtype, work.updates / seconds, work.unit, seconds, work.bytes, share)
+
+
+def copy_bandwidth(threads: int | None = None, dtype: Dtype = "float64", bytes: int = 2**28) -> float:
+    """Bytes per second read and written by an in-place pass over an array of ``bytes`` bytes, median."""
+    from porescale.common.evidence.bandwidth import Copy
+
+    copy = Copy(threads, dtype, bytes)
+    return rate(copy, copy.bytes, min_seconds=0.5).rate
+
+
+def table(rows: Sequence[Row]) -> Table:
+    """Rows as a table for people."""
+    from rich.table import Table
+    from rich.text import Text
+
+    made = Table(box=None, pad_edge=False, header_style="bold")
+    for heading in ("name", "size", "threads", "dtype", "rate", "", "s/call", "bytes", "of bandwidth"):
+        made.add_column(heading)
+    for row in rows:
+        share = None if row.share_of_bandwidth is None else f"{100 * row.share_of_bandwidth:.0f} %"
+        cells = (
+            row.name,
+            row.size,
+            row.threads,
+            row.dtype,
+            f"{row.rate:.4g}",
+            row.unit,
+            f"{row.seconds:.3g}",
+            row.bytes or None,
+        )
+        made.add_row(*(Text(shown(cell)) for cell in (*cells, share)))
+    return made

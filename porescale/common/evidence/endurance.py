@@ -1,0 +1,206 @@
+"""Endurance: what must not creep in a very long run of something small, watched from mark to mark, memory with it.
+
+Rooms register what lasts; `study endurance` runs it, a million steps by default, and writes a table and a picture.
+Quantities are taken as they are at marks, equal numbers of steps apart; each has a largest distance from its value at
+the first mark that counts, and a reason for it.  The peak of the process's memory must not grow from there on, either,
+and nothing must be found wrong: that is asked as often as a run asks.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+from porescale.common.cli.folders import write_whole
+from porescale.common.core.errors import Unstable
+from porescale.common.core.machine import peak_bytes
+from porescale.common.evidence.select import choose
+
+NAME = "endurance"
+MARKS = 20
+MEMORY = "peak memory (MiB)"
+GROWTH = 1.0
+"""MiB by which the peak may grow: the interpreter's own books; a leak of a byte a step is as much in a million."""
+FOUND = "found wrong ()"
+ASK_EVERY = 100
+"""Steps after which it is asked whether all is well: those of a run."""
+
+
+class Lasting(Protocol):
+    """Something that goes on."""
+
+    def advance(self, steps: int) -> None:
+        """So many steps more."""
+
+    def check(self) -> None:
+        """Unstable where something is wrong."""
+
+    def read(self) -> Mapping[str, float]:
+        """What is watched, by name with unit."""
+
+
+@dataclass(frozen=True)
+class Held:
+    """A quantity that must hold.  allowed : largest distance from its first value that counts, over ``steps`` steps."""
+
+    name: str
+    allowed: Callable[[int], float]
+    because: str
+
+
+@dataclass(frozen=True)
+class Endurance:
+    """What lasts.  start : makes it;  settles : marks before the first that counts;  share : of the steps asked for
+    that it does, where they are dear."""
+
+    name: str
+    title: str
+    start: Callable[[], Lasting]
+    held: tuple[Held, ...]
+    settles: int = 1
+    share: float = 1.0
+
+    def steps(self, asked: int) -> int:
+        """How many it does."""
+        return max(MARKS, round(self.share * asked))
+
+
+@dataclass(frozen=True)
+class Line:
+    """A quantity over a run; the fields are the JSON keys.  at : steps;  values : at these marks;  off : largest
+    distance from the first value that counts;  allowed, because : see Held;  holds : whether off is within."""
+
+    flow: str
+    quantity: str
+    steps: int
+    at: list[int]
+    values: list[float]
+    off: float
+    allowed: float
+    because: str
+    holds: bool
+    seconds: float
+
+
+Say = Callable[[str], object]
+
+
+def endure(it: Endurance, steps: int, say: Say = lambda text: None) -> list[Line]:
+    """Run it for ``steps`` steps, or its share: lines of each quantity, of what was found wrong, and of memory."""
+    steps = it.steps(steps)
+    run, at, begun = it.start(), [0], time.perf_counter()
+    seen: dict[str, list[float]] = {name: [float(value)] for name, value in run.read().items()}
+    memory, found = [peak_bytes() / 2**20], [0.0]
+    for mark in range(1, MARKS + 1):
+        to = steps * mark // MARKS
+        found.append(found[-1] + _advance(run, to - at[-1], say))
+        at.append(to)
+        for name, value in run.read().items():
+            seen[name].append(float(value))
+        memory.append(peak_bytes() / 2**20)
+        spent = time.perf_counter() - begun
+        say(f"{it.name}: {to} of {steps} steps, about {spent / mark * (MARKS - mark):.0f} s left")
+    seconds = time.perf_counter() - begun
+
+    def line(name: str, values: list[float], allowed: float, because: str, first: int = it.settles) -> Line:
+        """The verdict on one quantity: how far its values leave the first that counts, against ``allowed``."""
+        counted = values[first:]
+        off = max(abs(value - counted[0]) for value in counted)
+        return Line(it.name, name, steps, at, values, off, allowed, because, off <= allowed, round(seconds, 3))
+
+    # Before the first mark kernels are compiled or loaded: memory counts from there.
+    lines = [line(each.name, seen[each.name], each.allowed(steps), each.because) for each in it.held]
+    asked = f"all is well, asked every {ASK_EVERY} steps"
+    return [
+        *lines, line(FOUND, found, 0.0, asked, 0),
+        line(MEMORY, memory, GROWTH, "nothing is kept from step to step", max(1, it.settles)),
+    ]  # fmt: skip
+
+
+def _advance(run: Lasting, steps: int, say: Say) -> int:
+    """So many steps; how often something was found wrong."""
+    wrong = 0
+    for done in range(0, steps, ASK_EVERY):
+        run.advance(min(ASK_EVERY, steps - done))
+        try:
+            run.check()
+        except Unstable as error:
+            wrong += 1
+            say(str(error))
+    return wrong
+
+
+class Endurances:
+    """A register, in the order of registration."""
+
+    def __init__(self, known: Sequence[Endurance]) -> None:
+        self._known = {it.name: it for it in known}
+
+    def __getitem__(self, name: str) -> Endurance:
+        return self._known[name]
+
+    def chosen(self, names: Sequence[str] = ()) -> list[Endurance]:
+        """By name, all without names; InputError on unknown ones."""
+        return [self._known[name] for name in choose(names, self._known, "flow")]
+
+
+def write(folder: Path, about: Mapping[str, Any], lines: Sequence[Line]) -> None:
+    """endurance.json, .md and .png into ``folder``, each whole or not at all.  about : command, machine, date."""
+    folder.mkdir(parents=True, exist_ok=True)
+    made = {**about, "lines": [asdict(line) for line in lines]}
+    write_whole(folder / f"{NAME}.json", (json.dumps(made, indent=1, allow_nan=False) + "\n").encode())
+    write_whole(folder / f"{NAME}.md", markdown(str(about.get("command", "")), lines).encode())
+    write_whole(folder / f"{NAME}.png", picture(lines))
+
+
+def finished(folder: Path) -> dict[str, list[Line]]:
+    """Lines of the flows that an earlier call finished in ``folder``, by flow; {} where there are none."""
+    try:
+        rows = json.loads((folder / f"{NAME}.json").read_bytes())["lines"]
+        lines = [Line(**row) for row in rows]
+    except (OSError, ValueError, KeyError, TypeError):
+        return {}
+    return {flow: [line for line in lines if line.flow == flow] for flow in dict.fromkeys(it.flow for it in lines)}
+
+
+def markdown(command: str, lines: Sequence[Line]) -> str:
+    """The table."""
+    rows = [f"Written by `{command}`.", "", f"![marks]({NAME}.png)", "",
+            "| flow | steps | quantity | first, last | largest change | allowed | because | seconds |",
+            "|---|---|---|---|---|---|---|---|"]  # fmt: skip
+    for line in lines:
+        verdict = f"{line.off:.3g}" if line.holds else f"**{line.off:.3g}**"
+        ends = f"{line.values[1]:.6g}, {line.values[-1]:.6g}"
+        cells = (line.flow, line.steps, line.quantity, ends, verdict, f"{line.allowed:.3g}", line.because)
+        rows.append(f"| {' | '.join(map(str, cells))} | {line.seconds:.0f} |")
+    return "\n".join(rows) + "\n"
+
+
+def picture(lines: Sequence[Line]) -> bytes:
+    """A small plot for each quantity of each flow, its values over steps: a PNG."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    flows = list(dict.fromkeys(line.flow for line in lines))
+    widest = max(sum(line.flow == flow for line in lines) for flow in flows)
+    figure = Figure(figsize=(3.0 * widest, 2.2 * len(flows)), layout="constrained")
+    FigureCanvasAgg(figure)
+    grid = figure.subplots(len(flows), widest, squeeze=False)
+    for row, flow in zip(grid, flows, strict=True):
+        mine = [line for line in lines if line.flow == flow]
+        for axes, line in zip(row, mine, strict=False):
+            axes.plot(line.at, line.values, "o-", markersize=2.5, linewidth=0.8, color="C0" if line.holds else "C3")
+            axes.set_title(f"{flow}: {line.quantity}", fontsize=7)
+            axes.tick_params(labelsize=6)
+            axes.xaxis.get_offset_text().set_fontsize(6)
+            axes.yaxis.get_offset_text().set_fontsize(6)
+        for axes in row[len(mine) :]:
+            axes.set_axis_off()
+    written = io.BytesIO()
+    figure.savefig(written, format="png", dpi=110)
+    return written.getvalue()

@@ -1,0 +1,177 @@
+"""Studies: flows tried over ranges of two numbers, once for each law, and what became of them.
+
+Rooms register their flows; `study stability` runs them and writes the map (study_files.py).  A flow that stayed
+within sense is stable; it is also right if its error is known and at most what the flow tolerates.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from porescale.common.evidence.select import choose
+
+RIGHT, STABLE, UNSTABLE = "right", "stable", "unstable"
+"""The verdicts."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A number that is varied.  name : with its unit, if any;  values : in the order of the picture, from mild to
+    extreme;  quick : those of the short version.
+    """
+
+    name: str
+    values: tuple[float, ...]
+    quick: tuple[float, ...]
+
+    def chosen(self, quick: bool) -> tuple[float, ...]:
+        """The values of the long or the short version."""
+        return self.quick if quick else self.values
+
+
+@dataclass(frozen=True)
+class Tried:
+    """What a flow came to.
+
+    stable : never beyond sense;  error : distance from what is right, >= 0, as the flow defines it, None if it cannot
+    be said;  numbers : further ones worth keeping, by name.
+    """
+
+    stable: bool
+    error: float | None = None
+    numbers: Mapping[str, float] | None = None
+
+
+@dataclass(frozen=True)
+class Row:
+    """One try; the fields are the JSON keys.  ran : False where the verdict follows from a neighbour's."""
+
+    flow: str
+    law: str
+    x: float
+    y: float
+    verdict: str
+    error: float | None
+    numbers: Mapping[str, float]
+    ran: bool
+    seconds: float
+
+    def as_dict(self) -> dict[str, Any]:
+        """JSON-able; numbers that are not finite become null."""
+        made = asdict(self)
+        made["error"] = _finite(self.error)
+        made["seconds"] = round(self.seconds, 3)
+        made["numbers"] = {name: _finite(value) for name, value in self.numbers.items()}
+        return made
+
+
+Measure = Callable[[str, float, float], Tried]
+
+
+@dataclass(frozen=True)
+class Flow:
+    """A registered flow.
+
+    title : one line;  x, y : what is varied;  laws : names, given whether the short version is asked for;  right :
+    largest error that counts as right;  because : what the error is and why that much;  judged : largest x at which an
+    error can be told;  monotone : once unstable at an x, so beyond it: the limit is found by halving;  limit : the one
+    of the numbers that instability follows, "" if none.
+    """
+
+    name: str
+    title: str
+    x: Axis
+    y: Axis
+    laws: Callable[[bool], Sequence[str]]
+    right: float
+    because: str
+    measure: Measure
+    judged: float = math.inf
+    monotone: bool = False
+    limit: str = ""
+
+    def count(self, quick: bool) -> int:
+        """Laws times values of y: the pieces of work that ``run`` is asked for."""
+        return len(self.laws(quick)) * len(self.y.chosen(quick))
+
+    def run(self, law: str, y: float, quick: bool) -> list[Row]:
+        """All values of x, in order."""
+        values = self.x.chosen(quick)
+        if not self.monotone:
+            return [self._tried(law, x, y) for x in values]
+        known = {x: self._tried(law, x, y) for x in values if x <= self.judged}
+        low, high = -1, len(values)  # all up to low are stable, all from high on are not
+        for at, x in enumerate(values):
+            if x in known and known[x].verdict == UNSTABLE:
+                high = at
+                break
+            low = at if x in known else low
+        while high - low > 1:
+            middle = (low + high) // 2
+            row = known[values[middle]] = self._tried(law, values[middle], y)
+            low, high = (low, middle) if row.verdict == UNSTABLE else (middle, high)
+        return [known.get(x) or self._inferred(law, x, y, at <= low) for at, x in enumerate(values)]
+
+    def _inferred(self, law: str, x: float, y: float, stable: bool) -> Row:
+        return Row(self.name, law, x, y, STABLE if stable else UNSTABLE, None, {}, False, 0.0)
+
+    def _tried(self, law: str, x: float, y: float) -> Row:
+        start = time.perf_counter()
+        found = self.measure(law, x, y)
+        error = None if found.error is None else float(found.error)
+        verdict = UNSTABLE
+        if found.stable:
+            verdict = RIGHT if error is not None and error <= self.right else STABLE
+        seconds = time.perf_counter() - start
+        return Row(self.name, law, float(x), float(y), verdict, error, dict(found.numbers or {}), True, seconds)
+
+
+class Stability:
+    """A register of flows, in the order of registration.  Names are ``room.what``."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, Flow] = {}
+
+    def flow(self, name: str, **parts: Any) -> Callable[[Measure], Measure]:
+        """Register the decorated ``(law, x, y) -> Tried`` as a flow made of ``parts``, see :class:`Flow`."""
+        assert name not in self._known, f"two flows named {name}"
+
+        def register(measure: Measure) -> Measure:
+            """Keep it; returns it as it is."""
+            made = Flow(name=name, measure=measure, **parts)
+            assert made.right >= 0
+            assert made.because, "a tolerance has a reason"
+            self._known[name] = made
+            return measure
+
+        return register
+
+    def include(self, other: Stability) -> None:
+        """Add all of another register."""
+        assert not self._known.keys() & other._known.keys()
+        self._known |= other._known
+
+    def __iter__(self) -> Iterator[Flow]:
+        return iter(self._known.values())
+
+    def chosen(self, names: Sequence[str] = ()) -> list[Flow]:
+        """Flows by name (a room stands for all its own), without names all; InputError on unknown names."""
+        return [self._known[name] for name in choose(names, self._known, "flow")]
+
+
+def holds_up_to(rows: Iterable[Row], number: str) -> tuple[float, float]:
+    """The largest value of a number below which every try was stable, 0 if none, and the least at which one was not.
+
+    The second is infinite where all were stable.  Only of tries that ran.
+    """
+    pairs = [(row.numbers[number], row.verdict == UNSTABLE) for row in rows if number in row.numbers]
+    worst = min((value for value, bad in pairs if bad), default=math.inf)
+    return max((value for value, bad in pairs if not bad and value < worst), default=0.0), worst
+
+
+def _finite(value: float | None) -> float | None:
+    return value if value is not None and math.isfinite(value) else None

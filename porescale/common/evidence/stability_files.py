@@ -1,0 +1,163 @@
+"""The files of a stability map: stability.json, .csv, .md and .png, each whole or not at all."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from porescale.common.cli.folders import write_whole
+from porescale.common.cli.report import shown
+from porescale.common.evidence.stability import RIGHT, STABLE, UNSTABLE, Axis, Flow, Row, holds_up_to
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+NAME = "stability"
+SIGNS = {RIGHT: "●", STABLE: "○", UNSTABLE: "×"}
+"""A verdict in the table."""
+COLOURS = {RIGHT: "#2c7fb8", STABLE: "#fec44f", UNSTABLE: "#a50f15"}
+"""A verdict in the picture: three hues that stay apart without colour, too."""
+
+
+def write(folder: Path, command: str, version: str, flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> None:
+    """Write the four files into ``folder``, which is made if it is not there."""
+    folder.mkdir(parents=True, exist_ok=True)
+    write_whole(folder / f"{NAME}.json", json_text(command, version, flows, rows, quick).encode())
+    write_whole(folder / f"{NAME}.csv", csv_text(rows).encode())
+    write_whole(folder / f"{NAME}.md", markdown(command, flows, rows, quick).encode())
+    write_whole(folder / f"{NAME}.png", picture(flows, rows, quick))
+
+
+def as_dict(flow: Flow, quick: bool) -> dict[str, Any]:
+    """What a flow is, JSON-able."""
+    axes = {letter: {"name": axis.name, "values": axis.chosen(quick)} for letter, axis in _axes(flow)}
+    return {
+        "name": flow.name, "title": flow.title, **axes, "laws": list(flow.laws(quick)), "right": flow.right,
+        "because": flow.because, "limit": flow.limit,
+    }  # fmt: skip
+
+
+def _axes(flow: Flow) -> tuple[tuple[str, Axis], tuple[str, Axis]]:
+    return ("x", flow.x), ("y", flow.y)
+
+
+def json_text(command: str, version: str, flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> str:
+    """Flows and rows, from which checks are derived; a row a line, so that two maps can be compared."""
+    made = {
+        "command": command, "version": version, "quick": quick, "flows": [as_dict(flow, quick) for flow in flows],
+    }  # fmt: skip
+    head = json.dumps(made, indent=1, allow_nan=False).removesuffix("\n}")
+    lines = (json.dumps(row.as_dict(), allow_nan=False) for row in rows)
+    return head + ',\n "rows": [\n  ' + ",\n  ".join(lines) + "\n ]\n}\n"
+
+
+def csv_text(rows: Sequence[Row]) -> str:
+    """One line for each try."""
+    out = io.StringIO()
+    lines = csv.writer(out, lineterminator="\n")
+    names = sorted({name for row in rows for name in row.numbers})
+    lines.writerow(["flow", "law", "x", "y", "verdict", "error", "ran", *names])
+    for row in rows:
+        error = "" if row.error is None else f"{row.error:.4g}"
+        more = [f"{row.numbers[name]:.4g}" if name in row.numbers else "" for name in names]
+        lines.writerow([row.flow, row.law, f"{row.x:g}", f"{row.y:g}", row.verdict, error, int(row.ran), *more])
+    return out.getvalue()
+
+
+def markdown(command: str, flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> str:
+    """A table for each flow: laws down, x across, and in each place a sign for each y."""
+    verdict = {(row.flow, row.law, row.x, row.y): row.verdict for row in rows}
+    legend = ", ".join(f"{SIGNS[name]} {text}" for name, text in _LEGEND.items())
+    parts = [
+        f"# Where it stays stable, and where it is right\n\nMade by `{command}`. {legend}.\n\n![map]({NAME}.png)\n"
+    ]
+    for flow in flows:
+        xs, ys = flow.x.chosen(quick), flow.y.chosen(quick)
+        parts.append(f"\n## {flow.name}\n\n{flow.title}. Right: {flow.because}.\n")
+        inside = f"in each place {flow.y.name} {_several(ys)} from left to right" if len(ys) > 1 else _single(flow, ys)
+        parts.append(f"Across {flow.x.name}; {inside}.\n")
+        more = [f"{flow.limit}: holds up to", "fails from"] if flow.limit else []
+        parts.append("| law | " + " | ".join([*map(shown, xs), *more]) + " |")
+        parts.append("|---|" + "---|" * (len(xs) + len(more)))
+        for law in flow.laws(quick):
+            cells = ["".join(SIGNS[verdict[flow.name, law, x, y]] for y in ys) for x in xs]
+            mine = [row for row in rows if (row.flow, row.law) == (flow.name, law)]
+            cells += [_edge(value) for value in holds_up_to(mine, flow.limit)] if flow.limit else []
+            parts.append(f"| {law} | " + " | ".join(cells) + " |")
+    return "\n".join(parts) + "\n"
+
+
+def _edge(value: float) -> str:
+    return f"{value:.3g}" if math.isfinite(value) else "–"
+
+
+_LEGEND = {RIGHT: "stable and right", STABLE: "stable", UNSTABLE: "unstable"}
+
+
+def _several(values: Sequence[float]) -> str:
+    return ", ".join(shown(value) for value in values)
+
+
+def _single(flow: Flow, values: Sequence[float]) -> str:
+    return f"{flow.y.name} {shown(values[0])}"
+
+
+def picture(flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> bytes:
+    """A panel for each flow, as a PNG: laws down, each with a strip for each y, x across; many in two columns."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
+
+    columns = _columns(flows, quick)
+    tallest = max(sum(_height(flow, quick) for flow in column) for column in columns)
+    figure = Figure(figsize=(9.5 * len(columns), 1.0 + tallest), layout="constrained")
+    FigureCanvasAgg(figure)
+    parts = figure.subfigures(1, len(columns), squeeze=False)[0]
+    for part, column in zip(parts, columns, strict=True):
+        ratios = [_height(flow, quick) for flow in column]
+        for flow, axes in zip(
+            column, part.subplots(len(column), 1, squeeze=False, height_ratios=ratios)[:, 0], strict=True
+        ):
+            _panel(axes, flow, rows, quick)
+    patches = [Patch(color=COLOURS[name], label=text) for name, text in _LEGEND.items()]
+    figure.legend(handles=patches, loc="outside upper center", ncols=len(patches), frameon=False)
+    out = io.BytesIO()
+    figure.savefig(out, dpi=100, metadata={"Software": None})
+    return out.getvalue()
+
+
+def _height(flow: Flow, quick: bool) -> float:
+    """Of its panel, inches."""
+    return 1.4 + 0.09 * flow.count(quick)
+
+
+def _columns(flows: Sequence[Flow], quick: bool) -> list[Sequence[Flow]]:
+    """Flows in one column, or more than two in the two, one after the other, that differ least in height."""
+    if len(flows) < 3:
+        return [flows]
+    heights = [_height(flow, quick) for flow in flows]
+    cut = min(range(1, len(flows)), key=lambda k: abs(sum(heights[:k]) - sum(heights[k:])))
+    return [flows[:cut], flows[cut:]]
+
+
+def _panel(axes: Axes, flow: Flow, rows: Sequence[Row], quick: bool) -> None:
+    laws, xs, ys = list(flow.laws(quick)), flow.x.chosen(quick), flow.y.chosen(quick)
+    for row in rows:
+        if row.flow == flow.name:
+            strip = laws.index(row.law) * (len(ys) + 0.6) + ys.index(row.y)
+            at = xs.index(row.x)
+            axes.broken_barh([(at - 0.48, 0.96)], (strip, 0.92), color=COLOURS[row.verdict])
+    axes.set_xticks(range(len(xs)), [shown(x) for x in xs])
+    axes.set_yticks([k * (len(ys) + 0.6) + len(ys) / 2 for k in range(len(laws))], laws, fontsize=8)
+    axes.set_xlim(-0.6, len(xs) - 0.4)
+    axes.invert_yaxis()
+    axes.set_xlabel(flow.x.name)
+    down = f"{flow.y.name} {_several(ys)} downwards" if len(ys) > 1 else _single(flow, ys)
+    axes.set_title(f"{flow.title}\n{down}", loc="left", fontsize=9)
+    axes.tick_params(length=0)
+    axes.spines[:].set_visible(False)

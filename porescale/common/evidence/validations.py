@@ -1,0 +1,165 @@
+"""Validations: numbers the code computes beside numbers known from elsewhere, with reasoned tolerances.
+
+Rooms register theirs; `verify` and the tests run the same rows.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+import traceback
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+from porescale.common.cli.report import shown
+from porescale.common.evidence.select import choose
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+Numbers = float | Sequence[float]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What a validation found.
+
+    reference, measured : one number or several, same unit;  error : distance between them, >= 0, as the
+    validation defines it (it is compared with the tolerance).
+    """
+
+    reference: Numbers
+    measured: Numbers
+    error: float
+
+
+@dataclass(frozen=True)
+class Row:
+    """The outcome of a validation, as `verify` prints it; the fields are the JSON keys."""
+
+    name: str
+    source: str
+    reference: Numbers | None
+    measured: Numbers | None
+    error: float | None
+    tolerance: float
+    because: str
+    seconds: float
+    passed: bool
+
+    def as_dict(self) -> dict[str, Any]:
+        """JSON-able; numbers that are not finite become null."""
+        return {key: _finite(value) for key, value in asdict(self).items()}
+
+
+@dataclass(frozen=True)
+class Validation:
+    """A registered validation.
+
+    source : paper, figure or exact solution;  because : how the tolerance follows;  slow : only on demand.
+    """
+
+    name: str
+    source: str
+    because: str
+    tolerance: float
+    slow: bool
+    measure: Callable[[], Measured]
+
+    def run(self) -> Row:
+        """Measure once.  An exception counts as failed, with its text in ``because``; nan never passes."""
+        start = time.perf_counter()
+        reference: Numbers | None = None
+        measured: Numbers | None = None
+        error, because = math.nan, self.because
+        try:
+            found = self.measure()
+            reference, measured, error = found.reference, found.measured, float(found.error)
+            if error < 0:
+                raise ValueError(f"an error is a distance and cannot be {error}")
+        except Exception as raised:  # whatever a validation does must not end the others
+            place = traceback.extract_tb(raised.__traceback__)[-1]
+            text = " ".join(str(raised).split())
+            because = f"{type(raised).__name__}: {text} ({place.name}, line {place.lineno})"
+            error = math.nan
+        seconds = time.perf_counter() - start
+        passed = error <= self.tolerance
+        row_error = None if math.isnan(error) else error
+        return Row(self.name, self.source, reference, measured, row_error, self.tolerance, because, seconds, passed)
+
+
+class Validations:
+    """A register of validations, in the order of registration.  Names are ``room.what``."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, Validation] = {}
+
+    def row(
+        self, name: str, *, source: str, because: str, tolerance: float, slow: bool = False
+    ) -> Callable[[Callable[[], Measured]], Callable[[], Measured]]:
+        """Register the decorated function, which measures and returns a `Measured`."""
+        assert name not in self._known, f"two validations named {name}"
+        assert tolerance >= 0
+        assert source, "a validation names its source"
+        assert because, "a tolerance has a reason"
+
+        def register(measure: Callable[[], Measured]) -> Callable[[], Measured]:
+            """Keep ``measure`` as the validation; returns it."""
+            self._known[name] = Validation(name, source, because, tolerance, slow, measure)
+            return measure
+
+        return register
+
+    def include(self, other: Validations) -> None:
+        """Add all of another register."""
+        assert not self._known.keys() & other._known.keys()
+        self._known |= other._known
+
+    def __iter__(self) -> Iterator[Validation]:
+        return iter(self._known.values())
+
+    def __getitem__(self, name: str) -> Validation:
+        return self._known[choose([name], self._known, "validation")[0]]
+
+    def chosen(self, names: Sequence[str] = (), *, slow: bool = False) -> list[Validation]:
+        """Validations by name (a room stands for all its own), without names all; slow ones by name or ``slow``.
+
+        Raises InputError on unknown names, suggesting the nearest.
+        """
+        found = [self._known[name] for name in choose(names, self._known, "validation")]
+        return [item for item in found if slow or not item.slow or item.name in names]
+
+    def run(self, names: Sequence[str] = (), *, slow: bool = False) -> list[Row]:
+        """Run those `chosen`."""
+        return [item.run() for item in self.chosen(names, slow=slow)]
+
+
+def table(rows: Sequence[Row]) -> Table:
+    """Rows as a table for people: numbers in one line, below it where they come from and why the tolerance."""
+    from rich.table import Table
+    from rich.text import Text
+
+    made = Table(box=None, pad_edge=False, show_header=False)
+    made.add_column()
+    made.add_column(overflow="fold")
+    for row in rows:
+        verdict = Text("pass", style="green") if row.passed else Text("FAIL", style="bold red")
+        text = Text(row.name, style="bold")
+        text.append(
+            f"\nreference {shown(row.reference)}, measured {shown(row.measured)}, "
+            f"error {shown(row.error)}, tolerance {shown(row.tolerance)}",
+            style="not bold",
+        )
+        text.append(f"\n{row.source}; {row.because}", style="not bold dim")
+        made.add_row(verdict, text)
+    return made
+
+
+def _finite(value: Any) -> Any:
+    """``value`` with numpy numbers and arrays as plain ones, and nan and infinities as None."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return [_finite(part) for part in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,106 @@
+"""Cells: which points lie near each other, by a counting sort into a regular grid of cells.
+
+Stable (points keep their index order inside a cell), linear in points plus cells, no allocation.
+Points outside the grid belong to the nearest border cell (or to their periodic image's cell), so a search
+over a window of cells stays complete wherever points are.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from porescale.common.compiled.jit import inline, kernel
+
+
+@inline
+def minimum_image(dx, period):
+    """Distance component between nearest periodic images, m; ``period`` 0: side is not periodic.
+
+    ``dx - period * nearest integer(dx / period)``: in [-period/2, period/2] for any ``dx``.  The reciprocal does
+    not depend on ``dx``: it leaves the loop that this is used in, where a division would cost most of a pair.
+    """
+    if period > 0.0:
+        dx -= period * np.rint(dx * (1.0 / period))
+    return dx
+
+
+@inline
+def tilted_image(dx, dy, period_x, period_y, tilt):
+    """Components between nearest images, m, where the image one ``period_y`` higher lies ``tilt`` (m) to the right.
+
+    Exact for pairs nearer than half of either period, whatever the tilt; tilt 0: ``minimum_image`` of both, to the bit.
+    Source: Lees & Edwards, J. Phys. C 5 (1972) 1921.
+    """
+    if tilt != 0.0:
+        dx -= tilt * np.rint(dy * (1.0 / period_y))
+    return minimum_image(dx, period_x), minimum_image(dy, period_y)
+
+
+@inline
+def wrapped(x, lower, period):
+    """Coordinate (m) of the image of ``x`` in [lower, lower + period]; ``period`` 0: ``x`` itself."""
+    if period > 0.0:
+        x -= period * np.floor((x - lower) / period)
+    return x
+
+
+@inline
+def untilted(x, y, lower_y, period_y, tilt):
+    """First coordinate (m) of the image of (x, y) that lies in the box along y: ``tilt`` further left per period."""
+    if tilt != 0.0:
+        x -= tilt * np.floor((y - lower_y) / period_y)
+    return x
+
+
+@inline
+def cell_of(x, lower, inverse_size, number):
+    """Index 0 … number-1 of the cell that holds coordinate ``x``, clamped to the grid.
+
+    Monotone in ``x``, also where it clamps: points between two others lie in cells between theirs.
+    """
+    place = np.floor((x - lower) * inverse_size)
+    if place < 0.0:  # clamped as float: a far point must not overflow the integer
+        return 0
+    if place > number - 1.0:
+        return number - 1
+    return int(place)
+
+
+def grid_shape(lower: tuple[float, float], upper: tuple[float, float], size: float, limit: int) -> tuple[int, int]:
+    """Columns and rows of cells at least ``size`` (m) wide that fill the box, at most about ``limit`` in all.
+
+    A box far larger than its points need would otherwise cost more in empty cells than in points.
+    """
+    width, height = upper[0] - lower[0], upper[1] - lower[1]
+    size = max(size, (width * height / limit) ** 0.5, width / limit, height / limit)
+    if not size > 0.0:
+        return 1, 1
+    return max(1, int(width / size)), max(1, int(height / size))
+
+
+@kernel
+def sort_into_cells(
+    x, lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y, tilt, cell, start, order
+):  # fmt: skip
+    """Counting sort of points ``x`` (n, 2) m into ``rows`` × ``columns`` cells, row after row.
+
+    Overwrites ``cell`` (n,) cell of each point, ``start`` (columns rows + 1,) first slot of each cell and
+    ``order`` (n,) points by cell, ascending inside a cell.  ``inverse_*``: cells per metre; ``period_*`` m or
+    0; ``tilt`` m: see tilted_image.  Not checked: positions must be finite.
+    """
+    n = x.shape[0]
+    start[:] = 0
+    for i in range(n):
+        across = untilted(x[i, 0], x[i, 1], lower_y, period_y, tilt)
+        column = cell_of(wrapped(across, lower_x, period_x), lower_x, inverse_x, columns)
+        row = cell_of(wrapped(x[i, 1], lower_y, period_y), lower_y, inverse_y, rows)
+        cell[i] = row * columns + column
+        start[cell[i] + 1] += 1
+    for c in range(columns * rows):
+        start[c + 1] += start[c]
+    for i in range(n):  # start[c] now walks to the first slot of cell c + 1 …
+        order[start[cell[i]]] = i
+        start[cell[i]] += 1
+    for c in range(columns * rows, 0, -1):  # … and is shifted back
+        start[c] = start[c - 1]
+    start[0] = 0

@@ -1,0 +1,95 @@
+"""Sizes of discs: grading curves met to within one disc, and lognormal sizes.  Pure geometry.
+
+Mass is area here: discs of one density.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.core.errors import Fault, InputError
+
+Floats = NDArray[np.float64]
+
+Curve = Sequence[tuple[float, float]]
+"""A grading curve: (diameter in m, percent finer by mass), both ascending, 0 to 100 %; straight over log diameter."""
+
+WIDEST = 10.0
+"""Largest over smallest diameter: the pair search has one cutoff for all, so that wider mixtures cost too much."""
+TAIL = 2.5
+"""Lognormal sizes end at so many standard deviations of the logarithm."""
+
+
+def judge_curve(curve: Curve, key: str = "grading") -> list[Fault]:
+    """What is wrong with a curve."""
+    form = "pairs (diameter, percent finer), both ascending"
+    if len(curve) < 2:
+        return [Fault(key, len(curve), "has too few points", "", ">= 2", form)]
+    diameter, finer = np.array(curve, dtype=np.float64).T
+    faults = []
+    if not np.all(np.isfinite(diameter)) or diameter[0] <= 0.0 or np.any(np.diff(diameter) <= 0.0):
+        faults.append(Fault(key, str(diameter.tolist()), "diameters must ascend", "m", "> 0", form))
+    elif diameter[-1] > WIDEST * diameter[0] * (1.0 + 1e-9):
+        problem = f"spans diameters of 1 to {diameter[-1] / diameter[0]:.3g}"
+        faults.append(Fault(key, None, problem, "", f"1 to {WIDEST:g}", "cut off the finest grains"))
+    if finer[0] != 0.0 or finer[-1] != 100.0 or np.any(np.diff(finer) < 0.0):
+        problem = "percent finer must ascend from 0 to 100"
+        faults.append(Fault(key, str(finer.tolist()), problem, "%", "0 to 100", form))
+    return faults
+
+
+def graded_radii(curve: Curve, area: float) -> Floats:
+    """Radii (n,) m, ascending, of discs of ``area`` (m²) together that follow a grading curve.
+
+    Walking up the curve, each disc takes the size in the middle of the share of mass that is its own: wherever one
+    looks, the mass finer differs from the curve's by at most half a disc of that size, and so does the whole area.
+    Raises InputError for a curve that is none, or an area that no disc of the finest size fits.
+    """
+    faults = judge_curve(curve)
+    if faults:
+        raise InputError(faults)
+    diameter, finer = np.array(curve, dtype=np.float64).T
+    share, logs = finer / 100.0, np.log(diameter)
+    chosen: list[float] = []
+    done = 0.0
+    while done < 1.0:
+        d = float(np.exp(np.interp(done, share, logs)))
+        for _ in range(30):  # own share = pi d²/4 A, d at its middle: contracts as a disc is a small share
+            half = np.pi * d * d / (8.0 * area)
+            d = float(np.exp(np.interp(min(done + half, 1.0), share, logs)))
+        own = np.pi * d * d / (4.0 * area)
+        if done + 0.5 * own > 1.0:
+            break
+        chosen.append(0.5 * d)
+        done += own
+    if not chosen:
+        repair = "make the rectangle larger"
+        raise InputError(Fault("grading", float(diameter[0]), "not one grain fits the area", "m", repair=repair))
+    return np.array(chosen)
+
+
+def lognormal_radii(count: int, diameter: float, spread: float) -> Floats:
+    """Radii (count,) m, ascending, of lognormal diameters of mean ``diameter`` (m), ``spread`` that of their logarithm.
+
+    Evenly spaced quantiles, cut off at 2.5 standard deviations and scaled to the mean.  Raises InputError when the
+    largest is more than ten times the smallest.
+    """
+    if not 0.0 <= spread <= np.log(WIDEST) / (2.0 * TAIL):
+        allowed = f"0 to {np.log(WIDEST) / (2.0 * TAIL):.3g}"
+        raise InputError(Fault("log_spread", spread, "sizes would span more than 1 to 10", "", allowed))
+    from scipy.special import ndtr, ndtri  # takes longer to import than a scene to be judged
+
+    low = float(ndtr(-TAIL))
+    quantile = low + (1.0 - 2.0 * low) * (np.arange(count) + 0.5) / max(count, 1)
+    relative = np.exp(spread * ndtri(quantile))
+    return np.asarray(0.5 * diameter * relative / (relative.mean() if count else 1.0))
+
+
+def percent_finer(radius: Floats, diameter: Floats) -> Floats:
+    """Percent of the mass of discs of ``radius`` (n,) m that is finer than each ``diameter`` (k,) m, (k,)."""
+    size = np.sort(2.0 * radius)
+    mass = np.concatenate(([0.0], np.cumsum(size**2)))
+    return np.asarray(100.0 * mass[np.searchsorted(size, diameter)] / mass[-1])

@@ -1,0 +1,185 @@
+"""The inside of a picture: field, walls, points, lines, arrows as pixels.  Row 0 of an image is its top."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+
+from porescale.common.pictures.look import GRAIN, PAPER, PLATE, RIM, WALL, Survey, magnitude, rgb
+from porescale.common.pictures.shapes import paint_marks, paint_shapes
+from porescale.common.record.model import Array, Cloud, Grid, Snapshot
+
+SHIFT = 4
+"""OpenCV coordinates in sixteenths of a pixel."""
+ONE = 1 << SHIFT
+SPECK = 4.0
+"""Arrows shorter than this many pixels say nothing."""
+
+
+class Canvas:
+    """Maps metres to pixels of an image of ``width`` x ``height`` that shows the survey's view."""
+
+    def __init__(self, survey: Survey, width: int, height: int) -> None:
+        self.survey, self.look = survey, survey.look
+        self.width, self.height = width, height
+        left, right, bottom, top = survey.view
+        self.left, self.top = left, top
+        self.per_x, self.per_y = width / (right - left), height / (top - bottom)
+
+    def pixels(self, points: Array) -> Array:
+        """(n, 2) m -> (n, 2) pixels as OpenCV counts them: pixel (0, 0) has its centre at 0, 0."""
+        at = np.empty((len(points), 2))
+        at[:, 0] = (points[:, 0] - self.left) * self.per_x - 0.5
+        at[:, 1] = (self.top - points[:, 1]) * self.per_y - 0.5
+        return at
+
+    def draw(self, snapshot: Snapshot, over_field: Array | None = None) -> Array:
+        """The image of a snapshot, (height, width, 3) uint8 RGB.
+
+        over_field : RGBA image of the same size, blended over the field and under the points (streamlines).
+        """
+        grid, cloud = self.look.painted(snapshot), self.look.drawn(snapshot)
+        image = np.full((self.height, self.width, 3), rgb(PAPER), np.uint8)
+        if grid is not None and self.survey.field is not None:
+            self._field(image, grid)
+        if over_field is not None:
+            _blend(image, over_field[..., 3] / 255.0, over_field[..., :3])
+        if cloud is not None and len(cloud.position):
+            self._cloud(image, cloud)
+        shapes = self.look.shaped(snapshot)
+        if shapes is not None:
+            paint_shapes(image, shapes, self.pixels(shapes.position), self.per_x, self._colours(shapes))
+        if grid is not None and self.look.arrows:
+            self._arrows(image, grid)
+        lines = self.look.lines(snapshot) if callable(self.look.lines) else self.look.lines
+        for ends in lines:
+            at, thick = self.pixels(np.array(ends, float)), max(2, self.width // 250)
+            self._line(image, at, rgb(RIM), thick + 2)
+            self._line(image, at, rgb(PLATE), thick)
+        if self.look.marks and len(marks := self.look.marks(snapshot)):
+            paint_marks(image, self.pixels(np.array(marks, float).reshape(-1, 2)).reshape(-1, 2, 2))
+        return image
+
+    def _field(self, image: Array, grid: Grid) -> None:
+        assert self.survey.field is not None
+        rows, columns = self._inside(grid)
+        part = image[rows, columns]
+        values = self._resampled(grid, magnitude(grid.cells[self.look.field], 2))
+        part[:] = self.survey.field.colours(values[rows, columns])
+        if self.look.walls in grid.cells:
+            share = self._resampled(grid, grid.cells[self.look.walls])[rows, columns]
+            _blend(part, np.clip(share, 0, 1), rgb(WALL))
+
+    def _inside(self, grid: Grid) -> tuple[slice, slice]:
+        """Rows and columns of the pixels whose centres lie in the grid."""
+        left, right, bottom, top = grid.extent
+        edges = self.pixels(np.array([[left, top], [right, bottom]]))
+        (first, upper), (last, lower) = np.ceil(edges).astype(int).tolist()
+        return slice(max(0, upper), max(0, lower)), slice(max(0, first), max(0, last))
+
+    def _resampled(self, grid: Grid, values: Array) -> Array:
+        """Cell values at the pixels' centres, (height, width): linear, averaged where cells are finer."""
+        values = np.ascontiguousarray(values, np.float32)
+        ny, nx = values.shape
+        left, right, bottom, top = grid.extent
+        across = min(nx, max(1, round((right - left) * self.per_x)))
+        up = min(ny, max(1, round((top - bottom) * self.per_y)))
+        if (up, across) != (ny, nx):
+            values = cv2.resize(values, (across, up), interpolation=cv2.INTER_AREA)
+        dx, dy = (right - left) / across, (top - bottom) / up
+        x, y = self.left + 0.5 / self.per_x, self.top - 0.5 / self.per_y
+        matrix = np.array(
+            [
+                [1 / (self.per_x * dx), 0.0, (x - left) / dx - 0.5],
+                [0.0, -1 / (self.per_y * dy), (y - bottom) / dy - 0.5],
+            ]
+        )
+        how = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
+        size = (self.width, self.height)
+        warped: Array = cv2.warpAffine(values, matrix, size, flags=how, borderMode=cv2.BORDER_REPLICATE)
+        return warped
+
+    def _cloud(self, image: Array, cloud: Cloud) -> None:
+        discs = "radius" in cloud.data
+        radius = np.asarray(cloud.data["radius"], float) if discs else np.full(len(cloud.position), self.survey.dot)
+        at = self.pixels(cloud.position)
+        size = radius * self.per_x if discs else np.maximum(radius * self.per_x, 1.0)
+        seen = np.isfinite(at).all(1) & (at > -size[:, None]).all(1)
+        seen &= (at < [self.width, self.height] + size[:, None]).all(1)
+        colours = self._colours(cloud)[seen].tolist()
+        centres, radii = np.rint(at[seen] * ONE).astype(int).tolist(), size[seen]
+        rim, rim_colour = np.clip(0.08 * radii, 0.7, 2.0), rgb(RIM)
+        whole, inner = (
+            np.rint(radii * ONE).astype(int).tolist(),
+            np.rint((radii - rim) * ONE).astype(int).tolist(),
+        )
+        rimmed = discs & (radii >= 2.5)
+        for centre, outer, core, edge, colour in zip(centres, whole, inner, rimmed.tolist(), colours, strict=True):
+            if edge:
+                cv2.circle(image, centre, outer, rim_colour, -1, cv2.LINE_AA, SHIFT)
+                cv2.circle(image, centre, core, colour, -1, cv2.LINE_AA, SHIFT)
+            else:
+                cv2.circle(image, centre, outer, colour, -1, cv2.LINE_AA, SHIFT)
+        if discs and "angle" in cloud.data:
+            self._spokes(image, at[seen], radii, np.asarray(cloud.data["angle"], float)[seen])
+
+    def _spokes(self, image: Array, at: Array, radii: Array, angle: Array) -> None:
+        """A line from each centre towards the rim shows how a disc has turned."""
+        big = radii >= 4
+        tip = at + 0.8 * radii[:, None] * np.stack([np.cos(angle), -np.sin(angle)], 1)
+        starts, ends = (np.rint(points[big] * ONE).astype(int).tolist() for points in (at, tip))
+        widths, colour = np.maximum(1, np.rint(radii[big] / 10)).astype(int).tolist(), rgb(RIM)
+        for start, end, width in zip(starts, ends, widths, strict=True):
+            cv2.line(image, start, end, colour, width, cv2.LINE_AA, SHIFT)
+
+    def _colours(self, cloud: Cloud) -> Array:
+        """(n, 3) uint8."""
+        name = self.look.colouring(cloud)
+        painted = np.full((len(cloud.position), 3), rgb(GRAIN), np.uint8)
+        if name and self.look.kinds:
+            for kind, (_, colour) in self.look.kinds.items():
+                painted[cloud.data[name] == kind] = rgb(colour)
+        elif name and self.survey.cloud is not None:
+            painted = self.survey.cloud.colours(magnitude(cloud.data[name], 1))
+        return painted
+
+    def _arrows(self, image: Array, grid: Grid) -> None:
+        """Velocity arrows on a regular raster; one at the top of the colour range spans a raster cell."""
+        assert self.survey.field is not None
+        velocity = grid.cells[self.look.field]
+        if velocity.ndim != 3:
+            return
+        pitch = self.width / self.look.arrows
+        rows, columns = self._inside(grid)
+        down = np.arange(rows.start + pitch / 2, min(rows.stop, self.height), pitch).astype(int)
+        across = np.arange(columns.start + pitch / 2, min(columns.stop, self.width), pitch).astype(int)
+        along = np.stack([self._resampled(grid, velocity[..., axis])[np.ix_(down, across)] for axis in (0, 1)], -1)
+        along *= [0.9 * pitch / self.survey.field.high, -0.9 * pitch / self.survey.field.high]
+        length = np.hypot(along[..., 0], along[..., 1])
+        where = np.nonzero(length > SPECK)
+        for j, i in zip(*where, strict=True):
+            size = min(length[j, i], pitch)
+            shape = _arrow(np.array([across[i], down[j]]), along[j, i] / length[j, i], size)
+            outline = [np.rint(shape * ONE).astype(np.int32)]
+            cv2.fillPoly(image, outline, rgb(PAPER), cv2.LINE_AA, SHIFT)
+            cv2.polylines(image, outline, True, rgb(RIM), 1, cv2.LINE_AA, SHIFT)
+
+    def _line(self, image: Array, ends: Array, colour: tuple[int, int, int], thickness: int) -> None:
+        """A segment between two pixel positions, (2, 2)."""
+        start, end = np.rint(ends * ONE).astype(int).tolist()
+        cv2.line(image, start, end, colour, thickness, cv2.LINE_AA, SHIFT)
+
+
+def _arrow(middle: Array, along: Array, length: float) -> Array:
+    """Outline of an arrow, (7, 2) pixels, its width growing with its length."""
+    half, head = 0.045 * length + 0.6, 0.36 * length
+    profile = [(0.0, half), (length - head, half), (length - head, 3.2 * half), (length, 0.0)]
+    points = np.array([*profile, *((x, -y) for x, y in profile[2::-1])])
+    across = np.array([-along[1], along[0]])
+    return np.asarray(middle + (points[:, :1] - length / 2) * along + points[:, 1:] * across)
+
+
+def _blend(image: Array, share: Array, colour: Array | tuple[int, int, int]) -> None:
+    """Paint ``colour`` over an image with opacity ``share`` (height, width) of 0..1."""
+    opacity = share[..., None]
+    image[:] = (image * (1 - opacity) + np.asarray(colour) * opacity + 0.5).astype(np.uint8)

@@ -1,0 +1,64 @@
+"""A film of a run that browsers play: H.264 in MP4, or VP9 in WebM where no H.264 encoder is built in."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import av
+
+from porescale.common.core.atomic import whole
+from porescale.common.pictures.look import Look
+from porescale.common.pictures.picture import painter_of
+from porescale.common.record.model import Array
+from porescale.common.record.open_run import open_run
+
+WATCHABLE = 6.0
+"""A film is played in about this many seconds, at 5 to 30 frames a second."""
+ENCODERS: tuple[tuple[str, str, dict[str, str]], ...] = (
+    ("libx264", ".mp4", {"crf": "20", "preset": "veryfast"}),
+    ("libopenh264", ".mp4", {}),
+    ("libvpx-vp9", ".webm", {"crf": "30", "b": "0", "deadline": "realtime", "cpu-used": "5"}),
+)
+
+
+def film(folder: Path | str, look: Look | None = None, *, rate: int | None = None, **changes: Any) -> Path:
+    """Paint every snapshot of a run into film.mp4 (or film.webm); returns its path.
+
+    rate : frames per second (None: so that it lasts about six seconds);  changes : fields of :class:`Look`.
+    """
+    run = open_run(folder)
+    painter = painter_of(run, replace(look or Look(), **changes))
+    rate = rate or min(30, max(5, round(len(run) / WATCHABLE)))
+    return write_film(
+        run.folder / "film",
+        (painter.paint(snapshot) for snapshot in run.snapshots(painter.survey.look.cells)),
+        rate,
+    )
+
+
+def write_film(stem: Path, images: Iterable[Array], rate: int) -> Path:
+    """Encode RGB images (even sides, all alike) into <stem>.mp4 or .webm, whole; returns the path."""
+    name, suffix, options = encoder()
+    path = stem.with_name(stem.name + suffix)
+    how = {"movflags": "+faststart"} if suffix == ".mp4" else {}
+    with whole(path) as beside, av.open(str(beside), "w", options=how) as container:
+        stream = container.add_stream(name, rate=rate, options=options)
+        assert isinstance(stream, av.VideoStream)
+        stream.pix_fmt = "yuv420p"
+        for number, image in enumerate(images):
+            if number == 0:
+                stream.height, stream.width = image.shape[:2]
+            container.mux(stream.encode(av.VideoFrame.from_ndarray(image, format="rgb24")))
+        container.mux(stream.encode())
+    return path
+
+
+def encoder() -> tuple[str, str, dict[str, str]]:
+    """The first encoder that this PyAV has: its name, the file suffix, its options."""
+    for name, suffix, options in ENCODERS:
+        if name in av.codecs_available:
+            return name, suffix, dict(options)
+    raise RuntimeError("PyAV was built without an H.264 or VP9 encoder")

@@ -1,0 +1,250 @@
+"""How a run is painted: what is shown, in which colours, over which range.  No physics."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from dataclasses import field as default
+
+import matplotlib
+import numpy as np
+from matplotlib.colors import to_rgb
+from scipy.spatial import cKDTree
+
+from porescale.common.record.model import Array, Cloud, Grid, Snapshot
+
+Line = tuple[tuple[float, float], tuple[float, float]]
+Lines = Sequence[Line] | Callable[[Snapshot], Sequence[Line]]
+Limits = tuple[float, float]
+View = tuple[float, float, float, float]
+
+SEQUENTIAL, DIVERGING = "viridis", "RdBu_r"
+GRAIN, RIM, WALL, PLATE, PAPER = "#ece3cf", "#3b352b", "#565a61", "#c3c8d0", "#ffffff"
+SHARE = 99.5
+"""Colours end at this percentile of all values: one outlier must not darken a film."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """What a picture shows.
+
+    grid, field : cell array to paint, vectors by their length; shown if the snapshot has it;
+    cloud : points to draw (None: the first cloud there is, "": none): discs to scale when they carry a
+    "radius", dots otherwise;  colour : array of the cloud that colours it (None: plain discs; dots by speed
+    when they have one); kinds : value of ``colour`` -> (label, colour), for whole numbers such as materials;
+    limits, cloud_limits : range of the colours (None: from the values, robustly);
+    shapes : a second cloud, whose lines and polygons are drawn, coloured as the first;  marks : lines drawn on top in
+    red, a function of the snapshot, such as cracks;
+    walls : cell array holding a solid fraction, painted grey;  lines : segments ((x, y), (x, y)) m, or a
+    function of the snapshot;  arrows : velocity arrows across the picture, 0 none;  streamlines : an extra
+    still with them; dot : radius of a dot, m (None: about half the particles' spacing);  view : (left, right,
+    bottom, top), m; size : long side, pixels;  plain : places and times are numbers without units;
+    title, label (of the field), colour_map, cloud_map.
+    """
+
+    grid: str = "fields"
+    field: str = "velocity"
+    cloud: str | None = None
+    colour: str | None = None
+    kinds: Mapping[int, tuple[str, str]] = default(default_factory=dict)
+    limits: Limits | None = None
+    cloud_limits: Limits | None = None
+    shapes: str = ""
+    marks: Callable[[Snapshot], Sequence[Line]] | None = None
+    walls: str = ""
+    lines: Lines = ()
+    arrows: int = 0
+    streamlines: bool = False
+    dot: float | None = None
+    view: View | None = None
+    size: int = 1000
+    title: str = ""
+    plain: bool = False
+    label: str = ""
+    colour_map: str = ""
+    cloud_map: str = ""
+
+    @property
+    def cells(self) -> tuple[str, ...]:
+        """The cell arrays that a picture needs."""
+        return tuple(name for name in (self.field, self.walls) if name)
+
+    def painted(self, snapshot: Snapshot) -> Grid | None:
+        """The grid to paint, if the snapshot has it."""
+        grid = snapshot.grids.get(self.grid)
+        return grid if grid is not None and self.field in grid.cells else None
+
+    def drawn(self, snapshot: Snapshot) -> Cloud | None:
+        """The cloud to draw, if the snapshot has it."""
+        if self.cloud is None:
+            return next(iter(snapshot.clouds.values()), None)
+        return snapshot.clouds.get(self.cloud)
+
+    def shaped(self, snapshot: Snapshot) -> Cloud | None:
+        """The cloud of lines and polygons, if the snapshot has it."""
+        return snapshot.clouds.get(self.shapes) if self.shapes else None
+
+    def colouring(self, cloud: Cloud) -> str:
+        """The array that colours a cloud, "" when it is plain."""
+        if self.colour is not None:
+            return self.colour if self.colour in cloud.data else ""
+        return "velocity" if "velocity" in cloud.data and "radius" not in cloud.data else ""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Colours of a range of values: 256 RGB rows, the range, and how it is labelled."""
+
+    table: Array
+    low: float
+    high: float
+    label: str
+    factor: float
+    map_name: str
+
+    def colours(self, values: Array) -> Array:
+        """RGB of values, (..., 3) uint8; what is not a number is white."""
+        nowhere = np.isnan(values)
+        place = np.where(nowhere, self.low, values) if nowhere.any() else values
+        place = np.clip(place, self.low, self.high)
+        place -= self.low
+        place *= 255.0 / (self.high - self.low)
+        painted = np.take(self.table, place.astype(np.uint8), axis=0)
+        painted[nowhere] = 255
+        return painted
+
+
+def magnitude(values: Array, axes: int) -> Array:
+    """Length of vectors, scalars as they are, floating; a scalar has ``axes``: 2 in a grid, 1 in a cloud."""
+    if values.ndim > axes:
+        length: Array = np.sqrt(np.einsum("...i,...i->...", values, values))
+        return length
+    return values if values.dtype.kind == "f" else values.astype(np.float64)
+
+
+def scale(name: str, units: str, sample: Array, limits: Limits | None, map_name: str, label: str) -> Scale:
+    """The scale for values like ``sample``: from zero for lengths of vectors and other positive values,
+    symmetric and diverging where both signs matter."""
+    sample = sample[np.isfinite(sample)]
+    low, high = np.percentile(sample, [100 - SHARE, SHARE]) if sample.size else (0.0, 1.0)
+    signed = low < 0 < high and min(-low, high) > 0.05 * max(-low, high)
+    if limits is not None:
+        low, high = limits
+        signed = low < 0 < high
+    elif signed:
+        high = max(-low, high)
+        low = -high
+    elif 0 <= low < 0.5 * high:
+        low = 0.0
+    if not high > low:
+        high = low + (abs(low) or 1.0) * 1e-3
+    chosen = map_name or (DIVERGING if signed else SEQUENTIAL)
+    table = (matplotlib.colormaps[chosen](np.arange(256) / 255.0)[:, :3] * 255 + 0.5).astype(np.uint8)
+    factor, prefixed = _prefix(units, max(abs(low), abs(high)))
+    shown = label or ("speed" if name == "velocity" else name.replace("_", " "))
+    text = f"{shown} ({prefixed})" if prefixed else shown
+    return Scale(table, float(low), float(high), text, factor, chosen)
+
+
+def _prefix(units: str, largest: float) -> tuple[float, str]:
+    """Factor and unit that give handy numbers, for units that take a prefix."""
+    if units in ("", "1", "-"):
+        return 1.0, ""
+    if units not in ("m/s", "m", "Pa", "N", "J"):
+        return 1.0, units
+    for bound, factor, prefix in ((1e-5, 1e6, "µ"), (1e-2, 1e3, "m"), (1e4, 1.0, ""), (1e7, 1e-3, "k")):
+        if largest < bound:
+            return factor, prefix + units
+    return 1e-6, "M" + units
+
+
+def rgb(colour: str) -> tuple[int, int, int]:
+    """A matplotlib colour as three bytes."""
+    red, green, blue = (round(255 * part) for part in to_rgb(colour))
+    return red, green, blue
+
+
+def length_unit(view: View, plain: bool = False) -> tuple[float, str]:
+    """Factor and unit for the axes; plain: none."""
+    if plain:
+        return 1.0, ""
+    longest = max(view[1] - view[0], view[3] - view[2])
+    if longest < 0.02:
+        return 1e3, "mm"
+    return (1e2, "cm") if longest < 5 else (1.0, "m")
+
+
+def time_text(time: float, longest: float, plain: bool = False) -> str:
+    """A time label with as many digits all through a film that lasts ``longest`` seconds; plain: without unit."""
+    factor, unit = (1.0, "") if plain else (1e3, "ms") if 0 < longest < 0.1 else (1.0, "s")
+    digits = max(0, 2 - math.floor(math.log10(longest * factor))) if longest > 0 else 2
+    return f"t = {time * factor:.{digits}f} {unit}".rstrip()
+
+
+@dataclass
+class Survey:
+    """What has to be known of all snapshots before the first is painted."""
+
+    look: Look
+    field: Scale | None = None
+    cloud: Scale | None = None
+    view: View = (0.0, 1.0, 0.0, 1.0)
+    dot: float = 0.0
+    longest: float = 0.0
+
+
+def survey(snapshots: Iterable[Snapshot], look: Look) -> Survey:
+    """Colour ranges, view, dot size and time format common to ``snapshots`` (read once, one at a time)."""
+    found = Survey(look)
+    values: list[Array] = []
+    points: list[Array] = []
+    field_units, cloud_units, coloured_by = "", "", ""
+    box = [math.inf, -math.inf, math.inf, -math.inf]
+    for snapshot in snapshots:
+        found.longest = max(found.longest, snapshot.time)
+        grid, cloud = look.painted(snapshot), look.drawn(snapshot)
+        if grid is not None:
+            values.append(_thin(magnitude(grid.cells[look.field], 2)))
+            field_units = grid.units.get(look.field, "")
+            found.view = grid.extent
+        for part in (look.shaped(snapshot), cloud):
+            if part is not None and len(part.position) and look.colouring(part):
+                coloured_by = look.colouring(part)
+                points.append(_thin(magnitude(part.data[coloured_by], 1)))
+                cloud_units = part.units.get(coloured_by, "")
+        if cloud is None or not len(cloud.position):
+            continue
+        if "radius" not in cloud.data and not found.dot:
+            found.dot = look.dot or 0.55 * _spacing(cloud.position)
+        reach = np.broadcast_to(cloud.data.get("radius", found.dot), len(cloud.position))[:, None]
+        there = np.isfinite(cloud.position).all(1)
+        if not there.any():
+            continue
+        edges = (*(cloud.position - reach)[there].min(0), *(cloud.position + reach)[there].max(0))
+        box = [min(box[0], edges[0]), max(box[1], edges[2]), min(box[2], edges[1]), max(box[3], edges[3])]
+    if values:
+        sample = np.concatenate(values)
+        found.field = scale(look.field, field_units, sample, look.limits, look.colour_map, look.label)
+    elif math.isfinite(box[0]):
+        margin = 0.03 * max(box[1] - box[0], box[3] - box[2])
+        found.view = (box[0] - margin, box[1] + margin, box[2] - margin, box[3] + margin)
+    if points and not look.kinds:
+        sample = np.concatenate(points)
+        found.cloud = scale(coloured_by, cloud_units, sample, look.cloud_limits, look.cloud_map, "")
+    found.view = look.view or found.view
+    return found
+
+
+def _thin(values: Array, most: int = 20000) -> Array:
+    """At most about ``most`` of the values, evenly spread."""
+    flat = values.ravel()
+    return flat[:: max(1, flat.size // most)].astype(np.float64)
+
+
+def _spacing(position: Array) -> float:
+    """Median distance to the nearest other point, m."""
+    if len(position) < 2:
+        return 0.0
+    nearest = cKDTree(position).query(position[:2000], k=2)[0][:, 1]
+    return float(np.median(nearest))

@@ -1,0 +1,154 @@
+"""card.json: what was run, with what, where, and how it ended."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import json
+import math
+import platform
+import subprocess
+import sys
+from collections.abc import Collection
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from porescale.common.compiled import jit
+from porescale.common.core.atomic import write_text
+from porescale.common.core.machine import machine as machine
+from porescale.common.core.version import VERSION
+from porescale.common.record.read_card import FORMAT
+from porescale.common.record.read_card import NAME as NAME
+from porescale.common.record.read_card import read_card as read_card
+
+RUNNING, FINISHED, INTERRUPTED, UNSTABLE, FAILED = "running", "finished", "interrupted", "unstable", "failed"
+FREE = (
+    "time.end",
+    "duration",
+    "snapshot_interval",
+    "series_interval",
+    "checkpoint_seconds",
+    "output",
+    "title",
+)
+"""Scene keys, dotted or by their last name, and sections that may change when a run is resumed: no physics."""
+
+DECIDING = ("numpy", "numba", "llvmlite")
+"""Packages whose version may change the bits of a run."""
+
+
+def new_card(given: dict[str, Any]) -> dict[str, Any]:
+    """A card for a run that starts now: ``given`` ("scene", "seeds", ...) and the circumstances."""
+    return {
+        "format": FORMAT,
+        **plain(given),
+        **circumstances(),
+        "command": list(sys.argv),
+        "started": now(),
+        "ended": None,
+        "seconds": 0.0,
+        "step": 0,
+        "time": 0.0,
+        "outcome": RUNNING,
+    }
+
+
+def write_card(folder: Path, card: dict[str, Any]) -> None:
+    """Write the card, whole or not at all."""
+    write_text(Path(folder) / NAME, json.dumps(plain(card), indent=2, ensure_ascii=False) + "\n")
+
+
+def circumstances() -> dict[str, Any]:
+    """What the bits of a run depend on besides its scene, and where it runs."""
+    return {
+        "versions": versions(),
+        "sources": jit.source_hash(),
+        "commit": commit(),
+        "threads": jit.threads(),
+        "machine": machine(),
+    }
+
+
+def changed_circumstances(card: dict[str, Any], now: dict[str, Any]) -> list[str]:
+    """What the run on ``card`` went on with last that differs in ``now`` (`circumstances`) and may change its bits."""
+    last = {**card, **(card["resumed"][-1] if card.get("resumed") else {})}
+    old, new = last.get("versions") or {}, now["versions"]
+    changed = [f"{name} {old.get(name)} -> {new[name]}" for name in DECIDING if old.get(name) != new[name]]
+    if last.get("sources") != now["sources"]:
+        changed.insert(0, f"sources {last.get('sources')} -> {now['sources']}")
+    return changed
+
+
+def now() -> str:
+    """The time of day, UTC, to the second."""
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+def versions() -> dict[str, str | None]:
+    """Versions of what the numbers depend on."""
+    found: dict[str, str | None] = {"python": platform.python_version(), "porescale": VERSION}
+    for name in ("numpy", "numba", "llvmlite", "h5py", "scipy"):
+        try:
+            found[name] = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:
+            found[name] = None
+    return found
+
+
+def commit() -> dict[str, Any] | None:
+    """{"hash", "changed"} of the git checkout that the package lies in, None when it lies in none."""
+    root = Path(__file__).resolve().parents[3]
+    if not (root / ".git").exists():
+        return None
+    try:
+        revision = _git(root, "rev-parse", "HEAD")
+        changed = bool(_git(root, "status", "--porcelain", "--untracked-files=no"))
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return {"hash": revision, "changed": changed}
+
+
+def _git(root: Path, *words: str) -> str:
+    done = subprocess.run(["git", "-C", str(root), *words], capture_output=True, text=True, timeout=10, check=True)
+    return done.stdout.strip()
+
+
+def plain(value: Any) -> Any:
+    """``value`` as JSON has it: numpy numbers as numbers, arrays as lists, paths, inf, nan as text."""
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple | set | frozenset):
+        return [plain(item) for item in value]
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return repr(value)
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    return str(value)
+
+
+def changed_keys(old: Any, new: Any, free: Collection[str] = FREE, place: str = "") -> dict[str, tuple[Any, Any]]:
+    """Dotted keys in which two scenes differ, with both values, but for ``free`` ones and below."""
+    if place and (place in free or place.rpartition(".")[2] in free):
+        return {}
+    if isinstance(old, dict) and isinstance(new, dict):
+        found: dict[str, tuple[Any, Any]] = {}
+        for key in [*old, *(key for key in new if key not in old)]:
+            below = f"{place}.{key}" if place else str(key)
+            found |= changed_keys(old.get(key), new.get(key), free, below)
+        return found
+    return {} if old == new else {place: (old, new)}
+
+
+def has_key(scene: Any, key: str) -> bool:
+    """Whether a scene has a dotted key, whatever its value; "" is all of it."""
+    for part in key.split(".") if key else ():
+        if not (isinstance(scene, dict) and part in scene):
+            return False
+        scene = scene[part]
+    return True

@@ -1,0 +1,265 @@
+"""Drive a model through time and keep its record.  The loop knows steps, events and files, no physics."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable, Collection
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from porescale.common.core.atomic import clean, owned, refuse_shared
+from porescale.common.core.errors import Fault, InputError, Unstable
+from porescale.common.record import card as cards
+from porescale.common.record import snapshots
+from porescale.common.record.check_state import judge
+from porescale.common.record.model import Model, variable_step
+from porescale.common.record.progress import Watch
+from porescale.common.record.record import CHECKPOINT, Gone, Record, Today, refuse_changes
+from porescale.common.record.resume import how_far, refuse_another
+from porescale.common.record.schedule import SLACK, Schedule, positive
+from porescale.common.record.stop import Interrupted, StopRequest, polite_stop
+
+CHECK_EVERY = 100
+"""Steps after which a model is asked at the latest whether it still makes sense."""
+BLOCK_SECONDS = 0.2
+"""Wall-clock length of a block: how long Ctrl-C and the progress bar may have to wait."""
+SAVE_SHARE = 0.02
+"""A checkpoint is also written at a snapshot when it costs at most this share of the time since the last."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a run ended: ``outcome`` "finished" or "already finished", and what it took."""
+
+    folder: Path
+    outcome: str
+    step: int
+    time: float
+    seconds: float
+    snapshots: int
+    steps_per_second: float
+
+
+def drive(
+    model: Model,
+    folder: Path | str,
+    duration: float,
+    *,
+    snapshot_interval: float,
+    series_interval: float,
+    card: dict[str, Any],
+    checkpoint_seconds: float = 300.0,
+    resume: bool = False,
+    overwrite: bool = False,
+    quiet: bool = False,
+    after: Callable[[Path], object] | None = None,
+    meanwhile: Callable[[Path], object] | None = None,
+    free: Collection[str] = cards.FREE,
+    today: Today | None = None,
+) -> Outcome:
+    """Advance ``model`` to ``duration`` (s) and write the run folder.
+
+    Rows and snapshots are made at time 0, at multiples of their intervals (s; ``math.inf``: only first and
+    last) and at the end.  With a fixed step, times are rounded to whole steps.  Output never changes the
+    steps. checkpoint_seconds : wall clock;  card : {"scene": full scene as dict, "seeds": ...} for card.json;
+    after : called with the folder once all data are in place (pictures, film);  meanwhile : called with it whenever
+    a snapshot is on disk.
+
+    resume : go on from the checkpoint, bit for bit as the uninterrupted run; without a checkpoint it starts
+    from the beginning, and a finished run is left alone.  The scene must be the same but for keys named in
+    ``free``: the duration may grow, intervals may change (they count from time 0).  Keys that came after the run are
+    the same where they do nothing that it did not do, as ``today`` tells.  Other sources or versions than the run had
+    are warned of on stderr.
+
+    overwrite : replace the run in the folder even if it is unfinished and took long (without: InputError); a
+    finished one is replaced anyway, and files that no run makes are left alone.
+
+    Raises InputError (wrong numbers, folder in use, changed scene, damaged checkpoint), Interrupted (after
+    SIGINT or SIGTERM, checkpoint written), Unstable (from the model; the last good checkpoint stays and is
+    named), Gone (the folder vanished).
+    """
+    folder = Path(folder)
+    positive("duration", duration)
+    step_seconds = None if variable_step(model) else positive("step", model.step_seconds)
+    schedules = {
+        "series": Schedule(positive("series_interval", series_interval, endless=True), step_seconds),
+        "snapshots": Schedule(positive("snapshot_interval", snapshot_interval, endless=True), step_seconds),
+    }
+    folder.mkdir(parents=True, exist_ok=True)
+    with owned(folder) as held:
+        if not held:
+            raise refuse_shared(folder)
+        clean(folder)
+        run = _Run(model, duration, step_seconds, schedules, checkpoint_seconds, meanwhile)
+        name = str(card.get("name") or folder.name)
+        resume = resume and (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists()
+        if resume:
+            refuse_changes(folder, card, free, today)
+            done = _already(folder, run)
+            if done is not None:
+                text = f"{folder}: finished at t = {done.time:.6g} s, nothing to do"
+                Watch(name, 0, duration, quiet=quiet).say(text)
+                return done
+            record = Record.resumed(folder, card, model, schedules)
+        else:
+            record = Record.fresh(folder, card, overwrite=overwrite)
+        with Watch(name, model.time, duration, quiet=quiet) as watch:
+            return _watched(run, record, watch, after)
+
+
+def refuse_resume(
+    folder: Path, card: dict[str, Any], free: Collection[str] = cards.FREE, today: Today | None = None
+) -> None:
+    """InputError where the run in ``folder`` cannot be gone on with, of which ``card`` asks for (as of `drive`).
+
+    What can be said without a model, which may take long to build: whether it is this scene's, and whether its
+    checkpoint is one and makes sense.  Nothing where there is no checkpoint yet.
+    """
+    if (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists():
+        refuse_changes(folder, card, free, today)
+        judge(folder)
+
+
+@dataclass
+class _Run:
+    """What the loop works with."""
+
+    model: Model
+    duration: float
+    step_seconds: float | None
+    schedules: dict[str, Schedule]
+    checkpoint_seconds: float
+    meanwhile: Callable[[Path], object] | None = None
+
+    def ended(self, step: int, time: float) -> bool:
+        """Whether the run is over at this step."""
+        if self.step_seconds is None:
+            return time >= self.duration * (1 - SLACK)
+        return step >= self.last_step
+
+    @property
+    def last_step(self) -> int:
+        """The step nearest to the duration; fixed step only."""
+        assert self.step_seconds is not None
+        return max(1, round(self.duration / self.step_seconds))
+
+    def block(self, rate: float) -> int:
+        """Steps until something is due, at most a block's worth at ``rate`` steps per wall-clock second."""
+        if self.step_seconds is None:
+            return 1
+        step = self.model.step
+        events = [schedule.following(step) for schedule in self.schedules.values()]
+        due = min(self.last_step, (step // CHECK_EVERY + 1) * CHECK_EVERY, *events)
+        return max(1, min(due - step, int(rate * BLOCK_SECONDS)))
+
+
+def _watched(run: _Run, record: Record, watch: Watch, after: Callable[[Path], object] | None) -> Outcome:
+    """The loop, and how it may end."""
+    model, first = run.model, run.model.step
+    try:
+        with polite_stop() as stop:
+            spent = _loop(run, record, stop, watch)
+        watch.enter("joining snapshots")
+        record.close(model, cards.RUNNING)
+        if after is not None:
+            watch.enter("writing pictures and film")
+            after(record.folder)
+        record.conclude(model, cards.FINISHED)
+    except Interrupted as error:
+        record.close(model, cards.INTERRUPTED, str(error))
+        raise
+    except Unstable as error:
+        error.args = (f"{error}; {record.last_good()}",)
+        record.close(model, cards.UNSTABLE, str(error))
+        raise
+    except BaseException as error:
+        with suppress(OSError, Gone):
+            record.close_series()
+            stopped = isinstance(error, KeyboardInterrupt)
+            outcome = cards.INTERRUPTED if stopped else cards.FAILED
+            record.conclude(model, outcome, f"{type(error).__name__}: {error}")
+        raise
+    speed = (model.step - first) / spent if spent > 0 else 0.0
+    seconds, count = record.seconds(), record.snapshots
+    return Outcome(record.folder, cards.FINISHED, model.step, model.time, seconds, count, speed)
+
+
+def _loop(run: _Run, record: Record, stop: StopRequest, watch: Watch) -> float:
+    """Advance to the end; returns the wall-clock seconds spent in the model's steps but the first ones."""
+    model, rate, spent = run.model, 0.0, 0.0
+    if record.saved_step is None:
+        model.check()
+        _record_due(run, record)
+        record.save(model, run.schedules)
+    while not run.ended(model.step, model.time):
+        start, busy, before = clock.perf_counter(), clock.process_time(), model.step
+        model.advance(run.block(rate))
+        assert model.step > before, "advance() must count its steps"
+        assert run.step_seconds in (None, model.step_seconds), "a varying step needs variable_step = True"
+        wall = clock.perf_counter() - start
+        record.cost.block(model.step - before, clock.process_time() - busy)
+        rate, spent = (model.step - before) / max(wall, 1e-9), spent + wall
+        watch.update(model.step, model.time)
+        _after_block(run, record)
+        if stop and not run.ended(model.step, model.time):
+            model.check()
+            record.save(model, run.schedules)
+            raise Interrupted(
+                f"interrupted at step {model.step} (t = {model.time:.6g} s); state saved in "
+                f"{record.folder / CHECKPOINT}, resume to continue"
+            )
+    model.check()
+    if record.row_step != model.step:
+        record.row(model, scheduled=False)
+    if record.snapshot_step != model.step:
+        record.snapshot(model, scheduled=False)
+    record.save(model, run.schedules)
+    return spent
+
+
+def _after_block(run: _Run, record: Record) -> None:
+    """Check, record and save what is due at this step."""
+    model = run.model
+    if model.step % CHECK_EVERY == 0:
+        model.check()
+    pictured = _record_due(run, record)
+    since = clock.perf_counter() - record.saved
+    if since >= run.checkpoint_seconds or (pictured and record.save_cost <= SAVE_SHARE * since):
+        model.check()
+        record.save(model, run.schedules)
+
+
+def _record_due(run: _Run, record: Record) -> bool:
+    """Row and snapshot where their schedules say so; returns whether there was a snapshot."""
+    model = run.model
+    row = run.schedules["series"].due(model.step, model.time)
+    snapshot = run.schedules["snapshots"].due(model.step, model.time)
+    if row or snapshot:
+        model.check()
+    if row:
+        record.row(model, scheduled=True)
+    if snapshot:
+        record.snapshot(model, scheduled=True)
+        if run.meanwhile is not None:
+            run.meanwhile(record.folder)
+    return snapshot
+
+
+def _already(folder: Path, run: _Run) -> Outcome | None:
+    """The outcome of a finished run; InputError when it is unfinished but beyond ``duration``."""
+    reached = how_far(folder)
+    step, time = reached.step, reached.time
+    if not run.ended(step, time):
+        return None
+    card = cards.read_card(folder)
+    if card.get("outcome") == cards.FINISHED:
+        refuse_another(folder, reached, card)
+        count = len(snapshots.catalogue(folder))
+        return Outcome(folder, "already finished", step, time, reached.seconds, count, 0.0)
+    past = step > run.last_step if run.step_seconds is not None else False
+    if past:
+        problem = f"the run is already at t = {time:.6g} s"
+        raise InputError(Fault("duration", run.duration, problem, unit="s", repair="name a later end"))
+    return None

@@ -1,0 +1,145 @@
+"""What ``runs`` drives and records: a model, and what it shows of itself.  Knows no physics.
+
+A model is anything that steps through time, can say when it left the range in which it means something, and
+can hand over its whole state.  Grids and clouds are all that the record, the pictures and ParaView need to
+know.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[Any]
+
+
+@dataclass
+class Grid:
+    """Values in the cells of a regular grid.
+
+    origin : (x, y) of the lower left corner, m;  spacing : (dx, dy), m;
+    cells : name -> (ny, nx) or (ny, nx, 3) array of any real type, row 0 lowest;  units : name -> unit, "" or
+    missing when dimensionless.  Names must not hold "/" or ".".
+    """
+
+    origin: tuple[float, float]
+    spacing: tuple[float, float]
+    cells: dict[str, Array]
+    units: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(ny, nx)."""
+        ny, nx = next(iter(self.cells.values())).shape[:2]
+        return int(ny), int(nx)
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """(left, right, bottom, top), m."""
+        ny, nx = self.shape
+        left, bottom = self.origin
+        return left, left + nx * self.spacing[0], bottom, bottom + ny * self.spacing[1]
+
+
+@dataclass
+class Cloud:
+    """Values at points: grains, particles, tracers.
+
+    position : (n, 2) m;  data : name -> (n,) or (n, 3) array;  units : name -> unit.
+    Discs carry "radius" (m) in ``data``, and "angle" (rad) when they turn.  n may change from one snapshot
+    to the next, the names may not.
+
+    Points may be ends of ``lines`` (m, 2), and corners of ``polygons``, (offsets (p + 1,), numbers of points): then
+    these are what is to be seen, with "radius" the half of what they measure across.  Both or neither in all snapshots.
+    """
+
+    position: Array
+    data: dict[str, Array] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
+    lines: Array | None = None
+    polygons: tuple[Array, Array] | None = None
+
+
+@dataclass
+class Snapshot:
+    """A model at one instant: ``time`` (s), ``step`` (steps done) and its grids and clouds by name.
+
+    Each name becomes a file <name>.vtkhdf; names, array names, types and grid geometry stay the same over a
+    run.
+    """
+
+    time: float
+    step: int
+    grids: dict[str, Grid] = field(default_factory=dict)
+    clouds: dict[str, Cloud] = field(default_factory=dict)
+
+    def blocks(self) -> Iterator[tuple[str, str, Grid | Cloud]]:
+        """Every grid and cloud as (kind, name, block), kind "grids" or "clouds"."""
+        for name, grid in self.grids.items():
+            yield "grids", name, grid
+        for name, cloud in self.clouds.items():
+            yield "clouds", name, cloud
+
+
+@runtime_checkable
+class Model(Protocol):
+    """What :func:`porescale.common.record.drive.drive` drives.
+
+    ``advance(a)`` then ``advance(b)`` must give the same bits as ``advance(a + b)``, and ``series``,
+    ``snapshot``, ``check`` and ``state`` must leave the state as it is: output then never changes the
+    physics.
+
+    A model whose step varies in time sets the class attribute ``variable_step = True`` (absent means
+    False): it is then advanced one step at a time, ``time`` is the authority, and events are recorded at
+    the first step at or after their time.
+
+    A model that measures more than its series says has a method ``tables()`` that gives a row for each further
+    file: {"loads": {"time (s)": …, …}} goes to loads.csv, at the same times as the series and cut back like it.
+    """
+
+    step: int
+    """Steps done."""
+    time: float
+    """Time reached, s."""
+    step_seconds: float
+    """Length of a step, s (of the next one, if it varies)."""
+
+    def advance(self, steps: int) -> None:
+        """Do ``steps`` steps.  May raise Unstable."""
+
+    def check(self) -> None:
+        """Raise Unstable when the state is beyond sense (called every 100 steps and before records)."""
+
+    def series(self) -> dict[str, float]:
+        """One row of the series; the same keys every time, with units: "time (s)", "front (m)"."""
+
+    def snapshot(self) -> Snapshot:
+        """Grids and clouds now; arrays may be views, they are written before the model moves on."""
+
+    def state(self) -> dict[str, Any]:
+        """Nested dicts of arrays, numbers, strings, booleans, None: all it takes to go on bit for bit."""
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take over a state made by :meth:`state` of a model built from the same scene."""
+
+
+def variable_step(model: Model) -> bool:
+    """Whether the length of the model's step varies in time."""
+    return bool(getattr(model, "variable_step", False))
+
+
+def tables_of(model: Model) -> dict[str, dict[str, float]]:
+    """Rows of the model's further time series by file name without suffix; none if it has no ``tables``."""
+    rows: dict[str, dict[str, float]] = getattr(model, "tables", dict)()
+    return rows
+
+
+def with_depth(points: Array) -> Array:
+    """(n, 2) -> (n, 3) with zeros, float64: what VTK calls points."""
+    flat = np.zeros((len(points), 3))
+    flat[:, :2] = points
+    return flat

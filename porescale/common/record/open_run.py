@@ -1,0 +1,107 @@
+"""Open the folder of a run, finished or killed, and look at it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from porescale.common.core.atomic import owned
+from porescale.common.record import card as cards
+from porescale.common.record import snapshots
+from porescale.common.record.model import Array, Snapshot
+from porescale.common.record.series import NAME as SERIES
+from porescale.common.record.series import read_series
+from porescale.common.record.vtkhdf import Frame
+
+
+class Run:
+    """What a run recorded.  Snapshots are read when asked for, one at a time."""
+
+    def __init__(self, folder: Path, card: dict[str, Any], frames: dict[int, dict[str, Frame]]) -> None:
+        self.folder, self.card = folder, card
+        self._frames = list(frames.items())
+
+    @property
+    def name(self) -> str:
+        """The run's name: the card's, or the folder's."""
+        return str(self.card.get("name") or self.folder.resolve().name)
+
+    @cached_property
+    def series(self) -> dict[str, Array]:
+        """Columns of series.csv by name ("time (s)", ...), each (rows,)."""
+        return read_series(self.folder / SERIES)
+
+    def table(self, name: str) -> dict[str, Array]:
+        """Columns of <name>.csv, a further time series, by name, each (rows,); {} when there is none."""
+        return read_series(self.folder / f"{name}.csv")
+
+    @property
+    def times(self) -> Array:
+        """(snapshots,) s."""
+        return np.array([next(iter(entry.values())).time for _, entry in self._frames])
+
+    @property
+    def steps(self) -> Array:
+        """(snapshots,) steps done."""
+        return np.array([step for step, _ in self._frames], np.int64)
+
+    @property
+    def grids(self) -> list[str]:
+        """Names of the grids in every snapshot."""
+        return sorted(self.snapshot(0).grids) if self._frames else []
+
+    @property
+    def clouds(self) -> list[str]:
+        """Names of the clouds in every snapshot."""
+        return sorted(self.snapshot(0).clouds) if self._frames else []
+
+    def __len__(self) -> int:
+        return len(self._frames)
+
+    def snapshot(self, k: int, cells: Collection[str] | None = None) -> Snapshot:
+        """Snapshot ``k`` (negative from the end); of its grids only the arrays in ``cells``, if given.
+
+        IndexError beyond the last, InputError when its file is damaged.
+        """
+        step, entry = self._frames[k]
+        try:
+            return snapshots.load(entry, step, cells)
+        except snapshots.DAMAGE as error:
+            raise snapshots.damaged(self.folder, error) from error
+
+    def nearest(self, time: float) -> Snapshot:
+        """The snapshot nearest to ``time``, s."""
+        return self.snapshot(int(np.abs(self.times - time).argmin()))
+
+    def snapshots(self, cells: Collection[str] | None = None) -> Iterator[Snapshot]:
+        """All snapshots in time, one in memory at a time."""
+        return (self.snapshot(k, cells) for k in range(len(self)))
+
+
+def open_run(folder: Path | str) -> Run:
+    """Open a run folder.  The parts of a killed run are joined first, unless a living run holds the folder.
+
+    InputError when the folder holds no run or its files are damaged.
+    """
+    folder = Path(folder)
+    card = cards.read_card(folder)
+    try:
+        if snapshots.parts(folder):
+            _join(folder)
+        return Run(folder, card, snapshots.catalogue(folder))
+    except snapshots.DAMAGE as error:
+        raise snapshots.damaged(folder, error) from error
+
+
+def _join(folder: Path) -> None:
+    """Join parts where this process may write and nobody else does; else they are read as they are."""
+    try:
+        with owned(folder) as held:
+            if held:
+                snapshots.assemble(folder)
+    except PermissionError:
+        return

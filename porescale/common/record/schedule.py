@@ -1,0 +1,68 @@
+"""When to record: events at multiples of an interval, without touching the model's steps."""
+
+from __future__ import annotations
+
+import math
+
+from porescale.common.core.errors import Fault, InputError
+
+NEVER = 1 << 62
+SLACK = 1e-9
+"""A step that ends this fraction of an interval before an event still counts as on time: summing a million
+steps leaves a relative round-off near 1e-10."""
+
+
+class Schedule:
+    """Events at 0, interval, 2 interval, ...
+
+    With a fixed step an event k falls on step round(k interval / step), so that rounding does not
+    accumulate; an interval below one step means every step.  With a varying step (``step_seconds`` None) an
+    event falls on the first step at or after its time; ``done`` then counts the events passed and belongs
+    into the checkpoint.
+    """
+
+    def __init__(self, interval: float, step_seconds: float | None) -> None:
+        self.interval = interval
+        self.ratio = None if step_seconds is None else max(1.0, interval / step_seconds)
+        self.done = -1
+
+    def due(self, step: int, time: float) -> bool:
+        """Whether an event falls on this step.  With a varying step: asks once for each step."""
+        if math.isinf(self.interval):
+            return step == 0
+        if self.ratio is None:
+            passed = math.floor(time / self.interval + SLACK)
+            due = passed > self.done
+            self.done = max(passed, self.done)
+            return due
+        near = round(step / self.ratio)
+        return any(round(k * self.ratio) == step for k in (near - 1, near, near + 1))
+
+    def following(self, step: int) -> int:
+        """The first step after ``step`` on which an event falls; fixed step only."""
+        assert self.ratio is not None
+        if math.isinf(self.ratio):
+            return NEVER
+        event = int(step / self.ratio)
+        while round(event * self.ratio) <= step:
+            event += 1
+        return round(event * self.ratio)
+
+    def state(self) -> dict[str, float]:
+        """What a checkpoint keeps."""
+        return {"interval": self.interval, "done": self.done}
+
+    def restore(self, state: dict[str, float], time: float) -> None:
+        """Go on after ``time``, s; a new interval counts from the run's start as the old one did."""
+        if state["interval"] == self.interval:
+            self.done = int(state["done"])
+        elif math.isfinite(self.interval):
+            self.done = math.floor(time / self.interval + SLACK)
+
+
+def positive(key: str, value: float, *, endless: bool = False) -> float:
+    """``value`` (s) if it is a positive number, finite unless ``endless``; else InputError."""
+    number = float(value)
+    if not number > 0 or (math.isinf(number) and not endless):
+        raise InputError(Fault(key, value, "must be positive" + ("" if endless else " and finite"), unit="s"))
+    return number

@@ -1,0 +1,116 @@
+"""series.csv: one row per record, one column each, units in the column's name.
+
+Numbers are written as ``repr`` does, so that reading gives the same bits.  Rows are appended; a kill leaves
+at most one torn last line (no newline), which reading ignores and resuming cuts off.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.record.model import Array
+
+NAME = "series.csv"
+
+
+class Series:
+    """The growing series of a run.  ``length`` is the file's size in bytes so far."""
+
+    def __init__(self, path: Path, keep: int = 0) -> None:
+        """Go on in ``path`` after its first ``keep`` bytes; 0 starts anew.  InputError when it is shorter."""
+        self.path = Path(path)
+        refuse_shorter(self.path, keep)
+        mode = "r+b" if keep else "wb"
+        self._file: IO[bytes] = open(self.path, mode)  # noqa: SIM115  (stays open)
+        self._file.truncate(keep)
+        self._file.seek(keep)
+        self.length = keep
+        self.names: list[str] | None = read_names(self.path) if keep else None
+
+    def append(self, row: dict[str, float]) -> None:
+        """Add one row; the first one of a file writes the names too.  ValueError when the names differ."""
+        if self.names is None:
+            self.names = list(row)
+            self._write(_line(self.names))
+        if list(row) != self.names:
+            raise ValueError(f"series row has {sorted(set(row) ^ set(self.names))} other than the rows before")
+        self._write(_line([repr(_plain(value)) for value in row.values()]))
+
+    def sync(self) -> None:
+        """Push what was appended to disk."""
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    def close(self) -> None:
+        """Sync and close."""
+        if not self._file.closed:
+            self.sync()
+            self._file.close()
+
+    def _write(self, line: bytes) -> None:
+        self.length += self._file.write(line)
+        self._file.flush()
+
+
+def refuse_shorter(path: Path, keep: int) -> None:
+    """InputError unless the file has ``keep`` bytes or more."""
+    size = path.stat().st_size if path.exists() else 0
+    if size < keep:
+        problem = f"has {size} bytes, the checkpoint knows {keep}"
+        raise InputError(Fault("series", str(path), problem, repair="start the run anew"))
+
+
+def _plain(value: float) -> float | int:
+    """A Python number: ``repr`` of a numpy scalar would carry its type."""
+    if isinstance(value, bool | np.bool_):
+        return int(value)
+    if isinstance(value, int | np.integer):
+        return int(value)
+    return float(value)
+
+
+def _line(cells: list[str]) -> bytes:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerow(cells)
+    return text.getvalue().encode()
+
+
+def read_names(path: Path) -> list[str] | None:
+    """The columns' names, None when the file is empty."""
+    with open(path, newline="", encoding="utf-8") as file:
+        return next(csv.reader(file), None)
+
+
+def read_series(path: Path) -> dict[str, Array]:
+    """Columns by name, each (rows,) float64.  A torn last line is ignored; no file or no rows give {}.
+
+    InputError naming the line where a row is damaged.
+    """
+    path = Path(path)
+    if not path.exists():
+        return {}
+    content = path.read_bytes()
+    number = 0
+    try:
+        rows = list(csv.reader(io.StringIO(content[: content.rfind(b"\n") + 1].decode())))
+        if not rows:
+            return {}
+        table = np.zeros((len(rows) - 1, len(rows[0])))
+        for number, row in enumerate(rows[1:], 1):
+            if len(row) != len(rows[0]):
+                raise ValueError(f"{len(row)} cells for {len(rows[0])} columns")
+            table[number - 1] = [float(cell) for cell in row]
+    except (ValueError, csv.Error) as error:
+        reason = " ".join(str(error).split())
+        repair = "run it again, or take the file from a backup"
+        raise InputError(
+            Fault(f"line {number + 1}", None, f"is damaged ({reason})", repair=repair, file=str(path))
+        ) from None
+    return {name: table[:, column].copy() for column, name in enumerate(rows[0])}

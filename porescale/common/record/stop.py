@@ -1,0 +1,57 @@
+"""Ctrl-C and a polite kill end a run at the next whole block, with its state saved."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+from porescale.common.core.errors import PorescaleError
+
+
+class Interrupted(PorescaleError):
+    """A run was asked to stop; its state is saved.  Exit code 130."""
+
+    code = 130
+
+
+class StopRequest:
+    """Truthy once somebody asked the run to stop."""
+
+    def __init__(self) -> None:
+        self.asked = False
+
+    def __bool__(self) -> bool:
+        return self.asked
+
+
+@contextmanager
+def polite_stop() -> Iterator[StopRequest]:
+    """Turn the first SIGINT or SIGTERM into a request; a second one acts as it did before.
+
+    Outside the main thread, where signals cannot be caught, the request never comes.
+    """
+    request = StopRequest()
+    if threading.current_thread() is not threading.main_thread():
+        yield request
+        return
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+
+    def restore() -> None:
+        """Signals mean again what they did before."""
+        for number, handler in before.items():
+            signal.signal(number, handler if handler is not None else signal.SIG_DFL)
+
+    def ask(number: int, frame: FrameType | None) -> None:
+        """Note the first signal; a second one ends the process as it would have without this."""
+        request.asked = True
+        restore()
+
+    for number in before:
+        signal.signal(number, ask)
+    try:
+        yield request
+    finally:
+        restore()

@@ -1,0 +1,147 @@
+"""A field of a section that measures something: its unit, its range, and what to say when it is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from types import UnionType
+from typing import Any, Literal, Union, get_args, get_origin
+
+import pydantic
+from pydantic.fields import FieldInfo
+from pydantic_core import CoreSchema, PydanticUndefined, core_schema
+
+from porescale.common.core.errors import Fault
+from porescale.common.core.units import to_si
+
+
+class Refused(ValueError):
+    """Faults that a validator found.  Keys are relative to its section; "" is the section itself.
+
+    Raise it from a pydantic validator, or an `InputError`, which is taken the same way: every fault then
+    comes out in one list with all others of the file.
+    """
+
+    def __init__(self, *faults: Fault) -> None:
+        self.faults = faults
+        super().__init__("; ".join(fault.line() for fault in faults))
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Marks a number, or every number of a tuple or list, as a quantity in ``unit`` with a range.
+
+    As an annotation, ``Annotated[float, Quantity("m", gt=0)]``, or through `quantity`.  Words of a Literal in
+    the same field (``float | Literal["auto"]``) and None, where the field allows it, pass.
+    """
+
+    unit: str = ""
+    gt: float | None = None
+    ge: float | None = None
+    lt: float | None = None
+    le: float | None = None
+    help: str = ""
+
+    def allowed(self) -> str:
+        """The range in words, without the unit: "> 0 and <= 1"; "" if every number is allowed."""
+        bounds = (("> ", self.gt), (">= ", self.ge), ("< ", self.lt), ("<= ", self.le))
+        return " and ".join(f"{sign}{bound:g}" for sign, bound in bounds if bound is not None)
+
+    def repair(self) -> str:
+        """What to do about a wrong value."""
+        what = f"give the {self.help}" if self.help else "give it"
+        return f'{what} in {self.unit}, as 1.5 or "1.5 {self.unit}"' if self.unit else f"{what} as a number"
+
+    def fault(self, key: str, value: Any, problem: str, repair: str = "") -> Fault:
+        """A fault of this quantity at ``key``."""
+        shown = value if isinstance(value, int | float | str) else None
+        return Fault(key, shown, problem, self.unit, self.allowed(), repair or self.repair())
+
+    def contains(self, value: float) -> bool:
+        """Whether ``value`` (in ``unit``) lies in the range."""
+        return (
+            (self.gt is None or value > self.gt)
+            and (self.ge is None or value >= self.ge)
+            and (self.lt is None or value < self.lt)
+            and (self.le is None or value <= self.le)
+        )
+
+    def convert(self, value: Any, key: str = "", words: frozenset[str] = frozenset()) -> Any:
+        """``value`` with every number and text in it as SI numbers; raises `Refused` with all faults."""
+        if isinstance(value, list | tuple):
+            parts: list[Any] = []
+            faults: list[Fault] = []
+            for index, part in enumerate(value):
+                try:
+                    parts.append(self.convert(part, f"{key}[{index}]", words))
+                except Refused as refused:
+                    faults += refused.faults
+            if faults:
+                raise Refused(*faults)
+            return parts
+        if isinstance(value, str) and value in words:
+            return value
+        try:
+            number = to_si(value, self.unit)
+        except ValueError as error:
+            fault = self.fault(key, value, str(error))
+            choices = [*(f'"{word}"' for word in sorted(words)), *filter(None, [fault.allowed])]
+            raise Refused(replace(fault, allowed=", ".join(choices)) if words else fault) from None
+        if not self.contains(number):
+            repair = f"give {'the ' + self.help if self.help else 'a value'} in this range"
+            raise Refused(self.fault(key, value, "is out of range", repair))
+        return number
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: pydantic.GetCoreSchemaHandler) -> CoreSchema:
+        """Conversion first, then what pydantic checks for the annotated type (shape, integers, choices)."""
+        words, optional = frozenset(_words(source)), _is_optional(source)
+
+        def convert(value: Any) -> Any:
+            """The value in SI; Refused where it is no number, has another unit or lies out of range."""
+            return None if value is None and optional else self.convert(value, "", words)
+
+        return core_schema.no_info_before_validator_function(convert, handler(source))
+
+
+def quantity(
+    unit: str = "",
+    default: Any = PydanticUndefined,
+    *,
+    gt: float | None = None,
+    ge: float | None = None,
+    lt: float | None = None,
+    le: float | None = None,
+    help: str = "",
+) -> Any:
+    """A section's field in ``unit``: ``spacing: float = quantity("m", gt=0, help="cell size")``.
+
+    Bounds are in ``unit`` and hold for every number of a tuple or list.  Without ``default`` (a number, a
+    text with a unit, or None where the type allows it) the key is required.  ``help`` completes "give the …".
+    """
+    info: FieldInfo = pydantic.Field(default, description=help or None)
+    info.metadata.append(Quantity(unit, gt, ge, lt, le, help))
+    return info
+
+
+def _members(annotation: Any) -> Iterator[Any]:
+    """Members of a union, seen through tuples, lists and Annotated."""
+    origin = get_origin(annotation)
+    if origin in (Union, UnionType) or (isinstance(origin, type) and issubclass(origin, list | tuple)):
+        for part in get_args(annotation):
+            yield from _members(part)
+    elif hasattr(annotation, "__metadata__"):
+        yield from _members(get_args(annotation)[0])
+    else:
+        yield annotation
+
+
+def _words(annotation: Any) -> Iterator[str]:
+    """Words that a Literal in ``annotation`` allows."""
+    for member in _members(annotation):
+        if get_origin(member) is Literal:
+            yield from (word for word in get_args(member) if isinstance(word, str))
+
+
+def _is_optional(annotation: Any) -> bool:
+    """Whether None is allowed as the whole value."""
+    return get_origin(annotation) in (Union, UnionType) and type(None) in get_args(annotation)

@@ -1,0 +1,220 @@
+"""Scenes are data: typed sections, read from TOML with every fault of a file said at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, ClassVar, Generic, TypeVar, get_args
+
+import pydantic
+from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import CoreSchema, core_schema
+
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.schema import scene_file
+from porescale.common.schema.messages import Key, dotted, nearest, translate
+from porescale.common.schema.quantity import Quantity, Refused, quantity
+
+__all__ = [
+    "LEVELS",
+    "Opened",
+    "Quantity",
+    "Refused",
+    "Section",
+    "load",
+    "open_scene",
+    "quantity",
+    "scene_as_dict",
+    "validate",
+]
+
+LEVELS = ("draft", "standard", "fine")
+
+
+class Section(BaseModel):
+    """Base of every section and scene: frozen, no unknown keys, no booleans or infinities for numbers.
+
+    A validator may raise `Refused` or an `InputError` with faults whose keys are relative to its section.
+    """
+
+    elsewhere: ClassVar[Mapping[str, str]] = {}
+    """Of a scene: sections that it has not and every scene of another program has, and that program."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=True)
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: pydantic.GetCoreSchemaHandler) -> CoreSchema:
+        """Validation that collects an InputError raised inside a section with the other faults."""
+
+        def collect(value: Any, inner: pydantic.ValidatorFunctionWrapHandler) -> Any:
+            """``value`` validated, with the faults that a section raises."""
+            try:
+                return inner(cls._spell_booleans(value))
+            except InputError as error:
+                raise Refused(*error.faults) from None
+
+        return core_schema.no_info_wrap_validator_function(collect, handler(source))
+
+    @classmethod
+    def _spell_booleans(cls, table: Any) -> Any:
+        """``table`` with true and false as words where a number is meant: pydantic takes them for 1 and 0."""
+        if not isinstance(table, Mapping):
+            return table
+        numbers = {name for name, field in cls.model_fields.items() if _is_plain_number(field)}
+        return {k: str(v).lower() if isinstance(v, bool) and k in numbers else v for k, v in table.items()}
+
+
+def _is_plain_number(field: FieldInfo) -> bool:
+    """Whether a field holds a number, not a boolean, and is no quantity (which looks after itself)."""
+    kinds = (field.annotation, *get_args(field.annotation))
+    marked = any(isinstance(mark, Quantity) for mark in field.metadata)
+    return (int in kinds or float in kinds) and bool not in kinds and not marked
+
+
+S = TypeVar("S", bound=Section)
+
+
+@dataclass(frozen=True)
+class Opened(Generic[S]):
+    """A scene and where it came from.
+
+    file : the TOML file;  name : the scene's name;  quality : chosen level or None;  levels : those it has;
+    settings : the `--set` entries.
+    """
+
+    scene: S
+    file: Path
+    name: str
+    quality: str | None
+    levels: tuple[str, ...]
+    settings: tuple[str, ...]
+
+
+def validate(scene_type: type[S], table: Mapping[str, Any], *, file: str = "", folder: Path | None = None) -> S:
+    """``table`` as a scene; InputError with all its faults, each naming ``file``.
+
+    Validators find ``folder`` as ``info.context["folder"]``: paths in a scene are relative to its file.
+    """
+    scene, faults = _try(scene_type, table, folder)
+    if scene is None:
+        raise InputError([replace(fault, file=file) for _, fault in faults])
+    return scene
+
+
+def load(path: str | Path, scene_type: type[S], *, quality: str | None = None, overrides: Sequence[str] = ()) -> S:
+    """The scene at ``path``, a TOML file or a folder with scene.toml.
+
+    quality : level, None for the file's ``quality_default`` or none;  overrides : ``section.key=value``.
+    Raises InputError with every fault of the file, its quality levels (chosen or not) and the overrides.
+    """
+    return open_scene(path, scene_type, quality=quality, overrides=overrides).scene
+
+
+def open_scene(
+    path: str | Path, scene_type: type[S], *, quality: str | None = None, overrides: Sequence[str] = ()
+) -> Opened[S]:
+    """`load`, with what a command needs to know besides.  Later wins: scene, quality level, overrides."""
+    file = scene_file.find(Path(path))
+    table = scene_file.read(file)
+    _refuse_another(scene_type, table, file)
+    levels, level, faults = _levels(table, quality)
+    base = {name: value for name, value in table.items() if name not in ("quality", "quality_default")}
+    written = scene_file.merge(base, levels[level]) if level else base
+    chosen, settings, wrong_settings = _with_settings(written, overrides)
+    scene, wrong = _try(scene_type, chosen, file.parent)
+    faults += wrong_settings
+    for key, fault in wrong:
+        made = not scene_file.holds(written, key)  # by a setting within a section that the file does not have
+        if any(key[: len(it)] == it or (made and it[: len(key)] == key) for it in settings):
+            faults.append(replace(fault, file="--set"))
+        else:
+            faults.append(_in_level(key, fault, level, levels[level]) if level else fault)
+    for other in (name for name in levels if name != level):
+        _, wrong = _try(scene_type, scene_file.merge(base, levels[other]), file.parent)
+        own = [(key, fault) for key, fault in wrong if scene_file.holds(levels[other], key)]
+        faults += [_in_level(key, fault, other, levels[other]) for key, fault in own]
+    if faults or scene is None:
+        raise InputError(faults).in_file(str(file))
+    return Opened(scene, file, scene_file.name_of(file), level, tuple(levels), tuple(overrides))
+
+
+def _refuse_another(scene_type: type[Section], table: Mapping[str, Any], file: Path) -> None:
+    """InputError, one line in place of one for every section, where a scene is another program's."""
+    own = {name for name, field in scene_type.model_fields.items() if field.is_required()}
+    if not own <= table.keys():
+        for section, program in scene_type.elsewhere.items():
+            if section in table:
+                problem, repair = f"is a section of scenes of {program}", f"{program} check {file}"
+                raise InputError(Fault(section, problem=problem, repair=repair, file=str(file)))
+
+
+def _with_settings(
+    table: Mapping[str, Any], overrides: Sequence[str]
+) -> tuple[Mapping[str, Any], list[Key], list[Fault]]:
+    """``table`` with the settings in it, their keys, and what is wrong with those that cannot be set."""
+    keys: list[Key] = []
+    faults: list[Fault] = []
+    for text in overrides:
+        try:
+            key, value = scene_file.parse_setting(text)
+            table = scene_file.assign(table, key, value)
+            keys.append(key)
+        except InputError as error:
+            faults += error.faults
+    return table, keys, faults
+
+
+def _in_level(key: Key, fault: Fault, level: str, entries: Mapping[str, Any]) -> Fault:
+    """``fault`` with the key that a person must correct: the quality level's, if that is where it stands."""
+    return replace(fault, key=dotted(("quality", level, *key))) if scene_file.holds(entries, key) else fault
+
+
+def scene_as_dict(scene: Section) -> dict[str, Any]:
+    """The full scene with its defaults, in SI, as JSON-able tables; `validate` makes the same scene of it."""
+    return scene.model_dump(mode="json", by_alias=True)
+
+
+def _try(
+    scene_type: type[S], table: Mapping[str, Any], folder: Path | None
+) -> tuple[S | None, list[tuple[Key, Fault]]]:
+    """A scene, or None and what is wrong."""
+    try:
+        return scene_type.model_validate(table, context={"folder": folder}), []
+    except ValidationError as error:
+        return None, translate(error, scene_type, table)
+
+
+def _levels(table: Mapping[str, Any], asked: str | None) -> tuple[dict[str, dict[str, Any]], str | None, list[Fault]]:
+    """Quality levels of a scene file, the one to use (None: none), and what is wrong with them."""
+    given, default = table.get("quality", {}), table.get("quality_default")
+    if not isinstance(given, Mapping):
+        return (
+            {},
+            None,
+            [Fault("quality", problem="is not a table of levels", repair="write [quality.draft] and so on")],
+        )
+    faults = []
+    for name, entries in given.items():
+        if name not in LEVELS:
+            faults.append(
+                Fault(
+                    f"quality.{name}",
+                    None,
+                    "unknown level",
+                    "",
+                    ", ".join(LEVELS),
+                    nearest(name, LEVELS, "levels"),
+                )
+            )
+        elif not isinstance(entries, Mapping):
+            faults.append(Fault(f"quality.{name}", entries, "is not a table", repair=f"write [quality.{name}.section]"))
+    levels = {name: dict(given[name]) for name in LEVELS if isinstance(given.get(name), Mapping)}
+    level, key = (asked, "--quality") if asked is not None else (default, "quality_default")
+    if level is not None and level not in levels:
+        has = ", ".join(levels)
+        repair = f"choose one of these or add [quality.{level}]" if has else f"add [quality.{level}] or leave it out"
+        faults.append(Fault(key, level, "this scene has no such level", "", has or "none", repair))
+        level = None
+    return levels, level, faults

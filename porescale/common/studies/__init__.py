@@ -1,0 +1,1 @@
+"""Sweeps and studies of speed against accuracy: points, runner, fronts, quality levels."""

@@ -1,0 +1,207 @@
+"""A front that was measured, and the point of it that fits what is asked: an error, a time, or both.
+
+front.json lies beside the scene it was measured for (`study trade` makes it).  What it keeps are core-seconds, of steps
+and besides, of another machine, which hardly depend on who else was at work there; and every point's pace, core-seconds
+of a step of a run that had just begun.  The same beginning is timed here before anything is promised: its wall-clock
+pace over that of the front rescales the steps, start-up is what it took here.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.studies.trade_files import FORMAT, FRONT
+
+WARM_UP = 3
+"""Steps before a pace is taken: kernels compile, steps in place have two kinds."""
+SECONDS, LEAST = 2.0, 5
+"""A pace is the mean of blocks over this long, at least so many."""
+GENTLE = 0.95
+"""Share of a budget that is planned with."""
+
+
+@dataclass(frozen=True)
+class FrontPoint:
+    """A point of the front.
+
+    error, scatter : shares, errors : of each quantity;  core_seconds : of all steps, besides : of what else a run
+    does, pace : of a step as it began;  time : simulated, s;  but : what the errors do not show.
+    """
+
+    label: str
+    quality: str | None
+    settings: tuple[str, ...]
+    error: float
+    scatter: float
+    core_seconds: float
+    time: float
+    pace: float
+    besides: float = 0.0
+    errors: Mapping[str, float] = field(default_factory=dict)
+    but: str = ""
+
+    @property
+    def whole(self) -> float:
+        """Core-seconds of steps and what else a run does."""
+        return self.core_seconds + self.besides
+
+
+@dataclass(frozen=True)
+class Front:
+    """Points from cheap to dear, where and when they were measured."""
+
+    file: Path
+    machine: str
+    date: str
+    points: tuple[FrontPoint, ...]
+
+
+@dataclass(frozen=True)
+class Here:
+    """A point as it begins on this machine.  wall, core : seconds and core-seconds of a step;  start : seconds until
+    the first;  end : time that is to be simulated, s, None for that of the front."""
+
+    wall: float
+    core: float
+    start: float = 0.0
+    end: float | None = None
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A point, the seconds and core-seconds (of steps) that it should take on this machine, and how much slower this
+    machine is."""
+
+    point: FrontPoint
+    seconds: float
+    slowness: float
+    core_seconds: float = 0.0
+
+    def as_dict(self) -> dict[str, Any]:
+        """What a run card keeps of it."""
+        point = self.point
+        return {"label": point.label, "error": point.error, "scatter": point.scatter, "expected_seconds": self.seconds,
+                "slowness": self.slowness}  # fmt: skip
+
+    def line(self, front: Front) -> str:
+        """What was picked and what to expect."""
+        point = self.point
+        return (
+            f"picked {point.label}: error {percent(point.error)} ± {percent(point.scatter)}, about {self.seconds:.3g} s"
+            f" here ({self.slowness:.2g} times the {point.whole:.3g} core-seconds of {front.machine}, {front.date})"
+            + (f"; but {point.but}" if point.but else "")
+        )
+
+
+def percent(share: float) -> str:
+    """A share in per cent, two digits."""
+    return f"{100 * share:.2g} %"
+
+
+def read_front(scene: Path) -> Front:
+    """The front beside the scene file; InputError where there is none, or one that is damaged."""
+    file = scene.parent / FRONT
+    repair = f"measure one: study trade {scene.parent}, and put its {FRONT} beside the scene; or name a --quality"
+    if not file.is_file():
+        raise InputError(Fault(str(file), None, "no front was measured for this scene", repair=repair))
+    try:
+        table = json.loads(file.read_text(encoding="utf-8"))
+        if table["format"] != FORMAT:
+            raise InputError(Fault(str(file), table["format"], "is of another format", "", str(FORMAT), repair))
+        points = [point_of(row) for row in table["points"] if row["on_front"] and row["error"] is not None]
+        machine = str(table["machine"]["processor"])
+        found = Front(file, machine, str(table["date"]), tuple(sorted(points, key=lambda one: one.core_seconds)))
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
+        said = " ".join(f"{type(error).__name__}: {error}".split())[:80]
+        raise InputError(Fault(str(file), None, f"is damaged ({said})", repair=repair)) from None
+    if not found.points:
+        raise InputError(Fault(str(file), None, "holds no point of a front", repair=repair))
+    return found
+
+
+def point_of(row: Mapping[str, Any]) -> FrontPoint:
+    """A point as front.json keeps it; ValueError, KeyError or TypeError where a number is none."""
+    keys = "error", "scatter", "core_seconds", "time", "pace", "besides"
+    numbers = {key: float(row[key]) for key in keys}
+    if not all(math.isfinite(value) and value >= 0 for value in numbers.values()):
+        raise ValueError(f"numbers of {row['label']}")
+    if not all(numbers[key] for key in ("core_seconds", "time", "pace")):
+        raise ValueError(f"nothing taken by {row['label']}")
+    quality = None if row["quality"] is None else str(row["quality"])
+    errors = {str(name): float(error) for name, error in row["errors"].items() if error is not None}
+    return FrontPoint(
+        str(row["label"]), quality, tuple(map(str, row["settings"])), errors=errors, but=str(row["but"]), **numbers
+    )
+
+
+Try = Callable[[FrontPoint], Here]
+"""Begins a point on this machine."""
+
+
+def choose(front: Front, error: float | None, budget: float | None, try_here: Try) -> Choice:
+    """The cheapest point whose error is at most ``error``; without one the best that ``budget`` (s) allows.
+
+    InputError where no point is good enough, or none is cheap enough.
+    """
+    if error is not None:
+        good = [point for point in front.points if point.error <= error]
+        if not good:
+            best = min(point.error for point in front.points)
+            raise InputError(Fault("--error", percent(error), "is below the best point measured", "", percent(best)))
+        found = _here(good[0], try_here)
+        if budget is not None and found.seconds > budget:
+            problem = f"is not enough for an error of {percent(error)}: {found.point.label} takes {found.seconds:.3g} s"
+            raise InputError(Fault("--budget", f"{budget:.3g}", problem, "s", repair="allow more of one of them"))
+        return found
+    assert budget is not None
+    cheapest = _here(front.points[0], try_here)
+    if cheapest.seconds > budget:
+        problem = f"is not enough: {cheapest.point.label}, the cheapest point, takes {cheapest.seconds:.3g} s"
+        raise InputError(Fault("--budget", f"{budget:.3g}", problem, "s", repair="allow more"))
+    likely = cheapest.seconds / front.points[0].whole
+    for point in sorted(front.points, key=lambda one: one.error):
+        if point.whole * likely > 2.0 * budget:  # far out of reach: not worth building
+            continue
+        found = cheapest if point is front.points[0] else _here(point, try_here)
+        if found.seconds <= GENTLE * budget or point is front.points[0]:
+            return found
+    return cheapest
+
+
+def _here(point: FrontPoint, try_here: Try) -> Choice:
+    here = try_here(point)
+    longer = 1.0 if here.end is None else here.end / point.time
+    slowness, alone = here.wall / point.pace, max(here.wall, here.core) / point.pace  # what is besides has one thread
+    seconds = here.start + longer * (point.core_seconds * slowness + point.besides * alone)
+    return Choice(point, seconds, slowness, longer * point.core_seconds * here.core / point.pace)
+
+
+def begun(build: Callable[[], Any], end: float | None = None) -> Here:
+    """What a model takes to be built and to begin: built twice, since the first time its kernels compile."""
+    build()
+    before = time.perf_counter()
+    model = build()
+    start = time.perf_counter() - before
+    wall, core = pace_of(model)
+    return Here(wall, core, start, end)
+
+
+def pace_of(model: Any) -> tuple[float, float]:
+    """Seconds and core-seconds of a step of a model that has just been built, means over blocks, compiling left out."""
+    for _ in range(WARM_UP):
+        model.advance(1)
+    first, before, busy = model.step, time.perf_counter(), time.process_time()
+    blocks, count, spent = 0, 1, 0.0
+    while blocks < LEAST or spent < SECONDS:
+        model.advance(count)
+        blocks, spent = blocks + 1, time.perf_counter() - before
+        count = max(1, int(0.05 * SECONDS / max(spent / (model.step - first), 1e-9)))
+    steps = model.step - first
+    return spent / steps, (time.process_time() - busy) / steps

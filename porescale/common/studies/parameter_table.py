@@ -1,0 +1,195 @@
+"""Points of a sweep: settings that are laid over a scene, read from a table.
+
+Three ways to say them, one file or option each:
+
+CSV      a column for each key of the scene ("contact.friction"), a row for each run; ``name`` and ``quality`` are
+         optional, an empty cell leaves the scene's value.
+TOML     ``[[point]]`` tables with keys as in CSV, dotted or nested; ``[vary]`` with a list for each key: every
+         combination.
+options  ``--vary contact.friction=0.2,0.5``, repeatable: every combination.
+"""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import json
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.schema import scene_file
+
+LONGEST = 80
+MOST = 100_000
+
+
+@dataclass(frozen=True)
+class Point:
+    """One run.  name : that of its folder, unique;  settings : ``section.key=value``;  quality : level or None."""
+
+    name: str
+    settings: tuple[str, ...]
+    quality: str | None = None
+
+    def value(self, key: str) -> str:
+        """What it sets ``key`` to; "" where it leaves the scene's value."""
+        found = [text.partition("=")[2] for text in self.settings if text.partition("=")[0] == key]
+        return found[-1] if found else ""
+
+
+def read_points(path: Path) -> list[Point]:
+    """The points in a CSV or TOML file, in its order; InputError naming file and line or key."""
+    try:
+        rows = list(_of_csv(path)) if path.suffix.lower() == ".csv" else list(_of_toml(path))
+    except InputError as error:
+        raise error.in_file(str(path)) from None
+    if not rows:
+        raise InputError(Fault("points", None, "are none", file=str(path), repair="give a row for each run"))
+    return named(rows)
+
+
+def varied(options: Sequence[str]) -> list[Point]:
+    """Every combination of ``key=a,b,c`` options; InputError where one is not of that form.
+
+    Commas inside brackets or quotes belong to the value: ``domain.left=[0,1],[0,2]``.
+    """
+    lists = []
+    for option in options:
+        key, equals, values = option.partition("=")
+        parts = _split(values)
+        if not equals or not key.strip() or not all(parts):
+            repair = "write it as --vary contact.friction=0.2,0.5"
+            raise InputError(Fault(repr(option), None, "is not key=a,b,c", file="--vary", repair=repair))
+        lists.append([f"{key.strip()}={part}" for part in parts])
+    _refuse_too_many([len(part) for part in lists])
+    return named([Point("", settings) for settings in itertools.product(*lists)])
+
+
+def crossed(points: Sequence[Point], others: Sequence[Point]) -> list[Point]:
+    """Every point of one list with every one of the other laid over it."""
+    pairs = itertools.product(points, others)
+    return named([Point("", a.settings + b.settings, b.quality or a.quality) for a, b in pairs])
+
+
+def named(points: Iterable[Point]) -> list[Point]:
+    """Points with a name each, made of what they set; those that share one are numbered."""
+    made, seen = [], dict[str, int]()
+    for point in points:
+        name = _slug(point.name or _made_name(point))
+        seen[name.casefold()] = number = seen.get(name.casefold(), 0) + 1
+        made.append(replace(point, name=name if number == 1 else f"{name}-{number}"))
+    return made
+
+
+def literal(value: Any, key: str) -> str:
+    """A value as TOML writes it; InputError for what a setting cannot hold."""
+    if isinstance(value, bool | int | float | str | list):
+        return json.dumps(value, ensure_ascii=False)
+    raise InputError(Fault(key, str(value), "is not a number, text, truth or list"))
+
+
+def flat(table: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
+    """Dotted keys and values of nested tables."""
+    for name, value in table.items():
+        key = f"{above}{name}"
+        if isinstance(value, Mapping):
+            yield from flat(value, f"{key}.")
+        else:
+            yield key, value
+
+
+def settings_of(table: Mapping[str, Any]) -> tuple[str, ...]:
+    """A table of keys, dotted or nested, as settings."""
+    return tuple(f"{key}={literal(value, key)}" for key, value in flat(table))
+
+
+def _of_csv(path: Path) -> Iterator[Point]:
+    try:
+        lines = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))
+    except OSError as error:
+        raise InputError(Fault("table", None, f"cannot be read ({error.strerror})")) from None
+    except UnicodeDecodeError as error:
+        at = error.object[: error.start].count(b"\n") + 1
+        raise InputError(Fault(f"line {at}", None, "is not UTF-8 text", repair="save it as UTF-8")) from None
+    except csv.Error as error:
+        raise InputError(Fault("table", None, f"is no CSV ({error})")) from None
+    head = [name.strip() for name in lines[0]] if lines else []
+    if len(set(head)) < len(head) or not all(head):
+        raise InputError(Fault("line 1", ", ".join(head), "is not a name for every column, each once"))
+    for number, line in enumerate(lines[1:], 2):
+        if not any(cell.strip() for cell in line):
+            continue
+        if len(line) != len(head):
+            raise InputError(Fault(f"line {number}", None, f"has {len(line)} cells, the first line {len(head)}"))
+        row = dict(zip(head, (cell.strip() for cell in line), strict=True))
+        name, quality = row.pop("name", ""), row.pop("quality", "") or None
+        yield Point(name, tuple(f"{key}={value}" for key, value in row.items() if value), quality)
+
+
+def _of_toml(path: Path) -> Iterator[Point]:
+    table = scene_file.read(path)
+    unknown = table.keys() - {"point", "vary"}
+    if unknown:
+        raise InputError(Fault(min(unknown), None, "is unknown", repair="write [[point]] tables, or [vary]"))
+    rows, lists = table.get("point", []), table.get("vary", {})
+    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+        raise InputError(Fault("point", None, "is not a list of tables", repair="write [[point]]"))
+    if not isinstance(lists, dict):
+        raise InputError(Fault("vary", None, "is not a table", repair="write [vary] and a list for each key"))
+    for row in rows:
+        name, quality = str(row.pop("name", "")), row.pop("quality", None)
+        yield Point(name, settings_of(row), None if quality is None else str(quality))
+    if lists:
+        choices = []
+        for key, values in flat(lists):
+            if not isinstance(values, list) or not values:
+                raise InputError(Fault(f"vary.{key}", str(values), "is not a list of values"))
+            choices.append([f"{key}={literal(value, key)}" for value in values])
+        _refuse_too_many([len(part) for part in choices])
+        for settings in itertools.product(*choices):
+            yield Point("", settings)
+
+
+def _refuse_too_many(counts: Sequence[int]) -> None:
+    product = 1
+    for count in counts:
+        product *= count
+    if product > MOST:
+        raise InputError(Fault("points", product, "are too many combinations", "", f"<= {MOST}"))
+
+
+def _split(text: str) -> list[str]:
+    """``text`` at commas outside brackets and quotes."""
+    parts, depth, quote, start = [], 0, "", 0
+    for at, sign in enumerate(text):
+        if quote:
+            quote = "" if sign == quote else quote
+        elif sign in "\"'":
+            quote = sign
+        elif sign in "[({":
+            depth += 1
+        elif sign in "])}":
+            depth -= 1
+        elif sign == "," and depth == 0:
+            parts.append(text[start:at].strip())
+            start = at + 1
+    return [*parts, text[start:].strip()]
+
+
+def _made_name(point: Point) -> str:
+    """The last parts of keys, and values."""
+    parts = [point.quality or ""]
+    for setting in point.settings:
+        key, _, value = setting.partition("=")
+        parts.append(f"{key.rpartition('.')[2]}={value}")
+    return ",".join(part for part in parts if part) or "as-it-is"
+
+
+def _slug(name: str) -> str:
+    """``name`` as a folder may be called on any system: no separators, no quotes, no leading dot."""
+    cleaned = re.sub(r"[^\w.,=+-]+", "_", name.replace('"', "").replace("'", "")).strip("._")
+    return cleaned[:LONGEST] or "point"

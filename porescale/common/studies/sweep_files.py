@@ -1,0 +1,126 @@
+"""The files of a sweep: sweep.csv, sweep.md and sweep.png, each whole or not at all."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from porescale.common.cli.folders import write_whole
+from porescale.common.studies.quantities import TIME, Columns, measured
+from porescale.common.studies.runner import FINISHED, Ended
+
+NAME = "sweep"
+COSTS = {"steps": "step", "seconds (s)": "seconds", "core-seconds (s)": "core_seconds", "memory (B)": "peak_bytes"}
+"""Columns of what a point cost, and the keys of a run card they come from."""
+Tables = Callable[[Path, str], Columns]
+"""Gives the columns of a table of a run folder, "series" for series.csv."""
+
+
+def keys_of(ends: Sequence[Ended]) -> list[str]:
+    """What any of the points sets, in the order of first mention."""
+    return list(dict.fromkeys(text.partition("=")[0] for ended in ends for text in ended.point.settings))
+
+
+def number(ended: Ended, row: Mapping[str, Any], tables: Tables) -> float:
+    """What ``row`` asks of a finished point; nan where it has no such table or column."""
+    try:
+        return measured(tables(ended.folder, str(row.get("file", "series"))), row)
+    except (KeyError, IndexError, ValueError):
+        return math.nan
+
+
+def line(ended: Ended, keys: Sequence[str], rows: Sequence[Mapping[str, Any]], tables: Tables) -> dict[str, Any]:
+    """A point as one line of the table; numbers of points that did not finish are empty."""
+    made: dict[str, Any] = {"name": ended.point.name, "quality": ended.point.quality or ""}
+    made |= {key: ended.point.value(key) for key in keys}
+    made |= {"outcome": ended.outcome, **{name: ended.card.get(key) for name, key in COSTS.items()}}
+    for row in rows:
+        found = number(ended, row, tables) if ended.outcome == FINISHED else math.nan
+        made[title(row)] = found if math.isfinite(found) else None
+    return made | {"problem": ended.problem}
+
+
+def title(row: Mapping[str, Any]) -> str:
+    """The name of a number with its unit."""
+    name, unit = str(row["name"]), str(row.get("unit", ""))
+    return name if not unit or name.endswith(")") else f"{name} ({unit})"
+
+
+def write(
+    folder: Path, command: str, ends: Sequence[Ended], rows: Sequence[Mapping[str, Any]], tables: Tables
+) -> list[dict[str, Any]]:
+    """Write the files into ``folder``; gives the lines of the table."""
+    folder.mkdir(parents=True, exist_ok=True)
+    lines = [line(ended, keys_of(ends), rows, tables) for ended in ends]
+    write_whole(folder / f"{NAME}.csv", csv_text(lines).encode())
+    write_whole(folder / f"{NAME}.md", markdown(command, lines).encode())
+    write_whole(folder / f"{NAME}.png", picture(ends, rows, tables))
+    return lines
+
+
+def csv_text(lines: Sequence[Mapping[str, Any]]) -> str:
+    """One line for each point, every number with all its digits."""
+    out = io.StringIO()
+    made = csv.writer(out, lineterminator="\n")
+    made.writerow(lines[0])
+    made.writerows([["" if value is None else value for value in each.values()] for each in lines])
+    return out.getvalue()
+
+
+def markdown(command: str, lines: Sequence[Mapping[str, Any]]) -> str:
+    """The same as a table to read: four digits, empty columns left out."""
+    shown = [name for name in lines[0] if any(each[name] not in ("", None) for each in lines)]
+    parts = [f"# Sweep\n\nMade by `{command}`; the table with all digits is {NAME}.csv.\n\n![curves]({NAME}.png)\n"]
+    parts += ["| " + " | ".join(shown) + " |", "|" + "---|" * len(shown)]
+    parts += ["| " + " | ".join(_short(each[name]) for name in shown) + " |" for each in lines]
+    return "\n".join(parts) + "\n"
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    return "" if value is None else str(value).replace("|", "/")
+
+
+def picture(ends: Sequence[Ended], rows: Sequence[Mapping[str, Any]], tables: Tables) -> bytes:
+    """The columns that the rows speak of over time, a panel each, a curve for each finished point, as a PNG."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    columns = list(dict.fromkeys((str(row.get("file", "series")), str(row["column"])) for row in rows))[:12]
+    across = min(3, max(1, len(columns)))
+    down = max(1, -(-len(columns) // across))
+    figure = Figure(figsize=(4.2 * across, 2.9 * down + 0.6), layout="constrained")
+    FigureCanvasAgg(figure)
+    panels = figure.subplots(down, across, squeeze=False).ravel()
+    for axes, (file, column) in zip(panels, columns, strict=False):
+        for at, ended in enumerate(ends):
+            _curve(axes, ended, file, column, tables, f"C{at % 10}")
+        axes.set_title(column, fontsize=9)
+        axes.set_xlabel(TIME, fontsize=8)
+    for axes in panels[len(columns) :]:
+        axes.set_visible(False)
+    handles = dict(zip(*reversed(panels[0].get_legend_handles_labels()), strict=True))
+    if handles:
+        names = list(handles)[:20]
+        figure.legend([handles[name] for name in names], names, loc="outside lower center", ncols=4, fontsize=7)
+    out = io.BytesIO()
+    figure.savefig(out, dpi=100, metadata={"Software": None})
+    return out.getvalue()
+
+
+def _curve(axes: Any, ended: Ended, file: str, column: str, tables: Tables, colour: str) -> None:
+    """One point's column over time, if it has it."""
+    try:
+        found = tables(ended.folder, file)
+        time, values = np.asarray(found[TIME]), np.asarray(found[column])
+    except (KeyError, ValueError, IndexError, OSError):
+        return
+    style = "-" if ended.outcome == FINISHED else ":"
+    axes.plot(time, values, style, color=colour, linewidth=1.0, label=ended.point.name)

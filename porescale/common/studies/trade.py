@@ -1,0 +1,176 @@
+"""Speed against accuracy: how far the runs of a plan are off, what they cost, and which of them nobody beats.
+
+The error of a run in one quantity is its distance from the exact value or from the reference run of the same repeat,
+over the quantity's scale; of a curve or field, the rms distance over its places.  That of a run is the rms over
+quantities; that of a point the rms over repeats, with their standard deviation beside it.  Grains are chaotic, so that
+an error never falls below what a last digit changes: beside all errors stands ``packings``, how far the reference runs
+of different repeats are off their mean, measured in the same way.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.studies.parameter_table import Point
+from porescale.common.studies.quantities import Columns, curve, measured
+from porescale.common.studies.runner import FINISHED, Ended
+from porescale.common.studies.trade_plan import Plan, Quantity
+
+Tables = Callable[[Path, str], Columns]
+Features = Mapping[str, Callable[[Path, float | None], NDArray[Any]]]
+"""What a package makes of a run folder at a time (None: the last snapshot), by name."""
+Answer = tuple[NDArray[Any] | None, NDArray[Any]]
+"""Places, where there are any, and values."""
+
+
+@dataclass(frozen=True)
+class Traded:
+    """A point of the trade.
+
+    errors : of each quantity;  error, scatter : of all together, over repeats;  core_seconds (of steps), seconds,
+    peak_bytes, steps, time (s, simulated), besides (core-seconds of other things: snapshots, pictures, film), pace
+    (core-seconds of a step as runs began) : means over repeats;  outcome : "finished", or the first other one, and
+    errors are infinite.
+    """
+
+    knob: str
+    label: str
+    point: Point
+    outcome: str
+    errors: dict[str, float]
+    error: float
+    scatter: float
+    core_seconds: float
+    seconds: float
+    peak_bytes: float
+    steps: int
+    time: float
+    besides: float = 0.0
+    pace: float = 0.0
+    on_front: bool = False
+    problem: str = ""
+
+
+@dataclass
+class Judge:
+    """Answers of runs and their errors.  tables, features : of the package;  references : runs, one for each repeat."""
+
+    plan: Plan
+    tables: Tables
+    features: Features
+    references: Sequence[Ended] = ()
+    _kept: dict[tuple[Path, str], Answer] = field(default_factory=dict)
+
+    def answer(self, ended: Ended, asked: Quantity) -> Answer:
+        """What a run says to a quantity; KeyError where it has no such column or feature."""
+        key = (ended.folder, asked.name)
+        if key not in self._kept:
+            self._kept[key] = self._answer(ended, asked)
+        return self._kept[key]
+
+    def _answer(self, ended: Ended, asked: Quantity) -> Answer:
+        if asked.feature:
+            at = None if asked.at == "end" else float(str(asked.at))
+            return None, np.asarray(self.features[asked.feature](ended.folder, at), float).ravel()
+        columns = self.tables(ended.folder, asked.file)
+        if asked.is_curve:
+            return curve(columns, asked.row())
+        return None, np.array([measured(columns, asked.row())])
+
+    def error(self, ended: Ended, repeat: int, asked: Quantity) -> float:
+        """How far a run is off in one quantity; infinite where it has no answer."""
+        places, values = self.answer(ended, asked)
+        if asked.exact is not None:
+            return distance(values, np.array([asked.exact]), asked.scale)
+        at, truth = self.answer(self.references[repeat], asked)
+        if places is not None and at is not None:
+            values = np.interp(at, places, values)
+        return distance(values, truth, asked.scale)
+
+    def told(self) -> list[dict[str, list[float]]]:
+        """What the references say to each quantity that is a number, so that a run can be held against them later."""
+        numbers = [asked for asked in self.plan.quantity if not (asked.is_curve or asked.feature)]
+        return [
+            {asked.name: self.answer(ended, asked)[1].tolist() for asked in numbers if asked.exact is None}
+            for ended in self.references
+        ]
+
+    def packings(self) -> dict[str, float]:
+        """How far the references are off their mean, for each quantity that is not exact; {} for a single one."""
+        if len(self.references) < 2:
+            return {}
+        made = {}
+        for asked in self.plan.quantity:
+            answers = [self.answer(ended, asked)[1] for ended in self.references]
+            if asked.exact is None and len({len(values) for values in answers}) == 1:
+                mean = np.mean(answers, axis=0)
+                share = len(answers) / (len(answers) - 1)  # the mean is the sample's own
+                made[asked.name] = math.sqrt(share) * rms([distance(v, mean, asked.scale) for v in answers])
+        return made
+
+    def trade(self, knob: str, label: str, point: Point, ends: Sequence[Ended]) -> Traded:
+        """What a point came to over its repeats."""
+        bad = next((ended for ended in ends if ended.outcome != FINISHED), None)
+        if bad is not None:
+            nothing = dict.fromkeys((asked.name for asked in self.plan.quantity), math.inf)
+            return Traded(knob, label, point, bad.outcome, nothing, math.inf, 0.0, *costs(ends), problem=bad.problem)
+        table = np.array(
+            [[self.error(ended, repeat, asked) for asked in self.plan.quantity] for repeat, ended in enumerate(ends)]
+        )
+        errors = {asked.name: rms(table[:, k]) for k, asked in enumerate(self.plan.quantity)}
+        each = [rms(row) for row in table]
+        scatter = float(np.std(each, ddof=1)) if len(each) > 1 and np.isfinite(each).all() else 0.0
+        return Traded(knob, label, point, FINISHED, errors, rms(each), scatter, *costs(ends))
+
+
+def distance(values: NDArray[Any], truth: NDArray[Any], scale: float) -> float:
+    """Rms distance over ``scale``; infinite where one of them is no number or they do not match."""
+    if values.shape != truth.shape or not len(values):
+        return math.inf
+    found = rms((values - truth) / scale)
+    return found if math.isfinite(found) else math.inf
+
+
+def rms(values: Any) -> float:
+    """Root of the mean square."""
+    return float(np.sqrt(np.mean(np.square(np.asarray(values, float)))))
+
+
+def costs(ends: Sequence[Ended]) -> tuple[float, float, float, int, float, float, float]:
+    """Core-seconds, seconds, bytes, steps, simulated time, core-seconds besides, pace: means over runs that say them;
+    seconds stand in for core-seconds, all steps for the first ones.  Where some say their pace, costs are those of
+    these runs: a pace goes with the core-seconds of its own run, since machines have better and worse hours.
+    """
+    ends = [ended for ended in ends if ended.card.get("core_pace")] or ends
+
+    def mean(key: str) -> float:
+        """Over the runs that say it, 0 where none does."""
+        known = [float(ended.card[key]) for ended in ends if ended.card.get(key)]
+        return sum(known) / len(known) if known else 0.0
+
+    core_seconds, steps = mean("core_seconds") or mean("seconds"), round(mean("step"))
+    pace = mean("core_pace") or core_seconds / max(steps, 1)
+    return (
+        core_seconds, mean("seconds"), mean("peak_bytes"), steps, mean("time"), mean("core_seconds_besides"), pace,
+    )  # fmt: skip
+
+
+def front(points: Sequence[Traded]) -> list[Traded]:
+    """The same points, each saying whether no other is both no dearer and no worse, and one of the two better."""
+
+    def beaten(one: Traded) -> bool:
+        """Whether another point is as good in both and better in one, or there is no error."""
+        return not math.isfinite(one.error) or any(
+            other.core_seconds <= one.core_seconds and other.error <= one.error
+            and (other.core_seconds < one.core_seconds or other.error < one.error)
+            for other in points
+        )  # fmt: skip
+
+    return [Traded(**{**vars(one), "on_front": not beaten(one)}) for one in points]

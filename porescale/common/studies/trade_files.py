@@ -1,0 +1,140 @@
+"""The files of a trade study: front.json, trade.csv, trade.md and trade.png, each whole or not at all."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from porescale.common.cli.folders import write_whole
+from porescale.common.studies.trade import Traded
+
+FRONT = "front.json"
+NAME = "trade"
+FORMAT = 2
+Caveats = Mapping[tuple[str | None, tuple[str, ...]], str]
+"""What is to be said of points, by quality and settings."""
+
+
+def as_dict(one: Traded, but: str = "") -> dict[str, Any]:
+    """A point, JSON-able: infinite errors become null.  but : what its errors do not show."""
+    made = {key: value for key, value in vars(one).items() if key not in ("point", "error", "errors", "scatter")}
+    return made | {
+        "name": one.point.name, "quality": one.point.quality, "settings": list(one.point.settings),
+        "error": _finite(one.error), "scatter": one.scatter, "but": but,
+        "errors": {name: _finite(value) for name, value in one.errors.items()},
+    }  # fmt: skip
+
+
+def front_json(about: Mapping[str, Any], points: Sequence[Traded], caveats: Caveats) -> str:
+    """``about`` (command, version, machine, date, …) and the points, a line each, so that two can be compared."""
+    head = json.dumps({"format": FORMAT, **about}, indent=1, allow_nan=False).removesuffix("\n}")
+    lines = (
+        json.dumps(as_dict(one, caveats.get((one.point.quality, one.point.settings), "")), allow_nan=False)
+        for one in points
+    )
+    return head + ',\n "points": [\n  ' + ",\n  ".join(lines) + "\n ]\n}\n"
+
+
+def write(
+    folder: Path,
+    about: dict[str, Any],
+    points: Sequence[Traded],
+    packings: Mapping[str, float],
+    caveats: Caveats | None = None,
+) -> None:
+    """Write the files into ``folder``.
+
+    packings : how far references of different repeats are off their mean;  caveats : what errors of points do not show.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    write_whole(folder / FRONT, front_json(about | {"packings": dict(packings)}, points, caveats or {}).encode())
+    write_whole(folder / f"{NAME}.csv", csv_text(points).encode())
+    write_whole(folder / f"{NAME}.md", markdown(about, points, packings).encode())
+    dear = about.get("reference", {}).get("core_seconds", 0.0)
+    write_whole(folder / f"{NAME}.png", picture(points, packings, dear))
+
+
+def csv_text(points: Sequence[Traded]) -> str:
+    """One line for each point, all digits."""
+    out = io.StringIO()
+    lines = csv.writer(out, lineterminator="\n")
+    names = list(points[0].errors) if points else []
+    lines.writerow(["knob", "label", "outcome", "on front", "error", "scatter", "core-seconds (s)", "seconds (s)",
+                    "memory (B)", "steps", *names, "quality", "settings"])  # fmt: skip
+    for one in points:
+        lines.writerow([one.knob, one.label, one.outcome, int(one.on_front), one.error, one.scatter, one.core_seconds,
+                        one.seconds, one.peak_bytes, one.steps, *one.errors.values(), one.point.quality or "",
+                        " ".join(one.point.settings)])  # fmt: skip
+    return out.getvalue()
+
+
+def markdown(about: dict[str, Any], points: Sequence[Traded], packings: Mapping[str, float]) -> str:
+    """A table from cheap to dear, the front in bold."""
+    names = list(points[0].errors) if points else []
+    parts = [f"# Speed against accuracy\n\nMade by `{about.get('command', '')}`, {about.get('date', '')}, "
+             f"{about.get('machine', {}).get('processor', '')}. Bold: no other point is both cheaper and better.\n\n"
+             f"![front]({NAME}.png)\n"]  # fmt: skip
+    parts.append("| point | core-seconds | memory, MiB | error ± scatter | " + " | ".join(names) + " |")
+    parts.append("|---|" + "---|" * (3 + len(names)))
+    for one in sorted(points, key=lambda each: each.core_seconds):
+        label = f"**{one.label}**" if one.on_front else one.label
+        total = f"{_percent(one.error)} ± {_percent(one.scatter)}" if math.isfinite(one.error) else one.outcome
+        cells = [label, f"{one.core_seconds:.3g}", f"{one.peak_bytes / 2**20:.0f}", total]
+        parts.append("| " + " | ".join([*cells, *(_percent(one.errors[name]) for name in names)]) + " |")
+    if packings:
+        cells = ["another packing, finest", "", "", ""]
+        parts.append("| " + " | ".join([*cells, *(_percent(packings.get(name, math.nan)) for name in names)]) + " |")
+    return "\n".join(parts) + "\n"
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.2g} %" if math.isfinite(share) else "–"
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def picture(points: Sequence[Traded], packings: Mapping[str, float], dear: float = 0.0) -> bytes:
+    """Error over core-seconds, a colour for each knob, the front as a line, as a PNG.  dear : core-seconds of the
+    reference, which has no error to show; 0 where there is none."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8, 5), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots()
+    shown = [one for one in points if math.isfinite(one.error) and one.core_seconds > 0 and one.error > 0]
+    for at, knob in enumerate(dict.fromkeys(one.knob for one in shown)):
+        mine = [one for one in shown if one.knob == knob]
+        axes.errorbar([one.core_seconds for one in mine], [100 * one.error for one in mine],
+                      yerr=[100 * min(one.scatter, 0.95 * one.error) for one in mine], fmt="o", color=f"C{at % 10}",
+                      capsize=2, markersize=4, linewidth=0.8, label=knob)  # fmt: skip
+    best = sorted((one for one in shown if one.on_front), key=lambda one: one.core_seconds)
+    axes.plot([one.core_seconds for one in best], [100 * one.error for one in best], "k-", linewidth=0.8, zorder=0,
+              label="front")  # fmt: skip
+    for one in shown:
+        axes.annotate(one.label, (one.core_seconds, 100 * one.error), (4, 4), textcoords="offset points", fontsize=6.5,
+                      color="black" if one.on_front else "grey")  # fmt: skip
+    if packings:
+        floor = (sum(value**2 for value in packings.values()) / len(packings)) ** 0.5
+        axes.axhline(100 * floor, color="grey", linestyle=":", linewidth=0.9, label="another packing")
+    if dear:
+        axes.axvline(dear, color="grey", linestyle="--", linewidth=0.9, label="what errors are held against")
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter("{x:g}")
+    axes.set_xlabel("core-seconds")
+    axes.set_ylabel("error, %")
+    if shown:
+        axes.legend(fontsize=7, frameon=False)
+    out = io.BytesIO()
+    figure.savefig(out, dpi=110, metadata={"Software": None})
+    return out.getvalue()

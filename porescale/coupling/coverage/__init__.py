@@ -1,0 +1,1 @@
+"""Solid fraction of every cell: discs, polygons, rectangles, rings, exact to round-off."""

@@ -1,0 +1,220 @@
+"""The rows of the lattice that bodies lie in, and what they cover of each.
+
+A body, whatever its shape, has filled a patch of solid fractions around itself.  A list of the bodies in every row, in
+index order so that sums do not depend on threads, lets a row be laid out (``lay_row``) when it is needed.  Patches and
+the scratch of a row are worked through in blocks of ``BLOCK`` cells, a number known when kernels are compiled: a loop
+of a dozen cells would run cell by cell otherwise.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.compiled.jit import fetch, inline, parallel_kernel, part, prange
+
+BLOCK = 16
+"""Cells done at once: the widest vector of float32."""
+AHEAD = 12
+"""Entries of a row ahead of which patches are fetched: bodies lie apart in memory, and waiting for each would cost more
+than all that is done with it."""
+LISTING = 16
+"""Parts of the lattice whose rows are listed side by side; any number gives the same lists."""
+
+
+class Patches(NamedTuple):
+    """Where bodies cover the lattice.
+
+    corner (n, 2): cell (x, y) at a patch's lower left;  height (n,): its rows;  stride (n,): cells of a row, a multiple
+    of ``BLOCK``;  start (n,): where in ``fraction`` its first row begins;  fraction: of all patches, row by row.
+    """
+
+    corner: NDArray[np.int64]
+    height: NDArray[np.int64]
+    stride: NDArray[np.int64]
+    start: NDArray[np.int64]
+    fraction: NDArray[np.floating]
+
+
+class Rows(NamedTuple):
+    """Which bodies lie in which row of the lattice: entries start[y] to start[y + 1] - 1 are those of row y.
+
+    start (ny + 1,);  body, line (as many as patches have rows): the body, and the row of its patch.
+    """
+
+    start: NDArray[np.int64]
+    body: NDArray[np.int64]
+    line: NDArray[np.int64]
+
+
+def whole_blocks(cells: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The least multiples of ``BLOCK`` that hold so many cells."""
+    return -(-cells // BLOCK) * BLOCK
+
+
+def make_patches(width: NDArray[np.int64], height: NDArray[np.int64], dtype: np.dtype[np.floating]) -> Patches:
+    """Empty patches of width (n,) by height (n,) cells."""
+    stride = whole_blocks(width)
+    size = stride * height
+    start = np.cumsum(size) - size
+    return Patches(np.zeros((len(width), 2), np.int64), height, stride, start, np.zeros(int(np.sum(size)), dtype))
+
+
+def make_rows(patches: Patches, ny: int) -> Rows:
+    """Lists that hold all rows of the patches."""
+    entries = int(np.sum(patches.height))
+    return Rows(np.zeros(ny + 1, np.int64), np.zeros(entries, np.int64), np.zeros(entries, np.int64))
+
+
+@parallel_kernel
+def list_rows(patches, periodic_y, rows):
+    """Which bodies lie in which row of the lattice, and with which row of their patch, in index order: a counting sort.
+
+    Overwrites rows.  A body is higher than a periodic box by two rows at most.
+    """
+    start = rows.start
+    ny = start.shape[0] - 1
+    start[:] = 0
+    # How many begin less how many have ended in each row; then their sums, the number in each; then their sums.
+    for n in range(patches.height.shape[0]):
+        low = patches.corner[n, 1]
+        high = low + patches.height[n]
+        if periodic_y:
+            low %= ny
+            high = low + patches.height[n]
+            while high > ny:
+                start[low] += 1
+                start[ny] -= 1
+                low = 0
+                high -= ny
+        low = max(low, 0)
+        high = min(high, ny)
+        if low < high:
+            start[low] += 1
+            start[high] -= 1
+    here = 0
+    total = 0
+    for y in range(ny + 1):
+        here += start[y]
+        start[y] = total
+        total += here
+    for piece in prange(LISTING):
+        list_part(patches, periodic_y, rows, piece * ny // LISTING, (piece + 1) * ny // LISTING)
+    for y in range(ny, 0, -1):
+        start[y] = start[y - 1]
+    start[0] = 0
+
+
+@inline
+def list_part(patches, periodic_y, rows, first, last):
+    """List rows ``first`` to ``last`` - 1 of the lattice; moves rows.start of each to where its entries end."""
+    ny = rows.start.shape[0] - 1
+    for n in range(patches.height.shape[0]):
+        low = patches.corner[n, 1]
+        if periodic_y:
+            low %= ny
+        high = low + patches.height[n]
+        while True:  # once, or again for what lies beyond a periodic side
+            for y in range(max(low, first), min(high, last)):
+                at = rows.start[y]
+                rows.body[at] = n
+                rows.line[at] = y - low
+                rows.start[y] = at + 1
+            low -= ny
+            high -= ny
+            if not periodic_y or high <= 0:
+                break
+
+
+@inline
+def blocks_inside(base, stride, nx):
+    """The whole blocks of a patch row that reach into the box, when its cell 0 lies in column ``base``: first, last.
+
+    The first and the last one may stick out by less than a block.
+    """
+    return max(0, -base // BLOCK * BLOCK), min(stride, (nx - base + BLOCK - 1) // BLOCK * BLOCK)
+
+
+@inline
+def lay_row(begin, end, rows, patches, centre, velocity, spin, shift, theta, periodic_x, ramp, scratch):
+    """Add up the solid fractions of one row, and fractions times solid velocity at the cells' centres.
+
+    The velocity in a cell that a body covers by e is its own and e times the half-step correction ``shift`` (n, 3),
+    along x and y and of the spin.  Where rims are soft scratch has a fourth row:
+    fractions times theta (n,), rim.py.
+
+    Entries ``begin`` to ``end`` - 1 of ``rows`` are the row's;  centre (n, 2) cells, velocity (n, 2), spin (n,):
+    lattice units;  ramp (BLOCK,): 0, 1, 2, ...  Adds to scratch (3 or 4, BLOCK + nx + BLOCK); returns the first column
+    that may be covered and one past the last.
+    """
+    nx = scratch.shape[1] - 2 * BLOCK
+    s, sx, sy = scratch[0], scratch[1], scratch[2]
+    leftmost = nx
+    rightmost = 0
+    for k in range(begin, end):
+        if k + AHEAD < rows.body.shape[0]:
+            m = rows.body[k + AHEAD]
+            soon = patches.start[m] + rows.line[k + AHEAD] * patches.stride[m]
+            fetch(patches.fraction, soon)
+            fetch(patches.fraction, soon + BLOCK // 2)
+        n = rows.body[k]
+        j = rows.line[k]
+        stride = patches.stride[n]
+        at = patches.start[n] + j * stride
+        base = patches.corner[n, 0]
+        turning = ramp.dtype.type(spin[n])
+        vx = ramp.dtype.type(velocity[n, 0] - spin[n] * (patches.corner[n, 1] + j + 0.5 - centre[n, 1]))
+        vy0 = velocity[n, 1] + spin[n] * (base + 0.5 - centre[n, 0])
+        twist = ramp.dtype.type(shift[n, 2])
+        cx = ramp.dtype.type(shift[n, 0] - shift[n, 2] * (patches.corner[n, 1] + j + 0.5 - centre[n, 1]))
+        cy0 = shift[n, 1] + shift[n, 2] * (base + 0.5 - centre[n, 0])
+        if periodic_x:
+            base %= nx
+        while base + stride > 0:  # once, or again for what lies beyond a periodic side
+            first, last = blocks_inside(base, stride, nx)
+            for b in range(first, last, BLOCK):
+                vy = ramp.dtype.type(vy0 + spin[n] * b)
+                cy = ramp.dtype.type(cy0 + shift[n, 2] * b)
+                e = part(patches.fraction, at + b, BLOCK)
+                x = base + b + BLOCK
+                t = part(s, x, BLOCK)
+                tx = part(sx, x, BLOCK)
+                ty = part(sy, x, BLOCK)
+                for i in range(BLOCK):
+                    t[i] += e[i]
+                    tx[i] += e[i] * (vx + e[i] * cx)
+                    ty[i] += e[i] * (vy + turning * ramp[i] + e[i] * (cy + twist * ramp[i]))
+                if scratch.shape[0] > 3:
+                    softness = ramp.dtype.type(theta[n])
+                    summed = part(scratch[3], x, BLOCK)
+                    for i in range(BLOCK):
+                        summed[i] += e[i] * softness
+            if first < last:
+                leftmost = min(leftmost, base + first)
+                rightmost = max(rightmost, base + last)
+            if not periodic_x:
+                break
+            base -= nx
+    return max(leftmost, 0), min(rightmost, nx)
+
+
+@parallel_kernel
+def lay_out(rows, patches, centre, velocity, spin, shift, theta, periodic_x, ramp, scratch, out):
+    """All rows at once, for output: overwrites out (3, ny, nx) with what ``lay_row`` gives.
+
+    scratch (bands, 3 or 4, BLOCK + nx + BLOCK): zero before and after.
+    """
+    bands = scratch.shape[0]
+    ny, nx = out.shape[1], out.shape[2]
+    for band in prange(bands):
+        for y in range(band * ny // bands, (band + 1) * ny // bands):
+            lay_row(
+                rows.start[y], rows.start[y + 1], rows, patches, centre, velocity, spin, shift, theta,
+                periodic_x, ramp, scratch[band],
+            )  # fmt: skip
+            for k in range(3):  # element by element: assigned as slices it takes ten times as long to compile
+                for x in range(nx):
+                    out[k, y, x] = scratch[band, k, BLOCK + x]
+            for k in range(scratch.shape[1]):
+                for x in range(scratch.shape[2]):
+                    scratch[band, k, x] = 0

@@ -1,0 +1,249 @@
+"""The partially saturated cells of a lattice: what discs cover of it, and one fluid step with them in it."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.compiled.jit import most_threads
+from porescale.coupling.coverage.bodies import Bodies
+from porescale.coupling.coverage.discs import CHUNKS, SCRATCH, cover
+from porescale.coupling.coverage.overlap import take_off
+from porescale.coupling.coverage.polygon import Polygons
+from porescale.coupling.coverage.rectangle import Rectangle
+from porescale.coupling.coverage.ring import Ring
+from porescale.coupling.coverage.rows import BLOCK, lay_out, list_rows, make_patches, make_rows
+from porescale.coupling.coverage.shape import Shape
+from porescale.coupling.coverage.soft_rim import MARGIN, Rim
+from porescale.coupling.load import add_rows, half_step_correction
+from porescale.coupling.psm_kernels import AT_ONCE, sweep
+from porescale.coupling.solid.choose import choose_solid
+from porescale.coupling.weighting import choose_weight, fitting_weight, weights_of
+from porescale.lbm.collision.choose import third_order_rate
+from porescale.lbm.fluid import Fluid
+
+RADIUS_SHIFT = 1.5
+"""Times the magic parameter, cells², over the radius: what exact walls lack to be those of a disc (0.28 at 3/16;
+solid/exact_wall.py)."""
+LOW_PASS = 0.1
+"""Share of a step's load in the one that the half-step correction is made from; 1 lets light discs run away."""
+BAND_HEIGHT = 8
+"""Rows that one thread does at a time; any value gives the same bits."""
+SPREAD = 0.6180339887498949
+"""Golden section: bands in the order of the multiples of it, modulo 1, are spread evenly over any number of threads,
+though the grains lie at the bottom."""
+
+Array = NDArray[np.floating]
+
+
+class Saturated:
+    """Discs of given radii (cells), convex polygons, rectangles and rings as the fluid sees them.
+
+    force (n, 2), torque (n,): loads of the last step on the discs, lattice units; rectangle_force (m, 2), ring_force,
+    ring_torque: on the others, what the fluid inside them takes already given back.  The fluid sees a radius of
+    ``covering_radius`` cells.  Rectangles and rings go as their owner says between steps; where they reach through a
+    side of the box it moves with them, and ``mass_through_sides`` tells what came in (shapes/crossing.py).  pairs:
+    (p, 2) discs of one rigid body that overlap, see overlap.py.  polygon_load (p, 3), polygon_inside (p, 2): of the
+    polygons, as of discs; they go as their owner says.  A step allocates no array of the size of anything.
+    """
+
+    def __init__(
+        self,
+        fluid: Fluid,
+        radius: Array,
+        *,
+        solid_operator: str = "exact-wall",
+        weighting: str | None = None,
+        rectangles: Sequence[Rectangle] = (),
+        rings: Sequence[Ring] = (),
+        polygons: Polygons | None = None,
+        soft_rim: bool = False,
+    ) -> None:
+        ny, nx = fluid.ny, fluid.nx
+        dtype = fluid.populations.dtype
+        self.radius = np.ascontiguousarray(radius, float)
+        self.periodic_x = fluid.sides.left == "periodic"
+        self.periodic_y = fluid.sides.bottom == "periodic"
+        exact = solid_operator == "exact-wall"
+        third_order = third_order_rate(fluid.law)
+        shift = RADIUS_SHIFT * (fluid.relaxation_time - 0.5) * (1 / third_order - 0.5) * exact
+        widest = 0.5 * min(nx if self.periodic_x else math.inf, ny if self.periodic_y else math.inf)
+        if self.radius.max(initial=0) > widest * (1 + 1e-12):
+            raise ValueError("a disc is wider than the periodic box")
+        self.covering_radius = np.minimum(self.radius + shift / np.maximum(self.radius, 1.0), widest)
+        width = (np.floor(2 * self.covering_radius) + 2).astype(np.int64)
+        if soft_rim and not exact:
+            raise ValueError("soft rims go with the solid operator exact-wall")
+        width += MARGIN * soft_rim
+        high, wide = width, width + 1
+        self.polygons, discs = polygons, len(radius)
+        if polygons:
+            cells = polygons.fit(fluid, shift, discs)
+            high, wide = np.append(high, cells), np.append(wide, cells)
+        movers = len(high)
+        shapes: list[Shape] = [*rectangles, *rings]
+        self.bodies: Bodies | None = None
+        if shapes:
+            sizes = [shape.size(fluid, shift) for shape in shapes]
+            self.bodies = Bodies(fluid, movers, shapes, len(rectangles))
+            wide = np.append(wide, [size[0] for size in sizes])
+            high = np.append(high, [size[1] for size in sizes])
+        count = len(high)
+        self._patches = make_patches(wide, high, dtype)
+        self._rows = make_rows(self._patches, ny)
+        widest, highest = int(self._patches.stride[:discs].max(initial=BLOCK)), int(high.max(initial=0))
+        self._lines = np.zeros((CHUNKS, SCRATCH, widest + BLOCK))
+        self._row_load = np.zeros((count, highest, 7 if soft_rim else 5))
+        bands = -(-ny // BAND_HEIGHT)
+        self._band_order = np.argsort(np.arange(bands) * SPREAD % 1).astype(np.int64)
+        self._ramp = np.arange(BLOCK).astype(dtype)
+        threads = most_threads()
+        self._scratch = np.zeros((threads, 4 if soft_rim else 3, BLOCK + nx + BLOCK), dtype)
+        self._weights = np.zeros((threads, 5, max(min(nx, AT_ONCE), 7 * BLOCK)), dtype)
+        self._laws = (
+            choose_weight(fitting_weight(solid_operator, weighting), fluid.relaxation_time, dtype, soft=soft_rim),
+            choose_solid(solid_operator, fluid.relaxation_time, third_order, dtype, soft=soft_rim),
+        )  # fmt: skip
+        self.pairs = np.zeros((0, 2), np.int64)
+        self._placed = np.full((discs, 2), np.nan)  # centres for which the patches are filled
+        self._stands = np.zeros(self._placed.shape, np.bool_)
+        self._covered: Array | None = None
+        self._shape = ny, nx
+        self._load, self._inside = np.zeros((count, 3)), np.zeros((count, 2))
+        self.force, self.torque = self._load[:discs, :2], self._load[:discs, 2]
+        self.inside = self._inside[:discs]
+        self.polygon_load, self.polygon_inside = self._load[discs:movers], self._inside[discs:movers]
+        self._corrected, self._slow_load, self._shift = exact, np.zeros((count, 3)), np.zeros((count, 3))
+        self._theta = np.zeros(count)
+        self.rim = Rim(self.radius, shift, fluid.relaxation_time, self._theta[:discs]) if soft_rim else None
+        self._direct = np.zeros((count, 2))
+        self._direct[:discs] = -np.pi * self.covering_radius[:, None] ** 2 * np.asarray(fluid.force)
+        if polygons:
+            self._direct[discs:movers] = -polygons.covered_area[:, None] * np.asarray(fluid.force)
+
+    @property
+    def covered(self) -> Array:
+        """Sum of the solid fractions, and of fraction times velocity (x, y), (3, ny, nx); made when asked for."""
+        if self._covered is None:
+            self._covered = np.zeros((3, *self._shape), self._scratch.dtype)
+        return self._covered
+
+    @property
+    def solid(self) -> Array:
+        """Sum of the solid fractions right after ``cover``, (ny, nx)."""
+        return np.asarray(self.covered[0])
+
+    @property
+    def solid_x(self) -> Array:
+        """Sum of fraction times velocity along x right after ``cover``, (ny, nx)."""
+        return np.asarray(self.covered[1])
+
+    @property
+    def solid_y(self) -> Array:
+        """Sum of fraction times velocity along y right after ``cover``, (ny, nx)."""
+        return np.asarray(self.covered[2])
+
+    @property
+    def rectangle_force(self) -> Array:
+        """Force on the rectangles, (m, 2); (0, 2) without any."""
+        return self.bodies.load[: self.bodies.rectangles, :2] if self.bodies else np.zeros((0, 2))
+
+    @property
+    def ring_force(self) -> Array:
+        """Force on the rings, (m, 2); (0, 2) without any."""
+        return self.bodies.load[self.bodies.rectangles :, :2] if self.bodies else np.zeros((0, 2))
+
+    @property
+    def ring_torque(self) -> Array:
+        """Torque on the rings about their centres, (m,); (0,) without any."""
+        return self.bodies.load[self.bodies.rectangles :, 2] if self.bodies else np.zeros(0)
+
+    @property
+    def mass_through_sides(self) -> float:
+        """Mass that has come in through sides with what fills rectangles and rings, cells of density 1.
+
+        A gate that leaves a closed box through its lid takes its area with it, and the mean density falls by the gate's
+        share of the box: let water in through a side, or call ``make_good``.
+        """
+        return self.bodies.mass if self.bodies else 0.0
+
+    def make_good(self, fluid: Fluid) -> float:
+        """Take that mass out of all cells evenly and count anew; returns it.  Does nothing before an odd step."""
+        return self.bodies.make_good(fluid, self._patches) if self.bodies else 0.0
+
+    def _place(self, centre: Array, velocity: Array, spin: Array) -> tuple[Array, Array, Array]:
+        """Fill the bodies' patches, and list what lies in which row; centre, velocity and spin of them all.
+
+        Where there are discs only and none has moved since, all of that is there already.
+        """
+        others = self.rim or self.polygons or self.bodies
+        if not others and np.equal(centre, self._placed, out=self._stands).all():
+            return centre, velocity, spin
+        self._placed[:] = centre
+        if self.rim:
+            self.rim.soften(self.covering_radius)
+        cover(centre, self.covering_radius, self._patches, self._lines)
+        if len(self.pairs):
+            take_off(centre, self.covering_radius, self.pairs, self._patches)
+        if self.rim:
+            self.rim.filter(self._patches)
+        motion = centre, velocity, spin
+        if self.polygons:
+            self.polygons.cover(self._patches, len(self.radius))
+            motion = self.polygons.gather(*motion)
+        if self.bodies:
+            self.bodies.place(self._patches)
+            motion = self.bodies.gather(*motion)
+        list_rows(self._patches, self.periodic_y, self._rows)
+        return motion
+
+    def cover(self, centre: Array, velocity: Array, spin: Array) -> None:
+        """Fill the solid fields for discs at centre (n, 2), cells, with velocity and spin in lattice units."""
+        self._placed[:] = np.nan  # the owner may have lent other radii
+        motion = self._place(centre, velocity, spin)
+        self._placed[:] = np.nan
+        lay_out(
+            self._rows, self._patches, *motion, self._shift, self._theta, self.periodic_x, self._ramp, self._scratch,
+            self.covered,
+        )  # fmt: skip
+
+    def weights(self) -> Array:
+        """Weight B of every cell (ny, nx), right after ``cover``."""
+        return weights_of(self.solid, self._laws[0])
+
+    def advance(self, fluid: Fluid, centre: Array, velocity: Array, spin: Array) -> None:
+        """One fluid step with the bodies where they are; fills the loads."""
+        motion = self._place(centre, velocity, spin)
+        patches = self._patches
+        if self.bodies:
+            self.bodies.before(fluid, patches, self._shift, self._slow_load)
+        fluid.advance(
+            sweep, self._band_order, BAND_HEIGHT, self._rows, patches, *motion, self._shift,
+            self._theta, self.periodic_x, self._ramp, self._row_load, self._scratch, self._weights, *self._laws,
+        )  # fmt: skip
+        add_rows(
+            patches.corner, patches.height, fluid.ny, self.periodic_y, self._row_load, self._load, self._inside
+        )  # fmt: skip
+        if self.rim:
+            self.rim.follow(patches, fluid.ny, self.periodic_y, self._row_load)
+        if self.bodies:
+            self.bodies.after(fluid, patches, self._load, self._direct)
+        if self._corrected:
+            half_step_correction(self._load, self._inside, self._direct, LOW_PASS, self._slow_load, self._shift)
+
+    def state(self) -> dict[str, Any]:
+        """What the next step takes from those before."""
+        state: dict[str, Any] = {"slow_load": self._slow_load, "shift": self._shift}
+        if self.rim:
+            state["rim_slip"] = self.rim.slip
+        return state | ({"bodies": self.bodies.state()} if self.bodies else {})
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state of the same discs."""
+        self._slow_load[...], self._shift[...] = state["slow_load"], state["shift"]
+        if self.rim:
+            self.rim.slip[...] = state["rim_slip"]
+        if self.bodies:
+            self.bodies.restore(state["bodies"])

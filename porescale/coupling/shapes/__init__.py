@@ -1,1 +1,0 @@
-"""Bodies of the lattice that are no discs, one file each; a body is a filler of a patch of solid fractions."""

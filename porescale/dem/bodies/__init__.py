@@ -1,0 +1,1 @@
+"""Rigid bodies made of discs or of line segments."""

@@ -1,0 +1,69 @@
+"""What discs are of: a free disc is its own body, members of a clump are one.  For measures; nothing is changed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.dem.bodies.clumps import Clumps
+from porescale.dem.discs import Discs
+
+if TYPE_CHECKING:
+    from porescale.dem.grains import Grains
+
+Array = NDArray[np.float64]
+
+
+def clumps_of(grains: Grains) -> Clumps | None:
+    """The clumps of ``grains``, None where there is none."""
+    return grains.steering.clumps if grains.steered and grains.steering.clumps.count else None
+
+
+def body_of(grains: Grains) -> NDArray[np.int64]:
+    """Number of a disc for each disc's body, (n,): itself, or the first member of its clump."""
+    bodies, clumps = np.arange(grains.discs.count), clumps_of(grains)
+    if clumps is not None:
+        bodies[clumps.member] = np.repeat(clumps.member[clumps.start[:-1]], np.diff(clumps.start))
+    return bodies
+
+
+def arms(grains: Grains) -> Array:
+    """Way from the centroid of each disc's body to its centre, (n, 2) m."""
+    way, clumps = np.zeros((grains.discs.count, 2)), clumps_of(grains)
+    if clumps is not None:
+        way[clumps.member] = clumps.arm
+    return way
+
+
+def areas(grains: Grains) -> Array:
+    """Area that each disc stands for, (n,) m^2: members share the area of their union in proportion to their own."""
+    area, clumps = np.array(grains.discs.area), clumps_of(grains)
+    if clumps is not None:
+        own, numbers = area[clumps.member], np.repeat(np.arange(clumps.count), np.diff(clumps.start))
+        total = np.bincount(numbers, own, clumps.count)
+        area[clumps.member] = own * np.divide(clumps.area, total, out=np.zeros_like(total), where=total > 0.0)[numbers]
+    return area
+
+
+def masses(grains: Grains) -> Array:
+    """Mass of each disc's body, (n,) kg/m: what a contact with it moves; the discs' own where there is no clump."""
+    mass, clumps = grains.discs.mass, clumps_of(grains)
+    if clumps is not None:
+        mass = mass.copy()
+        mass[clumps.member] = np.repeat(clumps.mass, np.diff(clumps.start))
+    return mass
+
+
+def as_bodies(grains: Grains) -> Discs:
+    """The discs, members of clumps at the place and with the velocity of their body, and with their share of its mass:
+    sums over them of mass and momentum are those of bodies, without what turns within."""
+    discs, clumps = grains.discs, clumps_of(grains)
+    if clumps is None:
+        return discs
+    position, velocity = discs.position.copy(), discs.velocity.copy()
+    numbers = np.repeat(np.arange(clumps.count), np.diff(clumps.start))
+    position[clumps.member], velocity[clumps.member] = clumps.position[numbers], clumps.velocity[numbers]
+    return replace(discs, position=position, velocity=velocity)

@@ -1,0 +1,82 @@
+"""What a system of grains is now, as arrays and numbers, and back from there bit for bit."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.core.errors import Fault, InputError
+from porescale.dem.forces.bonds import BondList
+
+if TYPE_CHECKING:
+    from porescale.dem.grains import Grains
+
+Array = NDArray[np.float64]
+
+RECTANGLES = ("rectangles", "rectangle_spring", "rectangle_force")
+"""What of the state belongs to rectangles, where there are any."""
+
+
+def state_of(grains: Grains) -> dict[str, Any]:
+    """Everything needed to go on bit for bit of ``grains`` (law, box and the number of plates are the scene's)."""
+    return {
+        "discs": grains.discs.state(),
+        "pairs": grains.pairs.state(),
+        "wall_spring": grains.wall_spring.copy(),
+        "wall_load": grains.wall_load.copy(),
+        "plates": grains.plates.copy(),
+        "plate_spring": grains.plate_spring.copy(),
+        "plate_force": grains.plate_force.copy(),
+        "external_force": grains.external_force.copy(),
+        "external_torque": grains.external_torque.copy(),
+        "held": grains.held.copy(),
+        "withheld": grains.withheld.copy(),
+        **({name: getattr(grains, name).copy() for name in RECTANGLES} if len(grains.rectangles) else {}),
+        **({} if grains.book is None else {"book": grains.book.copy(), "book_start": _start_of_book(grains)}),
+        **({} if grains._steering is None else {"steering": grains._steering.state()}),
+        **({} if grains.segments is None else {"segments": grains.segments.state()}),
+        **({} if grains.bonds is None else {"bonds": grains.bonds.state()}),
+        **({} if grains.sleep is None else {"sleep": grains.sleep.state()}),
+        "steps": grains.steps,
+        "time": grains._time,
+        "steps_of_dt": grains._steps_of_dt,
+        "last_dt": grains.last_dt,
+        "stale": int(grains._stale),
+    }
+
+
+def _start_of_book(grains: Grains) -> Array:
+    """Copy of the start of the energy book, empty before the first step."""
+    return np.zeros(0) if grains.book_start is None else grains.book_start.copy()
+
+
+def restore(grains: Grains, state: dict[str, Any]) -> None:
+    """Overwrite ``grains`` with the state of a system made alike; raises InputError when the numbers differ."""
+    grains.discs.restore(state["discs"])
+    for name in ("wall_spring", "wall_load", "plates", "plate_spring", "plate_force", "external_force",
+                 "external_torque", *(RECTANGLES if len(grains.rectangles) else ())):  # fmt: skip
+        own, given = getattr(grains, name), np.asarray(state[name])
+        if own.shape != given.shape:
+            raise InputError(Fault(f"state.{name}", given.shape, "wrong shape", allowed=str(own.shape)))
+        own[...] = given
+    if grains.book is not None:
+        grains.book[:] = state["book"]
+        start = np.array(state["book_start"])
+        grains.book_start = start if len(start) else None
+    grains.held, grains.withheld = np.array(state["held"], np.uint8), np.array(state["withheld"])
+    if grains.steered or "steering" in state:
+        grains.steering.restore(state["steering"])
+    grains.pairs.restore(state["pairs"])
+    if grains.segments is not None:
+        grains.segments.restore(state["segments"])
+    known = grains.discs.count, 0 if grains.segments is None else len(grains.segments.ends)
+    grains.bonds = BondList.restored(state["bonds"], *known) if "bonds" in state else None
+    if grains.sleep is not None:
+        grains.sleep.restore(state["sleep"])
+    grains._sweeps.forget()
+    grains.steps, grains._time = int(state["steps"]), float(state["time"])
+    grains._steps_of_dt = int(state["steps_of_dt"])
+    grains.last_dt, grains._stale = float(state["last_dt"]), bool(state["stale"])
+    grains.standing = None

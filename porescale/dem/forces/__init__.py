@@ -1,0 +1,1 @@
+"""Forces on discs: pairs, walls, plates, rectangles, segments, bonds."""

@@ -1,0 +1,291 @@
+"""Bonds by back tension: contacts whose compressive force at a moment is cancelled from then on, until pulled apart.
+
+The force of a bonded contact is that of its law less the constant elastic force b that it bore at overlap d0 when it
+was bonded, so the body stands without confinement.  The law itself is untouched: friction has the limit mu F of the
+contact as if it were still pressed.  A bond breaks when the overlap is gone: pulled by  b = k d0  under a linear law.
+Nothing is stored by the break: the energy k d^2/2 - b d of both together goes to zero with the overlap d.
+Bonds are between bodies (discs, clumps, frames), never with walls.  At the end of a segment a bond holds on to the end;
+corners that count negatively (segments.py) take their part of the back tension off.
+
+Source: Matsushima, DEMseg tutorial II-3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.compiled.jit import inline, kernel
+from porescale.common.core.errors import Fault, InputError
+from porescale.dem.contact.law import material_of, stiffness
+from porescale.dem.forces.segment_list import no_segments, refuse_beyond
+from porescale.dem.forces.segments import OUTLINE, Segments, foot, meeting, weight_of
+from porescale.dem.motion.periodic_cell import image
+
+if TYPE_CHECKING:
+    from porescale.dem.grains import Grains
+    from porescale.dem.motion.drivers import Clump
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+STATE = ("ends", "back", "whole", "broken")
+"""Names of the arrays of :class:`BondList`."""
+
+
+class Bonds(NamedTuple):
+    """What kernels know of bonds: arrays as in BondList, and the clock (2,): seconds before the step last changed, and
+    steps since."""
+
+    ends: Index
+    back: Array
+    whole: NDArray[np.uint8]
+    broken: Array
+    clock: Array
+
+
+class Break(NamedTuple):
+    """A bond that broke: when (s), where (m), between which discs (a segment stands for the disc at its first end)."""
+
+    time: float
+    place: tuple[float, float]
+    discs: tuple[int, int]
+
+
+@inline
+def way_between(ends, k, position, segments, cell):
+    """(way x, y m from the first disc of bond k to the touched point; disc there, or at the first end of the segment
+    there; share of the way along that segment; its other end).
+    """
+    i, j = ends[k, 0], ends[k, 1]
+    if ends[k, 2] == 1:
+        a, b = segments.ends[j, 0], segments.ends[j, 1]
+        _, share, dx, dy = foot(i, a, b, position, cell)
+        return dx, dy, a, share, b
+    dx, dy = image(position[j, 0] - position[i, 0], position[j, 1] - position[i, 1], cell)
+    return dx, dy, j, 0.0, j
+
+
+@kernel
+def pull_bonds(position, radius, force, torque, segments, bonds, step, dt, cell):
+    """Add the back tension of all bonds that hold; those whose overlap is gone break.
+
+    Arrays as in segments.add_segment_forces;  step: number within the call;  dt s.  Adds
+    to force (n, 2) N/m and torque (n,) N m/m; overwrites ``whole`` and ``broken``.
+    """
+    for k in range(bonds.back.shape[0]):
+        if bonds.whole[k] == 0:
+            continue
+        i = bonds.ends[k, 0]
+        dx, dy, a, share, b = way_between(bonds.ends, k, position, segments, cell)
+        distance = np.sqrt(dx * dx + dy * dy)
+        if radius[i] + radius[a] - distance <= 0.0:
+            bonds.whole[k] = 0
+            bonds.broken[k, 0] = bonds.clock[0] + (bonds.clock[1] + step) * dt
+            bonds.broken[k, 1], bonds.broken[k, 2] = position[i, 0] + 0.5 * dx, position[i, 1] + 0.5 * dy
+            continue
+        gx, gy = bonds.back[k] * dx / distance, bonds.back[k] * dy / distance
+        sx, sy = share * (position[b, 0] - position[a, 0]), share * (position[b, 1] - position[a, 1])
+        force[i, 0] += gx
+        force[i, 1] += gy
+        force[a, 0] -= gx
+        force[a, 1] -= gy
+        torque[a] -= sx * gy - sy * gx
+
+
+@kernel
+def stored_in_bonds(position, radius, segments, bonds, cell):
+    """Energy of the back tension of all bonds that hold, J/m: the sum of -b d; arguments as in pull_bonds."""
+    energy = 0.0
+    for k in range(bonds.back.shape[0]):
+        if bonds.whole[k] != 0:
+            dx, dy, a, _, _ = way_between(bonds.ends, k, position, segments, cell)
+            overlap = radius[bonds.ends[k, 0]] + radius[a] - np.sqrt(dx * dx + dy * dy)
+            energy -= bonds.back[k] * max(overlap, 0.0)
+    return energy
+
+
+@kernel
+def pressing(position, radius, ends, segments, law, cell, back):
+    """Overwrite back (m,) N/m with the elastic normal force at each of ``ends`` (m, 3), see Bonds, 0 where apart.
+
+    Arrays as in pull_bonds;  law see contact/law.py.  Corners by weight.
+    """
+    for k in range(ends.shape[0]):
+        i, j = ends[k, 0], ends[k, 1]
+        dx, dy, a, _, b = way_between(ends, k, position, segments, cell)
+        overlap, weight = radius[i] + radius[a] - np.sqrt(dx * dx + dy * dy), 1
+        if ends[k, 2] == 1:
+            overlap = meeting(segments.rule, i, a, b, radius, position, cell)[0]
+        elif segments.start[i] < segments.start[i + 1] or segments.start[j] < segments.start[j + 1]:
+            weight = weight_of(i, j, dx, dy, position, segments) if segments.rule == OUTLINE else 0
+        back[k] = 0.0
+        if overlap > 0.0:
+            p = law.table[material_of(law.material, i), material_of(law.material, a)]
+            reduced = radius[i] * radius[a] / (radius[i] + radius[a])
+            both = law.mass[i] * law.mass[a] / (law.mass[i] + law.mass[a])
+            back[k] = weight * stiffness(overlap, reduced, both, p, law)[0]
+
+
+@kernel
+def touched(position, ends, segments, cell, way, far, other):
+    """Where bonds ``ends`` (m, 3) touch: overwrites way (m, 2) m, from the first disc to the touched point, other (m,),
+    the disc there or at the first end of the segment there, and far (m, 2) m, from that disc to the point.
+    """
+    for k in range(ends.shape[0]):
+        dx, dy, a, share, b = way_between(ends, k, position, segments, cell)
+        way[k, 0], way[k, 1], other[k] = dx, dy, a
+        far[k, 0], far[k, 1] = share * (position[b, 0] - position[a, 0]), share * (position[b, 1] - position[a, 1])
+
+
+def beside(grains: Grains, seconds: float = 0.0, steps: int = 0) -> tuple[Segments, Bonds] | tuple[None, None]:
+    """Segments and bonds as kernels take them at a time, both or none, so that the loop has no kinds with but one."""
+    if grains.segments is None and grains.bonds is None:
+        return None, None
+    bonds = NO_BONDS if grains.bonds is None else grains.bonds
+    known = no_segments(grains) if grains.segments is None else grains.segments.now()
+    return known, bonds.now(seconds, steps)
+
+
+class BondList:
+    """m bonds, broken ones included, in the order in which they were made.
+
+    ends (m, 3): disc, disc or segment, 1 where it is a segment;  back (m,) N/m: back tension, below zero where a
+    corner takes some off;  whole (m,): 1 while it holds;  broken (m, 3): s, m, m, when and where it broke, nan before.
+    """
+
+    def __init__(self, ends: Index, back: Array) -> None:
+        self.ends, self.back = ends, back
+        self.whole = np.ones(len(back), np.uint8)
+        self.broken = np.full((len(back), 3), np.nan)
+        self._clock = np.zeros(2)
+
+    @property
+    def count(self) -> int:
+        """Number of bonds that hold; those that only take some off are not counted."""
+        return int(np.sum((self.whole != 0) & (self.back > 0.0)))
+
+    def now(self, seconds: float, steps: int) -> Bonds:
+        """The bonds as kernels take them, at this time."""
+        self._clock[:] = seconds, steps
+        return Bonds(self.ends, self.back, self.whole, self.broken, self._clock)
+
+    def breaks(self, grains: Grains) -> list[Break]:
+        """Bonds that broke so far, by time: the acoustic emissions."""
+        gone = np.flatnonzero((self.whole == 0) & (self.back > 0.0))
+        rows = gone[np.argsort(self.broken[gone, 0], kind="stable")]
+        other = self.partners(grains)[:, 1]
+        return [
+            Break(
+                float(self.broken[k, 0]), (float(self.broken[k, 1]), float(self.broken[k, 2])),
+                (int(self.ends[k, 0]), int(other[k])),
+            )
+            for k in rows
+        ]  # fmt: skip
+
+    def partners(self, grains: Grains) -> Index:
+        """Discs (m, 2) that each bond holds together; a segment stands for the disc at its first end."""
+        both = self.ends[:, :2].copy()
+        sided = self.ends[:, 2] == 1
+        if grains.segments is not None:
+            both[sided, 1] = grains.segments.ends[both[sided, 1], 0]
+        return both
+
+    def joined(self, more: BondList) -> BondList:
+        """These bonds and ``more``."""
+        both = BondList(np.concatenate((self.ends, more.ends)), np.concatenate((self.back, more.back)))
+        both.whole[:] = np.concatenate((self.whole, more.whole))
+        both.broken[:] = np.concatenate((self.broken, more.broken))
+        return both
+
+    def state(self) -> dict[str, Any]:
+        """Copies of all arrays."""
+        return {name: getattr(self, name).copy() for name in STATE}
+
+    @staticmethod
+    def restored(state: dict[str, Any], discs: int, segments: int) -> BondList:
+        """The bonds of ``state()`` of so many discs and segments; InputError where one is between others."""
+        made = BondList(np.array(state["ends"], np.int64).reshape(-1, 3), np.array(state["back"], float))
+        for sided, count in enumerate((discs, segments)):
+            refuse_beyond("bonds.ends", made.ends[made.ends[:, 2] == sided], discs, count)
+        made.whole[:] = state["whole"]
+        made.broken[:] = np.reshape(state["broken"], (-1, 3))
+        return made
+
+
+NO_BONDS = BondList(np.zeros((0, 3), np.int64), np.zeros(0))
+
+
+def bond(grains: Grains, bodies: Iterable[int | Clump] | None = None) -> int:
+    """Bond all contacts there are now between these bodies (discs and clumps; None: all); returns how many.
+
+    Contacts that are bonded already stay as they are.  Raises InputError for a body that is not there, and in a cell
+    that is strained.
+    """
+    if grains.steering.cell is not None:
+        raise InputError(Fault("bonds", problem="are not made in a strained cell"))
+    d, pairs = grains.discs, grains.current_pairs()
+    first = np.repeat(np.arange(d.count), np.diff(pairs.start))
+    rows = [np.column_stack((first, pairs.partner.astype(np.int64), np.zeros(len(first), np.int64)))]
+    arrays = no_segments(grains) if grains.segments is None else grains.segments.now()
+    if grains.segments is not None:
+        rows += [np.pad(arrays.corner, ((0, 0), (0, 1))), np.pad(arrays.near, ((0, 0), (0, 1)), constant_values=1)]
+    ends = np.concatenate(rows)
+    chosen = _chosen(grains, bodies)
+    other = ends[:, 1].copy()
+    if grains.segments is not None:
+        sided = ends[:, 2] == 1
+        other[sided] = grains.segments.ends[other[sided], 0]
+    ends = ends[chosen[ends[:, 0]] & chosen[other]]
+    if grains.bonds is not None:
+        known = {tuple(row) for row in grains.bonds.ends[grains.bonds.whole != 0].tolist()}
+        ends = ends[[tuple(row) not in known for row in ends.tolist()]] if len(ends) else ends
+    back = np.zeros(len(ends))
+    pressing(d.position, d.radius, ends, arrays, grains.contact, grains.cell, back)
+    made = BondList(np.ascontiguousarray(ends[back != 0.0]), back[back != 0.0])
+    grains.bonds = made if grains.bonds is None else grains.bonds.joined(made)
+    return made.count
+
+
+def pieces(grains: Grains, whole: NDArray[np.uint8] | None = None) -> Index:
+    """Piece that each disc (n,) belongs to: bodies that bonds hold together are one; 0 is the largest.
+
+    whole : (m,) of the bonds, default: as they are.
+    """
+    from scipy.sparse import coo_array  # takes longer to import than a scene to be judged
+    from scipy.sparse.csgraph import connected_components
+
+    count, bonds = grains.discs.count, grains.bonds
+    body = np.arange(count)
+    if grains.steered:
+        c = grains.steering.clumps
+        bound = c.group >= 0
+        body[bound] = c.member[c.start[:-1]][c.group[bound]]
+    held = np.zeros((0, 2), np.int64)
+    if bonds is not None:
+        held = bonds.partners(grains)[((bonds.whole if whole is None else whole) != 0) & (bonds.back > 0.0)]
+    one, other = body[held].T
+    ends = np.append(one, body), np.append(other, np.arange(count))
+    joined = coo_array((np.ones(len(one) + count), ends), shape=(count, count))
+    number = connected_components(joined.tocsr(), directed=False)[1]
+    return np.asarray(np.argsort(np.argsort(-np.bincount(number), kind="stable"))[number], np.int64)
+
+
+def _chosen(grains: Grains, bodies: Iterable[int | Clump] | None) -> NDArray[np.bool_]:
+    """Which discs belong to ``bodies``."""
+    from porescale.dem.motion.drivers import Clump
+
+    chosen = np.full(grains.discs.count, bodies is None)
+    for body in () if bodies is None else bodies:
+        if isinstance(body, Clump):
+            if not (grains.steered and 0 <= body.number < grains.steering.clumps.count):
+                raise InputError(Fault("clump", body.number, "no such clump"))
+            chosen[grains.steering.clumps.discs_of(body.number)] = True
+        elif 0 <= body < grains.discs.count:
+            chosen[body] = True
+        else:
+            raise InputError(Fault("disc", body, "no such disc", allowed=f"0 to {grains.discs.count - 1}"))
+    return chosen

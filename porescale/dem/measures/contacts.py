@@ -1,0 +1,258 @@
+"""Every contact of a system with its force: between discs, and of discs with walls, plates, rectangles, segments.
+
+Forces are not computed by formulas of their own: each contact is handed alone to the kernel that the step uses, with
+copies of what it carries.  So the list says what the next contact step will use, to the bit, springs included; a
+list taken between two steps sums to ``discs.force`` after the second.  Nothing of the system is changed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.dem.bodies.rigid import arms, clumps_of
+from porescale.dem.contact.law import MU, memory_of
+from porescale.dem.forces.pairs import pair_forces
+from porescale.dem.forces.rectangle import BOTTOM, LEFT, RIGHT, TOP, add_rectangle_forces, nearest_face
+from porescale.dem.forces.walls import HIGH, LOW, NX, PRESENT, PX, X, add_plate_forces, add_wall_forces
+from porescale.dem.grains import Grains
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+AT_LIMIT = 1.0 - 1e-9
+"""Share of the friction limit from which a contact counts as sliding: the law cuts to the limit, within round-off."""
+NOBODY = -1
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """c contacts, pairs first in the order of the pair list, then walls, plates and rectangles, then segments and bonds
+    (contacts_segments.py); SI per metre of depth.
+
+    first (c,) disc i;  second (c,) disc j, or -1 at a surface;  surface (c,) index into ``names``, or -1 for a pair;
+    point (c, 2) m, where both bodies feel the force, beside disc i (a periodic image of it may lie elsewhere);
+    normal (c, 2) unit vector from i outwards;  start (c, 2) m, the centroid of the body of i, its clump or itself;
+    branch (c, 2) m, from there to the centroid of the nearest image of the body of j, or to the point at a surface;
+    overlap (c,) m;  normal_force (c,) N/m, > 0 pushes apart;  tangential_force (c,) N/m, that on i along
+    t = (-n_y, n_x);  force (c, 2) N/m, of i on the other;  torque (c, 2) N m/m, on i and on j (of a surface, about
+    the point: what resists rolling);  spring (c,) m, after the step's slip;  sliding (c,) bool: friction is at its
+    limit.
+    """
+
+    first: Index
+    second: Index
+    surface: Index
+    names: tuple[str, ...]
+    point: Array
+    normal: Array
+    start: Array
+    branch: Array
+    overlap: Array
+    normal_force: Array
+    tangential_force: Array
+    force: Array
+    torque: Array
+    spring: Array
+    sliding: NDArray[np.bool_]
+
+    @property
+    def count(self) -> int:
+        """Number of contacts."""
+        return len(self.first)
+
+    @property
+    def pairs(self) -> NDArray[np.bool_]:
+        """Which contacts are between two discs, (c,) bool."""
+        return np.not_equal(self.second, NOBODY)
+
+    def of(self, name: str) -> Contacts:
+        """The contacts with one surface."""
+        return self.chosen(self.surface == self.names.index(name))
+
+    def chosen(self, which: NDArray[Any]) -> Contacts:
+        """Some of the contacts, by mask or index."""
+        parts = {it.name: getattr(self, it.name) for it in fields(self)}
+        return Contacts(**{name: part if name == "names" else part[which] for name, part in parts.items()})
+
+    def of_bodies(self, bodies: Index) -> Contacts:
+        """The same between bodies: ``bodies`` (n,) is the number of a disc that stands for each disc's body."""
+        second = np.where(self.pairs, bodies[self.second], NOBODY)
+        return replace(self, first=bodies[self.first], second=second)
+
+    def resultants(self, count: int) -> tuple[Array, Array]:
+        """Contact force (count, 2) N/m and torque (count,) N m/m on each of ``count`` discs."""
+        force, torque = np.zeros((count, 2)), np.zeros(count)
+        np.subtract.at(force, self.first, self.force)
+        np.add.at(torque, self.first, self.torque[:, 0])
+        np.add.at(force, self.second[self.pairs], self.force[self.pairs])
+        np.add.at(torque, self.second[self.pairs], self.torque[self.pairs, 1])
+        return force, torque
+
+
+def contacts(grains: Grains) -> Contacts:
+    """All contacts of ``grains`` now, with the step that was last used (before the first step: none passes)."""
+    names = (*grains.wall_names, *grains.plate_names, *(f"rectangle {k}" for k in range(len(grains.rectangles))))
+    parts = [_pairs(grains)]
+    first = 0
+    for kind in (_wall, _plate, _rectangle):
+        surfaces = kind(grains)
+        parts += [_surface(grains, first + w, *each) for w, each in enumerate(surfaces)]
+        first += len(surfaces)
+    if grains.segments is not None or grains.bonds is not None:
+        from porescale.dem.measures.contacts_segments import bond_contacts, segment_contacts
+
+        parts += [] if grains.segments is None else segment_contacts(grains, grains.segments)
+        parts += [] if grains.bonds is None else [bond_contacts(grains, grains.bonds)]
+    joined = {
+        it.name: np.concatenate([getattr(part, it.name) for part in parts])
+        for it in fields(Contacts)
+        if it.name != "names"
+    }
+    if clumps_of(grains) is not None:
+        arm, one, other = arms(grains), joined["first"], joined["second"]
+        joined["start"] -= arm[one]
+        joined["branch"] += arm[one] - np.where(other[:, None] == NOBODY, 0.0, arm[other])
+    return Contacts(names=names, **joined)
+
+
+def nearest_image(difference: Array, period: tuple[float, float, float]) -> Array:
+    """Differences (n, 2) m between nearest periodic images, as cells.tilted_image; ``period``: see Grains.period."""
+    near = np.array(difference, dtype=np.float64)
+    width, height, tilt = period
+    if tilt != 0.0:
+        near[:, 0] -= tilt * np.rint(near[:, 1] * (1.0 / height))
+    for axis, length in enumerate((width, height)):
+        if length > 0.0:
+            near[:, axis] -= length * np.rint(near[:, axis] * (1.0 / length))
+    return near
+
+
+def _pairs(grains: Grains) -> Contacts:
+    """Contacts between discs: the pair list as one where every pair has two discs of its own."""
+    pairs, d = grains.current_pairs(), grains.discs
+    i = np.repeat(np.arange(d.count), np.diff(pairs.start))
+    j = pairs.partner.astype(np.int64)
+    apart = nearest_image(d.position[j] - d.position[i], grains.period)
+    near = np.sum(apart**2, axis=1) < (d.radius[i] + d.radius[j]) ** 2
+    i, j, apart = i[near], j[near], apart[near]
+    count = len(i)
+    both = np.column_stack((i, j)).ravel()
+    force, torque = np.zeros((2 * count, 2)), np.zeros(2 * count)
+    start = np.repeat(np.arange(count + 1), 2)[1:]  # discs 2k have one partner, 2k + 1 none
+    carried = pairs.carried[near].copy()
+    pair_forces(
+        d.position[both], d.velocity[both], d.spin[both], d.radius[both], force, torque, start,
+        (2 * np.arange(count) + 1).astype(np.int32), carried, grains.law_of(both), grains.last_dt, grains.cell,
+    )  # fmt: skip
+    distance = np.hypot(*apart.T)
+    normal = apart / distance[:, None]
+    arm = 0.5 * (distance + (d.radius[i] ** 2 - d.radius[j] ** 2) / distance)
+    return listed(
+        i, j, np.full(count, NOBODY), d.position[i] + arm[:, None] * normal, normal, d.position[i], apart,
+        d.radius[i] + d.radius[j] - distance, force[1::2], torque.reshape(-1, 2), carried[:, 0],
+        grains.contact.table[_material(grains, i), _material(grains, j), MU],
+    )  # fmt: skip
+
+
+Surface = tuple[Array, Array, Callable[[Index, Array, Array], Array], Array]
+"""Closest point (n, 2) m and signed distance (n,) m of every disc; the step's forces on some; friction by material."""
+
+
+def _surface(grains: Grains, number: int, nearest: Array, distance: Array, forces: Any, friction: Array) -> Contacts:
+    """The contacts of one surface."""
+    d = grains.discs
+    i = np.flatnonzero(distance < d.radius)
+    force, torque = np.zeros((len(i), 2)), np.zeros(len(i))
+    spring = forces(i, force, torque)
+    branch = nearest[i] - d.position[i]
+    depth = distance[i]
+    # From inside of a rectangle the surface is behind the disc: the normal points away from it.
+    normal = np.where(depth[:, None] > 0.0, 1.0, -1.0) * branch / np.where(depth == 0.0, 1.0, np.abs(depth))[:, None]
+    count, other = len(i), np.zeros(len(i))
+    if memory_of(grains.contact) > 1:  # what is not the tangential force on its arm resists rolling
+        other = np.maximum(depth, 0.0) * (force[:, 1] * normal[:, 0] - force[:, 0] * normal[:, 1]) - torque
+    return listed(
+        i, np.full(count, NOBODY), np.full(count, number), nearest[i], normal, d.position[i], branch,
+        d.radius[i] - depth, -force, np.column_stack((torque, other)), spring, friction[_material(grains, i)],
+    )  # fmt: skip
+
+
+def _material(grains: Grains, discs: Index) -> NDArray[Any]:
+    """Numbers of the materials of some discs."""
+    return np.zeros(len(discs), np.uint8) if grains.material is None else grains.material[discs]
+
+
+def _wall(grains: Grains) -> list[Surface]:
+    """Straight sides."""
+    d = grains.discs
+    made: list[Surface] = []
+    for w, row in enumerate(grains.walls):
+        inward = row[NX : NX + 2]
+        distance = (d.position - row[PX : PX + 2]) @ inward
+        forces = _single(grains, add_wall_forces, grains.walls, grains.wall_laws, grains.wall_spring, w)
+        made.append((d.position - distance[:, None] * inward, distance, forces, grains.wall_laws[w, :, MU]))
+    return made
+
+
+def _plate(grains: Grains) -> list[Surface]:
+    """Upright plates; one that is gone touches nothing."""
+    x, y = grains.discs.position.T
+    made: list[Surface] = []
+    for w, row in enumerate(grains.plates):
+        nearest = np.column_stack((np.full_like(x, row[X]), np.clip(y, row[LOW], row[HIGH])))
+        distance = np.hypot(nearest[:, 0] - x, nearest[:, 1] - y)
+        distance = distance if row[PRESENT] else np.full_like(distance, np.inf)
+        forces = _single(grains, add_plate_forces, grains.plates, grains.plate_laws, grains.plate_spring, w)
+        made.append((nearest, distance, forces, grains.plate_laws[w, :, MU]))
+    return made
+
+
+def _rectangle(grains: Grains) -> list[Surface]:
+    """Rectangles, from outside, or from inside through the nearest face."""
+    made: list[Surface] = []
+    at = grains.discs.position
+    for w, row in enumerate(grains.rectangles):
+        nearest = np.clip(at, row[[LEFT, BOTTOM]], row[[RIGHT, TOP]])
+        distance = np.hypot(*(nearest - at).T)
+        for i in np.flatnonzero(distance == 0.0):
+            nx, ny, depth = nearest_face(*at[i], *row[[LEFT, BOTTOM, RIGHT, TOP]])
+            nearest[i], distance[i] = at[i] - depth * np.array([nx, ny]), -depth
+        laws = grains.rectangle_laws
+        forces = _single(grains, add_rectangle_forces, grains.rectangles, laws, grains.rectangle_spring, w)
+        made.append((nearest, distance, forces, laws[w, :, MU]))
+    return made
+
+
+def _single(grains: Grains, kernel: Any, table: Array, laws: Array, spring: Array, w: int) -> Any:
+    """The forces of row ``w`` of a table on discs by index; the spring that results, (c,) m, is returned."""
+
+    def forces(i: Index, force: Array, torque: Array) -> Array:
+        """Add to ``force`` (c, 2) N and ``torque`` (c,) N m of the discs ``i`` (c,); returns their springs (c,) m."""
+        d, kept, total = grains.discs, spring[w : w + 1, i].copy(), np.zeros((1, 2))
+        kernel(
+            d.position[i], d.velocity[i], d.spin[i], d.radius[i], force, torque, table[w : w + 1], laws[w : w + 1],
+            kept, total, grains.law_of(i), grains.last_dt,
+        )  # fmt: skip
+        spent: Array = kept[0, :, 0]
+        return spent
+
+    return forces
+
+
+def listed(
+    first: Index, second: Index, surface: Index, point: Array, normal: Array, start: Array, branch: Array,
+    overlap: Array, force: Array, torque: Array, spring: Array, friction: Array,
+) -> Contacts:  # fmt: skip
+    """Contacts with their forces resolved along normal and tangent."""
+    pushing = np.sum(force * normal, axis=1)
+    along = force[:, 0] * normal[:, 1] - force[:, 1] * normal[:, 0]  # force on i is -force; t = (-n_y, n_x)
+    limit = friction * np.maximum(pushing, 0.0)
+    return Contacts(
+        first, second, surface, (), point, normal, start, branch, overlap, pushing, along, force, torque, spring,
+        (limit > 0.0) & (np.abs(along) >= AT_LIMIT * limit),
+    )  # fmt: skip

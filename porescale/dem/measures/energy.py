@@ -1,0 +1,222 @@
+"""The energy book: where the energy of grains came from, where it is and where it went.
+
+Kept by ``Grains(..., energy=True)``: contact kernels enter losses and works at every step, at the lower disc of a pair
+(contact/law.py), the integrator those of external forces, holders and drag.  Entries follow leap-frog: with positions
+at whole and velocities at half steps
+    m/2 v(n+1/2).v(n-1/2) - m/2 v(n-1/2).v(n-3/2) = (F(n) + F(n-1))/2 . v(n-1/2) dt      (exactly),
+so the kinetic energy of step n is the product of the velocities around it, and work is that of the mean force at both
+ends of a step.  Springs and weights obey that up to the curvature of the path; dashpots, whose force lags by half a
+step, moving surfaces and forces that change from call to call to first order in the step.  What is left is the
+``residual``.
+
+Everything is said of the last force evaluation: positions a step back, springs and losses as they were left by it.
+Velocities that an owner writes between steps are no work here: held components are left out of the kinetic energy.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.compiled.jit import kernel
+from porescale.common.core.errors import Fault, InputError
+from porescale.dem.contact.law import (
+    BEFORE_SPIN,
+    BEFORE_X,
+    DRAG,
+    EXTERNAL,
+    FRICTION,
+    HOLDERS,
+    NORMAL_DASHPOT,
+    ROLLING_DASHPOT,
+    ROLLING_FRICTION,
+    SURFACES,
+    TANGENTIAL_DASHPOT,
+    material_of,
+    recall,
+    stored,
+)
+from porescale.dem.forces.bonds import beside, stored_in_bonds
+from porescale.dem.forces.rectangle import BOTTOM, LEFT, RIGHT, TOP, VELOCITY_X
+from porescale.dem.forces.segments import survey_segments
+from porescale.dem.forces.walls import HIGH, LOW, NX, NY, PRESENT, PX, TURN, VELOCITY, VX, X
+from porescale.dem.motion.affine_strain import WORK
+from porescale.dem.motion.periodic_cell import before, image
+
+if TYPE_CHECKING:
+    from porescale.dem.grains import Grains
+
+Array = NDArray[np.float64]
+
+LOSSES = {
+    "lost in normal dashpots (J/m)": NORMAL_DASHPOT,
+    "lost in tangential dashpots (J/m)": TANGENTIAL_DASHPOT,
+    "lost in friction (J/m)": FRICTION,
+    "lost in rolling dashpots (J/m)": ROLLING_DASHPOT,
+    "lost in rolling friction (J/m)": ROLLING_FRICTION,
+    "lost to background drag (J/m)": DRAG,
+}
+WORKS = {"work of moving surfaces (J/m)": SURFACES, "work of holders (J/m)": HOLDERS}
+
+
+@kernel
+def elastic_pairs(position, radius, start, partner, carried, law, cell):
+    """Elastic energy of all pairs, J/m: (normal, tangential, rolling).  Arguments as in forces.pair_forces."""
+    normal, tangential, rolling = 0.0, 0.0, 0.0
+    for i in range(radius.shape[0]):
+        for k in range(start[i], start[i + 1]):
+            j = partner[k]
+            dx, dy = image(position[j, 0] - position[i, 0], position[j, 1] - position[i, 1], cell)
+            overlap = radius[i] + radius[j] - np.sqrt(dx * dx + dy * dy)
+            if overlap > 0.0:
+                p = law.table[material_of(law.material, i), material_of(law.material, j)]
+                spring, roll = recall(carried, k, law)
+                parts = stored(overlap, spring, roll, radius[i] * radius[j] / (radius[i] + radius[j]), p, law)
+                normal, tangential, rolling = normal + parts[0], tangential + parts[1], rolling + parts[2]
+    return normal, tangential, rolling
+
+
+@kernel
+def elastic_surface(distance, radius, memory, laws, law):
+    """Elastic energy of all discs at one surface, J/m: (normal, tangential, rolling).
+
+    distance (n,) m from the centres;  memory (n, 1 or 2) m;  laws (m, COLUMNS) with each material.
+    """
+    normal, tangential, rolling = 0.0, 0.0, 0.0
+    for i in range(radius.shape[0]):
+        overlap = radius[i] - distance[i]
+        if overlap > 0.0:
+            spring, roll = recall(memory, i, law)
+            parts = stored(overlap, spring, roll, radius[i], laws[material_of(law.material, i)], law)
+            normal, tangential, rolling = normal + parts[0], tangential + parts[1], rolling + parts[2]
+    return normal, tangential, rolling
+
+
+def distances(grains: Grains, position: Array, dt: float) -> list[tuple[Array, Array, Array]]:
+    """(distance (n,) m, springs (n, s) m, laws (m, COLUMNS)) of every surface, ``dt`` (s) before now.
+
+    Negative inside of rectangles and behind walls, infinite from plates that are gone.
+    """
+    found = []
+    x, y = position.T
+    for row, memory, laws in zip(grains.walls, grains.wall_spring, grains.wall_laws, strict=True):
+        cosine, sine = np.cos(dt * row[TURN]), -np.sin(dt * row[TURN])
+        normal = np.array([cosine * row[NX] - sine * row[NY], sine * row[NX] + cosine * row[NY]])
+        found.append(((position - row[PX : PX + 2] + dt * row[VX : VX + 2]) @ normal, memory, laws))
+    for row, memory, laws in zip(grains.plates, grains.plate_spring, grains.plate_laws, strict=True):
+        rise = row[VELOCITY] * row[PRESENT] * dt
+        away = np.hypot(row[X] - x, np.clip(y, row[LOW] - rise, row[HIGH] - rise) - y)
+        found.append((away if row[PRESENT] else np.full_like(x, np.inf), memory, laws))
+    for row, memory, laws in zip(grains.rectangles, grains.rectangle_spring, grains.rectangle_laws, strict=True):
+        at = position + dt * row[VELOCITY_X : VELOCITY_X + 2]
+        outside = np.hypot(*(np.clip(at, row[[LEFT, BOTTOM]], row[[RIGHT, TOP]]) - at).T)
+        depth = np.minimum(at - row[[LEFT, BOTTOM]], row[[RIGHT, TOP]] - at).min(axis=1)
+        found.append((np.where(outside > 0.0, outside, -depth), memory, laws))
+    return found
+
+
+def elastic(grains: Grains, dt: float = 0.0) -> tuple[float, float, float]:
+    """Elastic energy of all contacts, J/m, ``dt`` (s) before now: (normal, tangential, rolling).
+
+    That of back tension (bonds.py), below zero, belongs to the normal part.
+    """
+    d, pairs = grains.discs, grains.pairs
+    position, cell = before(d.position, d.velocity, grains.cell, dt)
+    parts = [elastic_pairs(position, d.radius, pairs.start, pairs.partner, pairs.carried, grains.contact, cell)]
+    for distance, memory, laws in distances(grains, position, dt):
+        parts.append(elastic_surface(distance, d.radius, memory, laws, grains.contact))
+    segments, bonds = beside(grains)
+    if segments is not None:
+        parts.append(survey_segments(position, d.radius, segments, grains.contact, grains.cell)[3:])
+        parts.append((stored_in_bonds(position, d.radius, segments, bonds, grains.cell), 0.0, 0.0))
+    normal, tangential, rolling = (float(part) for part in np.sum(parts, axis=0))
+    return normal, tangential, rolling
+
+
+def kinetic(grains: Grains, book: Array) -> tuple[float, float]:
+    """Kinetic energy of the last force evaluation, J/m: (translation, rotation), without held components.
+
+    Members of a clump translate with its centroid; what they move besides is its rotation.  In a strained cell
+    velocities are those relative to it, and members move besides as the cell does at their places, which is no energy.
+    """
+    d = grains.discs
+    along = d.velocity * book[:, BEFORE_X : BEFORE_X + 2]
+    around = d.spin * book[:, BEFORE_SPIN]
+    if len(grains.held):
+        along, around = np.where(grains.held[:, :2], 0.0, along), np.where(grains.held[:, 2], 0.0, around)
+    moving, turning = 0.5 * float(d.mass @ along.sum(axis=1)), 0.5 * float(d.inertia @ around)
+    if grains.steered and grains.steering.clumps.count:
+        clumps = grains.steering.clumps
+        body, share = clumps.group[clumps.member], d.mass[clumps.member]
+        now, then = (
+            np.array([np.bincount(body, share * speed[clumps.member, axis], clumps.count) for axis in range(2)])
+            for speed in (d.velocity, book[:, BEFORE_X : BEFORE_X + 2])
+        )
+        rest = 0.5 * float(share @ along[clumps.member].sum(axis=1)) - 0.5 * float(np.sum(now * then / clumps.mass))
+        moving, turning = moving - rest, turning + rest
+        if grains.steering.cell is not None:
+            own, first = clumps.inertia.copy(), clumps.member[clumps.start[:-1]]
+            own -= np.bincount(body, d.inertia[clumps.member], clumps.count)
+            turning += 0.5 * float(own @ (d.spin[first] * book[first, BEFORE_SPIN])) - rest
+    return moving, turning
+
+
+def open_book(grains: Grains, book: Array, dt: float) -> Array:
+    """Start of the book before a first step of ``dt`` (s): (kinetic and elastic energy J/m, sum m x, sum m y kg m/m).
+
+    Overwrites the velocities before the last force in ``book``: those of now.
+    """
+    d = grains.discs
+    book[:, BEFORE_X : BEFORE_X + 2], book[:, BEFORE_SPIN] = d.velocity, d.spin
+    return np.array([sum(kinetic(grains, book)) + sum(elastic(grains, dt)), *moment(grains, dt)])
+
+
+def moment(grains: Grains, dt: float) -> Array:
+    """Sum of m x over discs, (2,) kg m/m, ``dt`` (s) before now."""
+    d = grains.discs
+    total: Array = d.mass @ (d.position - dt * d.velocity)
+    return total
+
+
+def energy_book(grains: Grains, acceleration: tuple[float, float] = (0.0, 0.0)) -> dict[str, float]:
+    """The book of ``grains`` by the names of its entries, J/m, since its first step; zeros before that.
+
+    acceleration : of free fall, m/s^2; its work is the potential energy, and what the external forces did besides is
+    their work.  "turned over" is half the sum of all changes: every joule leaves one entry and enters another.
+    A strained cell does work, and all is said relative to it: there must be no ``acceleration`` then.  Raises
+    InputError where no book is kept.
+    """
+    book, start, dt = grains.book, grains.book_start, grains.last_dt
+    if book is None:
+        raise InputError(Fault("energy", False, "no energy book is kept", repair="make Grains with energy=True"))
+    if start is None:
+        start, dt = open_book(grains, book, 0.0), 0.0
+    moving, turning = kinetic(grains, book)
+    normal, tangential, rolling = elastic(grains, dt)
+    g = np.asarray(acceleration, float)
+    height, height_before = -float(g @ moment(grains, dt)), -float(g @ start[1:])
+    total = book.sum(axis=0)
+    losses = {name: float(total[column]) for name, column in LOSSES.items()}
+    works = {
+        "work of external forces (J/m)": float(total[EXTERNAL]) + height - height_before,
+        **{name: float(total[column]) for name, column in WORKS.items()},
+    }
+    if grains.steered and grains.steering.cell is not None:
+        works["work of the cell (J/m)"] = float(grains.steering.cell[WORK])
+    kept = moving + turning + normal + tangential + rolling
+    residual = kept + height - float(start[0]) - height_before + sum(losses.values()) - sum(works.values())
+    changes = [kept - float(start[0]), height - height_before, *losses.values(), *works.values()]
+    return {
+        "kinetic energy of translation (J/m)": moving,
+        "kinetic energy of rotation (J/m)": turning,
+        "potential energy (J/m)": height,
+        "elastic energy, normal (J/m)": normal,
+        "elastic energy, tangential (J/m)": tangential,
+        "elastic energy, rolling (J/m)": rolling,
+        **losses,
+        **works,
+        "residual (J/m)": residual,
+        "turned over (J/m)": 0.5 * sum(abs(change) for change in changes),
+    }

@@ -1,0 +1,248 @@
+"""Numbers about a packing: energies, momenta, overlaps, contacts.  Nothing here changes the state.
+
+Speeds are those of half a step ago, positions those of now; energies therefore err by a step's work.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.compiled.jit import inline, kernel
+from porescale.dem.bodies.rigid import clumps_of
+from porescale.dem.contact.law import material_of, recall, stored
+from porescale.dem.discs import Discs
+from porescale.dem.forces.rectangle import BOTTOM, LEFT, RIGHT, TOP, nearest_face
+from porescale.dem.forces.segments import survey_segments
+from porescale.dem.forces.walls import HIGH, LOW, NX, NY, PRESENT, PX, PY, X
+from porescale.dem.grains import Grains
+from porescale.dem.motion.periodic_cell import image
+
+Array = NDArray[np.float64]
+
+
+@kernel
+def survey_pairs(position, radius, start, partner, carried, cell, law, touching):
+    """(largest overlap over the smaller radius, its i, its j, elastic energy J/m) over the listed pairs.
+
+    Overwrites touching (n,): number of discs that touch each disc.  Arrays as in add_pair_forces.
+    """
+    touching[:] = 0
+    worst, worst_i, worst_j, energy = 0.0, -1, -1, 0.0
+    for i in range(radius.shape[0]):
+        for k in range(start[i], start[i + 1]):
+            j = partner[k]
+            dx, dy = image(position[j, 0] - position[i, 0], position[j, 1] - position[i, 1], cell)
+            overlap = radius[i] + radius[j] - np.sqrt(dx * dx + dy * dy)
+            if overlap > 0.0:
+                touching[i] += 1
+                touching[j] += 1
+                p = law.table[material_of(law.material, i), material_of(law.material, j)]
+                spring, roll = recall(carried, k, law)
+                reduced = radius[i] * radius[j] / (radius[i] + radius[j])
+                normal, tangential, rolling = stored(overlap, spring, roll, reduced, p, law)
+                energy += normal + tangential + rolling
+                share = overlap / min(radius[i], radius[j])
+                if share > worst:
+                    worst, worst_i, worst_j = share, i, j
+    return worst, worst_i, worst_j, energy
+
+
+@inline
+def stored_at_surface(i, overlap, radius, memory, laws, law):
+    """Elastic energy (J/m) of disc i against a surface; arguments as in walls.surface_contact."""
+    spring, roll = recall(memory, i, law)
+    normal, tangential, rolling = stored(overlap, spring, roll, radius, laws[material_of(law.material, i)], law)
+    return normal + tangential + rolling
+
+
+@kernel
+def survey_walls(position, radius, walls, laws, spring, law):
+    """(largest overlap over the radius, its disc, its wall, elastic energy J/m) over walls (w, 4)."""
+    worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
+    for w in range(walls.shape[0]):
+        for i in range(radius.shape[0]):
+            distance = (position[i, 0] - walls[w, PX]) * walls[w, NX]
+            distance += (position[i, 1] - walls[w, PY]) * walls[w, NY]
+            overlap = radius[i] - distance
+            if overlap > 0.0:
+                energy += stored_at_surface(i, overlap, radius[i], spring[w], laws[w], law)
+                if overlap / radius[i] > worst:
+                    worst, worst_i, worst_w = overlap / radius[i], i, w
+    return worst, worst_i, worst_w, energy
+
+
+@kernel
+def survey_plates(position, radius, plates, laws, spring, law):
+    """(largest overlap over the radius, its disc, its plate, elastic energy J/m) over the plates (p, 5) present."""
+    worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
+    for w in range(plates.shape[0]):
+        if plates[w, PRESENT] != 0.0:
+            for i in range(radius.shape[0]):
+                dx = plates[w, X] - position[i, 0]
+                dy = min(max(position[i, 1], plates[w, LOW]), plates[w, HIGH]) - position[i, 1]
+                overlap = radius[i] - np.sqrt(dx * dx + dy * dy)
+                if overlap > 0.0:
+                    energy += stored_at_surface(i, overlap, radius[i], spring[w], laws[w], law)
+                    if overlap / radius[i] > worst:
+                        worst, worst_i, worst_w = overlap / radius[i], i, w
+    return worst, worst_i, worst_w, energy
+
+
+@kernel
+def survey_rectangles(position, radius, rectangles, laws, spring, law):
+    """(largest overlap over the radius, its disc, its rectangle, elastic energy J/m) over the rectangles (k, 6)."""
+    worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
+    for w in range(rectangles.shape[0]):
+        left, bottom, right, top = (
+            rectangles[w, LEFT],
+            rectangles[w, BOTTOM],
+            rectangles[w, RIGHT],
+            rectangles[w, TOP],
+        )
+        for i in range(radius.shape[0]):
+            dx = min(max(position[i, 0], left), right) - position[i, 0]
+            dy = min(max(position[i, 1], bottom), top) - position[i, 1]
+            distance = np.sqrt(dx * dx + dy * dy)
+            if distance == 0.0:
+                distance = -nearest_face(position[i, 0], position[i, 1], left, bottom, right, top)[2]
+            overlap = radius[i] - distance
+            if overlap > 0.0:
+                energy += stored_at_surface(i, overlap, radius[i], spring[w], laws[w], law)
+                if overlap / radius[i] > worst:
+                    worst, worst_i, worst_w = overlap / radius[i], i, w
+    return worst, worst_i, worst_w, energy
+
+
+class Overlap(NamedTuple):
+    """The deepest contact: overlap over the (smaller) radius, the disc, and what it is pressed against."""
+
+    share: float
+    disc: int
+    against: str
+
+
+def kinetic_energy(discs: Discs) -> float:
+    """Translation and rotation, J/m."""
+    moving = float(np.sum(discs.mass * np.sum(discs.velocity**2, axis=1)))
+    return 0.5 * (moving + float(np.sum(discs.inertia * discs.spin**2)))
+
+
+def potential_energy(discs: Discs, acceleration: tuple[float, float]) -> float:
+    """-sum m g.x, J/m, for an ``acceleration`` of free fall in m/s^2."""
+    return -float(np.sum(discs.mass * (discs.position @ np.asarray(acceleration))))
+
+
+def elastic_energy(grains: Grains) -> float:
+    """Stored in the normal and tangential springs of pairs, walls, plates, rectangles and segments, J/m."""
+    surfaces = (_survey_walls(grains), _survey_plates(grains), _survey_rectangles(grains))
+    return float(_survey(grains)[3] + sum(found[3] for found in surfaces) + sum(_survey_segments(grains)[3:]))
+
+
+def momentum(discs: Discs) -> Array:
+    """Sum of m v, (2,) kg m/s per metre."""
+    total: Array = (discs.mass[:, None] * discs.velocity).sum(axis=0)
+    return total
+
+
+def angular_momentum(discs: Discs) -> float:
+    """Sum of m x cross v + I w about the origin, kg m^2/s per metre (x at the whole, v at the half step)."""
+    x, v = discs.position, discs.velocity
+    orbital = discs.mass * (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0])
+    return float(np.sum(orbital + discs.inertia * discs.spin))
+
+
+def centre_of_mass(discs: Discs) -> Array:
+    """Centre of mass, (2,) m."""
+    centre: Array = (discs.mass[:, None] * discs.position).sum(axis=0) / discs.mass.sum()
+    return centre
+
+
+def max_overlap(grains: Grains) -> Overlap:
+    """The deepest overlap of all pairs, walls, plates, rectangles and segments, as a share of the (smaller) radius; at
+    segments and corners of the sum of radius and thickness, where a disc would go through.
+    """
+    share, i, j, _ = _survey(grains)
+    deepest = Overlap(float(share), int(i), f"grain {j}")
+    share, i, w, _ = _survey_walls(grains)
+    if share > deepest.share:
+        deepest = Overlap(float(share), int(i), f"the {grains.wall_names[w]} wall")
+    share, i, w, _ = _survey_plates(grains)
+    if share > deepest.share:
+        deepest = Overlap(float(share), int(i), f"the {grains.plate_names[w]}")
+    share, i, w, _ = _survey_rectangles(grains)
+    if share > deepest.share:
+        deepest = Overlap(float(share), int(i), f"rectangle {w}")
+    share, i, e, *_ = _survey_segments(grains)
+    if share > deepest.share:
+        deepest = Overlap(float(share), int(i), f"segment {e}" if e >= 0 else f"corner {e + grains.discs.count}")
+    return deepest
+
+
+def coordination(grains: Grains) -> float:
+    """Mean number of contacts of a disc or clump with others (walls are not counted)."""
+    _survey(grains)
+    bodies = grains.discs.count
+    if (clumps := clumps_of(grains)) is not None:
+        bodies += clumps.count - len(clumps.member)
+    return float(grains.touching.sum()) / bodies if bodies else 0.0
+
+
+def unbalanced(grains: Grains) -> float:
+    """Mean net force on a disc over mean weight-like external force of the last step; 0 in equilibrium."""
+    net = np.hypot(grains.discs.force[:, 0], grains.discs.force[:, 1]).mean()
+    load = np.hypot(grains.external_force[:, 0], grains.external_force[:, 1]).mean()
+    return float(net / load) if load > 0.0 else 0.0
+
+
+def _survey(grains: Grains) -> tuple[float, int, int, float]:
+    """survey_pairs of ``grains``; fills ``grains.touching``."""
+    result: tuple[float, int, int, float] = survey_pairs(
+        grains.discs.position, grains.discs.radius, grains.pairs.start, grains.pairs.partner,
+        grains.pairs.carried, grains.cell, grains.contact, grains.touching,
+    )  # fmt: skip
+    return result
+
+
+def _survey_walls(grains: Grains) -> tuple[float, int, int, float]:
+    d = grains.discs
+    result: tuple[float, int, int, float] = survey_walls(
+        d.position, d.radius, grains.walls, grains.wall_laws, grains.wall_spring, grains.contact
+    )
+    if grains.segments is None or not len(grains.walls):
+        return result
+    # Corners may be points: what they go into a wall is held against their segments.
+    away = np.einsum("nwk,wk->wn", d.position[:, None] - grains.walls[:, PX : PY + 1], grains.walls[:, NX : NY + 1])
+    share = (d.radius - away) / np.maximum(d.radius, grains.segments.beside_corner)
+    w, i = np.unravel_index(share.argmax(), share.shape)
+    return float(share[w, i]), int(i), int(w), result[3]
+
+
+def _survey_plates(grains: Grains) -> tuple[float, int, int, float]:
+    d = grains.discs
+    result: tuple[float, int, int, float] = survey_plates(
+        d.position, d.radius, grains.plates, grains.plate_laws, grains.plate_spring, grains.contact
+    )
+    return result
+
+
+def _survey_segments(grains: Grains) -> tuple[float, int, int, float, float, float]:
+    d = grains.discs
+    if grains.segments is None:
+        return 0.0, -1, 0, 0.0, 0.0, 0.0
+    result: tuple[float, int, int, float, float, float] = survey_segments(
+        d.position, d.radius, grains.segments.now(), grains.contact, grains.cell
+    )
+    return result
+
+
+def _survey_rectangles(grains: Grains) -> tuple[float, int, int, float]:
+    d = grains.discs
+    if not len(grains.rectangles):
+        return 0.0, -1, -1, 0.0
+    result: tuple[float, int, int, float] = survey_rectangles(
+        d.position, d.radius, grains.rectangles, grains.rectangle_laws, grains.rectangle_spring, grains.contact
+    )
+    return result

@@ -1,0 +1,1 @@
+"""Time integration: leap-frog, rigid bodies, prescribed motion, servo walls, strained periodic cells."""

@@ -1,0 +1,1 @@
+"""Packings: settled, compressed, merged; rock made of a packing."""

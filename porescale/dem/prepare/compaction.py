@@ -1,0 +1,339 @@
+"""Packings of a wanted pressure or density, made by isotropic compression, and packings from files.
+
+Compression: discs are placed at random without overlap, small, and grow in place, slowly and damped, until the box has
+the wanted pressure or they have their size; then they rest.  For discs in a fixed box that is the same as a box that
+shrinks.  Little friction meanwhile packs densely, much of it loosely.  Rest is reached under the law that is to come.
+
+Files hold x, y, radius in m: .csv, one disc a line below its header, or .h5, three datasets.  A laboratory's list of
+circles is read with its own units and direction of y by ``read_circles``.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import dataclasses
+import hashlib
+import io
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.core.atomic import write_bytes
+from porescale.common.core.errors import Fault, InputError, PorescaleError
+from porescale.common.core.hdf5 import writing
+from porescale.common.neighbors.placement import place
+from porescale.dem.contact.linear import Linear
+from porescale.dem.discs import make_discs
+from porescale.dem.forces.walls import Box
+from porescale.dem.grains import Grains
+from porescale.dem.measures.contacts import contacts
+from porescale.dem.measures.region import Region
+from porescale.dem.measures.stress import contact_stress, principal
+from porescale.dem.measures.survey import max_overlap
+from porescale.dem.prepare.settle import UNREADABLE, cache_folder, pack, sources, unpack
+
+Array = NDArray[np.float64]
+
+START = 0.7  # packing fraction at which discs are placed: short of where friction can hold them
+DRAG = 0.02  # background damping per step: lets discs that are pushed travel, ends waves between two looks
+GROWTH = 5e-4  # of the radii at a time: less than the overlaps at which a packing is loaded
+PAUSE = 40  # steps after each: some periods of a contact
+REST = 400  # steps between looks once the pressure is there
+PATIENCE = 1500  # looks before it gives up
+NEAR = 3e-3  # share of the wanted pressure within which it is there
+BALANCE = 3e-3  # mean net force on a disc over the mean contact force that counts as rest
+DEEPEST = 0.02  # overlap over diameter beyond which discs are no longer discs
+UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6}
+COLUMNS = ("x (m)", "y (m)", "radius (m)")
+
+
+class Compressed(NamedTuple):
+    """grains at rest;  scale: radii over those asked for;  fraction: disc area over box area;  pressure Pa;  overlap:
+    the deepest over its smaller diameter."""
+
+    grains: Grains
+    scale: float
+    fraction: float
+    pressure: float
+    overlap: float
+
+
+@dataclass(frozen=True)
+class Press:
+    """How discs are compressed: in the rectangle ``lower`` to ``upper`` (m), periodic or between walls, under ``law``,
+    with ``friction`` between discs while they grow (walls without), density kg/m³, seed of the random start."""
+
+    lower: tuple[float, float]
+    upper: tuple[float, float]
+    law: Linear
+    periodic: tuple[bool, bool] = (True, True)
+    friction: float = 0.0
+    density: float = 2500.0
+    seed: int = 0
+
+    def to_pressure(self, radius: Array, pressure: float) -> Compressed:
+        """Discs with sizes in the ratios of ``radius`` (n,) m, grown or shrunk until the mean stress is ``pressure``
+        (Pa).  Raises InputError when that needs overlaps beyond 2 % of a diameter, PorescaleError without rest."""
+        if not pressure > 0.0 or not math.isfinite(pressure):
+            raise InputError(Fault("pressure", pressure, "cannot hold a packing together", "Pa", "> 0"))
+        soft = pressure / self.law.stiffness
+        if soft > DEEPEST:
+            problem = f"would press grains into each other by about {soft:.2g} of a diameter"
+            repair = "raise contact.stiffness or lower the pressure"
+            highest = f"<= {DEEPEST * self.law.stiffness:.3g}"
+            raise InputError(Fault("pressure", pressure, problem, "Pa", highest, repair))
+        grains, _ = self._start(radius)
+        for law in (self.law.with_friction(self.friction), self.law):
+            grains.set_law(law, law.with_friction(0.0) if law is not self.law else law)
+            self._hold(grains, pressure)
+        return self._made(grains, radius)
+
+    def to_size(self, radius: Array) -> Compressed:
+        """Discs of ``radius`` (n,) m in the rectangle: the packing fraction is then what their areas say.
+
+        Raises InputError when that is so dense that they overlap by more than 2 % of a diameter.
+        """
+        grains, scale = self._start(radius)
+        while scale < 1.0:
+            factor = min(1.0 + GROWTH, 1.0 / scale)
+            self._grow(grains, factor, PAUSE)
+            scale *= factor
+        deepest = 0.5 * max_overlap(grains).share
+        if deepest > DEEPEST:
+            made = float(grains.discs.area.sum()) / self._region.area
+            problem = f"presses grains into each other by {deepest:.2g} of a diameter"
+            repair = "lower it, or the friction while preparing"
+            raise InputError(Fault("packing_fraction", round(made, 4), problem, "", f"< {made:.3g}", repair))
+        for law in (self.law.with_friction(self.friction), self.law):
+            grains.set_law(law, law.with_friction(0.0) if law is not self.law else law)
+            self._rest(grains)
+        return self._made(grains, radius)
+
+    def grains(self, position: Array, radius: Array) -> Grains:
+        """Discs in the rectangle under the law with the friction of preparation, walls without."""
+        across, up = ("periodic" if it else "solid" for it in self.periodic)
+        box = Box(self.lower, self.upper, across, across, up, up)
+        law = self.law.with_friction(self.friction)
+        return Grains(make_discs(position, radius, self.density), law, box, wall_law=law.with_friction(0.0))
+
+    @property
+    def _region(self) -> Region:
+        return Region(self.lower, self.upper)
+
+    def _start(self, radius: Array) -> tuple[Grains, float]:
+        """Small discs at random places, and their radii over those wanted."""
+        covered = float(np.pi * np.sum(radius**2)) / self._region.area
+        scale = min(1.0, math.sqrt(START / covered))
+        placed = place(self.lower, self.upper, radii=scale * radius, periodic=self.periodic, seed=self.seed)
+        grains = self.grains(placed.position, placed.radius)
+        # The same mass for all while they are prepared: small discs would else set the step, and large ones crawl.
+        d = grains.discs
+        d.mass[:] = d.mass.mean()
+        d.inertia[:] = 0.5 * d.mass * d.radius**2
+        return grains, scale
+
+    def _grow(self, grains: Grains, factor: float, steps: int) -> None:
+        """Radii times ``factor``, and steps for what that does to settle."""
+        d = grains.discs
+        d.radius *= factor
+        d.inertia *= factor**2
+        grains.refresh()
+        dt = grains.stable_step(steps_per_contact=0.0)
+        grains.step(dt, None, None, steps, DRAG / dt)
+        grains.check()
+
+    def _hold(self, grains: Grains, pressure: float) -> None:
+        """Grow or shrink a little until pressure and rest are there."""
+        looks = 0
+        while looks < PATIENCE:
+            now = mean_stress(grains)
+            if now < 0.5 * pressure:
+                self._grow(grains, 1.0 + GROWTH, PAUSE)
+                continue
+            looks += 1
+            if abs(now / pressure - 1.0) < NEAR and out_of_balance(grains) < BALANCE:
+                self._stop(grains)
+                return
+            # The modulus of a packing is at most about its contact stiffness: this does not go too far.
+            step = min(max((pressure - now) / self.law.stiffness, -GROWTH), GROWTH)
+            self._grow(grains, 1.0 + step, REST)
+        raise PorescaleError(
+            f"the packing did not come to rest under {pressure:.3g} Pa: pressure {mean_stress(grains):.3g} Pa, "
+            f"net force {out_of_balance(grains):.2g} of the mean contact force"
+        )
+
+    def _rest(self, grains: Grains) -> None:
+        """Steps until net forces are small, or nothing touches."""
+        for _ in range(PATIENCE):
+            self._grow(grains, 1.0, REST)
+            if out_of_balance(grains) < BALANCE:
+                self._stop(grains)
+                return
+        left = out_of_balance(grains)
+        raise PorescaleError(f"the packing did not come to rest: net force {left:.2g} of the mean contact force")
+
+    def _stop(self, grains: Grains) -> None:
+        d = grains.discs
+        d.velocity[:] = 0.0
+        d.spin[:] = 0.0
+        grains.reset_clock()
+
+    def _made(self, grains: Grains, radius: Array) -> Compressed:
+        d = grains.discs
+        d.mass[:] = self.density * d.area
+        d.inertia[:] = 0.5 * d.mass * d.radius**2
+        fraction = float(d.area.sum()) / self._region.area
+        scale = float(d.radius[0] / radius[0])
+        return Compressed(grains, scale, fraction, mean_stress(grains), 0.5 * max_overlap(grains).share)
+
+
+def kept(press: Press, radius: Array, pressure: float | None, folder: Path | None = None) -> Compressed:
+    """``press.to_pressure``, or ``to_size`` without one; from disk if it was made before, with the bits it had.
+
+    folder : of the cache, default that of settled packings.  A damaged file is made anew, a folder that cannot be
+    written is done without.
+    """
+    of = [dataclasses.asdict(press), np.asarray(radius).tolist(), pressure, sources()]
+    name = hashlib.sha256(json.dumps(of).encode()).hexdigest()[:16]
+    path = (folder or cache_folder()) / f"{name}.npz"
+    with contextlib.suppress(*UNREADABLE):
+        state = unpack(path)
+        grains = press.grains(np.zeros((len(radius), 2)), radius)
+        grains.set_law(press.law, press.law)
+        grains.restore(state)
+        numbers = state["made"]
+        return Compressed(grains, *(float(numbers[key]) for key in Compressed._fields[1:]))
+    made = press.to_size(radius) if pressure is None else press.to_pressure(radius, pressure)
+    with contextlib.suppress(OSError):  # no room or no right to write: the next run presses again
+        pack(path, {**made.grains.state(), "made": dict(zip(Compressed._fields[1:], made[1:], strict=True))})
+    return made
+
+
+def mean_stress(grains: Grains) -> float:
+    """Mean of the principal contact stresses of the whole box, Pa."""
+    region = Region(grains.box.lower, grains.box.upper)
+    return principal(contact_stress(region, contacts(grains), grains.box.period)).mean
+
+
+def out_of_balance(grains: Grains) -> float:
+    """Mean net contact force on a disc over the mean force of a contact; 0 where nothing touches."""
+    found = contacts(grains)
+    if not found.count or not (scale := float(np.abs(found.normal_force).mean())) > 0.0:
+        return 0.0
+    return float(np.hypot(*found.resultants(grains.discs.count)[0].T).mean()) / scale
+
+
+# ---------------------------------------------------------------- files
+
+
+def write_packing(path: Path, position: Array, radius: Array) -> None:
+    """Write x, y, radius (m) to a .csv or .h5 file, whole or absent.  Raises InputError for another suffix."""
+    table = np.column_stack((position, radius))
+    if path.suffix == ".csv":
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(COLUMNS)
+        writer.writerows([repr(value) for value in row] for row in table.tolist())
+        write_bytes(path, text.getvalue().encode())
+        return
+    _judge_suffix(path)
+    with writing(path) as file:
+        for name, column in zip(("x", "y", "radius"), table.T, strict=True):
+            file.create_dataset(name, data=column, fletcher32=True, chunks=(max(len(column), 1),)).attrs["units"] = "m"
+
+
+def read_packing(path: Path) -> tuple[Array, Array]:
+    """Positions (n, 2) m and radii (n,) m of a file that ``write_packing`` wrote, or one like it.
+
+    Raises InputError, naming line or dataset, for what is no packing.
+    """
+    _judge_suffix(path)
+    if path.suffix == ".csv":
+        return read_circles(path)
+    try:
+        with h5py.File(path, "r") as file:
+            columns = [np.asarray(file[name][...], np.float64).ravel() for name in ("x", "y", "radius")]
+    except (OSError, KeyError, ValueError, TypeError) as error:
+        reason = " ".join(str(error).split())[:120]
+        repair = "give a file with datasets x, y and radius in m"
+        raise InputError(Fault("file", str(path), f"is no packing ({reason})", repair=repair)) from error
+    if len({len(column) for column in columns}) != 1:
+        raise InputError(Fault("file", str(path), "x, y and radius differ in length", repair="write it anew"))
+    x, y, radius = columns
+    return _judged(path, np.column_stack((x, y)), radius)
+
+
+def read_circles(
+    path: Path, unit: str = "m", y: str = "up", height: float | None = None, origin: tuple[float, float] = (0.0, 0.0)
+) -> tuple[Array, Array]:
+    """Positions (n, 2) m and radii (n,) m of a list of circles: .csv with columns x, y and diameter or radius.
+
+    unit : of all columns, m, cm, mm or um;  y : "up", or "down" as in images, then ``height`` (m) is that of the image
+    (default: the lowest circle then touches y = 0);  origin : where the lower left corner of the list comes to lie, m.
+    A header may carry its unit in brackets, "x (mm)", which then must be ``unit``.  Raises InputError naming the line.
+    """
+    if unit not in UNITS:
+        raise InputError(Fault("unit", unit, "is not known", "", ", ".join(UNITS)))
+    if y not in ("up", "down"):
+        raise InputError(Fault("y", y, "is no direction", "", "up or down", "images count y downwards"))
+    columns, by_radius = _table(path, unit)
+    x, up, size = columns.T * UNITS[unit]
+    radius = size if by_radius else 0.5 * size
+    if y == "down":
+        up = (float((up + radius).max(initial=0.0)) if height is None else height) - up
+    return _judged(path, np.column_stack((x + origin[0], up + origin[1])), radius)
+
+
+def _table(path: Path, unit: str) -> tuple[Array, bool]:
+    """Columns x, y, size (n, 3) of a file in its unit, and whether the size is a radius."""
+    try:
+        lines = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise InputError(Fault("file", str(path), f"cannot be read ({error})", repair="check the name")) from error
+    header = [cell.strip().lower() for cell in lines[0]] if lines else []
+    names = [cell.partition("(")[0].strip() for cell in header]
+    by_radius = "diameter" not in names
+    wanted = ("x", "y", "radius" if by_radius else "diameter")
+    missing = [name for name in wanted if name not in names]
+    if missing:
+        problem = f"has no column {', '.join(missing)}; its first line is {', '.join(header)[:80]!r}"
+        raise InputError(Fault("file", str(path), problem, "", "x, y and diameter or radius", "add a header line"))
+    places = [names.index(name) for name in wanted]
+    for k in places:
+        given = header[k].partition("(")[2].rstrip(") ").strip()
+        if given and UNITS.get(given) != UNITS[unit]:
+            raise InputError(Fault("unit", unit, f"the column {header[k]!r} of {path.name} says otherwise", "", given))
+    rows = []
+    for number, cells in enumerate(lines[1:], 2):
+        if not any(cell.strip() for cell in cells):
+            continue
+        try:
+            rows.append([float(cells[k]) for k in places])
+        except (ValueError, IndexError):
+            problem = f"line {number} is {','.join(cells)[:60]!r}"
+            raise InputError(Fault("file", str(path), problem, "", "numbers in x, y and size")) from None
+    return np.array(rows, dtype=np.float64).reshape(-1, 3), by_radius
+
+
+def _judge_suffix(path: Path) -> None:
+    if path.suffix not in (".csv", ".h5"):
+        raise InputError(Fault("file", str(path), "is of a kind not known", "", ".csv or .h5"))
+
+
+def _judged(path: Path, position: Array, radius: Array) -> tuple[Array, Array]:
+    """The same, if every circle is one."""
+    bad = ~np.isfinite(position).all(axis=1) | ~(radius > 0.0) | ~np.isfinite(radius)
+    if bad.any():
+        k = int(bad.argmax())
+        problem = f"circle {k} is ({position[k, 0]:g}, {position[k, 1]:g}) with radius {radius[k]:g}"
+        raise InputError(Fault("file", str(path), problem, "m", "places that are finite, radius > 0"))
+    if not len(radius):
+        raise InputError(Fault("file", str(path), "holds no circle", repair="give one with at least one line"))
+    return position, radius

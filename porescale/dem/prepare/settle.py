@@ -1,0 +1,302 @@
+"""Settled packings: discs placed without overlap, dropped behind walls and plates until they rest.
+
+Settling is a means, not a simulation: it uses a stiff, well damped law of its own and a background drag
+-gamma m v, both stated here and gone afterwards.  ``relax`` then finds the equilibrium under the law and
+weights of the run, so that nothing jumps at its first step.  A packing is kept on disk under a hash of all
+that made it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import hashlib
+import io
+import json
+import math
+import zipfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.compiled.cache import cache_root, hash_of
+from porescale.common.core.atomic import write_bytes
+from porescale.common.core.constants import GRAVITY
+from porescale.common.core.errors import Fault, InputError, PorescaleError
+from porescale.common.neighbors import place
+from porescale.dem.contact.linear import Linear
+from porescale.dem.contact.materials import Law
+from porescale.dem.discs import Discs, make_discs
+from porescale.dem.forces.walls import HIGH, LOW, VELOCITY, Box, Plate
+from porescale.dem.grains import Grains
+from porescale.dem.measures.survey import kinetic_energy, max_overlap, unbalanced
+
+Array = NDArray[np.float64]
+
+OVERLAP = 1e-3  # of a diameter: deepest overlap left by settling, so that the geometry is that of hard discs
+SOFTER = 16.0  # grains fall this much softer first, with steps 4 times as long, and then stiffen in place
+RESTITUTION = 0.5  # of the settling law: damps a bounce in a few impacts; less would shorten the stable step
+SHEAR = 0.25  # tangential over normal stiffness of the settling law: more would make rotation the stiffest
+CHAIN = 4.0  # strongest contact force over the weight of discs above a diameter of width (measured: 3 to 4)
+DRAG = 0.3  # background damping in sqrt(g/d): grains fall at a few times their free-fall speed over d
+ENERGY = 1e-8  # kinetic energy per grain over m g d that counts as rest
+BALANCE = 3e-3  # mean net force over mean weight that counts as rest
+CHUNK = 500  # steps between looks
+PATIENCE = 400  # chunks before settling gives up
+UNREADABLE = (OSError, EOFError, ValueError, KeyError, TypeError, RuntimeError, zipfile.BadZipFile, InputError)
+"""What reading a packing from disk raises when it is absent, cut short, not an archive, or lacks a part."""
+
+
+@dataclass(frozen=True)
+class Pile:
+    """What is dropped: ``count`` discs of mean ``diameter`` (m) (1 ± spread) and ``density`` (kg/m^3).
+
+    They are placed from ``corner`` (m) upwards over ``width`` (m) at ``fraction`` of area, with ``seed``,
+    and settle under ``gravity`` (m/s^2) with ``friction``: little of it packs densely, much of it loosely.
+    given : radii (count,) m instead of those that diameter and spread say; diameter is their mean then.
+    """
+
+    corner: tuple[float, float]
+    width: float
+    count: int
+    diameter: float
+    density: float
+    spread: float = 0.1
+    friction: float = 0.3
+    fraction: float = 0.75
+    seed: int = 0
+    gravity: float = GRAVITY
+    given: tuple[float, ...] = ()
+
+    def top(self) -> float:
+        """Upper edge of the rectangle in which discs are placed, m."""
+        area = self.count * math.pi / 4.0 * self.diameter**2 * (1.0 + self.spread**2 / 3.0)
+        if self.given:
+            area = math.pi * math.fsum(r * r for r in self.given)
+        # One diameter more: a short rectangle loses a strip of pores along each wall.
+        return self.corner[1] + area / (self.fraction * self.width) + self.diameter
+
+    def discs(self) -> Discs:
+        """The discs as placed, at rest, numbered column by column so that neighbours lie close in memory."""
+        placed = place(self.corner, (self.corner[0] + self.width, self.top()), radii=self.radii(), seed=self.seed)
+        columns = np.floor(placed.position[:, 0] / (2.0 * self.diameter))
+        order = np.lexsort((placed.position[:, 1], columns))
+        return make_discs(placed.position[order], placed.radius[order], self.density)
+
+    def radii(self) -> Array:
+        """Radii, (n,) m, uniform in diameter (1 ± spread), or those given."""
+        if self.given:
+            return np.array(self.given)
+        rng = np.random.default_rng([self.seed, self.count])
+        return 0.5 * self.diameter * (1.0 + self.spread * rng.uniform(-1.0, 1.0, self.count))
+
+
+def settling_law(pile: Pile) -> Linear:
+    """Stiff enough that force chains at the foot overlap by less than OVERLAP, nearly dead on impact."""
+    mass = math.pi / 4.0 * pile.diameter**2 * pile.density
+    layers = max((pile.top() - pile.corner[1]) / pile.diameter, 1.0)
+    stiffness = CHAIN * layers * mass * pile.gravity / (OVERLAP * pile.diameter)
+    law = Linear.from_restitution(
+        RESTITUTION, 0.5 * mass, stiffness, tangential_stiffness=SHEAR * stiffness, friction=pile.friction
+    )
+    return dataclasses.replace(law, tangential_damping=SHEAR * law.damping)
+
+
+def come_to_rest(
+    grains: Grains, weights: Array, gravity: float, *, energy: float = ENERGY, balance: float = BALANCE
+) -> None:
+    """Step under ``weights`` (n, 2) N/m with drag until kinetic energy and net forces are negligible.
+
+    energy : kinetic, per grain over m g d;  balance : mean net force over mean weight.
+
+    Raises PorescaleError when they are not after PATIENCE chunks of steps, Unstable when the state is
+    senseless.
+    """
+    discs = grains.discs
+    diameter = 2.0 * float(discs.radius.mean())
+    drag = DRAG * math.sqrt(gravity / diameter)
+    dt = grains.stable_step(steps_per_contact=0.0)
+    rest = energy * gravity * diameter * float(discs.mass.sum())
+    for _ in range(PATIENCE):
+        grains.step(dt, weights, None, CHUNK, drag)
+        grains.check()
+        if kinetic_energy(discs) < rest and unbalanced(grains) < balance:
+            break
+    else:
+        raise PorescaleError(
+            f"the packing did not come to rest in {PATIENCE * CHUNK} steps: kinetic energy "
+            f"{kinetic_energy(discs) / rest * energy:.2g} m g d per grain, "
+            f"net force {unbalanced(grains):.2g} of weight"
+        )
+    discs.velocity[:] = 0.0
+    discs.spin[:] = 0.0
+
+
+def settle(grains: Grains, pile: Pile) -> None:
+    """Drop the discs of ``grains`` under the law of settling_law until they rest with overlaps below
+    OVERLAP d.
+
+    Plates stand still meanwhile, and as high as needed.  The law of ``grains`` afterwards is the settling
+    law.
+    """
+    law = settling_law(pile)
+    weights = np.zeros((grains.discs.count, 2))
+    weights[:, 1] = -pile.gravity * grains.discs.mass
+    plates = grains.plates.copy()
+    grains.plates[:, VELOCITY] = 0.0
+    grains.plates[:, LOW] = np.minimum(plates[:, LOW], pile.corner[1])
+    grains.plates[:, HIGH] = np.maximum(plates[:, HIGH], pile.top() + pile.diameter)
+    frictions, grains.plate_frictions = grains.plate_frictions, [None] * len(plates)
+    law = stiffened(law, 1.0 / SOFTER)
+    grains.set_law(law)
+    come_to_rest(grains, weights, pile.gravity)
+    stiffer = SOFTER
+    while stiffer > 1.0:
+        scale_springs(grains, 1.0 / stiffer)
+        law = stiffened(law, stiffer)
+        grains.set_law(law)
+        come_to_rest(grains, weights, pile.gravity)
+        deepest = 0.5 * max_overlap(grains).share  # of a diameter
+        stiffer = 1.2 * deepest / OVERLAP if deepest >= OVERLAP else 1.0
+    grains.plates[:] = plates
+    grains.plate_frictions = frictions
+    settled_top = float((grains.discs.position[:, 1] + grains.discs.radius).max())
+    for name, high in zip(grains.plate_names, plates[:, HIGH], strict=True):
+        if high < settled_top:
+            raise InputError(
+                Fault(f"{name}.y_high", float(high), "grains would spill over it", "m", f">= {settled_top:.4g}")
+            )
+
+
+def stiffened(law: Linear, factor: float) -> Linear:
+    """``law`` with its stiffnesses times ``factor`` and the same damping ratios."""
+    return dataclasses.replace(
+        law,
+        stiffness=factor * law.stiffness,
+        damping=math.sqrt(factor) * law.damping,
+        tangential_stiffness=factor * law.tangential_stiffness,
+        tangential_damping=math.sqrt(factor) * law.tangential_damping,
+    )
+
+
+def scale_springs(grains: Grains, factor: float) -> None:
+    """Multiply all tangential springs by ``factor``: the same friction forces under another stiffness."""
+    grains.pairs.carried *= factor
+    grains.wall_spring *= factor
+    grains.plate_spring *= factor
+
+
+def relax(grains: Grains, law: Law, weights: Array, gravity: float, *, wall_law: Law | None = None) -> None:
+    """From rest under one law and weight to rest under ``law`` and ``weights`` (n, 2) N/m.
+
+    The friction forces are carried over in proportion to the weights, so that the packing does not forget
+    which way it leans; plates stand still.  ``gravity`` (m/s^2) sets the scale of drag and rest.  Raises
+    as come_to_rest.
+    """
+    before = np.hypot(grains.external_force[:, 0], grains.external_force[:, 1]).sum()
+    share = np.hypot(weights[:, 0], weights[:, 1]).sum() / before if before > 0.0 else 1.0
+    smallest = float(grains.discs.mass.min()), float(grains.discs.radius.min())
+    stiff = [each.stiffest(*smallest).tangential_stiffness for each in (grains.laws[0], law)]
+    if stiff[1] > 0.0:
+        scale_springs(grains, float(share) * stiff[0] / stiff[1])
+    grains.set_law(law, wall_law)
+    rising = grains.plates[:, VELOCITY].copy()
+    grains.plates[:, VELOCITY] = 0.0
+    come_to_rest(grains, weights, gravity)
+    grains.plates[:, VELOCITY] = rising
+
+
+def prepare(
+    pile: Pile,
+    box: Box,
+    law: Law,
+    *,
+    wall_law: Law | None = None,
+    plates: Sequence[Plate] = (),
+    weight_density: float | None = None,
+    folder: Path | None = None,
+    cache: bool = True,
+) -> Grains:
+    """Grains of ``pile`` at rest in ``box`` behind ``plates`` under the run's ``law`` and weights; from
+    disk if known.
+
+    weight_density (kg/m^3): weights are weight_density * area * gravity, downwards; the density of the
+    grains by default, density difference to a fluid for buoyant ones.  folder: of the cache, default
+    $XDG_CACHE_HOME/porescale/packings.  What is loaded has the bits of what was made; a damaged file is made
+    anew, and a folder that cannot be written is done without.  Raises InputError when the weight is not
+    downwards, or when no side or plate holds the pile.
+    """
+    weighs = pile.density if weight_density is None else weight_density
+    if not weighs > 0.0:
+        raise InputError(
+            Fault("grains.density", pile.density, "the grains do not sink, so they do not settle", "kg/m^3",
+                  f"> {pile.density - weighs:g}")
+        )  # fmt: skip
+    grains = Grains(pile.discs(), law, box, wall_law=wall_law, plates=plates)
+    made_of: list[Any] = [pile, box, law, grains.wall_law, *plates]
+    described = json.dumps([dataclasses.asdict(part) for part in made_of] + [weighs, sources()])
+    name = hashlib.sha256(described.encode()).hexdigest()[:16]
+    path = (folder or cache_folder()) / f"{name}.npz"
+    if cache:
+        try:
+            grains.restore(unpack(path))
+        except UNREADABLE:
+            grains = Grains(pile.discs(), law, box, wall_law=wall_law, plates=plates)  # some of it may be overwritten
+        else:
+            return grains
+    settle(grains, pile)
+    relax(
+        grains, law, weights_of(grains.discs, weighs, pile.gravity), pile.gravity * weighs / pile.density,
+        wall_law=wall_law,
+    )  # fmt: skip
+    grains.reset_clock()
+    if cache:
+        with contextlib.suppress(OSError):  # no room or no right to write: the next run settles again
+            pack(path, grains.state())
+    return grains
+
+
+def weights_of(discs: Discs, density: float, gravity: float = GRAVITY) -> Array:
+    """Downward weights (n, 2) N/m of bodies of ``density`` (kg/m^3; buoyant: of the difference)."""
+    weights = np.zeros((discs.count, 2))
+    weights[:, 1] = -density * gravity * discs.area
+    return weights
+
+
+def cache_folder() -> Path:
+    """Where packings are kept."""
+    return cache_root() / "packings"
+
+
+def sources() -> str:
+    """Hash (12 hex digits) of the sources a packing depends on: grains, particles and ground."""
+    root = Path(__file__).resolve().parents[2]
+    return hash_of(root / room for room in ("dem", "common/neighbors", "common/core", "common/compiled"))
+
+
+def pack(path: Path, state: dict[str, Any]) -> None:
+    """Write a nested ``state`` of arrays and numbers to ``path``: whole or absent.  Raises OSError."""
+    flat: dict[str, Any] = {}
+    for key, value in state.items():
+        for inner, part in value.items() if isinstance(value, dict) else [("", value)]:
+            flat[f"{key}/{inner}" if inner else key] = np.asarray(part)
+    buffer = io.BytesIO()
+    np.savez(buffer, **flat)
+    write_bytes(path, buffer.getvalue())
+
+
+def unpack(path: Path) -> dict[str, Any]:
+    """Read what ``pack`` wrote; raises one of UNREADABLE where it is not that."""
+    state: dict[str, Any] = {}
+    with np.load(path, allow_pickle=False) as stored:
+        for name in stored.files:
+            key, _, inner = name.partition("/")
+            if inner:
+                state.setdefault(key, {})[inner] = stored[name]
+            else:
+                state[key] = stored[name]
+    return state

@@ -1,0 +1,225 @@
+"""A deck as a system of grains.
+
+Choices where the tutorial is silent, or says two things:
+- Contacts hold until the overlap is gone (``release`` "overlap"), as its e = exp(-pi h/sqrt(1 - h^2)) has it.
+- Walls of the domain are of the first material; unlike materials mix as in dem/contact/materials.py.
+- Segments that make no polygon weigh ``rod`` times their length: 2 thick, and 0.1 where thick is 0.  The record printed
+  in I-3 (thick 0, length 5, density 2.5, force 1e4: x = -2.99982 after 10 steps of 2e-5 and -2.99933 after 20) means a
+  mass of 1.25, so a width of 0.1.
+- Mode 0: as many discs as fill the domain to the void ratio when their radii are uniform between the two bounds (582 in
+  I-7, as there), each radius from its own share of the range, at random and without overlap (the tutorial's overlap
+  and fly apart).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.neighbors.placement import place
+from porescale.dem.bodies.frames import Frame, framed, from_ends
+from porescale.dem.contact.linear import Linear
+from porescale.dem.contact.materials import Materials
+from porescale.dem.discs import Discs, make_discs
+from porescale.dem.forces.bonds import BondList
+from porescale.dem.forces.walls import Box
+from porescale.dem.grains import Grains
+from porescale.dem.motion.control import Moved, Pushed
+from porescale.dem.motion.drivers import Clump
+from porescale.demseg.deck import MOVED, Body, Control, Deck, Random
+
+Array = NDArray[np.float64]
+ROD = 0.1
+
+
+@dataclass(frozen=True)
+class Options:
+    """What the program asked at run time, or never said: see module.  rule : of contacts with segments, segments.py."""
+
+    seed: int = 0
+    release: str = "overlap"
+    rule: str = "outline"
+    rod: float | None = None
+
+
+@dataclass
+class Built:
+    """The grains of a deck and where its bodies are among them.
+
+    names : of each body, as grains name it;  first (b + 1,): rows of each body's points, discs or corners, among the
+    discs;  heading (b,) rad: angle that a body had at the start, of its first disc or segment.
+    """
+
+    grains: Grains
+    names: list[int | Clump]
+    first: NDArray[np.int64]
+    heading: Array
+    frames: list[Frame]
+
+
+def with_bodies(deck: Deck, seed: int) -> Deck:
+    """The deck with the discs that mode 0 makes, in place of what it says of them."""
+    return deck if deck.random is None else replace(deck, bodies=random_discs(deck, deck.random, seed), random=None)
+
+
+def random_discs(deck: Deck, random: Random, seed: int) -> tuple[Body, ...]:
+    """Discs of mode 0, see module.  Raises InputError where they do not fit."""
+    x1, x2, y1, y2 = deck.domain
+    small, large = random.smallest, random.largest
+    mean = math.pi * (small**2 + small * large + large**2) / 3.0
+    count = round((x2 - x1) * (y2 - y1) / (1.0 + random.void_ratio) / mean)
+    if count < 1:
+        raise InputError(Fault("void ratio", random.void_ratio, "leaves no room for a disc", file="in_gm.dat"))
+    rng = np.random.default_rng(seed)
+    radius = small + (large - small) * (np.arange(count) + 0.5) / count
+    rng.shuffle(radius)
+    try:
+        where = place((x1, y1), (x2, y2), radii=radius, seed=seed).position
+    except InputError as error:
+        raise error.in_file("in_gm.dat (mode 0)") from None
+    rows = zip(radius.tolist(), where.tolist(), strict=True)
+    return tuple(Body(random.material, (0.0, 0.0, 0.0), discs=((r, x, y, 0.0),)) for r, (x, y) in rows)
+
+
+def laws(deck: Deck, release: str) -> Linear | Materials:
+    """The law of the deck's materials."""
+    own = {
+        str(k + 1): Linear(s.kn, s.cn, s.ks, s.cs, math.tan(math.radians(s.angle)), release)
+        for k, s in enumerate(deck.stuff)
+    }
+    return Materials(own) if len(own) > 1 else own["1"]
+
+
+def build(deck: Deck, options: Options) -> Built:
+    """The grains of a deck with bodies, without bonds; the energy book is kept.  Raises InputError as parts do."""
+    round_ones = [body for body in deck.bodies if body.discs]
+    rows = np.array([disc for body in round_ones for disc in body.discs]).reshape(-1, 4)
+    sizes = [len(body.discs) for body in round_ones]
+    each = np.repeat(np.arange(len(round_ones)), sizes)
+    material = np.array([body.material - 1 for body in round_ones], np.int64)[each]
+    density = np.array([stuff.density for stuff in deck.stuff])
+    speed = np.array([body.velocity for body in round_ones]).reshape(-1, 3)[each]
+    discs = make_discs(rows[:, 1:3], rows[:, 0], density[material], speed[:, :2], speed[:, 2], rows[:, 3])
+    starts = np.concatenate(([0], np.cumsum(sizes))).astype(np.int64)
+    bound = [np.arange(starts[k], starts[k + 1]) for k, size in enumerate(sizes) if size > 1]
+    solid = [body for body in round_ones if len(body.discs) > 1]
+    heavy = [deck.stuff[body.material - 1].density for body in solid]
+    frames = [_frame(deck, k, options) for k, body in enumerate(deck.bodies) if body.segments]
+    grains = _grains(deck, discs, material, bound, heavy, frames, options)
+    if solid:
+        table = grains.steering.clumps
+        for k, body in enumerate(solid):
+            table.velocity[k], table.spin[k] = body.velocity[:2], body.velocity[2]
+        table.place(grains.discs)
+    numbers = iter(range(len(solid) + len(frames)))
+    names: list[int | Clump] = [
+        int(starts[k]) if body.discs and len(body.discs) == 1 else Clump(next(numbers))
+        for k, body in enumerate(deck.bodies)
+    ]
+    ends = np.cumsum([len(frame.corners) for frame in frames]).astype(np.int64) + starts[-1]
+    heading = np.array([_heading(body) for body in deck.bodies])
+    built = Built(grains, names, np.concatenate((starts, ends)), heading, frames)
+    _steer(deck, built)
+    return built
+
+
+def _grains(
+    deck: Deck,
+    discs: Discs,
+    material: NDArray[np.int64],
+    bound: list[NDArray[np.int64]],
+    heavy: list[float],
+    frames: list[Frame],
+    options: Options,
+) -> Grains:
+    x1, x2, y1, y2 = deck.domain
+    law, box = laws(deck, options.release), Box((x1, y1), (x2, y2))
+    if frames:
+        return framed(
+            discs if discs.count else None, frames, law, box, clumps=bound, clump_density=heavy, rule=options.rule,
+            material=material, energy=True,
+        )  # fmt: skip
+    grains = Grains(discs, law, box, material=material, energy=True)
+    if bound:
+        grains.steering.bind(bound, heavy)
+    return grains
+
+
+def _frame(deck: Deck, number: int, options: Options) -> Frame:
+    body = deck.bodies[number]
+    width = options.rod if options.rod is not None else 2.0 * deck.thick or ROD
+    try:
+        return from_ends(
+            np.array(body.segments).reshape(-1, 2, 2), deck.thick, deck.stuff[body.material - 1].density, width=width,
+            velocity=body.velocity[:2], spin=body.velocity[2], long=body.long, material=body.material - 1,
+        )  # fmt: skip
+    except InputError as error:
+        raise error.in_file(f"in_gm.dat, body {number + 1}") from None
+
+
+def _heading(body: Body) -> float:
+    """Angle of the first disc as given, or the direction of the first segment, rad."""
+    if body.discs:
+        return body.discs[0][3] if len(body.discs) > 1 else 0.0
+    x1, y1, x2, y2 = body.segments[0]
+    return math.atan2(y2 - y1, x2 - x1)
+
+
+def _steer(deck: Deck, built: Built) -> None:
+    """Controls and records of the deck."""
+    if not deck.controls and not deck.recorded:
+        return
+    steering = built.grains.steering
+    for control in deck.controls:
+        told = _told(control, deck.nstep * deck.dt)
+        steering.control(built.names[control.body - 1], *told)
+    steering.watch(*(built.names[body - 1] for body in deck.recorded))
+
+
+def _told(control: Control, seconds: float) -> list[Moved | Pushed | None]:
+    """What each component is told; not pushed at all is free."""
+    return [
+        Moved(value / seconds) if kind == MOVED else Pushed(value) if value else None
+        for kind, value in zip(control.kinds, control.values, strict=True)
+    ]
+
+
+def posture(built: Built, body: int) -> tuple[float, float, float]:
+    """Place (x, y) and angle of a body (from 0) now."""
+    name, grains = built.names[body], built.grains
+    if isinstance(name, Clump):
+        c = grains.steering.clumps
+        x, y, angle = c.position[name.number, 0], c.position[name.number, 1], c.angle[name.number]
+    else:
+        x, y, angle = grains.discs.position[name, 0], grains.discs.position[name, 1], grains.discs.angle[name]
+    return float(x), float(y), float(angle + built.heading[body])
+
+
+def bodies_now(deck: Deck, built: Built) -> tuple[Body, ...]:
+    """The deck's bodies where they are and as they move now."""
+    d, found, numbers = built.grains.discs, [], iter(built.frames)
+    for k, body in enumerate(deck.bodies):
+        name, rows = built.names[k], range(int(built.first[k]), int(built.first[k + 1]))
+        if isinstance(name, Clump):
+            c = built.grains.steering.clumps
+            moving = (*c.velocity[name.number].tolist(), float(c.spin[name.number]))
+        else:
+            moving = (*d.velocity[name].tolist(), float(d.spin[name]))
+        if body.discs:
+            own = tuple((float(d.radius[i]), *d.position[i].tolist(), float(d.angle[i])) for i in rows)
+            found.append(replace(body, velocity=moving, discs=own))
+        else:
+            at = d.position[rows[0] : rows[-1] + 1].tolist()
+            lines = tuple((*at[a], *at[b]) for a, b in next(numbers).ends)
+            found.append(replace(body, velocity=moving, segments=lines))
+    return tuple(found)
+
+
+def bonded(built: Built, rows: list[tuple[int, int, int, float]]) -> None:
+    """Bond the grains: rows of (point, point or segment, 1 where it is a segment, back tension)."""
+    ends = np.array([row[:3] for row in rows], np.int64).reshape(-1, 3)
+    built.grains.bonds = BondList(ends, np.array([row[3] for row in rows], float))

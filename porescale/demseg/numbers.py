@@ -1,0 +1,129 @@
+"""Numbers as Fortran's list-directed input takes them: 5.0d-5, 3*0.0, commas, comments, records that run over lines.
+
+A record begins on a new line, goes on over as many lines as it needs, and ends with its line.  What follows its last
+value there must be a comment: any words, or what comes after ! or #.  Lines without a value are passed over.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from porescale.common.core.errors import Fault, InputError
+
+REAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([edEDqQ][+-]?\d+)?")
+WHOLE = re.compile(r"[+-]?\d+")
+REPEATED = re.compile(r"(\d+)\*(.+)")
+LONGEST_WHOLE = 18
+"""Digits of a whole number: all fit into 64 bits."""
+MOST_REPEATS = 100_000
+Field = tuple[str, type]
+
+
+class Reader:
+    """The records of one file, from its first on.
+
+    Raises InputError, naming file, line, field and what was expected, at the first value that is missing, is no number,
+    or is one too many; values that make no sense are collected by ``must``, see ``done``.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.line = 0  # of the last record, counted from 1
+        self.faults: list[Fault] = []
+        self._lines_of: dict[str, int] = {}  # of the values of the last record
+        try:
+            self._lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+        except OSError as error:
+            raise InputError(Fault(str(path), problem=f"cannot be read ({error.strerror})")) from None
+
+    def record(self, *fields: Field) -> list[float]:
+        """The values of the next record, one a field; whole ones where the field's type is int."""
+        values: list[float] = []
+        self._lines_of = {}
+        words: list[str] = []
+        while len(values) < len(fields):
+            words = self._next_words(fields[len(values)][0])
+            while words and len(values) < len(fields):
+                name, kind = fields[len(values)]
+                values += self._values(words.pop(0), name, kind)
+                self._lines_of.setdefault(name, self.line)
+        if len(values) > len(fields) or (words and _number(words[0])):
+            more = words[0] if len(values) == len(fields) else f"{values[-1]:g}"
+            raise self._broken(
+                f"after {fields[-1][0]}", more, "one value too many", "the end of the line, or a comment"
+            )
+        return values
+
+    def must(self, fine: bool, name: str, value: float, expected: str) -> None:
+        """Note a fault of the field ``name`` of the last record unless it is ``fine``."""
+        if not fine:
+            shown = int(value) if float(value).is_integer() else value
+            self.faults.append(self._fault(name, shown, "makes no sense", expected))
+
+    def more(self) -> bool:
+        """Whether another record follows."""
+        return any(_words(self._lines[k]) for k in range(self.line, len(self._lines)))
+
+    def done(self) -> None:
+        """Raise InputError if ``must`` noted faults, or if records are left over."""
+        if self.faults:
+            raise InputError(self.faults)
+        for k in range(self.line, len(self._lines)):
+            words = _words(self._lines[k])
+            if words and _number(words[0]):
+                self.line = k + 1
+                raise self._broken("after the last record", words[0], "one value too many", "the end of the file")
+
+    def _next_words(self, name: str) -> list[str]:
+        while self.line < len(self._lines):
+            self.line += 1
+            if words := _words(self._lines[self.line - 1]):
+                return words
+        raise self._broken(name, None, "the file ends here", "a number")
+
+    def _values(self, word: str, name: str, kind: type) -> list[float]:
+        again = REPEATED.fullmatch(word)
+        times, text = (int(again[1]), again[2]) if again else (1, word)
+        if times > MOST_REPEATS:
+            raise self._broken(name, word, "too many repeats", f"at most {MOST_REPEATS}")
+        if kind is int:
+            if not WHOLE.fullmatch(text):
+                raise self._broken(name, word, "is no whole number", "a whole number")
+            if len(text) > LONGEST_WHOLE:
+                raise self._broken(name, word, "is too large", f"at most {LONGEST_WHOLE} digits")
+            return [int(text)] * times
+        if not REAL.fullmatch(text):
+            raise self._broken(name, word, "is no number", "a number such as 5.0d-5")
+        value = float(re.sub("[dDqQ]", "e", text))
+        if not math.isfinite(value):
+            raise self._broken(name, word, "is too large", "a number below 1.8d308")
+        return [value] * times
+
+    def _broken(self, name: str, value: str | None, problem: str, expected: str) -> InputError:
+        return InputError([*self.faults, self._fault(name, value, problem, expected)])
+
+    def _fault(self, name: str, value: object, problem: str, expected: str) -> Fault:
+        line = self._lines_of.get(name, max(self.line, 1))
+        return Fault(f"line {line}, {name}", value, f"{problem}, expected {expected}", file=str(self.path))
+
+
+def _words(line: str) -> list[str]:
+    return re.split(r"[!#]", line, maxsplit=1)[0].replace(",", " ").split()
+
+
+def _number(word: str) -> bool:
+    again = REPEATED.fullmatch(word)
+    return REAL.fullmatch(again[2] if again else word) is not None
+
+
+def real(value: float) -> str:
+    """A number that reads back to the same bits, here and in Fortran."""
+    return repr(float(value)).replace("e", "d")
+
+
+def table(rows: Sequence[Sequence[float | int]]) -> str:
+    """Lines of numbers: whole ones as such, others as ``real``."""
+    return "".join(" ".join(str(v) if isinstance(v, int) else real(v) for v in row) + "\n" for row in rows)

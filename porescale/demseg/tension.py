@@ -1,0 +1,75 @@
+"""in_cf0.dat: back tensions, by which a run with jclid 3 is bonded (tutorial II-3), read and written.
+
+For each point that has some, a line with its number and how many, then as many lines with the number of the other and
+the tension, the force of the contact with its sign turned.  Points are the discs, in the order of in_gm.dat, then the
+ends of segments, those that coincide once; a number beyond the points is a segment.  Each bond stands there twice.
+With discs only that is the layout that the tutorial prints; it prints none for segments.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from porescale.dem.forces.bonds import bond
+from porescale.demseg.build import Built
+from porescale.demseg.deck import MOST_BODIES
+from porescale.demseg.numbers import Reader, real
+
+Row = tuple[int, int, int, float]
+
+
+def tensions(built: Built) -> list[Row]:
+    """Bonds that hold, or else what would cancel all contacts there are: (point, other, 1 if a segment, tension > 0).
+
+    The grains are left as they are.
+    """
+    grains, own = built.grains, built.grains.bonds
+    if own is None:
+        bond(grains)
+        listed, grains.bonds = grains.bonds, None
+    else:
+        listed = own
+    assert listed is not None
+    whole = np.flatnonzero(listed.whole)
+    return [(*listed.ends[k].tolist(), float(listed.back[k])) for k in whole]
+
+
+def tension_text(built: Built) -> str:
+    """in_cf0.dat of what bonds there are, or would be."""
+    points = built.grains.discs.count
+    lists: dict[int, list[tuple[int, float]]] = {}
+    for point, other, sided, back in tensions(built):
+        one, two = point + 1, other + 1 + points * sided
+        lists.setdefault(one, []).append((two, -back))
+        lists.setdefault(two, []).append((one, -back))
+    lines = []
+    for one in sorted(lists):
+        lines.append(f"{one} {len(lists[one])}")
+        lines += [f"{two} {real(value)}" for two, value in sorted(lists[one])]
+    return "\n".join(lines) + "\n" * bool(lines)
+
+
+def read_tensions(path: Path, built: Built) -> list[Row]:
+    """The bonds of a file; InputError naming line, field and what was expected."""
+    points = built.grains.discs.count
+    segments = 0 if built.grains.segments is None else len(built.grains.segments.ends)
+    known, file = points + segments, Reader(path)
+    found: dict[tuple[int, int], float] = {}
+    while file.more():
+        one, count = file.record(("number", int), ("count", int))
+        file.must(1 <= one <= known, "number", one, f"1 to {known}")
+        file.must(0 <= count <= MOST_BODIES, "count", count, "0 or more")
+        for _ in range(int(count)):
+            two, value = file.record(("other", int), ("tension", float))
+            pair = (int(min(one, two)), int(max(one, two)))
+            file.must(1 <= two <= known and one != two, "other", two, f"1 to {known}, not {one:g} itself")
+            file.must(pair[0] <= points, "other", two, f"1 to {points}: segments are bonded to points")
+            file.must(found.setdefault(pair, value) == value, "tension", value, f"{found[pair]:g}, as before")
+    file.done()
+    rows = []
+    for (one, two), value in sorted(found.items()):
+        sided = int(two > points)
+        rows.append((one - 1, two - 1 - points * sided, sided, -value))
+    return rows

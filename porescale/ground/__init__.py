@@ -1,1 +1,0 @@
-"""What every floor stands on: compiled-kernel flags, faults, units, constants. No physics."""

@@ -1,0 +1,80 @@
+"""Cases that are scripts: what they measured against expected.toml, on the screen, and a picture of it.
+
+A row of expected.toml holds name, value, tolerance, unit and because; the script gives a number for every name.
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import tomllib
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from PIL import Image
+
+from porescale.common.core.atomic import save
+
+COLOURS = 128
+
+
+def expected(folder: Path) -> list[dict[str, Any]]:
+    """The rows of ``folder``/expected.toml."""
+    rows: list[dict[str, Any]] = tomllib.loads((folder / "expected.toml").read_text(encoding="utf-8"))["expected"]
+    return rows
+
+
+def missed(folder: Path, numbers: Mapping[str, float]) -> list[str]:
+    """Names of the rows of ``folder``/expected.toml that ``numbers`` lie outside of; a number that is none is outside.
+
+    Raises KeyError at a row without a number.
+    """
+    return [row["name"] for row in expected(folder) if not abs(numbers[row["name"]] - row["value"]) <= row["tolerance"]]
+
+
+def options(description: str, folder: Path, **more: tuple[type, Any, str]) -> argparse.Namespace:
+    """The options of a script in ``folder``: --out, and those in ``more``, (type, default, help); bool is a flag."""
+    parser = argparse.ArgumentParser(description=description.partition("\n")[0])
+    default = Path("runs") / folder.name
+    parser.add_argument("--out", type=Path, default=default, help=f"folder of the picture (default: {default})")
+    for name, (kind, value, text) in more.items():
+        if kind is bool:
+            parser.add_argument(f"--{name}", action="store_true", help=text)
+        else:
+            parser.add_argument(f"--{name}", type=kind, default=value, help=f"{text} (default: {value})")
+    return parser.parse_args()
+
+
+def stage(columns: int, width: float = 9.0, height: float = 3.4) -> tuple[Figure, list[Axes]]:
+    """A figure of ``columns`` axes side by side, ``width`` by ``height`` inches."""
+    figure = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure, list(figure.subplots(1, columns, squeeze=False)[0])
+
+
+def draw(figure: Figure, picture: Path) -> None:
+    """Write ``figure`` as a PNG of 128 colours, a third of the bytes: cases lie in the repository with them."""
+    drawn = io.BytesIO()
+    figure.savefig(drawn, format="png", dpi=100)
+    few = Image.open(drawn).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
+    save(picture, lambda path: few.save(path, format="png", optimize=True))
+
+
+def conclude(
+    folder: Path, numbers: Mapping[str, float], figure: Figure, out: Path, say: Callable[[str], object] = print
+) -> int:
+    """Say every row with what was measured, write ``out``/picture.png; the exit code: 1 if a row is missed."""
+    off = missed(folder, numbers)
+    for row in expected(folder):
+        word = "MISSED" if row["name"] in off else "ok"
+        number = f"{numbers[row['name']]:.5g}, expected {row['value']:g} ± {row['tolerance']:g} {row['unit']}"
+        say(f"{word:6}  {row['name']}: {number.rstrip()}")
+    out.mkdir(parents=True, exist_ok=True)
+    picture = out / "picture.png"
+    draw(figure, picture)
+    say(f"picture: {picture}")
+    return 1 if off else 0

@@ -1,0 +1,59 @@
+"""Profiles along the lines of a scene at every snapshot of its run: lines.csv."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from porescale.common.core.atomic import write_bytes
+from porescale.output.sample import Sampler, along
+
+if TYPE_CHECKING:
+    from porescale.common.record.open_run import Run
+
+COLUMNS = (
+    "time (s)", "line ()", "distance (m)", "x (m)", "y (m)", "velocity x (m/s)", "velocity y (m/s)", "pressure (Pa)",
+    "solid fraction ()",
+)  # fmt: skip
+LAMBDA = "hydraulic radius ratio ()"
+
+
+def write_lines(run: Run, folder: Path) -> list[Path]:
+    """Write lines.csv, a row a point: of every line in its turn, of every snapshot; [] if the scene has no line.
+
+    Lines are numbered from 0 in the scene's order.  Velocity is interpolated, that of the solid in it; pressure over
+    the fluid share of cells: nan inside of grains.
+    """
+    scene: dict[str, Any] = run.card["scene"]
+    lines = scene.get("line") or []
+    if not lines:
+        return []
+    grid = run.snapshot(0).grids["fields"]
+    ny, nx = grid.shape
+    periodic = scene["domain"]["left"]["kind"] == "periodic", scene["domain"]["bottom"]["kind"] == "periodic"
+    ratio = (scene.get("grains") or {}).get("hydraulic_radius_ratio")
+    samplers = [
+        Sampler(along(line["start"], line["end"], line["points"]), (nx, ny), grid.spacing[0], periodic)
+        for line in lines
+    ]
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow([*COLUMNS, LAMBDA] if ratio else COLUMNS)
+    for snapshot in run.snapshots():
+        cells = snapshot.grids["fields"].cells
+        solid = cells.get("solid_fraction", np.zeros((ny, nx)))
+        for number, at in enumerate(samplers):
+            x, y = at.points.T
+            columns = (
+                np.hypot(x - x[0], y - y[0]), x, y, at.of(cells["velocity"][..., 0]), at.of(cells["velocity"][..., 1]),
+                at.in_fluid(cells["pressure"], solid), at.of(solid),
+            )  # fmt: skip
+            for row in np.stack(columns, axis=1).tolist():
+                table.writerow([repr(float(snapshot.time)), number, *map(repr, row), *([repr(ratio)] if ratio else [])])
+    path = folder / "lines.csv"
+    write_bytes(path, text.getvalue().encode())
+    return [path]

@@ -1,0 +1,37 @@
+"""The pile's surface over time, from the snapshots of a run: profile.csv."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from porescale.build.observe import surface
+from porescale.common.core.atomic import write_bytes
+
+if TYPE_CHECKING:
+    from porescale.common.record.open_run import Run
+
+BIN_WIDTH = 2.0
+"""Width of a bin in mean diameters: narrower ones show single grains, not a surface."""
+
+
+def write_surface(run: Run, folder: Path) -> Path:
+    """Write profile.csv: a row per snapshot, a column per bin with the height of the surface there, m."""
+    width = run.card["scene"]["domain"]["width"]
+    first = run.snapshot(0, cells=()).clouds["grains"]
+    diameter = 2 * float(np.mean(first.data["radius"]))
+    count = max(1, round(width / (BIN_WIDTH * diameter)))
+    edges = np.linspace(0.0, width, count + 1)
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(["time (s)", *(f"height at x = {x:.5g} m (m)" for x in 0.5 * (edges[1:] + edges[:-1]))])
+    for k, time in enumerate(run.times):
+        cloud = run.snapshot(k, cells=()).clouds["grains"]
+        table.writerow([repr(float(time)), *map(repr, surface(cloud.position, cloud.data["radius"], edges).tolist())])
+    path = folder / "profile.csv"
+    write_bytes(path, text.getvalue().encode())
+    return path

@@ -1,0 +1,1 @@
+"""Displacements from pictures: window correlation, spline fit, outliers."""

@@ -1,0 +1,1 @@
+"""Measured fields: files, comparison, vortices, surfaces, pictures."""

@@ -1,0 +1,178 @@
+"""A measured field as people keep it: in pixels with y down, or in metres and metres a second with y up."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.core.atomic import write_text
+from porescale.common.core.errors import Fault, InputError
+from porescale.piv.estimate.measure import Vectors
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+COLUMNS = ("x", "y", "u", "v", "valid", "replaced", "solid", "correlation", "uncertainty")
+OPENPIV = ("x", "y", "u", "v", "flags", "mask")
+"""Columns of OpenPIV's text files; flags: 0 valid, 1 not;  mask: 1 in a solid."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """Vectors on a grid, rows from the top of the picture down.
+
+    x (nx,), y (ny,) : px or m;  u, v (ny, nx) : px a frame or m/s, nan in solids, finite elsewhere;  valid, replaced,
+    solid (ny, nx) : flags;  correlation, uncertainty (ny, nx) : the latter as u, infinite where replaced;  upwards :
+    whether y points up, as it does in metres.
+    """
+
+    x: Array
+    y: Array
+    u: Array
+    v: Array
+    valid: Flags
+    replaced: Flags
+    solid: Flags
+    correlation: Array
+    uncertainty: Array
+    upwards: bool = False
+
+    def vorticity(self) -> Array:
+        """dv/dx - du/dy with y up, so that a vortex turning against the clock counts as positive; nan at solids."""
+        across = np.gradient(self.v, self.x, axis=1) if len(self.x) > 1 else np.zeros_like(self.v)
+        down = np.gradient(self.u, self.y, axis=0) if len(self.y) > 1 else np.zeros_like(self.u)
+        turning = across - down
+        return turning if self.upwards else -turning
+
+
+def in_pixels(vectors: Vectors, corner: tuple[int, int] = (0, 0)) -> Field:
+    """Vectors as they were measured.  corner : column and row of the region's first pixel in the whole picture."""
+    return Field(
+        vectors.x + corner[0],
+        vectors.y + corner[1],
+        np.where(vectors.solid, np.nan, vectors.u),
+        np.where(vectors.solid, np.nan, vectors.v),
+        vectors.valid,
+        vectors.replaced,
+        vectors.solid,
+        vectors.correlation,
+        np.where(vectors.solid, np.nan, vectors.uncertainty),
+    )
+
+
+def in_metres(field: Field, rows: int, scale: float, interval: float) -> Field:
+    """A field in pixels as metres and m/s, y up from the picture's lower edge.
+
+    rows : of the whole picture;  scale : m a pixel;  interval : s between the pictures of a pair.
+    """
+    speed = scale / interval
+    return Field(
+        (field.x + 0.5) * scale,
+        (rows - 0.5 - field.y) * scale,
+        field.u * speed,
+        -field.v * speed,
+        field.valid,
+        field.replaced,
+        field.solid,
+        field.correlation,
+        field.uncertainty * speed,
+        upwards=True,
+    )
+
+
+def write_csv(field: Field, path: Path) -> None:
+    """Every grid point, a row each, with the columns of COLUMNS; flags 0 or 1."""
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(COLUMNS)
+    x, y = np.meshgrid(field.x, field.y)
+    numbers = (
+        (x, y, field.u, field.v),
+        (field.valid, field.replaced, field.solid),
+        (field.correlation, field.uncertainty),
+    )
+    lists = [
+        [f"{value:.10g}" for value in it.ravel().tolist()] if k != 1 else it.ravel().astype(int).tolist()
+        for k, group in enumerate(numbers)
+        for it in group
+    ]
+    rows.writerows(zip(*lists, strict=True))
+    write_text(path, text.getvalue())
+
+
+def write_openpiv(field: Field, path: Path) -> None:
+    """OpenPIV's text format: tab-separated x, y, u, v, flags, mask, y and v upwards; zeros in solids.
+
+    Pixels are turned as OpenPIV does (openpiv.tools.transform_coordinates): the rows' y in reverse order.
+    """
+    field = field if field.upwards else _turned(field)
+    x, y = np.meshgrid(field.x, field.y)
+    flags = (~field.valid & ~field.solid).astype(float)
+    u, v = (np.where(field.solid, 0.0, it) for it in (field.u, field.v))
+    table = np.column_stack([it.ravel() for it in (x, y, u, v, flags, field.solid.astype(float))])
+    text = io.StringIO()
+    np.savetxt(text, table, fmt="%.8e", delimiter="\t", header="\t".join(OPENPIV))
+    write_text(path, text.getvalue())
+
+
+def _turned(field: Field) -> Field:
+    """The same field with y counted the other way on the same grid; done twice it is as it was."""
+    return replace(field, y=field.y[::-1].copy(), v=-field.v, upwards=not field.upwards)
+
+
+def read(path: Path) -> Field:
+    """A field from our CSV or OpenPIV's text, told apart by their first line.
+
+    y points up where it falls from row to row.  OpenPIV's fields whose points are a unit and more apart are taken for
+    pixels, and turned.  InputError for files that are neither, or whose points are no grid.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        problem = getattr(error, "strerror", None) or "is no text"
+        raise InputError(Fault("field", str(path), f"cannot be read ({problem})")) from error
+    lines = text.splitlines()
+    first = lines[0].strip() if lines else ""
+    try:
+        if all(line.startswith("#") or not line.strip() for line in lines):
+            raise ValueError("empty")
+        if first.startswith("x,"):
+            names = first.split(",")
+            table = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:] if line.strip()])
+        else:
+            table = np.loadtxt(io.StringIO(text), comments="#", ndmin=2)
+            names = list(OPENPIV[: table.shape[1]])
+        if table.ndim != 2 or table.shape[1] != len(names) or table.shape[1] < 4 or len(table) < 2:
+            raise ValueError("not a table of x, y, u, v and more")
+        found = _gridded(dict(zip(names, table.T, strict=True)))
+        pixels = found.upwards and names[4:] == list(OPENPIV[4 : len(names)]) and found.x[1] - found.x[0] >= 1
+        return _turned(found) if pixels else found
+    except (ValueError, KeyError) as error:
+        reason = " ".join(str(error).split())[:80]
+        repair = "give a file of piv measure --csv, or OpenPIV's text"
+        raise InputError(Fault("field", str(path), f"is no field ({reason})", repair=repair)) from error
+
+
+def _gridded(columns: dict[str, Array]) -> Field:
+    """A field from columns; ValueError where the points are no grid."""
+    across = int(np.argmax(columns["y"] != columns["y"][0])) or len(columns["y"])
+    if len(columns["x"]) % across:
+        raise ValueError("rows of different length")
+    grid = {name: it.reshape(-1, across) for name, it in columns.items()}
+    x, y = grid["x"][0], grid["y"][:, 0]
+    near = 1e-6 * max(1e-300, float(np.abs(columns["x"]).max()))
+    if not (np.allclose(grid["x"], x, atol=near, rtol=0) and np.allclose(grid["y"].T, y, atol=near, rtol=0)):
+        raise ValueError("points on no grid")
+    solid = grid.get("solid", grid.get("mask", np.zeros_like(grid["u"]))) > 0.5
+    valid = grid["valid"] > 0.5 if "valid" in grid else (grid.get("flags", np.zeros_like(grid["u"])) < 0.5) & ~solid
+    replaced = grid["replaced"] > 0.5 if "replaced" in grid else ~valid & ~solid
+    known = np.full(grid["u"].shape, np.nan)
+    up = len(y) > 1 and bool(y[1] < y[0])
+    u, v = (np.where(solid, np.nan, grid[name]) for name in ("u", "v"))
+    rest = (grid.get("correlation", known), grid.get("uncertainty", known))
+    return Field(x, y, u, v, valid, replaced, solid, *rest, upwards=up)

@@ -1,0 +1,87 @@
+"""The velocity of a run's snapshot as a field, to hold measured ones against."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.record import snapshots
+from porescale.common.record.model import Grid, Snapshot
+from porescale.common.record.open_run import open_run
+from porescale.piv.fields.field import Field
+from porescale.piv.fields.surface import Surface, of_grains
+from porescale.piv.images.moving import grains_of
+
+Array = NDArray[np.float64]
+
+MEASURED = "piv"
+"""Name of the grid that a measured film keeps its fields in."""
+SOLID = 0.5
+"""Solid fraction from which a cell is taken for solid."""
+
+
+def field_of_run(folder: Path, time: float | None = None) -> Field:
+    """The fluid's velocity in a run folder, or a field of a measured film, nearest to ``time`` s (None: the last).
+
+    InputError where the folder holds neither.
+    """
+    if (folder / f"{MEASURED}.vtkhdf").exists():
+        found = snapshots.catalogue(folder)
+        steps = list(found)
+        times = np.array([next(iter(found[step].values())).time for step in steps])
+        step = steps[-1 if time is None else int(np.abs(times - time).argmin())]
+        snapshot = snapshots.load(found[step], step)
+    else:
+        run = open_run(folder)
+        if not len(run):
+            raise InputError(Fault("run folder", str(folder), "holds no snapshot yet"))
+        snapshot = run.snapshot(-1) if time is None else run.nearest(time)
+    return _field(_grid(snapshot, folder))
+
+
+def surface_of_run(folder: Path, x: Array, time: float | None = None) -> Surface | None:
+    """The pile's surface at columns x, m, from the grains of a run; None for a folder without (a film's, say)."""
+    if (folder / f"{MEASURED}.vtkhdf").exists():
+        return None
+    run = open_run(folder)
+    snapshot = run.snapshot(-1) if time is None else run.nearest(time)
+    grains = grains_of(snapshot)
+    return of_grains(grains, x) if len(grains.x) else None
+
+
+def fields_of_film(folder: Path) -> Iterator[Field]:
+    """The fields of a measured film, in time, one in memory at a time."""
+    for step, frames in snapshots.catalogue(folder).items():
+        yield _field(_grid(snapshots.load(frames, step), folder))
+
+
+def _grid(snapshot: Snapshot, folder: Path) -> Grid:
+    """The grid that carries a velocity."""
+    for grid in snapshot.grids.values():
+        if "velocity" in grid.cells:
+            return grid
+    raise InputError(Fault("run folder", str(folder), "has no velocity of a fluid"))
+
+
+def _field(grid: Grid) -> Field:
+    """Cells as vectors, rows from the top down; fields of films without a scale turn back to y down."""
+    ny, nx = grid.shape
+    velocity = grid.cells["velocity"][::-1]
+    cells = {name: it[::-1] for name, it in grid.cells.items()}
+    share = cells.get("solid", cells.get("solid_fraction", np.zeros((ny, nx))))
+    solid = np.asarray(share > SOLID)
+    up = grid.units.get("velocity") != "px"
+    sign = 1.0 if up else -1.0
+    x: Array = grid.origin[0] + (np.arange(nx, dtype=float) + 0.5) * grid.spacing[0]
+    y: Array = sign * (grid.origin[1] + (np.arange(ny, dtype=float) + 0.5) * grid.spacing[1])[::-1]
+    u, v = np.asarray(velocity[..., 0], float), sign * np.asarray(velocity[..., 1], float)
+    valid = np.asarray(cells["valid"] > 0) if "valid" in cells else ~solid
+    none = np.full((ny, nx), np.nan)
+    return Field(
+        x, y, np.where(solid, np.nan, u), np.where(solid, np.nan, v), valid, ~valid & ~solid, solid,
+        cells.get("correlation", none), cells.get("uncertainty", none), upwards=up,
+    )  # fmt: skip

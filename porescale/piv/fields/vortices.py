@@ -1,0 +1,150 @@
+"""Vortices of a field: where, which way, how strong, how large.
+
+Gamma 1 at P is the mean of sin(PM, U_M) over the neighbours M: 1 at the centre of an axisymmetric vortex.  Gamma 2 is
+the same less the neighbours' mean velocity, which it does not see; its size exceeds 2/pi where rotation outweighs
+strain (Graftieaux, Michard & Grosjean 2001, Meas. Sci. Technol. 12, 1422).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.piv.fields.field import Field
+
+Array = NDArray[np.float64]
+
+CORE = 2 / np.pi
+"""|Gamma 2| from which rotation outweighs strain."""
+REACH = 3
+"""Neighbours as far as this many grid steps."""
+CENTRE = 0.8
+"""|Gamma 2| that a core must reach: 1 in the middle of a vortex, 2/pi all over a layer of pure shear."""
+WEAK = 0.02
+"""Share of the strongest circulation below which a vortex is left out."""
+LEAST = 5
+"""Grid points of a core, at least: fewer may be an outlier with its neighbours."""
+
+
+@dataclass(frozen=True)
+class Vortex:
+    """x, y : centre;  circulation : over the core, positive against the clock;  radius : of a disc of the core's area.
+
+    In the field's units: px and px^2 a frame, or m and m^2/s.  gamma : largest |Gamma 1| in the core.
+    """
+
+    x: float
+    y: float
+    circulation: float
+    radius: float
+    gamma: float
+
+    def as_dict(self) -> dict[str, Any]:
+        """JSON-able."""
+        return {**asdict(self), "sign": 1 if self.circulation > 0 else -1}
+
+
+def gammas(field: Field, reach: int = REACH) -> tuple[Array, Array]:
+    """Gamma 1 and Gamma 2 (ny, nx), positive against the clock, over neighbours within ``reach`` steps."""
+    ny, nx = field.u.shape
+    fluid = np.pad((~field.solid).astype(float), reach)
+    u, v = (np.pad(np.where(field.solid, 0.0, it), reach) for it in (field.u, field.v))
+    offsets = [(j, i) for j in range(-reach, reach + 1) for i in range(-reach, reach + 1)]
+    offsets = [(j, i) for j, i in offsets if 0 < j * j + i * i <= reach * reach + 1]
+    step_x = field.x[1] - field.x[0] if nx > 1 else 1.0
+    step_y = field.y[1] - field.y[0] if ny > 1 else 1.0
+    hand = 1.0 if field.upwards else -1.0  # with y down the cross product counts with the clock
+
+    def around(it: Array, j: int, i: int) -> Array:
+        """Values of the neighbours j rows and i columns away, of all points (ny, nx)."""
+        return it[reach + j : reach + j + ny, reach + i : reach + i + nx]
+
+    # Missing neighbours count as still: along a wall all the flow passes on one side, and nothing turns.
+    count = np.maximum(sum(around(fluid, j, i) for j, i in offsets) + (~field.solid).astype(float), 1)
+    mean_u, mean_v = (
+        (sum(around(it, j, i) for j, i in offsets) + np.where(field.solid, 0.0, own)) / count
+        for it, own in ((u, field.u), (v, field.v))
+    )
+    found = []
+    for base_u, base_v in ((0.0, 0.0), (mean_u, mean_v)):
+        total = np.zeros((ny, nx))
+        for j, i in offsets:
+            du, dv = around(u, j, i) - base_u, around(v, j, i) - base_v
+            px, py = i * step_x, j * step_y
+            size = np.hypot(px, py) * np.hypot(du, dv)
+            sine = np.where(size > 0, (px * dv - py * du) / np.where(size > 0, size, 1.0), 0.0)
+            total += sine * around(fluid, j, i)
+        found.append(np.where(field.solid, 0.0, hand * total / len(offsets)))
+    return found[0], found[1]
+
+
+def vortices(field: Field, reach: int = REACH) -> list[Vortex]:
+    """Vortices by falling strength: connected cores of |Gamma 2| > 2/pi, centred where |Gamma 1| is largest in them."""
+    one, two = gammas(field, reach)
+    turning = np.nan_to_num(field.vorticity())
+    area = abs((field.x[1] - field.x[0]) * (field.y[1] - field.y[0])) if min(two.shape) > 1 else 0.0
+    found = []
+    for sign in (1, -1):
+        core = (sign * two > CORE) & ~field.solid
+        number, labels = cv2.connectedComponents(core.astype(np.uint8), connectivity=4)
+        for label in range(1, number):
+            inside = np.asarray(labels == label)
+            if inside.sum() < LEAST or (sign * two)[inside].max() < CENTRE:
+                continue
+            x, y = _centre(field, np.where(inside, sign * one, 0.0))
+            strength = float(turning[inside].sum()) * area
+            if strength * sign > 0:
+                size = float(np.sqrt(inside.sum() * area / np.pi))
+                found.append(Vortex(x, y, strength, size, float((sign * one)[inside].max())))
+    found.sort(key=lambda it: -abs(it.circulation))
+    return [it for it in found if abs(it.circulation) >= WEAK * abs(found[0].circulation)]
+
+
+def _centre(field: Field, height: Array) -> tuple[float, float]:
+    """Where ``height`` peaks: its centroid over the points within a step of the largest, less the lowest of them."""
+    row, column = np.unravel_index(int(np.argmax(height)), height.shape)
+    rows = slice(max(0, int(row) - 1), int(row) + 2)
+    columns = slice(max(0, int(column) - 1), int(column) + 2)
+    part = height[rows, columns]
+    weight = part - part.min() + 1e-12
+    x, y = np.meshgrid(field.x[columns], field.y[rows])
+    return float((weight * x).sum() / weight.sum()), float((weight * y).sum() / weight.sum())
+
+
+ALIKE = 2.0
+"""Factor between circulations up to which two vortices may be one: cores a step wider or narrower, which noise and
+resolution do to them, change what is counted as theirs by less.
+"""
+
+
+def matched(
+    reference: Sequence[Vortex], other: Sequence[Vortex], within: float | None = None, factor: float = ALIKE
+) -> list[tuple[Vortex, Vortex]]:
+    """Pairs of the same sign, near each other and about as strong, best first, no vortex twice.
+
+    within : largest distance of a pair; None: the larger radius of the two;  factor : most between their circulations.
+    The best has the least distance over the bound plus logarithm of the ratio over that of the factor.
+    """
+    candidates = []
+    for i, a in enumerate(reference):
+        for j, b in enumerate(other):
+            if a.circulation * b.circulation <= 0:
+                continue
+            apart = float(np.hypot(a.x - b.x, a.y - b.y)) / (within or max(a.radius, b.radius))
+            ratio = abs(float(np.log(b.circulation / a.circulation))) / float(np.log(factor))
+            if apart <= 1 and ratio <= 1:
+                candidates.append((apart + ratio, i, j))
+    taken_a: set[int] = set()
+    taken_b: set[int] = set()
+    pairs = []
+    for _, i, j in sorted(candidates):
+        if i not in taken_a and j not in taken_b:
+            taken_a.add(i)
+            taken_b.add(j)
+            pairs.append((reference[i], other[j]))
+    return pairs

@@ -1,0 +1,1 @@
+"""Pictures: synthetic pairs, the virtual camera, films, masks."""

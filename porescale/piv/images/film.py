@@ -1,0 +1,198 @@
+"""Pictures from files: single ones, series of them, and films (mp4, avi, whatever PyAV opens), one at a time."""
+
+from __future__ import annotations
+
+import glob
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import av
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.core.errors import Fault, InputError
+
+Picture = NDArray[Any]
+Box = tuple[int, int, int, int]
+
+STILLS = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm", ".webp")
+
+
+def picture(path: Path) -> Picture:
+    """A grey picture (rows, columns), 8 or 16 bits; colour becomes its luminance.  InputError if it cannot be read."""
+    try:
+        content = np.frombuffer(Path(path).read_bytes(), np.uint8)
+    except OSError as error:
+        raise InputError(Fault("picture", str(path), f"cannot be read ({error.strerror})")) from error
+    try:
+        found = cv2.imdecode(content, cv2.IMREAD_UNCHANGED) if content.size else None
+    except cv2.error:
+        found = None
+    if found is None:
+        kinds = ", ".join(STILLS)
+        raise InputError(Fault("picture", str(path), "is no picture that can be read", allowed=kinds))
+    if found.ndim == 3:
+        found = cv2.cvtColor(found, cv2.COLOR_BGRA2GRAY if found.shape[2] == 4 else cv2.COLOR_BGR2GRAY)
+    return np.asarray(found)
+
+
+@dataclass(frozen=True)
+class Film:
+    """Frames of a film or of a series of pictures.
+
+    files : one film, or the pictures in order;  start, end : first frame and the one after the last (None: all);
+    step : frames from one used to the next;  region : left, top, right, bottom px, the last two excluded;  rate :
+    frames a second, None if the files do not say.
+    """
+
+    files: tuple[Path, ...]
+    start: int = 0
+    end: int | None = None
+    step: int = 1
+    region: Box | None = None
+    rate: float | None = None
+
+    @property
+    def moving(self) -> bool:
+        """Whether it is a film rather than pictures."""
+        return len(self.files) == 1
+
+    def __iter__(self) -> Iterator[Picture]:
+        """The chosen frames, grey, cut to the region; InputError where one cannot be read or differs in size."""
+        size = None
+        for number, frame in self._chosen():
+            if size is not None and frame.shape != size:
+                shapes = " and ".join(f"{it[1]} x {it[0]}" for it in (size, frame.shape))
+                raise InputError(Fault("frame", number, f"pictures are not of one size: {shapes}"))
+            size = frame.shape
+            yield frame if self.region is None else _cut(frame, self.region)
+
+    def pairs(self) -> Iterator[tuple[Picture, Picture]]:
+        """Each chosen frame with the next."""
+        last = None
+        for frame in self:
+            if last is not None:
+                yield last, frame
+            last = frame
+
+    def count(self) -> int:
+        """Number of chosen frames; a film that does not say is decoded for it."""
+        if not self.moving:
+            return len(range(len(self.files))[self.start : self.end : self.step])
+        stated = _stated(self.files[0])
+        if stated:
+            return len(range(stated)[self.start : self.end : self.step])
+        return sum(1 for _ in self._chosen())
+
+    def _chosen(self) -> Iterator[tuple[int, Picture]]:
+        """Number and whole frame."""
+        if not self.moving:
+            for number in range(len(self.files))[self.start : self.end : self.step]:
+                yield number, picture(self.files[number])
+            return
+        for number, frame in enumerate(_decoded(self.files[0])):
+            if self.end is not None and number >= self.end:
+                return
+            if number >= self.start and (number - self.start) % self.step == 0:
+                yield number, frame
+
+
+def open_film(names: Sequence[str | Path], **chosen: Any) -> Film:
+    """A film from one film file, a folder, a pattern (img_*.png), or pictures in the order given.
+
+    chosen : start, end, step, region of :class:`Film`.  InputError where there is nothing to read.
+    """
+    bounds = (("start", 0), ("step", 1), ("end", 1))
+    faults = [
+        Fault(f"--{key}", chosen[key], "is out of range", allowed=f">= {least}")
+        for key, least in bounds
+        if chosen.get(key) is not None and chosen[key] < least
+    ]
+    if faults:
+        raise InputError(faults)
+    if len(names) == 1:
+        path = Path(names[0])
+        if path.is_dir():
+            files = sorted(it for it in path.iterdir() if it.suffix.lower() in STILLS)
+        elif not path.exists() and any(letter in str(path) for letter in "*?["):
+            files = [Path(it) for it in sorted(glob.glob(str(path)))]
+        elif path.suffix.lower() in STILLS:
+            raise InputError(Fault("film", str(path), "is a single picture", repair="give two, or a film"))
+        else:
+            return Film((path,), rate=_rate(path), **chosen)
+        if len(files) < 2:
+            raise InputError(Fault("film", str(path), f"{len(files)} pictures there", repair="give two or more"))
+        return Film(tuple(files), **chosen)
+    return Film(tuple(Path(it) for it in names), **chosen)
+
+
+def background(film: Film, kind: str) -> NDArray[np.float32] | None:
+    """What does not move: the mean or the least of every pixel over the film; None for "none"."""
+    if kind == "none":
+        return None
+    total, count = None, 0
+    for frame in film:
+        grey = frame.astype(np.float32)
+        if total is None:
+            total = grey
+        elif kind == "mean":
+            total += grey
+        else:
+            np.minimum(total, grey, out=total)
+        count += 1
+    if total is None:
+        raise InputError(Fault("film", None, "no frames chosen"))
+    return total / np.float32(count) if kind == "mean" else total
+
+
+def _cut(frame: Picture, region: Box) -> Picture:
+    """The region of a frame."""
+    left, top, right, bottom = region
+    rows, columns = frame.shape
+    if not (0 <= left < right <= columns and 0 <= top < bottom <= rows):
+        given = ",".join(map(str, region))
+        raise InputError(Fault("--region", given, "leaves the picture", "px", f"within 0,0,{columns},{rows}"))
+    return frame[top:bottom, left:right]
+
+
+def _unreadable(path: Path, error: Exception) -> InputError:
+    """What is wrong with a film that cannot be opened or decoded."""
+    reason = getattr(error, "strerror", None) or " ".join(str(error).split())[:80]
+    return InputError(Fault("film", str(path), f"cannot be read ({reason})"))
+
+
+def _decoded(path: Path) -> Iterator[Picture]:
+    """Frames of a film, grey."""
+    try:
+        with av.open(str(path), metadata_errors="replace") as container:
+            if not container.streams.video:
+                raise InputError(Fault("film", str(path), "holds no pictures"))
+            for frame in container.decode(video=0):
+                yield frame.to_ndarray(format="gray")
+    except (av.FFmpegError, OSError) as error:
+        raise _unreadable(path, error) from error
+
+
+def _stream(path: Path, name: str) -> Any:
+    """An attribute of a film's first stream."""
+    try:
+        with av.open(str(path), metadata_errors="replace") as container:
+            if not container.streams.video:
+                raise InputError(Fault("film", str(path), "holds no pictures"))
+            return getattr(container.streams.video[0], name)
+    except (av.FFmpegError, OSError) as error:
+        raise _unreadable(path, error) from error
+
+
+def _rate(path: Path) -> float | None:
+    """Frames a second that a film states."""
+    rate = _stream(path, "average_rate")
+    return float(rate) if rate else None
+
+
+def _stated(path: Path) -> int:
+    """Number of frames that a film states; 0 if it does not."""
+    return int(_stream(path, "frames") or 0)

@@ -1,0 +1,90 @@
+"""Where solids are in pictures: bitmaps with solid white, polygons, segmented; one for all frames or one each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import repeat
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.core.errors import Fault, InputError
+from porescale.piv.images.film import Film, Picture, open_film, picture
+
+Mask = NDArray[np.bool_]
+
+GREY = 0.5
+"""Share of white from which a pixel is solid."""
+
+
+def bitmap(image: Picture) -> Mask:
+    """True where a mask picture is white."""
+    return np.asarray(image > GREY * (np.iinfo(image.dtype).max if image.dtype.kind == "u" else 1.0), bool)
+
+
+def polygon(text: str, size: tuple[int, int]) -> Mask:
+    """True within a polygon "x,y x,y x,y …", px, of a picture of ``size`` (rows, columns); InputError if none."""
+    try:
+        corners = np.array([[float(part) for part in corner.split(",")] for corner in text.split()])
+        if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3:
+            raise ValueError
+    except ValueError as error:
+        raise InputError(Fault("--polygon", text, "is no polygon", allowed='"x,y x,y x,y …" in px')) from error
+    drawn = np.zeros(size, np.uint8)
+    cv2.fillPoly(drawn, [np.rint(corners * 16).astype(np.int32)], (1,), cv2.LINE_8, 4)
+    return drawn > 0
+
+
+def segmented(image: Picture, *, bright: bool, least: int = 9) -> Mask:
+    """Large bright (or dark) bodies of a picture: what is left of it, smaller than ``least`` px wiped out, by Otsu's
+    bound.
+
+    Opening by a disc removes tracers (Otsu 1979, IEEE Trans. Syst. Man Cybern. 9, 62).
+    """
+    span = float(image.max()) - float(image.min())
+    grey = np.asarray((image - float(image.min())) * (255 / max(span, 1e-9)), np.uint8)
+    grey = grey if bright else np.asarray(255 - grey, np.uint8)
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (least, least))
+    opened = cv2.morphologyEx(grey, cv2.MORPH_OPEN, disc)
+    _, found = cv2.threshold(opened, 0, 1, cv2.THRESH_BINARY + cv2.THRESH_OTSU)
+    return np.asarray(found > 0, bool)
+
+
+def masks(source: str | None, corners: list[str], film: Film) -> Iterator[Mask | None]:
+    """The mask of every chosen frame of ``film``, in turn.
+
+    source : None, a bitmap, a film or series of bitmaps (one a frame, frames chosen like the film's), "bright" or
+    "dark" to segment each frame;  corners : polygons that are solid in all.
+    """
+    for frame, found in zip(film, _sources(source, film), strict=False):
+        mask = found
+        if source in ("bright", "dark"):
+            mask = segmented(frame, bright=source == "bright")
+        for text in corners:
+            left, top = film.region[:2] if film.region else (0, 0)
+            whole = polygon(text, (frame.shape[0] + top, frame.shape[1] + left))[top:, left:]
+            mask = whole if mask is None else mask | whole
+        yield mask
+
+
+def _sources(source: str | None, film: Film) -> Iterator[Mask | None]:
+    """Masks from files, None where there are none."""
+    if source is None or source in ("bright", "dark"):
+        yield from repeat(None)
+        return
+    path = Path(source)
+    if path.is_file() and path.suffix.lower() not in (".mp4", ".avi", ".mov", ".mkv", ".webm"):
+        still = bitmap(picture(path))
+        if film.region is not None:
+            left, top, right, bottom = film.region
+            still = still[top:bottom, left:right]
+        yield from repeat(still)
+        return
+    several = open_film([source], start=film.start, end=film.end, step=film.step, region=film.region)
+    count = 0
+    for frame in several:
+        count += 1
+        yield bitmap(frame)
+    raise InputError(Fault("--mask", source, f"has {count} masks", repair="give one for every frame"))

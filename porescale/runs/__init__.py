@@ -1,1 +1,0 @@
-"""A model driven through time and the record of it: files, checkpoints, pictures.  No physics."""

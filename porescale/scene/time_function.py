@@ -1,0 +1,165 @@
+"""Numbers that change with time as a scene says: constant, a sine, a table; and what they say of a component."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import pydantic
+
+from porescale.common.core.errors import Fault
+from porescale.common.schema.sections import Quantity, Refused, Section, quantity
+from porescale.dem.motion.control import Control, Moved, Placed, Pushed
+from porescale.dem.motion.time_function import Constant, Schedule, Sine, Table
+
+LARGEST = 1e12
+"""SI, of any number that changes with time: what lies beyond is a slip of the exponent."""
+
+
+class Course(Section):
+    """A number over time: ``3``, ``{ amplitude = 1, frequency = 2, phase = 0, mean = 3 }`` or pairs
+    ``[[time, value], …]``, straight between them and constant before and after.
+    """
+
+    mean: float = 0.0
+    amplitude: float = 0.0
+    frequency: float = quantity("1/s", 0.0, ge=0, le=1e9, help="frequency of the sine")
+    phase: float = quantity("rad", 0.0, ge=-1e3, le=1e3, help="phase of the sine at time 0")
+    times: tuple[float, ...] = quantity("s", (), ge=0, le=1e9, help="times of the table")
+    values: tuple[float, ...] = ()
+
+    @pydantic.model_validator(mode="after")
+    def _one_kind(self) -> Course:
+        if len(self.times) != len(self.values):
+            raise Refused(Fault("values", len(self.values), "are not as many as times", "", str(len(self.times))))
+        if any(not later > earlier for earlier, later in zip(self.times, self.times[1:], strict=False)):
+            raise Refused(Fault("times", None, "must ascend", "s", repair="sort the pairs by time"))
+        if self.times and (self.mean or self.amplitude or self.frequency):
+            raise Refused(Fault("times", None, "a course is a table or a sine", "s", repair="leave one of them out"))
+        if (self.amplitude != 0.0) != (self.frequency != 0.0):
+            key = "frequency" if self.amplitude else "amplitude"
+            raise Refused(Fault(key, 0, "is needed for a sine", repair="give amplitude and frequency"))
+        return self
+
+    @property
+    def schedule(self) -> Schedule:
+        """As the kernels' schedules take it."""
+        if self.times:
+            return Table(self.times, self.values)
+        if self.amplitude:
+            return Sine(self.amplitude, self.frequency, self.phase, self.mean)
+        return Constant(self.mean)
+
+    @property
+    def largest(self) -> float:
+        """The largest magnitude that it reaches."""
+        return max([abs(value) for value in self.values] or [abs(self.mean) + abs(self.amplitude)])
+
+    @property
+    def steepest(self) -> float:
+        """The largest magnitude of its rate of change, 1/s of its unit."""
+        pairs = list(zip(self.times, self.values, strict=True))
+        slopes = [abs((b - a) / (later - time)) for (time, a), (later, b) in itertools.pairwise(pairs)]
+        return max([*slopes, 2.0 * math.pi * self.frequency * abs(self.amplitude)])
+
+
+def course(value: Any, unit: str, help: str) -> Any:
+    """What stands in a scene for a course in ``unit`` as a table of its keys, all values in SI; raises Refused."""
+    if value is None or isinstance(value, Course):
+        return value
+    own = Quantity(unit, ge=-LARGEST, le=LARGEST, help=help)
+    if isinstance(value, Mapping):
+        made = dict(value)
+        for key in ("mean", "amplitude", "values"):
+            if key in made:
+                made[key] = own.convert(made[key], key)
+        return made
+    if isinstance(value, list | tuple):
+        pairs = [list(it) if isinstance(it, list | tuple) else [] for it in value]
+        bad = [k for k, it in enumerate(pairs) if len(it) != 2]
+        if bad or not pairs:
+            repair = f'write [[0, 0], ["1 s", "2 {unit}"]]'
+            raise Refused(Fault(f"[{bad[0]}]" if bad else "", None, "must be pairs of time and value", repair=repair))
+        return {"times": [it[0] for it in pairs], "values": [own.convert(it[1], f"[{k}]")
+                                                               for k, it in enumerate(pairs)]}  # fmt: skip
+    return {"mean": own.convert(value)}
+
+
+def with_courses(table: Any, units: Mapping[str, tuple[str, str]]) -> Any:
+    """``table`` with the courses of a section made ready; units : key -> (unit, what it is).  Raises Refused."""
+    if not isinstance(table, Mapping):
+        return table
+    made, faults = dict(table), []
+    for key, (unit, help) in units.items():
+        try:
+            if key in made:
+                made[key] = course(made[key], unit, help)
+        except Refused as refused:
+            faults += [_below(key, fault) for fault in refused.faults]
+    if faults:
+        raise Refused(*faults)
+    return made
+
+
+def _below(key: str, fault: Fault) -> Fault:
+    from dataclasses import replace
+
+    return replace(fault, key=f"{key}{'' if fault.key.startswith('[') or not fault.key else '.'}{fault.key}")
+
+
+class Component(Section):
+    """How one component of a body moves: "free", or a table with one of its keys.
+
+    velocity : moved so;  displacement : since the start, only its changes matter;  force : pushed so, besides all else.
+    """
+
+    velocity: Course | None = None
+    displacement: Course | None = None
+    force: Course | None = None
+
+    UNITS: ClassVar[dict[str, tuple[str, str]]] = {
+        "velocity": ("m/s", "velocity"), "displacement": ("m", "displacement"), "force": ("N/m", "force"),
+    }  # fmt: skip
+
+    @pydantic.model_validator(mode="before")
+    @classmethod
+    def _from_word(cls, value: Any) -> Any:
+        if isinstance(value, str):
+            if value != "free":
+                repair = "write free, or { velocity = … }, { displacement = … }, { force = … }"
+                raise Refused(Fault("", value, "unknown choice", "", "free, or a table", repair))
+            return {}
+        return with_courses(value, cls.UNITS)
+
+    @pydantic.model_validator(mode="after")
+    def _one(self) -> Component:
+        given = [key for key in self.UNITS if getattr(self, key) is not None]
+        if len(given) > 1:
+            raise Refused(Fault(given[1], None, f"and {given[0]} cannot both be told", repair="give one of them"))
+        return self
+
+    @property
+    def fastest(self) -> float:
+        """The largest speed that it tells, m/s (or rad/s)."""
+        if self.velocity:
+            return self.velocity.largest
+        return self.displacement.steepest if self.displacement else 0.0
+
+    @property
+    def control(self) -> Control | None:
+        """As the grains take it; None: free."""
+        if self.velocity:
+            return Moved(self.velocity.schedule)
+        if self.displacement:
+            return Placed(self.displacement.schedule)
+        return Pushed(self.force.schedule) if self.force else None
+
+
+class Turning(Component):
+    """How the rotation of a body goes: as Component, with velocity in rad/s, displacement in rad, force in N m/m."""
+
+    UNITS: ClassVar[dict[str, tuple[str, str]]] = {
+        "velocity": ("rad/s", "angular velocity"), "displacement": ("rad", "angle"), "force": ("N m/m", "torque"),
+    }  # fmt: skip

@@ -1,0 +1,1 @@
+"""Validations of grains in fluid."""

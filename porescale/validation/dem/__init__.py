@@ -1,0 +1,1 @@
+"""Validations of the grains."""

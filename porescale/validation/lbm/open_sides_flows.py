@@ -1,0 +1,43 @@
+"""Flows through open sides: a channel between two pressures, a plug that comes and goes."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.lbm.boundary.sides import Sides
+from porescale.lbm.fluid import Fluid
+from porescale.lbm.lattice import relaxation_time
+from porescale.validation.lbm.channels_flows import one_thread
+
+Array = NDArray[np.floating]
+
+
+def pressure_channel(
+    height: int, length: int, viscosity: float, drop: float, operator: str = "trt"
+) -> tuple[Array, Array]:
+    """Velocity between two pressure sides over the exact peak, (height, length), and the exact parabola, (height,).
+
+    drop: of density from left to right.  Started from rest, run until 20 of its memories height²/(pi² viscosity) and
+    of the sound's, (2 length/pi)²/viscosity, have passed.
+    """
+    sides = Sides("pressure", "pressure", left_density=1 + drop / 2, right_density=1 - drop / 2)
+    fluid = Fluid(length, height, relaxation_time(viscosity), operator=operator, sides=sides)
+    with one_thread():
+        for _ in range(round(20 * height**2 / (np.pi**2 * viscosity)) + 20 * length):
+            fluid.advance()
+    y = np.arange(height) + 0.5
+    peak = drop / 3 / length * height**2 / (8 * viscosity)
+    return fluid.fields()[1] / peak, 4 * y * (height - y) / height**2
+
+
+def plug(length: int, height: int, speed_in: float, speed_out: float, steps: int) -> tuple[float, float]:
+    """Mass gained in ``steps`` by a box between walls that fluid enters at the left and leaves at the right, and what
+    the given speeds say."""
+    sides = Sides("velocity", "velocity", left_velocity=(speed_in, 0.0), right_velocity=(speed_out, 0.0))
+    fluid = Fluid(length, height, 0.8, sides=sides)
+    before = fluid.mass_excess()
+    with one_thread():
+        for _ in range(steps):
+            fluid.advance()
+    return fluid.mass_excess() - before, steps * height * (speed_in - speed_out)

@@ -1,0 +1,1 @@
+"""Validations of displacements measured from pictures."""

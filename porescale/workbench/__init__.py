@@ -1,1 +1,0 @@
-"""What all commands share: scenes, reports, validations, benchmarks, the command line.  No physics."""

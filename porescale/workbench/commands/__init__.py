@@ -1,1 +1,0 @@
-"""One file per command.  Each has ``command(package)``, which gives the function that the command line calls."""
