@@ -168,6 +168,38 @@ def test_links_lead_somewhere() -> None:
     assert {page: links for page, links in dead.items() if links} == {}
 
 
+PATH = re.compile(r"(?<![\w/.-])(?:porescale|continuum_sph|cases|docs|tests|\.ci)/[\w./-]*\w")
+MODULE = re.compile(r"`((?:porescale|continuum_sph|tests)(?:\.[a-z_0-9]+)+)")
+PLACEHOLDER = re.compile(r"[A-Z]{3,}")
+
+
+def missing_files(text: str) -> list[str]:
+    """Files and modules that a text names and the project does not have, but for links; NAME stands for any."""
+    paths = [path for path in PATH.findall(LINK.sub("", text)) if not PLACEHOLDER.search(path)]
+    found = [path for path in paths if not (ROOT / path).exists()]
+    for name in MODULE.findall(text):
+        module = ROOT / name.replace(".", "/")
+        places = (module, module.with_suffix(".py"), module.parent.with_suffix(".py"))  # the last: a name in a module
+        if not any(place.exists() for place in places):
+            found.append(name)
+    return found
+
+
+def test_files_that_are_named_are_there() -> None:
+    pages = [path for path in texts() if path.name != "CHANGELOG.md"]  # which names what was
+    lost = {str(path.relative_to(ROOT)): missing_files(path.read_text(encoding="utf-8")) for path in pages}
+    assert {path: names for path, names in lost.items() if names} == {}
+
+
+def test_a_file_that_is_gone_is_found() -> None:
+    assert missing_files("`porescale/lbm/fluid.py`, cases/rock, cases/NAME/NAME.py, `tests.reference.dem`") == []
+    assert missing_files("see porescale/gone.py and `porescale.lbm.gone`") == [
+        "porescale/gone.py",
+        "porescale.lbm.gone",
+    ]
+    assert missing_files("`porescale.lbm.fluid.Fluid`") == []
+
+
 @pytest.mark.parametrize("link", ["cases/none", "cases#none", "#none", "../elsewhere"])
 def test_a_dead_link_is_found(link: str) -> None:
     assert dead_links(ROOT / "README.md", f"# Some words, `x`\n[a]({link}) [b](#some-words-x) [c](cases)") == [link]
