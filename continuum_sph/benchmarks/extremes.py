@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from continuum_sph.benchmarks.extremes_seepage import SEEPAGE
 from continuum_sph.build.model import Simulation
 from continuum_sph.build.report import report
 from continuum_sph.scene.sections import Scene
@@ -189,6 +188,5 @@ EXTREMES = Extremes(
         *(Extreme("leaving the domain", f"thrown up at {speed:g} c0", thrown(speed)) for speed in (0.3, 0.9)),
         *(Extreme("leaving the domain", f"thrown down at {speed:g} c0", thrown(-speed)) for speed in (0.3, 3.0)),
         Extreme("leaving the domain", "position lost", broken),
-        *SEEPAGE,
     ]
 )  # fmt: skip
