@@ -1,4 +1,4 @@
-"""The command line ``continuum-sph``, made from the same workbench as ``porescale``."""
+"""The command line ``continuum-sph``, made of the same parts as ``porescale``."""
 
 from __future__ import annotations
 
@@ -36,18 +36,9 @@ def template() -> str:
 
 def build(scene: Scene) -> Model:
     """The simulation of a scene that `report` does not refuse."""
-    from continuum_sph.build.model import Simulation
-    from continuum_sph.build.seepage_model import SeepageSimulation
-    from continuum_sph.build.soil_model import SoilSimulation
+    from continuum_sph.build.simulation import Simulation
 
-    if scene.soil is None:
-        return Simulation(scene)
-    return SoilSimulation(scene) if dry(scene) else SeepageSimulation(scene)
-
-
-def dry(scene: Scene) -> bool:
-    """Whether there is soil and no water, now or later."""
-    return scene.soil is not None and not (scene.water.column or scene.reservoir)
+    return Simulation(scene)
 
 
 def drive(
@@ -91,12 +82,8 @@ def judge(folder: Path, card: dict[str, Any]) -> None:
 def report(scene: Scene) -> Report:
     """Every derived number of a scene; raises InputError with all refusals."""
     from continuum_sph.build.report import report as scene_report
-    from continuum_sph.build.seepage_report import seepage_report
-    from continuum_sph.build.soil_report import soil_report
 
-    if scene.soil is None:
-        return scene_report(scene)
-    return soil_report(scene) if dry(scene) else seepage_report(scene)
+    return scene_report(scene)
 
 
 def show(folder: Path) -> list[Path]:

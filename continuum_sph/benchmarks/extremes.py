@@ -8,8 +8,14 @@ from typing import Any
 
 import numpy as np
 
+<<<<<<< HEAD
+from continuum_sph.benchmarks.extremes_seepage import SEEPAGE
+=======
 from continuum_sph.build.model import Simulation
+>>>>>>> main
 from continuum_sph.build.report import report
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.build.water import WaterPart
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation import trials
 from continuum_sph.water.energy_budget import book
@@ -36,13 +42,13 @@ def driven(model: Simulation, end: float, judged: bool = False) -> str | Judged:
     while model.time < end:
         model.advance(CHECKED)
         model.check()
-        fastest = max(fastest, model.flow.swiftest)
+        fastest = max(fastest, model.flow.max_speed)
         if way is None and model.time >= JUDGED:
             way = front(model)
     energy = book(model.flow)["energy balance"] / start if start else 1.0
     n = model.flow.layer.fluid
     pressure = model.flow.layer.pressure[:n]
-    outside = n - int(model.inside().sum())
+    outside = n - int(model.part(WaterPart).inside().sum())
     said = f"{model.step} steps to {model.time:.3g} s; fastest {fastest:.3g} m/s = {fastest / _sound(model):.2g} c0"
     said += f"; pressure {pressure.min():.3g} to {pressure.max():.3g} Pa; energy balance {energy:.3f} of the start"
     said += f"; {outside} particles outside" if outside else ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from continuum_sph.build.health import stepped
+from continuum_sph.build.sanity import Now, advance_one
 from continuum_sph.soil import SoilFlow
 from continuum_sph.validation.seepage_trials import energies, saturated_box
 from porescale.common.evidence.extremes import Extreme, Extremes
@@ -26,7 +26,7 @@ def stirred(permeability: float, seconds: float = 0.2) -> Callable[[], str]:
         free = least = start
         growth = 0.0
         while both.time < seconds:
-            stepped(both.advance, both.water.step, both.time, "lower numerics.courant")
+            advance_one(both.advance, Now(both.step, both.time, "lower numerics.courant"))
             if both.water.step % CHECKED == 0:
                 parts = energies(both, ground)
                 free = parts["sum"] - parts["heat of drag"]

@@ -53,7 +53,7 @@ def test_a_saturated_slope_flatter_than_its_limit_stays():  # the twin that must
 
 def densities(given):
     """(least, largest) density of a particle over its first, of the whole course."""
-    found = [(rho.min(), rho.max()) for _, model in given.course(0.1) for rho in [model.both.ground.soil.density]]
+    found = [(rho.min(), rho.max()) for _, model in given.course(0.1) for rho in [model.flow.ground.soil.density]]
     least, most = np.array(found).T
     return least.min() / (GRAINS * (1.0 - given.porosity)), most.max() / (GRAINS * (1.0 - given.porosity))
 

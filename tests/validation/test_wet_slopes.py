@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import pytest
 
+<<<<<<< HEAD
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.cli import validations
+=======
 from continuum_sph.build.seepage_model import SeepageSimulation
 from continuum_sph.cli import PACKAGE
+>>>>>>> main
 from continuum_sph.validation import soil_wet as verify_soil_wet
 from continuum_sph.validation.soil_wet import SEEPING, STILL, WetSlope
 from tests.reference import continuum_cases
@@ -56,7 +61,7 @@ def test_permeability_that_does_not_follow_porosity_is_told_apart():
 
 def series(*settings):
     """Columns of the case's series, two seconds after it settled."""
-    return continuum_cases.series(SeepageSimulation, 200, "submerged_slope", "time.end=5", *settings)
+    return continuum_cases.series(Simulation, 200, "submerged_slope", "time.end=5", *settings)
 
 
 @pytest.mark.slow

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.validation.exact import couette, drop_period, poiseuille, released_pressure
+from continuum_sph.build.initial_pressure import released_pressure
+from continuum_sph.validation.exact import couette, drop_period, poiseuille
 from continuum_sph.validation.water import LATTICE
 from continuum_sph.water.artificial_viscosity import artificial
 from continuum_sph.water.eos import Tait, tait, tait_density

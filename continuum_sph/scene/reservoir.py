@@ -8,7 +8,7 @@ from porescale.common.core.errors import Fault
 from porescale.common.schema.sections import Section, quantity
 
 
-class Pool(Section):
+class ReservoirSection(Section):
     """A strip of open water kept at a level, by water let in or out over its surface; both are booked.
 
     The water may stand at ``level`` for ever, or follow ``rise``, a table of (time s, level m), straight lines between

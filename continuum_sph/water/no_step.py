@@ -1,4 +1,4 @@
-"""A flow that has no next step, said so that whoever drives knows where it broke."""
+"""A flow without a next step: the error that says where, for whoever drives it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The exit gradient at a sheet pile: how steep the flow is where it comes out of the ground beside it (i_E).
+"""A sheet pile, and its exit gradient i_E: how steep the flow is where it comes out of the ground beside it.
 
 Along the pile the head is odd in depth below the surface of the ground, so its first terms are h0 + i d + c d³, down
 to some way before the tip, where it has a root; h0 is that of the open water above, or of the ground itself where it
@@ -10,8 +10,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from continuum_sph.scene.pile import SheetPileSection
 from continuum_sph.seepage import PoreFlow
 from continuum_sph.seepage.sheet_pile import Pile
+from porescale.common.record.part import Part
 
 Floats = NDArray[np.float64]
 
@@ -22,6 +24,22 @@ SHARE, ROWS = 0.6, 3.0
 WIDE = 2.0  # spacings beside the pile, whose particles are fitted
 OPEN = 4.0  # spacings beside it and above the ground, whose water gives h0
 BLURRED = 1.0  # spacings about the surface of the ground, in which kernels round off the bend of the head
+
+
+def sheet_pile(section: SheetPileSection, spacing: float) -> Pile:
+    """The pile of a section, of particles of a ``spacing`` (m)."""
+    return Pile(section.column(spacing), section.lower_end(spacing), spacing, section.faces == "hold")
+
+
+class ExitGradientPart(Part):
+    """The exit gradient beside a ``pile`` in a ``flow`` of water whose weight is ρ g (N/m³) > 0."""
+
+    def __init__(self, pile: Pile, flow: PoreFlow, weight: float) -> None:
+        self.pile, self.flow, self.weight = pile, flow, weight
+
+    def row(self) -> dict[str, float]:
+        """i_E."""
+        return {NAME: exit_gradient(self.pile, self.flow, self.weight)}
 
 
 def reach(buried: float, spacing: float) -> float:

@@ -7,7 +7,7 @@ from typing import Literal
 from porescale.common.schema.sections import Section, quantity
 
 
-class Air(Section):
+class AirSection(Section):
     """A gas in all pores that hold no water at the start, which water has to drive out or compress.
 
     law : "adiabatic" or "printed" (eqs 39, 40);  pressure : of the room, at which it has its density and from which

@@ -13,14 +13,16 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.scene.air_sections import Air
+from continuum_sph.scene.air import AirSection
 from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.water import Column
 from continuum_sph.seepage import PoreFlow
 from continuum_sph.water.eos import Gas
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.state import P
 from porescale.common.cli.report import Report
+from porescale.common.record.part import Part
 
 Floats = NDArray[np.float64]
 
@@ -30,9 +32,20 @@ HEAVY = 0.03
 """Of the water's density: the pressure at which water stops would be off by as much."""
 
 
-def gas(air: Air) -> Fluid:
+def air_fluid(air: AirSection) -> Fluid:
     """The air of a section."""
     return Fluid(Gas(air.density, air.pressure, air.exponent, printed=air.law == "printed"), air.viscosity)
+
+
+class AirPart(Part):
+    """Columns of the air in the pores of a ``flow``."""
+
+    def __init__(self, flow: PoreFlow) -> None:
+        self.flow = flow
+
+    def row(self) -> dict[str, float]:
+        """See `air_row`."""
+        return air_row(self.flow)
 
 
 def with_air(law: Law, fluid: Fluid) -> Law:
@@ -40,17 +53,17 @@ def with_air(law: Law, fluid: Fluid) -> Law:
     return replace(law, fluids=(law.fluids[WATER], fluid))
 
 
-def dry_pores(scene: Scene, soil: Floats) -> Floats:
-    """Places (m, 2) m of ``soil`` particles (n, 2) that no column of water covers."""
+def dry_pores(columns: tuple[Column, ...], soil: Floats) -> Floats:
+    """Places (m, 2) m of ``soil`` particles (n, 2) that none of the ``columns`` of water covers."""
     covered = np.zeros(len(soil), np.bool_)
-    for column in scene.water.column:
+    for column in columns:
         right, top = column.left + column.width, column.bottom + column.height
         x, y = soil[:, 0], soil[:, 1]
         covered |= (x > column.left) & (x < right) & (y > column.bottom) & (y < top)
     return soil[~covered].copy()
 
 
-def thickness(material: NDArray[np.int64], law: Law, gravity: float) -> Floats:
+def specific_weights(material: NDArray[np.int64], law: Law, gravity: float) -> Floats:
     """What stands for ρ g in the drag on each particle, (n,) N/m³: that of water times μ/μ_w."""
     viscosity = np.array([fluid.viscosity for fluid in law.fluids])
     found: Floats = (law.state.density * gravity * viscosity / viscosity[WATER])[material]
@@ -71,7 +84,7 @@ def air_report(out: Report, scene: Scene, law: Law, particles: int) -> None:
         out.warn(f"air weighs {air.state.density / scene.water.density:.2g} of the water: lower air.density")
 
 
-def air_rows(flow: PoreFlow) -> dict[str, float]:
+def air_row(flow: PoreFlow) -> dict[str, float]:
     """Mass of both fluids, what pore volume the air takes up, its pressures (above the room's) and how much is out."""
     layer, n = flow.layer, flow.layer.fluid
     air = layer.material[:n] == AIR

@@ -1,4 +1,4 @@
-"""The section of a scene's soil."""
+"""The section of the soil."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import pydantic
 from numpy.typing import NDArray
 
 from continuum_sph.scene.material_file import Origin
-from continuum_sph.soil.material import Material
 from porescale.common.core.errors import Fault
 from porescale.common.schema.sections import Section, quantity
 
@@ -61,7 +60,7 @@ class SoilNumerics(Section):
     settle: float = quantity("s", 0.0, ge=0, le=1e6, help="time at the start while motion is braked")
 
 
-class Ground(Section):
+class SoilSection(Section):
     """Soil: hypo-elastic, E = stiffness (p/reference)^exponent, with Mohr-Coulomb strength in plane strain.
 
     A key material names a file of `porescale homogenise`, see material_file.py, whose numbers hold where the scene has
@@ -97,15 +96,6 @@ class Ground(Section):
     sides: Literal["hold", "slip"] = "slip"
     body: tuple[Body, ...] = pydantic.Field(min_length=1, description="pieces of ground")
     numerics: SoilNumerics = SoilNumerics()
-
-    @property
-    def material(self) -> Material:
-        """The same in the words of `continuum_sph.soil`."""
-        phi, psi = self.friction_angle, self.dilatancy_angle
-        return Material(
-            self.stiffness, self.density, self.poisson, self.exponent, self.reference, self.least, self.modulus,
-            math.sin(phi), self.cohesion * math.cos(phi), math.sin(psi), self.tension, not self.elastic, self.porosity,
-        )  # fmt: skip
 
     @property
     def height(self) -> float:

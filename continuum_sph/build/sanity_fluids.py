@@ -31,7 +31,7 @@ def bounds(fluids: tuple[Fluid, ...]) -> tuple[Floats, Floats, Floats]:
     return (1.0 - SLACK) * table(fluids)[:, THINNEST], np.array(dense), np.array(swift)
 
 
-def swiftest_sound(fluids: tuple[Fluid, ...], material: NDArray[np.int64], density: Floats) -> Floats:
+def sound_speeds(fluids: tuple[Fluid, ...], material: NDArray[np.int64], density: Floats) -> Floats:
     """Speed of sound (n,) m/s in particles of a ``density`` (n,) kg/m³ within `bounds`: c0 (ρ/ρ0)^((γ-1)/2), of a gas
     as printed c0/{1 - γ(ρ/ρ0 - 1)}.  material (n,): numbers of their fluids."""
     found = np.zeros(len(density))

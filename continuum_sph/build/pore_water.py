@@ -1,19 +1,19 @@
-"""From a scene with soil and water to both layers, moving together."""
+"""Soil and the water in its pores: both layers of particles, ready to move together."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.build.air_build import AIR, dry_pores, gas, thickness, with_air
-from continuum_sph.build.build import fluid_of, law_of, wall_layers, water_of
-from continuum_sph.build.soil_build import ground_of, soil_flow
-from continuum_sph.scene.reservoir_sections import Pool
+from continuum_sph.build.air import AIR, air_fluid, dry_pores, specific_weights, with_air
+from continuum_sph.build.reservoirs import reservoir, spare
+from continuum_sph.build.sheet_pile import sheet_pile
+from continuum_sph.build.soil import material_of, soil_flow, soil_section
+from continuum_sph.build.water import wall_layers, water_law, water_particles, water_state
 from continuum_sph.scene.sections import Scene
-from continuum_sph.seepage import PoreFlow, Reservoir, Resistance, Seepage, Supply, skeleton_of
+from continuum_sph.seepage import PoreFlow, Resistance, Seepage, Supply, skeleton_of
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.seepage.reservoir import BERTH, berths
 from continuum_sph.seepage.sheet_pile import PartedList
@@ -34,10 +34,10 @@ def pore_law(scene: Scene) -> Law:
     cancel, and would not by 2.6 % of both.  Density diffusion takes departures from linear fields only: any other lets
     water through that the soil keeps back; it is as much less as pores are smaller than the whole.
     """
-    law = law_of(scene)
-    strength = 0.5 * law.diffusion * ground_of(scene).porosity
+    law = water_law(scene)
+    strength = 0.5 * law.diffusion * soil_section(scene).porosity
     law = replace(law, corrected=True, noise=LINEAR, diffusion=strength)
-    return with_air(law, gas(scene.air)) if scene.air else law
+    return with_air(law, air_fluid(scene.air)) if scene.air else law
 
 
 def wet_height(scene: Scene, x: Floats) -> Floats:
@@ -52,7 +52,7 @@ def wet_height(scene: Scene, x: Floats) -> Floats:
 
 def submerge(scene: Scene, ground: SoilFlow) -> None:
     """Take the buoyancy of the grains off the stress of soil that is at rest under its dry weight."""
-    section, soil = ground_of(scene), ground.soil
+    section, soil = soil_section(scene), ground.soil
     if section.stress == "none":
         return
     n = soil.soil
@@ -69,29 +69,29 @@ def submerge(scene: Scene, ground: SoilFlow) -> None:
 def saturate(scene: Scene, law: Law, soil: Floats, x: Floats, v: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
     """Places, velocities (n, 2) and densities (n,) of water with that in all pores of ``soil`` (s, 2) m that have none:
     at rest, under the surface of the ground."""
-    pores = dry_pores(scene, soil)
-    top = np.max([body.top(pores[:, 0]) for body in ground_of(scene).body], axis=0)
-    more = water_of(scene).settled_density(top - pores[:, 1], scene.gravity)
+    pores = dry_pores(scene.water.column, soil)
+    top = np.max([body.top(pores[:, 0]) for body in soil_section(scene).body], axis=0)
+    more = water_state(scene).settled_density(top - pores[:, 1], scene.gravity)
     return np.concatenate((x, pores)), np.concatenate((v, np.zeros_like(pores))), np.concatenate((rho, more))
 
 
-def seepage_of(scene: Scene) -> Seepage:
+def seepage_flow(scene: Scene) -> Seepage:
     """Soil and water of a scene, ready for their first step."""
-    section, law, spacing = ground_of(scene), pore_law(scene), scene.numerics.spacing
+    section, law, spacing = soil_section(scene), pore_law(scene), scene.numerics.spacing
     ground = soil_flow(scene)
     submerge(scene, ground)
     skeleton = skeleton_of(ground, section.density / (1.0 - section.porosity), section.permeability)
-    x, v, rho = fluid_of(scene, law)
+    x, v, rho = water_particles(scene, law)
     if section.saturated:
         x, v, rho = saturate(scene, law, ground.soil.x[: ground.soil.soil], x, v, rho)
-    pile = scene.pile.wall(spacing) if scene.pile else None
+    pile = sheet_pile(scene.pile, spacing) if scene.pile else None
     if pile:
         x, v, rho = (values[~pile.holds(x)] for values in (x, v, rho))
     layers, (width, height), area = wall_layers(law, spacing), scene.inner, spacing * spacing
     margin, skin = layers * spacing, scene.numerics.skin * law.smoothing.length
     wet = len(x)
     if scene.air:
-        pores = dry_pores(scene, ground.soil.x[: ground.soil.soil])
+        pores = dry_pores(scene.water.column, ground.soil.x[: ground.soil.soil])
         x, v = np.concatenate((x, pores)), np.concatenate((v, np.zeros_like(pores)))
         rho = np.concatenate((rho, np.full(len(pores), scene.air.density)))
     present, top = len(x), height + margin
@@ -121,40 +121,24 @@ def seepage_of(scene: Scene) -> Seepage:
         resistance=Resistance(section.porosity, section.permeability_law),
     )  # fmt: skip
     if scene.air:
-        flow.thick = thickness(layer.material[: len(x)], law, flow.resistance.gravity)
+        flow.specific_weight = specific_weights(layer.material[: len(x)], law, flow.resistance.gravity)
     flow.lower[:] = 0.0
     flow.upper[:] = width, height if scene.tank.lid and not waiting else np.inf
-    both = Seepage(flow, ground, stiffest(scene), section.porosity * scene.water.density + section.density)
+    both = Seepage(flow, ground, largest_modulus(scene), section.porosity * scene.water.density + section.density)
     both.start()
     layer.mass[:present] = (flow.porosity * rho * area)[:present]
     if waiting:
         stiff = law.state.density * law.state.sound_speed**2
-        pools = [reservoir(pool, str(number), width) for number, pool in enumerate(scene.reservoir)]
-        both.supply = Supply(layer, pools, berth, spacing, law.state.density, stiff, scene.gravity)
+        kept = [reservoir(it, str(number), width) for number, it in enumerate(scene.reservoir)]
+        both.supply = Supply(layer, kept, berth, spacing, law.state.density, stiff, scene.gravity)
         both.supply.keep(0.0)
     both.start()
     return both
 
 
-def spare(scene: Scene, x: Floats) -> int:
-    """Particles of water that wait: what the tank holds up to its highest level, less those at ``x`` (n, 2) m there."""
-    if not scene.reservoir:
-        return 0
-    rows = math.ceil(scene.head / scene.numerics.spacing) + 1
-    present = int((x[:, 1] < scene.head).sum())
-    return max(round(scene.inner[0] / scene.numerics.spacing) * rows - present, 0) + 1
-
-
-def reservoir(pool: Pool, number: str, width: float) -> Reservoir:
-    """The reservoir of a section in a tank of a ``width``, m;  number: its name if it has none."""
-    times, levels = (np.array(column, np.float64) for column in zip(*pool.table, strict=True))
-    walls = pool.left <= 0.0, pool.right >= width * (1.0 - 1e-9)
-    return Reservoir(pool.name or f"reservoir {number}", pool.left, pool.right, pool.bottom, times, levels, walls)
-
-
-def stiffest(scene: Scene) -> float:
+def largest_modulus(scene: Scene) -> float:
     """Modulus (Pa) of a column of the scene's soil under the largest mean stress that its dry weight makes."""
-    section = ground_of(scene)
-    material = section.material
+    section = soil_section(scene)
+    material = material_of(section)
     pressure = 0.5 * material.density * scene.gravity * section.height * (1.0 + material.rest)
     return material.column_modulus * material.stiffness_at(pressure) / material.stiffness
