@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from porescale.cli.verify import validations
 
+from porescale.cli.main import PACKAGE
 from porescale.common.core.constants import GRAVITY
 from porescale.dem.motion.control import Moved
 from porescale.dem.motion.drivers import Clump
@@ -12,7 +12,7 @@ from porescale.validation.dem import bodies, setups
 from porescale.validation.dem import energy as boxed
 from porescale.validation.dem.momentum import momentum_drift
 
-VALIDATIONS = validations()
+VALIDATIONS = PACKAGE.validations()
 
 
 def test_a_dumbbell_does_not_bounce_like_a_disc():  # the twin that must fail

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from porescale.cli.verify import validations
 from scipy.special import jv
 
+from porescale.cli.main import PACKAGE
 from porescale.common.core.constants import GRAVITY
 from porescale.dem.contact import hertz
 from porescale.dem.contact.hertz import Hertz
@@ -20,7 +20,7 @@ from porescale.validation.dem import rolling, setups, stacks, threads, waves
 from porescale.validation.dem.momentum import cloud, momentum_drift
 from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, TANGENTIAL, law_at
 
-VALIDATIONS = validations()
+VALIDATIONS = PACKAGE.validations()
 
 
 def tolerance(name):

@@ -9,13 +9,13 @@ from contextlib import nullcontext
 
 import pytest
 
-from continuum_sph import cli as continuum
-from porescale.cli import verify
+from continuum_sph.cli import PACKAGE as CONTINUUM
+from porescale.cli.main import PACKAGE
 from porescale.validation.lbm.channels import one_thread
 
 ELSEWHERE = "scene."
 """Rows that tests of homogenisation run, which read their numbers too."""
-ROWS = [row for package in (verify, continuum) for row in package.validations() if not row.name.startswith(ELSEWHERE)]
+ROWS = [row for package in (PACKAGE, CONTINUUM) for row in package.validations() if not row.name.startswith(ELSEWHERE)]
 
 
 @pytest.mark.parametrize("row", [pytest.param(row, id=row.name, marks=[pytest.mark.slow] * row.slow) for row in ROWS])

@@ -127,7 +127,7 @@ def layer(degrees: float, rows: int = 20, friction: float = TAN_PHI) -> SoilFlow
 
 
 def sliding(degrees: float, rows: int = 20, friction: float = TAN_PHI) -> tuple[float, float]:
-    """(mean acceleration between 0.5 s and 1 s, m/s², of such a layer; the one that `PAPER` gives it)."""
+    """(mean acceleration between 0.5 s and 1 s, m/s², of such a layer; the one that `TAN_PHI` gives it)."""
     flow, tilt = layer(degrees, rows, friction), math.radians(degrees)
     n, marks = flow.soil.soil, []
     for time in (0.5, 1.0):
