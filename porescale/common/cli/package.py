@@ -85,7 +85,8 @@ class Package:
     validations, benchmarks : give the registers;  case : folder of a case whose front `bench` measures again, or None;
     stability : flows of a stability map;  extremes : tries of `study extremes`;  endurance : flows of `study
     endurance`;  parts : scenes of `study parts`;  each None if there are none;
-    check_resume : InputError where the run in a folder cannot be resumed with a card; None if only a model can find out;
+    check_resume : InputError where the run in a folder cannot be resumed with a card; None if only a model can
+    find out;
     features : what trade studies read of a run folder at a time (None: its last snapshot), by name, None if there is
     nothing.
     """

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from porescale.common.compiled.jit import most_threads, threads
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.neighbors import search
-from porescale.common.neighbors import skin as drift
+from porescale.common.neighbors import skin as skins
 from porescale.common.neighbors.cells import Grid, grid_shape, sort_into_cells
 
 Floats = NDArray[np.float64]
@@ -96,7 +96,7 @@ class PairList:
         self._sorted = np.empty((3, count - self._first))  # x, y, reach in cell order
         self._block = np.empty(count, np.int32)  # that each anchor lies in, for the list of build ``_blocked``
         self._blocked = -1
-        self._bounds = np.empty((0, drift.BOUNDS))
+        self._bounds = np.empty((0, skins.BOUNDS))
         self._row = np.empty(ROW * most_threads(), np.int32)  # partners of one point before they are put in order
         self._publish(0)
 
@@ -122,7 +122,7 @@ class PairList:
 
     def set_cell(self, width: float, height: float, tilt: float) -> None:
         """Another size of a box that is periodic both ways, from the same lower corner, and how far right (m) the image
-        one height above lies.  Said by whoever strains the box, who also knows when to build anew.
+        one height above lies.  For a box that is strained; its owner also builds the list anew when needed.
         """
         assert all(self.periodic)
         self.upper = (self.lower[0] + width, self.lower[1] + height)
@@ -130,7 +130,7 @@ class PairList:
 
     def update(self, x: Floats, reach: Floats) -> bool:
         """Build if two points of ``x`` (n, 2) m may have come nearer, growth of reach (n,) m included, by the skin
-        since the last build: see `drift`.
+        since the last build: see skin.py.
 
         Those that have not cannot have come within reach unlisted.  True if built; the arrays are then new.  Raises
         ValueError at a position or reach that is no number.
@@ -160,7 +160,7 @@ class PairList:
 
     def _holds(self, x: Floats, reach: Floats) -> bool:
         """Whether no pair can be missing from the list."""
-        if not drift.needs_rebuild(
+        if not skins.needs_rebuild(
             x, self.checked_position, reach, self._checked_reach, self.skin_margin, *self.period
         ):
             return True
@@ -173,26 +173,26 @@ class PairList:
         if self._blocked != self.builds:
             self._blocked = self.builds
             if self._bounds.shape[0] <= columns * rows:
-                self._bounds = np.empty((columns * rows + 1, drift.BOUNDS))
-            drift.sort_into_blocks(self.list_position, self._grid(columns, rows), self._block)
+                self._bounds = np.empty((columns * rows + 1, skins.BOUNDS))
+            skins.sort_into_blocks(self.list_position, self._grid(columns, rows), self._block)
         gap = min(width / columns, height / rows) - largest
         since = (x, self.list_position, reach, self._list_reach)
-        left = drift.remaining_skin(*since, self._block, self._bounds, columns, rows, self.skin, gap, *self.period)
+        left = skins.remaining_skin(*since, self._block, self._bounds, columns, rows, self.skin, gap, *self.period)
         if left < 0.0:
             return False
         self._restart_margin(x, reach, 0.5 * left)
         return True
 
-    def _restart_margin(self, x: Floats, reach: Floats, room: float) -> None:
-        """The list holds until some point is ``room`` (m) from where it is now."""
-        self.checked_position[:], self._checked_reach[:], self.skin_margin = x, reach, room
+    def _restart_margin(self, x: Floats, reach: Floats, margin: float) -> None:
+        """The list holds until some point is ``margin`` (m) from where it is now."""
+        self.checked_position[:], self._checked_reach[:], self.skin_margin = x, reach, margin
         self.looks += 1
 
     def build(self, x: Floats, reach: Floats) -> None:
         """List the pairs of ``x`` (n, 2) m with ``reach`` (n,) m now; data of pairs listed before is kept.
 
         Raises ValueError naming the point whose position or reach is not finite (or reach negative),
-        InputError when a periodic side is shorter than two cutoffs: a point would then meet two images of another.
+        InputError when a periodic side is shorter than two cutoffs: a point would then pair with two images of another.
         """
         assert x.shape == (self.count, 2)
         assert reach.shape == (self.count,)
@@ -270,7 +270,7 @@ class PairList:
         return grid
 
     def state(self) -> dict[str, NDArray[np.generic]]:
-        """Copies of everything that decides what the list says next."""
+        """Copies of everything that the next update depends on."""
         return {
             "start": self.start.copy(),
             "partner": self.partner.copy(),
@@ -295,13 +295,12 @@ class PairList:
         self.carried[:] = state["carried"]
         self.list_position[:] = state["anchor"]
         self._list_reach[:] = state["anchor_reach"]
-        # Older states do not say their skin: theirs may have been less, so the next update makes the list anew.  Bits
+        # Older states do not hold their skin: it may have been less, so the next update makes the list anew.  Bits
         # stay: rows are ascending in both, and pairs beyond reach, in which alone the lists differ, bear nothing.
         self.builds = int(state["builds"]) if "skin" in state else 0
         self.lasted, self.skin = int(state.get("lasted", 0)), float(state.get("skin", self.skin))
-        self._restart_margin(
-            self.list_position, self._list_reach, 0.5 * self.skin if self.builds else 0.0
-        )  # where none is said
+        margin = 0.5 * self.skin if self.builds else 0.0
+        self._restart_margin(self.list_position, self._list_reach, margin)  # for states without checked positions
         if "mark" in state:
             mark, reach = (np.asarray(state[name], np.float64) for name in ("mark", "mark_reach"))
             self._restart_margin(mark, reach, float(state["room"]))

@@ -1,11 +1,12 @@
-"""Whether points have moved so that a pair list no longer holds: by their way, or their way against their neighbours.
+"""Whether a pair list must be rebuilt: from the displacement of points, or from that relative to their neighbours.
 
-A list made with a skin holds as long as no two points have come nearer to each other by more than it.  None has where
-none left its place by half the skin.  That is quick to see, and too strict where many move together, as in a jet: the
-ways of points that lie near each other are then alike, however long.  So the box is cut into blocks, and the ways of
-all points of a block, as arrows, into a rectangle: two points came nearer by at most the diagonal of the rectangle that
-holds those of both blocks.  Blocks that do not touch are a whole block apart, so all ways together may be longer.
-What is left of the skin then is asked for only when some point has gone half of it further.
+A list made with a skin holds as long as no two points have come nearer to each other by more than the skin.  None have
+where no point was displaced by half the skin.  That is quick to compute, and too strict where many points move
+together,
+as in a jet: displacements of neighbouring points are then alike, however large.  So the box is cut into blocks, and the
+displacements of all points of a block are bounded by a rectangle: two points came nearer by at most the diagonal of the
+rectangle that bounds both blocks.  Blocks that do not touch are a whole block apart, so the rectangle of all may be
+larger.  The remaining skin is computed again only when some point has moved half of it further.
 """
 
 from __future__ import annotations
@@ -59,8 +60,7 @@ def remaining_skin(x, list_position, reach, list_reach, block, bounds, columns, 
     by ``gap`` (m), since the list was made.  Below 0 where some may have already.
 
     x, list_position (n, 2) m, reach, list_reach (n,) m: now and when the list was made;  block: see `sort_into_blocks`;
-    bounds
-    (columns rows + 1, 5): overwritten, the last row by that of all.  Positions that are no numbers leave -inf.
+    bounds (columns rows + 1, 5): overwritten, the last row by that of all.  Positions that are no numbers give -inf.
     """
     whole = columns * rows
     for b in range(whole + 1):
