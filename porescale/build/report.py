@@ -9,7 +9,7 @@ from porescale.build.cost import expected_seconds, memory, refuse_too_large
 from porescale.build.derive import Derived, derive
 from porescale.common.cli.report import Report
 from porescale.coupling.solid.choose import SOLID_OPERATORS
-from porescale.coupling.weighting import WEIGHTINGS
+from porescale.coupling.weighting.choose import WEIGHTINGS
 from porescale.dem.contact.linear import Linear
 from porescale.lbm.collision.choose import OPERATORS
 from porescale.scene.sections import Scene
@@ -78,13 +78,13 @@ def _operators(scene: Scene, out: Report) -> None:
     fluid = scene.fluid
     assert fluid is not None
     out.heading("Operators")
-    out.row("collision", fluid.operator, "", OPERATORS[fluid.operator])
+    out.row("collision", fluid.operator, "", OPERATORS[fluid.operator].purpose)
     out.row("magic parameter", fluid.magic, "", "3/16: walls half-way between nodes")
     out.row("Smagorinsky constant", fluid.smagorinsky or "none")
     if scene.grains or scene.disc or scene.rectangle:
-        out.row("solid", fluid.solid_operator, "", SOLID_OPERATORS[fluid.solid_operator])
+        out.row("solid", fluid.solid_operator, "", SOLID_OPERATORS[fluid.solid_operator].purpose)
         out.row("rim", "soft" if fluid.soft_rim else "sharp", "", "soft: for grains that the fluid passes fast")
-        out.row("weight", fluid.weight, "", WEIGHTINGS[fluid.weight])
+        out.row("weight", fluid.weight, "", WEIGHTINGS[fluid.weight].purpose)
     out.row("precision", fluid.precision)
 
 

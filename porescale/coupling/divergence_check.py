@@ -12,7 +12,7 @@ from porescale.coupling.coverage.interpenetration import refuse_crossing
 from porescale.coupling.displaced import displaced
 from porescale.coupling.divergence_cause import Circumstances, likely_cause
 from porescale.coupling.step import Coupled
-from porescale.coupling.weighting import fitting_weight
+from porescale.coupling.weighting.choose import fitting_weight
 from porescale.dem.grains import Grains
 from porescale.lbm.boundary.sides import NAMES, Sides
 from porescale.lbm.fluid import Fluid

@@ -12,7 +12,7 @@ from numpy.typing import DTypeLike, NDArray
 from porescale.lbm.boundary.links import Rim
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.boundary.thin_plate import Plate, exchange
-from porescale.lbm.collision.choose import choose, lean
+from porescale.lbm.collision.choose import choose, without_force
 from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
 from porescale.lbm.equilibrium import equilibrium
 from porescale.lbm.moments import moment_fields
@@ -77,7 +77,7 @@ class Fluid:
         parity = self.step % 2
         if parity:
             self._exchange(+1.0)
-        cells(self.populations, parity, *extra, lean(self.law))
+        cells(self.populations, parity, *extra, without_force(self.law))
         if parity:
             self._exchange(-1.0)
         self.rim.close(self._flat, parity, (self.law.fx, self.law.fy))

@@ -11,7 +11,7 @@ from porescale.common.core.errors import Fault
 from porescale.common.schema.messages import nearest
 from porescale.common.schema.sections import Refused, Section, quantity
 from porescale.coupling.solid.choose import SOLID_OPERATORS
-from porescale.coupling.weighting import WEIGHTINGS, fitting_weight
+from porescale.coupling.weighting.choose import WEIGHTINGS, fitting_weight, fitting_weights
 from porescale.lbm.collision.choose import OPERATORS
 from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
 from porescale.lbm.scales import NAMES
@@ -19,7 +19,9 @@ from porescale.lbm.scales import NAMES
 CHOICES: dict[str, Collection[str]] = {
     "operator": OPERATORS, "solid_operator": SOLID_OPERATORS, "weighting": WEIGHTINGS,
 }  # fmt: skip
-"""Keys of the section that name a law, and the names there are: the registers of the rooms below."""
+"""Keys of the section that name a law, and the names there are: the registers of lbm and coupling."""
+SOFT = [name for name, operator in SOLID_OPERATORS.items() if operator.soft_law]
+"""Solid operators that have soft rims."""
 
 
 class Fluid(Section):
@@ -80,16 +82,17 @@ class Fluid(Section):
         try:
             fitting_weight(self.solid_operator, self.weighting)
         except ValueError:
-            fits = "'wall'" if self.solid_operator == "exact-wall" else "'B2' or 'B1'"
+            fits = " or ".join(map(repr, fitting_weights(self.solid_operator)))
             problem = f"does not go with the solid operator {self.solid_operator!r}"
             raise Refused(Fault("weighting", self.weighting, problem, "", fits, "leave it out")) from None
         return self
 
     @pydantic.model_validator(mode="after")
     def _rim_fits(self) -> Fluid:
-        if self.rim == "soft" and self.solid_operator != "exact-wall":
+        if self.rim == "soft" and self.solid_operator not in SOFT:
             problem = f"does not go with the solid operator {self.solid_operator!r}"
-            raise Refused(Fault("rim", self.rim, problem, "", "'sharp'", "leave it out, or take 'exact-wall'"))
+            repair = f"leave it out, or take {' or '.join(map(repr, SOFT))}"
+            raise Refused(Fault("rim", self.rim, problem, "", "'sharp'", repair))
         return self
 
     @property
@@ -105,7 +108,8 @@ class Fluid(Section):
     @property
     def soft_rim(self) -> bool:
         """Whether grains have soft rims."""
-        return self.rim == "soft" or (self.rim is None and self.operator == "central" and self.weight == "wall")
+        by_default = OPERATORS[self.operator].soft_rim and self.solid_operator in SOFT
+        return self.rim == "soft" or (self.rim is None and by_default)
 
     @property
     def solid_laws(self) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from porescale.common.compiled.jit import when_compiling
 LANES = 4  # twice as many are 2 % faster where vectors are that wide (measured), and half as many registers elsewhere
 WORDS = 32  # that `put_ascending` compares at once: a row of partners
 COLUMNS = 8  # that `take_rows` reads of a record
-CODE = f"{__package__}.lanes_code"
+CODE = f"{__package__}.simd_code"
 """What these functions are in kernels."""
 
 

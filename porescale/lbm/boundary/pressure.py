@@ -102,9 +102,8 @@ def _let_in(flat, slots, to, source, along, weight, excess, fx, fy):
     """
     for k in range(to.shape[0]):
         s = slots[k]
-        d, jx, jy = moments(
-            flat[s[0]], flat[s[1]], flat[s[2]], flat[s[3]], flat[s[4]], flat[s[5]], flat[s[6]], flat[s[7]], flat[s[8]]
-        )
+        f = (flat[s[0]], flat[s[1]], flat[s[2]], flat[s[3]], flat[s[4]], flat[s[5]], flat[s[6]], flat[s[7]], flat[s[8]])
+        d, jx, jy = moments(f)
         c = numbers(d)
         ux = (jx - c.half * fx) / (c.one + d)
         uy = (jy - c.half * fy) / (c.one + d)
