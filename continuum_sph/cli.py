@@ -6,9 +6,9 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import porescale
 from porescale.common.cli import application
 from porescale.common.cli.package import Package
+from porescale.common.core.version import VERSION
 
 if TYPE_CHECKING:
     from continuum_sph.scene.sections import Scene
@@ -205,7 +205,7 @@ def parts() -> Kinds:
 PACKAGE = Package(
     name="continuum-sph",
     summary="Soil, water and air as layers of smoothed particles (water and soil in a tank, seepage, bubbles).",
-    version=porescale.__version__,
+    version=VERSION,
     scene=scene_type,
     template=template,
     build=build,

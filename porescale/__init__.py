@@ -9,7 +9,9 @@ from __future__ import annotations
 
 from typing import Any
 
-__version__ = "0.1.0"
+from porescale.common.core.version import VERSION
+
+__version__ = VERSION
 __all__ = ["Scene", "Simulation", "__version__", "build", "load", "open_run"]
 
 

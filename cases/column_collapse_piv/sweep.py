@@ -22,8 +22,8 @@ from matplotlib.patches import Circle
 from variants import VARIANTS, Variant
 
 from porescale.cli.run import build
+from porescale.common.core.atomic import save, write_text
 from porescale.common.core.errors import InputError
-from porescale.common.record.atomic import save, write_text
 from porescale.common.record.drive import drive
 from porescale.common.record.open_run import open_run
 from porescale.common.schema.sections import open_scene, scene_as_dict

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import set_threads
-from porescale.common.record.atomic import write_text
+from porescale.common.core.atomic import write_text
 from porescale.output.case import conclude, options, stage
 from porescale.piv.estimate.measure import Settings, measure
 from porescale.piv.images import flows

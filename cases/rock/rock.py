@@ -127,7 +127,7 @@ def contacts(packings: int, count: int) -> Array:
             made = lab.sample("discs", seed, count, friction)
             bonds, group = made.grains.bonds, made.grains.steering.clumps.group
             assert bonds is not None
-            both = group[bonds.partners(made.grains)] < 0
+            both = group[bonds.partners(made.grains.segments)] < 0
             found.append((2.0 * both.all(axis=1).sum() / count, stiffness(made), voigt(made)))
         rows.append(np.mean(found, axis=0) / (1.0, lab.STIFFNESS, lab.STIFFNESS))
     return np.array(rows)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from porescale.analysis.permeability import Measured, gebart, kozeny_carman, measure
 from porescale.build.derive import fluid_scales
-from porescale.common.record.atomic import write_bytes
+from porescale.common.core.atomic import write_bytes
 from porescale.common.record.model import Cloud
 from porescale.common.schema.sections import validate
 from porescale.scene.sections import Scene

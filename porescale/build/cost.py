@@ -10,8 +10,8 @@ from pathlib import Path
 
 from porescale.build.derive import Derived
 from porescale.common.compiled.cache import cache_root
+from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.record.atomic import write_bytes
 
 CELLS_PER_SECOND, DISCS_PER_SECOND = 150e6, 15e6
 """Rates that a run is first reckoned with (two cores, float64); how this machine differs is learnt from its runs."""

@@ -19,7 +19,7 @@ from porescale.build.regime import expected_speed, judge
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.materials import Law
 from porescale.dem.discs import make_discs
-from porescale.dem.step import packing_limit, stable_step
+from porescale.dem.timestep import packing_limit, stable_step
 from porescale.lbm.scales import NAMES, Scales, implied
 from porescale.scene.bodies_of_grains import by_hand, judge_bodies, lightest
 from porescale.scene.contact import Contact, density_of, laws

@@ -11,7 +11,7 @@ from porescale.build.frame_build import Placed, disc_count, free_rows
 from porescale.dem.bodies.frames import polygon_moments
 from porescale.dem.bodies.rigid import body_of
 from porescale.dem.grains import Grains
-from porescale.dem.measures.contacts import nearest_image
+from porescale.dem.measures.contact_list import nearest_image
 from porescale.dem.measures.region import Region
 
 Array = NDArray[np.float64]

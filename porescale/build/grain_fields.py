@@ -21,7 +21,8 @@ from porescale.dem.forces.rectangle import LEFT as LEFT_FACE
 from porescale.dem.forces.walls import HIGH, LOW, SIDES, X
 from porescale.dem.grains import Grains
 from porescale.dem.measures.coarse_graining import CoarseGrained, Raster
-from porescale.dem.measures.contacts import Contacts, contacts
+from porescale.dem.measures.contact_list import Contacts
+from porescale.dem.measures.contacts import contacts
 from porescale.dem.measures.fabric import LEAST_WITH_FRICTION, LEAST_WITHOUT, contact_numbers, loads, rattlers
 from porescale.dem.measures.fabric import coordination as coordination_of
 from porescale.dem.measures.fabric import fabric as fabric_of

@@ -142,7 +142,7 @@ def convert(
 ) -> int:
     """Make a scene of a deck that does not go on from another run."""
     from porescale.common.cli.folders import refuse_unwritable
-    from porescale.common.record.atomic import write_text
+    from porescale.common.core.atomic import write_text
     from porescale.demseg.build import Options, build, with_bodies
     from porescale.demseg.convert import UNITS, scene_of, toml
     from porescale.demseg.deck import BONDED, CF0, read_deck

@@ -13,6 +13,7 @@ from cyclopts import Parameter
 from porescale.common.cli.options import Quality, Scene, Settings, Threads, refuse_no_scene, use_threads
 from porescale.common.cli.sweep import Again, Jobs, Scheduler, chosen_folder, conclude, enlist, laid_over, say
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.version import VERSION
 
 if TYPE_CHECKING:
     from porescale.common.studies.runner import Campaign, Ended
@@ -167,7 +168,6 @@ def about(
     scene: Tables, command: str, ends: Sequence[Ended], rows: Sequence[Mapping[str, float]], seeds: Sequence[int]
 ) -> dict[str, Any]:
     """Where the numbers come from: [made] of the material file."""
-    import porescale
     from porescale.analysis.homogenise import HARD, asked_of, packing_of, pressure_of, stiffness_over_pressure
     from porescale.common.core.machine import machine
     from porescale.scene.contact import density_of
@@ -184,7 +184,7 @@ def about(
     if not all(row.get("steady", 1.0) for row in rows):
         doubts.append("flow did not become steady in every packing: K is a bound from below")
     made: dict[str, Any] = {
-        "package": "porescale", "version": porescale.__version__, "commit": str(commit.get("hash", "")),
+        "package": "porescale", "version": VERSION, "commit": str(commit.get("hash", "")),
         "sources": str(ends[0].card.get("sources", "")), "command": command, "machine": machine()["processor"],
         "seeds": list(seeds), "grains": asked.grains, "diameter": packing.diameter,
         "grain_density": density_of(scene, packing.material), "settling_friction": packing.settling_friction,

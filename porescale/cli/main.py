@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from cyclopts import App
 
-import porescale
 from porescale.cli import bench, check, demseg, homogenise, new, piv, run, show, study, verify
 from porescale.common.cli import application
 from porescale.common.cli.package import Package
+from porescale.common.core.version import VERSION
 
 PACKAGE = Package(
     name="porescale",
     summary="Round grains in a viscous fluid at the scale of single pores: DEM, lattice Boltzmann, and films of both.",
-    version=porescale.__version__,
+    version=VERSION,
     scene=run.scene_type,
     template=new.template,
     build=run.build,

@@ -59,7 +59,7 @@ def synth(
     import cv2
     import numpy as np
 
-    from porescale.common.record.atomic import write_bytes, write_text
+    from porescale.common.core.atomic import write_bytes, write_text
     from porescale.piv.estimate.measure import Settings
     from porescale.piv.fields.field import write_csv
     from porescale.piv.images import flows
@@ -151,7 +151,7 @@ def compare(
     """Compare two fields: differences over the reference's rms speed, directions, vortices by place, sign and
     circulation, surfaces of piles.
     """
-    from porescale.common.record.atomic import write_text
+    from porescale.common.core.atomic import write_text
     from porescale.piv.fields import compare as comparing
     from porescale.piv.fields.of_run import surface_of_run
     from porescale.piv.fields.pictures import comparison

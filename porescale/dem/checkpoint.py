@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.forces.bonds import BondList
-
-if TYPE_CHECKING:
-    from porescale.dem.grains import Grains
+from porescale.dem.state import State
 
 Array = NDArray[np.float64]
 
@@ -19,7 +17,7 @@ RECTANGLES = ("rectangles", "rectangle_spring", "rectangle_force")
 """What of the state belongs to rectangles, where there are any."""
 
 
-def state_of(grains: Grains) -> dict[str, Any]:
+def state_of(grains: State) -> dict[str, Any]:
     """Everything needed to go on bit for bit of ``grains`` (law, box and the number of plates are the scene's)."""
     return {
         "discs": grains.discs.state(),
@@ -35,24 +33,24 @@ def state_of(grains: Grains) -> dict[str, Any]:
         "withheld": grains.withheld.copy(),
         **({name: getattr(grains, name).copy() for name in RECTANGLES} if len(grains.rectangles) else {}),
         **({} if grains.book is None else {"book": grains.book.copy(), "book_start": _start_of_book(grains)}),
-        **({} if grains._steering is None else {"steering": grains._steering.state()}),
+        **({} if grains.drivers is None else {"steering": grains.drivers.state(grains.walls)}),
         **({} if grains.segments is None else {"segments": grains.segments.state()}),
         **({} if grains.bonds is None else {"bonds": grains.bonds.state()}),
         **({} if grains.sleep is None else {"sleep": grains.sleep.state()}),
         "steps": grains.steps,
-        "time": grains._time,
-        "steps_of_dt": grains._steps_of_dt,
+        "time": grains.seconds,
+        "steps_of_dt": grains.steps_of_dt,
         "last_dt": grains.last_dt,
-        "stale": int(grains._stale),
+        "stale": int(grains.stale),
     }
 
 
-def _start_of_book(grains: Grains) -> Array:
+def _start_of_book(grains: State) -> Array:
     """Copy of the start of the energy book, empty before the first step."""
     return np.zeros(0) if grains.book_start is None else grains.book_start.copy()
 
 
-def restore(grains: Grains, state: dict[str, Any]) -> None:
+def restore(grains: State, state: dict[str, Any]) -> None:
     """Overwrite ``grains`` with the state of a system made alike; raises InputError when the numbers differ."""
     grains.discs.restore(state["discs"])
     for name in ("wall_spring", "wall_load", "plates", "plate_spring", "plate_force", "external_force",
@@ -66,17 +64,17 @@ def restore(grains: Grains, state: dict[str, Any]) -> None:
         start = np.array(state["book_start"])
         grains.book_start = start if len(start) else None
     grains.held, grains.withheld = np.array(state["held"], np.uint8), np.array(state["withheld"])
-    if grains.steered or "steering" in state:
-        grains.steering.restore(state["steering"])
+    if grains.drivers is not None:
+        grains.drivers.restore(state["steering"], grains.walls, grains.pairs)
     grains.pairs.restore(state["pairs"])
     if grains.segments is not None:
-        grains.segments.restore(state["segments"])
+        grains.segments.restore(state["segments"], grains.pairs.builds)
     known = grains.discs.count, 0 if grains.segments is None else len(grains.segments.ends)
     grains.bonds = BondList.restored(state["bonds"], *known) if "bonds" in state else None
     if grains.sleep is not None:
         grains.sleep.restore(state["sleep"])
-    grains._sweeps.forget()
-    grains.steps, grains._time = int(state["steps"]), float(state["time"])
-    grains._steps_of_dt = int(state["steps_of_dt"])
-    grains.last_dt, grains._stale = float(state["last_dt"]), bool(state["stale"])
-    grains.standing = None
+    grains.sweeps.forget()
+    grains.steps, grains.seconds = int(state["steps"]), float(state["time"])
+    grains.steps_of_dt = int(state["steps_of_dt"])
+    grains.last_dt, grains.stale = float(state["last_dt"]), bool(state["stale"])
+    grains.static, grains.free_law, grains.plates_checked = None, None, False

@@ -1,4 +1,4 @@
-"""How long a contact step clumps allow, said as the mass of a disc that allows no more."""
+"""Stable contact step: of discs in any packing, and of clumps, as the mass of a disc with the same limit."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from porescale.dem.bodies.clumps import Clumps, fastest
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Law
 from porescale.dem.discs import Discs
-from porescale.dem.step import NEIGHBOURS, packing_factor
 
+NEIGHBOURS = 6
+"""Most discs that touch a disc and are no smaller than it: the kissing number of the plane."""
 HALVINGS = 60
 """Steps to a fixed point each of which halves the logarithm of the distance, at least."""
 
@@ -26,7 +27,7 @@ def dampings(hard: Linear) -> tuple[float, float, float]:
 
 
 def lightest(clumps: Clumps, discs: Discs, laws: Sequence[Law]) -> float:
-    """Mass (kg/m) that the smallest disc would have if its packing limit (integrate.packing_limit) were that of the
+    """Mass (kg/m) that the smallest disc would have if its packing limit (packing_limit) were that of the
     fastest clump under all of ``laws``; infinite where all clumps are moved as told.
 
     Contacts of clumps count as stiff as those of the largest member, and as damped as those of the heaviest clump.
@@ -43,3 +44,63 @@ def lightest(clumps: Clumps, discs: Discs, laws: Sequence[Law]) -> float:
                     mass = packing_factor(*parts(law.stiffest(mass, size))) / most
                 found.append(mass)
     return min(found, default=math.inf)
+
+
+def packing_factor(normal: float, tangential: float, rolling: float = 0.0) -> float:
+    """Largest eigenvalue bound, N/m: m w^2 of the stiffest motion in any packing of discs of mass >= m.
+
+    Energy of a contact: k_n/2 (n.(u_i - u_j))^2 + k_t/2 (t.(u_i - u_j) + r_i q_i + r_j q_j)^2.  From
+    (a - b)^2 <= 2 a^2 + 2 b^2 it is at most the sum over both ends of k_n (n.u)^2 + k_t (t.u + r q)^2, so
+    w^2 is at most the largest eigenvalue of a single disc on contacts twice as stiff, held still at their
+    other ends.  The smallest disc is the stiffest; it touches at most 6, and six contacts 60 degrees apart
+    give
+        translation: 2 * 3 (k_n + k_t)/m,      rotation: 2 * 6 k_t r^2/I = 24 k_t/m.
+    Table 1 of Saito et al. (k_t = k_n/4): 7.5 k_n/m, dt = 2.2e-5 s; the infinite triangular lattice itself
+    reaches 6.5 k_n/m, 2.3e-5 s (a zone-boundary wave), where one pair alone allows 4.2e-5 s.
+    Rolling springs, k_r/2 R^2 (q_i - q_j)^2 with R <= r, add 24 k_r/m to rotation in the same way.
+    """
+    return max(NEIGHBOURS * (normal + tangential), 4.0 * NEIGHBOURS * (tangential + rolling))
+
+
+def packing_limit(law: Law, mass: float, radius: float | None = None) -> float:
+    """Stability limit (s) in any packing whose lightest disc has ``mass`` (kg/m), damping lagged half a
+    step.  The law of Hertz also needs its ``radius`` (m), and takes the stiffness at its ``deepest`` overlap.
+
+    A mode z = -1 needs dt^2 K + 2 dt C = 4 M; with bounds K/M = a, C/M = b: dt = 2 / (b/2 + sqrt(b^2/4 +
+    a)), which is 2 (sqrt(1 + h^2) - h)/w for one pair.
+    """
+    law = _tangents(law, mass, radius)
+    a = packing_factor(law.stiffness, law.tangential_stiffness, law.rolling_stiffness * law.rolls) / mass
+    b = packing_factor(law.damping, law.tangential_damping, law.rolling_damping * law.rolls) / mass
+    return 2.0 / (0.5 * b + math.sqrt(0.25 * b * b + a))
+
+
+def _tangents(law: Law, mass: float, radius: float | None) -> Linear:
+    """The linear law that is as stiff as ``law`` ever is for the lightest disc."""
+    if isinstance(law, Linear):
+        return law
+    if radius is None:
+        raise ValueError("the stable step of a law of Hertz depends on the radius")
+    return law.stiffest(mass, radius)
+
+
+def stable_step(
+    laws: Law | Sequence[Law],
+    mass: float,
+    radius: float | None = None,
+    *,
+    safety: float = 0.8,
+    steps_per_contact: float = 10.0,
+) -> float:
+    """A safe contact step (s) for discs whose lightest has ``mass`` (kg/m) and ``radius`` (m) under all of ``laws``.
+
+    ``safety`` times the packing limit, and at least ``steps_per_contact`` steps in the shortest contact of
+    two such discs (a free bounce errs by about a step in its duration; 0: stability alone decides).  Linear laws do
+    without the radius; see packing_limit for that of Hertz.
+    """
+    steps = []
+    for law in laws if isinstance(laws, Sequence) else [laws]:
+        steps.append(safety * packing_limit(law, mass, radius))
+        if steps_per_contact > 0.0:
+            steps.append(law.shortest_contact(0.5 * mass, 0.5 * (radius or 0.0)) / steps_per_contact)
+    return min(steps)

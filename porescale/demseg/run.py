@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
+from porescale.common.core.atomic import write_text
 from porescale.common.core.errors import Fault, InputError, Unstable
-from porescale.common.record.atomic import write_text
 from porescale.common.record.model import Cloud, Snapshot
 from porescale.common.record.series import NAME as SERIES
 from porescale.common.record.series import read_series
@@ -219,7 +219,7 @@ def _restore(grains: Grains, state: dict[str, Any]) -> None:
     held = grains.held.copy()
     clumps = grains.steering.clumps.held.copy() if grains.steered else None
     if grains.steered:
-        own = grains.steering.state()
+        own = grains.steering.state(grains.walls)
         then = state.setdefault("steering", own)
         for name in ("given", "watched_load", "watched_from"):
             if own[name].shape != np.shape(then[name]):

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from porescale.dem.forces.bonds import bond
+from porescale.dem.bodies.bonding import bond
 from porescale.demseg.build import Built
 from porescale.demseg.deck import MOST_BODIES
 from porescale.demseg.numbers import Reader, real

@@ -17,7 +17,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from porescale.common.record.atomic import save
+from porescale.common.core.atomic import save
 
 COLOURS = 128
 

@@ -13,8 +13,9 @@ from matplotlib.collections import EllipseCollection, LineCollection, PolyCollec
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from porescale.common.record.atomic import save
-from porescale.dem.forces.bonds import beside, pieces, touched
+from porescale.common.core.atomic import save
+from porescale.dem.bodies.bonding import beside, pieces
+from porescale.dem.forces.bonds import touched
 from porescale.dem.grains import Grains
 
 Array = NDArray[np.float64]

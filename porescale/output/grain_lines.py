@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.record.atomic import write_bytes
+from porescale.common.core.atomic import write_bytes
 
 Array = NDArray[Any]
 

@@ -17,9 +17,9 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from porescale.build.grain_fields import CONTACTS, FIELDS
+from porescale.common.core.atomic import save
 from porescale.common.pictures.look import Look, length_unit, time_text
 from porescale.common.pictures.picture import paint_last
-from porescale.common.record.atomic import save
 from porescale.common.record.model import Cloud, Snapshot
 from porescale.dem.prepare.compaction import write_packing
 from porescale.output.frame_clouds import FRAMES

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from porescale.common.record.atomic import write_bytes
+from porescale.common.core.atomic import write_bytes
 from porescale.output.sample import Sampler, along
 
 if TYPE_CHECKING:

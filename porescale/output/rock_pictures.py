@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from porescale.common.record.atomic import save
+from porescale.common.core.atomic import save
 
 if TYPE_CHECKING:
     from porescale.common.record.open_run import Run

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from porescale.build.observe import surface
-from porescale.common.record.atomic import write_bytes
+from porescale.common.core.atomic import write_bytes
 
 if TYPE_CHECKING:
     from porescale.common.record.open_run import Run

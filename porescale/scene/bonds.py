@@ -13,12 +13,13 @@ import pydantic
 from numpy.typing import NDArray
 
 from porescale.build.frame_build import Placed, disc_count
+from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.record.atomic import write_bytes
 from porescale.common.record.model import Cloud
 from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.dem.bodies.bonding import beside, bond
 from porescale.dem.bodies.rigid import as_bodies
-from porescale.dem.forces.bonds import BondList, beside, bond, touched
+from porescale.dem.forces.bonds import BondList, touched
 from porescale.dem.grains import Grains
 from porescale.dem.motion.drivers import Clump as ClumpNumber
 

@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 from cyclopts import App
-from sources import ROOT
 
 from continuum_sph.cli import PACKAGE as CONTINUUM
 from porescale.cli.main import PACKAGE as PORESCALE
 from porescale.cli.main import commands
 from porescale.common.cli.application import application
 from porescale.common.evidence.validations import Validation, Validations
+from tests.architecture.sources import ROOT
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 WRITER = runpy.run_path(str(ROOT / ".ci" / "readme"))

@@ -7,7 +7,8 @@ import re
 from collections.abc import Callable, Iterator
 
 import pytest
-from sources import ROOT, Source, functions, is_kernel, read, sources, written
+
+from tests.architecture.sources import ROOT, Source, functions, is_kernel, read, sources, written
 
 LONGEST = 400
 UNFINISHED = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b")
@@ -145,7 +146,7 @@ def test_there_is_something_to_check() -> None:
     every = [node for source in sources() for node in functions(source.tree)]
     assert len(every) > 100
     assert sum(is_kernel(node) for node in every) > 10
-    assert read(ROOT / "porescale" / "ground" / "jit.py").module == JIT
+    assert read(ROOT / "porescale" / "common" / "compiled" / "jit.py").module == JIT
 
 
 DOC = '"""What it is."""\n'

@@ -6,7 +6,8 @@ import re
 import subprocess
 
 import pytest
-from sources import ROOT
+
+from tests.architecture.sources import ROOT
 
 ELSEWHERE = re.compile(
     r"\bthe issue(?:'s|s| asks)|\bspec/|\bas spec\b|\bthe spec\b|DEVELOPERS\.md|\bseed 0\d\d\b", re.IGNORECASE

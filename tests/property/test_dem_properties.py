@@ -91,7 +91,7 @@ def test_momentum_and_angular_momentum_are_kept_to_round_off(seed, count, fricti
 @given(st.lists(st.floats(0.0, 2 * np.pi), min_size=6, max_size=6), st.floats(0.0, 1.0))
 def test_no_set_of_neighbours_is_stiffer_than_the_packing_factor(angles, shear):
     # Single disc on contacts of twice the stiffness, as in packing_factor; 60 degrees apart or more.
-    from porescale.dem.step import packing_factor
+    from porescale.dem.timestep import packing_factor
 
     kept = []
     for angle in angles:
@@ -107,7 +107,7 @@ def test_no_set_of_neighbours_is_stiffer_than_the_packing_factor(angles, shear):
 
 
 def test_seven_neighbours_are_stiffer():  # the twin that must fail: the bound is not loose
-    from porescale.dem.step import packing_factor
+    from porescale.dem.timestep import packing_factor
 
     spin = 2.0 * 7 * 2.0  # seven contacts on the rotation, r^2/I = 2/m
     assert spin > packing_factor(1.0, 1.0)

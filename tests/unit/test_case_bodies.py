@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
 
+from porescale.dem.bodies.bonding import bond
 from porescale.dem.bodies.frames import chain, framed, polygon
 from porescale.dem.discs import make_discs
-from porescale.dem.forces.bonds import bond
 from porescale.dem.forces.walls import Box
 from porescale.output.case import stage
 from porescale.output.case_bodies import (
@@ -55,7 +55,7 @@ def test_pieces_have_colours_and_bodies_alone_are_grey():
 def test_discs_polygons_and_segments_are_drawn_and_cracks_lie_where_bonds_broke():
     grains = bonded()
     at = shot(grains)
-    at.whole[grains.bonds.partners(grains)[:, 0] == 0] = 0
+    at.whole[grains.bonds.partners(grains.segments)[:, 0] == 0] = 0
     figure, (axes,) = stage(1, 2.01, 1.99)
     draw_bodies(axes, grains, at)
     draw_cracks(axes, grains, at, 0.01)

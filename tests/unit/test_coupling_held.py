@@ -7,7 +7,7 @@ import copy
 import numpy as np
 import pytest
 
-from porescale.dem import step as integrate
+from porescale.dem.motion.leapfrog import withhold
 from porescale.validation.coupling import grains_trials as lab
 
 EPS = np.finfo(float).eps
@@ -130,7 +130,7 @@ def test_to_hold_nothing_changes_no_bit():
 
 def test_what_is_withheld_is_summed_over_the_steps_of_a_call_compiled_or_not():
     held = np.array([[1, 0, 1], [0, 1, 0]], np.uint8)
-    for run in (integrate.withhold, integrate.withhold.py_func):
+    for run in (withhold, withhold.py_func):
         withheld, force, torque = np.full((2, 3), 7.0), np.array([[1.0, 2.0], [3.0, 4.0]]), np.array([5.0, 6.0])
         other = force.copy(), torque.copy()
         motion = np.array([[0.5, 0.25], [0.1, 0.2]]), np.array([0.3, 0.4])

@@ -204,13 +204,13 @@ def test_what_owners_write_in_place_is_felt_at_once(change, disc, push):
 
 def test_what_stands_is_copied_to_one_place():
     grains = run(row())
-    first = grains.standing
+    first = grains.static
     grains.walls[:, PY] -= 0.1
     shifted(grains)
     run(grains)
-    assert grains.standing.position is first.position
-    assert grains.standing.radius is first.radius
-    assert grains.standing.walls is first.walls
+    assert grains.static.position is first.position
+    assert grains.static.radius is first.radius
+    assert grains.static.walls is first.walls
     np.testing.assert_array_equal(first.position, grains.discs.position)
     np.testing.assert_array_equal(first.walls, grains.walls)
     assert not np.shares_memory(first.walls, grains.walls)
@@ -221,7 +221,7 @@ def test_with_a_book_a_plate_or_nothing_held_each_step_is_done(monkeypatch, more
     done = counted(monkeypatch)
     grains = run(row(**more))
     assert done == [18]
-    assert grains.standing is None
+    assert grains.static is None
 
 
 def test_held_discs_that_touch_bear_their_contacts_step_by_step(monkeypatch):

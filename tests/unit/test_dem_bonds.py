@@ -7,11 +7,11 @@ import pytest
 
 from porescale.benchmarks import dem_polygons as bench_segments
 from porescale.common.core.errors import InputError
+from porescale.dem.bodies.bonding import bond, segments_now
 from porescale.dem.bodies.frames import framed, polygon
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
 from porescale.dem.forces import bonds
-from porescale.dem.forces.bonds import bond
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
 from porescale.dem.measures.contacts import contacts
@@ -77,7 +77,7 @@ def test_breaks_are_counted_placed_and_timed():
     grains = row(count=2)
     bond(grains)
     pulled(grains, 1, 0.1, 1200)  # the overlap of 1e-4 m is gone after 1e-3 s
-    (found,) = grains.bonds.breaks(grains)
+    (found,) = grains.bonds.breaks(grains.segments)
     assert grains.bonds.count == 0
     assert found.time == pytest.approx(1e-3, abs=1e-6)
     assert found.place == pytest.approx((R, 0.0), abs=1e-7)
@@ -105,7 +105,7 @@ def test_energy_of_a_row_that_is_pulled_until_it_breaks_is_accounted_for(steps):
     grains.steering.control(5, Moved(0.5), REST, REST)
     grains.step(seconds / steps, count=steps)
     book = energy_book(grains)
-    assert len(grains.bonds.breaks(grains)) >= 1
+    assert len(grains.bonds.breaks(grains.segments)) >= 1
     # The break is met up to a step late, when it still bears b: b v dt of b d0, and dashpots lag by half a step.
     assert abs(book["residual (J/m)"]) < 4.0 * 0.5 * seconds / steps / 1e-4 * book["turned over (J/m)"]
 
@@ -125,7 +125,7 @@ def test_squares_in_a_wall_of_bricks_stand_and_break_along_the_joint():
         grains.steering.control(Clump(k), REST, REST, REST)
     grains.steering.control(Clump(3), REST, Moved(0.1), REST)
     grains.step(1e-6, count=300)
-    broken = grains.bonds.breaks(grains)
+    broken = grains.bonds.breaks(grains.segments)
     assert len(broken) >= 2
     assert all(each.place[1] == pytest.approx(R + THICKNESS, abs=THICKNESS) for each in broken)
     grains.step(1e-6)
@@ -137,7 +137,7 @@ def test_kernels_do_the_same_as_plain_python(compiled):
     grains = mixed_cloud(0.5, pace=1.0)
     grains.step(5e-6, count=3000)
     bond(grains)
-    d, listed, made = grains.discs, grains.segments.now(), grains.bonds.now(0.0, 0)
+    d, listed, made = grains.discs, segments_now(grains), grains.bonds.now(0.0, 0)
     assert made.ends[:, 2].any()
     force, torque = np.zeros((d.count, 2)), np.zeros(d.count)
     run = bonds.pull_bonds if compiled else bonds.pull_bonds.py_func

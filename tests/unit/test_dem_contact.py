@@ -10,7 +10,7 @@ import pytest
 from porescale.common.core.errors import InputError
 from porescale.dem.contact.law import LinearSliding, contact, coulomb
 from porescale.dem.contact.linear import Linear
-from porescale.dem.step import packing_limit, stable_step
+from porescale.dem.timestep import packing_limit, stable_step
 
 # Table 1 of Saito et al.: mass per metre of a grain, of 1.5 mm and 2500 kg/m3, and its contact law.
 GRAIN = math.pi * 0.75e-3**2 * 2500.0

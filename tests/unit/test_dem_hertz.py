@@ -16,7 +16,7 @@ from porescale.dem.contact.materials import Materials
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
-from porescale.dem.step import packing_limit
+from porescale.dem.timestep import packing_limit
 from tests.reference.dem_contact import HertzContact
 
 STEEL = Linear(2e6, 10.0, 5e5, 3.0, 0.5, rolling_friction=0.1, rolling_stiffness=1e5)

@@ -51,10 +51,10 @@ def test_one_call_of_many_steps_has_the_bits_of_calls_that_ask_all_discs(law, en
     pressed, left_out = 0, 0
     for _ in range(15):
         one.step(DT, count=40)
-        left_out += np.count_nonzero(one._sweeps.near == 0)  # none where the last list came in the last steps
+        left_out += np.count_nonzero(one.sweeps.near == 0)  # none where the last list came in the last steps
         for _ in range(40):
             many.step(DT, count=1)
-            assert many._sweeps.near.all()
+            assert many.sweeps.near.all()
         pressed += np.count_nonzero(one.wall_load)
         for name in ("wall_load", "wall_spring"):
             np.testing.assert_array_equal(getattr(one, name), getattr(many, name))

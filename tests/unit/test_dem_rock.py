@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from porescale.common.core.errors import InputError
+from porescale.dem.bodies.bonding import bond, pieces
 from porescale.dem.bodies.frames import framed, polygon
 from porescale.dem.discs import make_discs
-from porescale.dem.forces.bonds import bond, pieces
 from porescale.dem.forces.walls import Box
 from porescale.dem.measures.network import stiffness, voigt
 from porescale.dem.prepare.rock import Curve, load, rock
@@ -44,7 +44,7 @@ def test_a_sample_that_is_pulled_bears_tension_and_breaks():
     assert curve.strain[-1] == pytest.approx(0.04 * (1.0 - 0.5 / 100), rel=1e-9)  # mean of the last hundredth
     assert 0.05 < curve.strength() / made.naive_strength < 1.0
     assert 0.05 < curve.stiffness() / STIFFNESS < 1.0
-    breaks = made.grains.bonds.breaks(made.grains)
+    breaks = made.grains.bonds.breaks(made.grains.segments)
     assert len(breaks) == curve.broken[-1] > 0
     assert np.all(np.diff(curve.broken) >= 0)
     assert all(0.0 < each.time <= curve.time[-1] for each in breaks)
@@ -82,7 +82,7 @@ def test_pieces_are_what_bonds_hold_together():
     number = pieces(grains)
     assert number.tolist() == [0] * 12 + [1] * 4
     whole = grains.bonds.whole.copy()
-    whole[grains.bonds.partners(grains).max(axis=1) >= 8] = 0
+    whole[grains.bonds.partners(grains.segments).max(axis=1) >= 8] = 0
     assert pieces(grains, whole).tolist() == [0] * 8 + [1] * 4 + [2] * 4
     assert pieces(grains).tolist() == number.tolist()
 

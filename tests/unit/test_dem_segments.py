@@ -10,13 +10,13 @@ import pytest
 
 from porescale.benchmarks import dem_polygons as bench_segments
 from porescale.common.core.errors import InputError, Unstable
+from porescale.dem.bodies.bonding import bond, segments_now
 from porescale.dem.bodies.frames import Frame, chain, framed, from_ends, polygon, polygon_moments
 from porescale.dem.contact.hertz import Hertz
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Materials
 from porescale.dem.discs import make_discs
 from porescale.dem.forces import segments
-from porescale.dem.forces.bonds import bond
 from porescale.dem.forces.rectangle import Rectangle
 from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.grains import Grains
@@ -119,7 +119,7 @@ def test_forces_are_those_of_the_potential_and_count_corners_once(compiled):
         grains = two_bodies(seed)
         d, table = grains.discs, grains.steering.clumps
         d.force[:], d.torque[:] = 0.0, 0.0
-        listed = grains.segments.now()
+        listed = segments_now(grains)
         law = grains.law_of(np.arange(d.count))
         run(d.position, d.velocity, d.spin, d.radius, d.force, d.torque, listed, law, 1e-9, Still(0.0, 0.0))
         bodies = [(np.array([0]), tuple(d.position[0]))]
@@ -357,7 +357,7 @@ def test_rolling_resistance_that_comes_later_finds_room_for_its_springs():
     grains.step(5e-6, count=10)
     known = grains.segments.near_memory.shape[1]
     grains.set_law(replace(grains.law, rolling_friction=0.1, rolling_stiffness=0.1 * K))
-    assert (known, grains.segments.now().near_memory.shape[1]) == (1, 2)
+    assert (known, segments_now(grains).near_memory.shape[1]) == (1, 2)
 
 
 def test_what_is_held_does_not_shorten_the_step():

@@ -55,11 +55,11 @@ def test_discs_without_friction_go_the_same_way_under_either_law_and_turn_only_w
         grains, twin = row_of_discs(SMOOTH), row_of_discs(SMOOTH)
         for each in (grains, twin):
             each.discs.spin[:] = spin
-        twin._free_law = twin.contact  # the law that knows friction, of which there is none
+        twin.free_law = twin.contact  # the law that knows friction, of which there is none
         assert turning(grains, law_of_steps(grains)) == (spin > 0.0)
         for each in (grains, twin):
             each.step(1e-5, count=200)
-        assert type(grains._free_law) is LinearSmooth
+        assert type(grains.free_law) is LinearSmooth
         assert np.array_equal(grains.discs.position, twin.discs.position)
         assert np.array_equal(grains.discs.velocity, twin.discs.velocity)
         assert np.array_equal(grains.discs.angle, twin.discs.angle)

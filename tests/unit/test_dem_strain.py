@@ -13,9 +13,9 @@ from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
 from porescale.dem.measures.survey import kinetic_energy, max_overlap
 from porescale.dem.motion import affine_strain as strain
-from porescale.dem.motion.drivers import COMPONENTS
 from porescale.dem.motion.periodic_cell import Still, Straining
 from porescale.dem.prepare.settle import pack, unpack
+from porescale.dem.steering import COMPONENTS
 from porescale.validation.dem.bodies_trials import lattice, random_cell, stored
 
 LAW = Linear(1e7, 20.0, 5e6, 10.0, 0.5)

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from porescale.common.core.errors import InputError, Unstable
-from porescale.dem import step as integrate
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
 from porescale.dem.forces import pairs as forces
@@ -16,6 +15,7 @@ from porescale.dem.grains import Grains
 from porescale.dem.measures import survey as measure
 from porescale.dem.motion import leapfrog as kick
 from porescale.dem.prepare.settle import pack, unpack
+from porescale.dem.timestep import packing_limit
 from tests.reference.dem import Body, World
 
 DENSITY = 2000.0
@@ -309,7 +309,7 @@ def test_a_step_beyond_the_limit_is_caught():
 
     def run():
         for _ in range(200):
-            grains.step(3.0 * integrate.packing_limit(LAW, grains.discs.mass.min()), count=10)
+            grains.step(3.0 * packing_limit(LAW, grains.discs.mass.min()), count=10)
             grains.check()
 
     with pytest.raises(Unstable):

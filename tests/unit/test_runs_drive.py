@@ -9,10 +9,10 @@ import threading
 import numpy as np
 import pytest
 
+from porescale.common.core.atomic import owned
 from porescale.common.core.errors import InputError, Unstable
 from porescale.common.record import card as cards
 from porescale.common.record import snapshots
-from porescale.common.record.atomic import owned
 from porescale.common.record.checkpoint import read_checkpoint
 from porescale.common.record.model import Model
 from porescale.common.record.open_run import open_run

@@ -11,8 +11,9 @@ import sys
 import numpy as np
 import pytest
 
+from porescale.common.core import atomic
 from porescale.common.core.errors import InputError
-from porescale.common.record import atomic, card
+from porescale.common.record import card
 from porescale.common.record.series import Series, read_series
 
 

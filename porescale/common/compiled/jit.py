@@ -2,7 +2,7 @@
 
 numba takes longer to import than a wrong scene takes to be found wrong, so what is defined here waits for it: a
 `Kernel` until it is called, and what is told of other functions (`by_law`, `part` …) until the first kernel is.
-compiling.py does the work then, and lanes_code.py for lanes.py.
+compiling.py does the work then, and simd_code.py for simd.py.
 
 Kernels are compiled once and kept on disk.  numba stamps a cached kernel with its own file only, so an edited contact
 law would survive inside a cached pair loop; the cache folder is therefore named after a hash of all sources of both

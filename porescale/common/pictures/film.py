@@ -9,9 +9,9 @@ from typing import Any
 
 import av
 
+from porescale.common.core.atomic import whole
 from porescale.common.pictures.look import Look
 from porescale.common.pictures.picture import painter_of
-from porescale.common.record.atomic import whole
 from porescale.common.record.model import Array
 from porescale.common.record.open_run import open_run
 

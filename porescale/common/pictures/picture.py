@@ -19,10 +19,10 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.pictures.canvas import Canvas
 from porescale.common.pictures.look import Look, Scale, Survey, View, length_unit, survey, time_text
-from porescale.common.record.atomic import write_bytes
 from porescale.common.record.model import Array, Snapshot
 from porescale.common.record.open_run import Run, open_run
 

@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
-import porescale
 from porescale.common.compiled import jit
+from porescale.common.core.atomic import write_text
 from porescale.common.core.machine import machine as machine
-from porescale.common.record.atomic import write_text
+from porescale.common.core.version import VERSION
 from porescale.common.record.read_card import FORMAT
 from porescale.common.record.read_card import NAME as NAME
 from porescale.common.record.read_card import read_card as read_card
@@ -88,7 +88,7 @@ def now() -> str:
 
 def versions() -> dict[str, str | None]:
     """Versions of what the numbers depend on."""
-    found: dict[str, str | None] = {"python": platform.python_version(), "porescale": porescale.__version__}
+    found: dict[str, str | None] = {"python": platform.python_version(), "porescale": VERSION}
     for name in ("numpy", "numba", "llvmlite", "h5py", "scipy"):
         try:
             found[name] = importlib.metadata.version(name)

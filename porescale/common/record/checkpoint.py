@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.record.hdf5 import writing
+from porescale.common.core.hdf5 import writing
 from porescale.common.record.model import Array
 from porescale.common.record.read_card import refuse_format
 

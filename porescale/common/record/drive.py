@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from porescale.common.core.atomic import clean, owned, refuse_shared
 from porescale.common.core.errors import Fault, InputError, Unstable
 from porescale.common.record import card as cards
 from porescale.common.record import snapshots
-from porescale.common.record.atomic import clean, owned, refuse_shared
 from porescale.common.record.check_state import judge
 from porescale.common.record.model import Model, variable_step
 from porescale.common.record.progress import Watch

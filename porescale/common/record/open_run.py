@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from porescale.common.core.atomic import owned
 from porescale.common.record import card as cards
 from porescale.common.record import snapshots
-from porescale.common.record.atomic import owned
 from porescale.common.record.model import Array, Snapshot
 from porescale.common.record.series import NAME as SERIES
 from porescale.common.record.series import read_series

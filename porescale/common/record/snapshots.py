@@ -14,8 +14,9 @@ from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from porescale.common.core import atomic
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.record import atomic, vtkhdf
+from porescale.common.record import vtkhdf
 from porescale.common.record.model import Cloud, Grid, Snapshot
 from porescale.common.record.vtkhdf import Frame
 

@@ -21,7 +21,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from porescale.common.record.hdf5 import writing
+from porescale.common.core.hdf5 import writing
 from porescale.common.record.model import Array, Cloud, Grid, with_depth
 from porescale.common.record.read_card import refuse_format
 from porescale.common.record.vtkhdf_cells import NO_CELLS, TOPOLOGIES, Cells, cells_of, read_cells, with_cells

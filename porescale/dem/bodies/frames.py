@@ -252,7 +252,7 @@ def add_frames(
     ends = np.concatenate([np.array(frame.ends) + starts[k] for k, frame in enumerate(frames)])
     long = np.concatenate([np.full(len(frame.ends), frame.long) for frame in frames])
     table.crowd[len(table.member) - sum(sizes) :] = _crowd(discs, ends, first)
-    grains.segments = SegmentList(grains, ends, long, rule)
+    grains.segments = SegmentList(discs, table.group, grains.box, grains.pairs.skin, ends, long, rule)
     corner = grains.segments.is_corner
     grains.pairs.group = np.where(corner, NOT_PAIRED, table.group).astype(np.int32)
     grains.refresh(anew=True)

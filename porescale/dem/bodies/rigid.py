@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from porescale.dem.bodies.clumps import Clumps
 from porescale.dem.discs import Discs
-
-if TYPE_CHECKING:
-    from porescale.dem.grains import Grains
+from porescale.dem.state import State
 
 Array = NDArray[np.float64]
 
 
-def clumps_of(grains: Grains) -> Clumps | None:
+def clumps_of(grains: State) -> Clumps | None:
     """The clumps of ``grains``, None where there is none."""
-    return grains.steering.clumps if grains.steered and grains.steering.clumps.count else None
+    return grains.drivers.clumps if grains.drivers is not None and grains.drivers.clumps.count else None
 
 
-def body_of(grains: Grains) -> NDArray[np.int64]:
+def body_of(grains: State) -> NDArray[np.int64]:
     """Number of a disc for each disc's body, (n,): itself, or the first member of its clump."""
     bodies, clumps = np.arange(grains.discs.count), clumps_of(grains)
     if clumps is not None:
@@ -30,7 +27,7 @@ def body_of(grains: Grains) -> NDArray[np.int64]:
     return bodies
 
 
-def arms(grains: Grains) -> Array:
+def arms(grains: State) -> Array:
     """Way from the centroid of each disc's body to its centre, (n, 2) m."""
     way, clumps = np.zeros((grains.discs.count, 2)), clumps_of(grains)
     if clumps is not None:
@@ -38,7 +35,7 @@ def arms(grains: Grains) -> Array:
     return way
 
 
-def areas(grains: Grains) -> Array:
+def areas(grains: State) -> Array:
     """Area that each disc stands for, (n,) m^2: members share the area of their union in proportion to their own."""
     area, clumps = np.array(grains.discs.area), clumps_of(grains)
     if clumps is not None:
@@ -48,7 +45,7 @@ def areas(grains: Grains) -> Array:
     return area
 
 
-def masses(grains: Grains) -> Array:
+def masses(grains: State) -> Array:
     """Mass of each disc's body, (n,) kg/m: what a contact with it moves; the discs' own where there is no clump."""
     mass, clumps = grains.discs.mass, clumps_of(grains)
     if clumps is not None:
@@ -57,7 +54,7 @@ def masses(grains: Grains) -> Array:
     return mass
 
 
-def as_bodies(grains: Grains) -> Discs:
+def as_bodies(grains: State) -> Discs:
     """The discs, members of clumps at the place and with the velocity of their body, and with their share of its mass:
     sums over them of mass and momentum are those of bodies, without what turns within."""
     discs, clumps = grains.discs, clumps_of(grains)

@@ -12,22 +12,16 @@ Source: Matsushima, DEMseg tutorial II-3.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel
-from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.law import material_of, stiffness
-from porescale.dem.forces.segment_list import no_segments, refuse_beyond
-from porescale.dem.forces.segments import OUTLINE, Segments, foot, meeting, weight_of
+from porescale.dem.forces.segment_list import SegmentList, refuse_beyond
+from porescale.dem.forces.segments import OUTLINE, foot, meeting, weight_of
 from porescale.dem.motion.periodic_cell import image
-
-if TYPE_CHECKING:
-    from porescale.dem.grains import Grains
-    from porescale.dem.motion.drivers import Clump
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -141,15 +135,6 @@ def touched(position, ends, segments, cell, way, far, other):
         far[k, 0], far[k, 1] = share * (position[b, 0] - position[a, 0]), share * (position[b, 1] - position[a, 1])
 
 
-def beside(grains: Grains, seconds: float = 0.0, steps: int = 0) -> tuple[Segments, Bonds] | tuple[None, None]:
-    """Segments and bonds as kernels take them at a time, both or none, so that the loop has no kinds with but one."""
-    if grains.segments is None and grains.bonds is None:
-        return None, None
-    bonds = NO_BONDS if grains.bonds is None else grains.bonds
-    known = no_segments(grains) if grains.segments is None else grains.segments.now()
-    return known, bonds.now(seconds, steps)
-
-
 class BondList:
     """m bonds, broken ones included, in the order in which they were made.
 
@@ -173,11 +158,11 @@ class BondList:
         self._clock[:] = seconds, steps
         return Bonds(self.ends, self.back, self.whole, self.broken, self._clock)
 
-    def breaks(self, grains: Grains) -> list[Break]:
-        """Bonds that broke so far, by time: the acoustic emissions."""
+    def breaks(self, segments: SegmentList | None) -> list[Break]:
+        """Bonds that broke so far, by time: the acoustic emissions;  segments : of the system."""
         gone = np.flatnonzero((self.whole == 0) & (self.back > 0.0))
         rows = gone[np.argsort(self.broken[gone, 0], kind="stable")]
-        other = self.partners(grains)[:, 1]
+        other = self.partners(segments)[:, 1]
         return [
             Break(
                 float(self.broken[k, 0]), (float(self.broken[k, 1]), float(self.broken[k, 2])),
@@ -186,12 +171,12 @@ class BondList:
             for k in rows
         ]  # fmt: skip
 
-    def partners(self, grains: Grains) -> Index:
-        """Discs (m, 2) that each bond holds together; a segment stands for the disc at its first end."""
+    def partners(self, segments: SegmentList | None) -> Index:
+        """Discs (m, 2) that each bond holds together; one of ``segments`` stands for the disc at its first end."""
         both = self.ends[:, :2].copy()
         sided = self.ends[:, 2] == 1
-        if grains.segments is not None:
-            both[sided, 1] = grains.segments.ends[both[sided, 1], 0]
+        if segments is not None:
+            both[sided, 1] = segments.ends[both[sided, 1], 0]
         return both
 
     def joined(self, more: BondList) -> BondList:
@@ -217,75 +202,3 @@ class BondList:
 
 
 NO_BONDS = BondList(np.zeros((0, 3), np.int64), np.zeros(0))
-
-
-def bond(grains: Grains, bodies: Iterable[int | Clump] | None = None) -> int:
-    """Bond all contacts there are now between these bodies (discs and clumps; None: all); returns how many.
-
-    Contacts that are bonded already stay as they are.  Raises InputError for a body that is not there, and in a cell
-    that is strained.
-    """
-    if grains.steering.cell is not None:
-        raise InputError(Fault("bonds", problem="are not made in a strained cell"))
-    d, pairs = grains.discs, grains.current_pairs()
-    first = np.repeat(np.arange(d.count), np.diff(pairs.start))
-    rows = [np.column_stack((first, pairs.partner.astype(np.int64), np.zeros(len(first), np.int64)))]
-    arrays = no_segments(grains) if grains.segments is None else grains.segments.now()
-    if grains.segments is not None:
-        rows += [np.pad(arrays.corner, ((0, 0), (0, 1))), np.pad(arrays.near, ((0, 0), (0, 1)), constant_values=1)]
-    ends = np.concatenate(rows)
-    chosen = _chosen(grains, bodies)
-    other = ends[:, 1].copy()
-    if grains.segments is not None:
-        sided = ends[:, 2] == 1
-        other[sided] = grains.segments.ends[other[sided], 0]
-    ends = ends[chosen[ends[:, 0]] & chosen[other]]
-    if grains.bonds is not None:
-        known = {tuple(row) for row in grains.bonds.ends[grains.bonds.whole != 0].tolist()}
-        ends = ends[[tuple(row) not in known for row in ends.tolist()]] if len(ends) else ends
-    back = np.zeros(len(ends))
-    pressing(d.position, d.radius, ends, arrays, grains.contact, grains.cell, back)
-    made = BondList(np.ascontiguousarray(ends[back != 0.0]), back[back != 0.0])
-    grains.bonds = made if grains.bonds is None else grains.bonds.joined(made)
-    return made.count
-
-
-def pieces(grains: Grains, whole: NDArray[np.uint8] | None = None) -> Index:
-    """Piece that each disc (n,) belongs to: bodies that bonds hold together are one; 0 is the largest.
-
-    whole : (m,) of the bonds, default: as they are.
-    """
-    from scipy.sparse import coo_array  # takes longer to import than a scene to be judged
-    from scipy.sparse.csgraph import connected_components
-
-    count, bonds = grains.discs.count, grains.bonds
-    body = np.arange(count)
-    if grains.steered:
-        c = grains.steering.clumps
-        bound = c.group >= 0
-        body[bound] = c.member[c.start[:-1]][c.group[bound]]
-    held = np.zeros((0, 2), np.int64)
-    if bonds is not None:
-        held = bonds.partners(grains)[((bonds.whole if whole is None else whole) != 0) & (bonds.back > 0.0)]
-    one, other = body[held].T
-    ends = np.append(one, body), np.append(other, np.arange(count))
-    joined = coo_array((np.ones(len(one) + count), ends), shape=(count, count))
-    number = connected_components(joined.tocsr(), directed=False)[1]
-    return np.asarray(np.argsort(np.argsort(-np.bincount(number), kind="stable"))[number], np.int64)
-
-
-def _chosen(grains: Grains, bodies: Iterable[int | Clump] | None) -> NDArray[np.bool_]:
-    """Which discs belong to ``bodies``."""
-    from porescale.dem.motion.drivers import Clump
-
-    chosen = np.full(grains.discs.count, bodies is None)
-    for body in () if bodies is None else bodies:
-        if isinstance(body, Clump):
-            if not (grains.steered and 0 <= body.number < grains.steering.clumps.count):
-                raise InputError(Fault("clump", body.number, "no such clump"))
-            chosen[grains.steering.clumps.discs_of(body.number)] = True
-        elif 0 <= body < grains.discs.count:
-            chosen[body] = True
-        else:
-            raise InputError(Fault("disc", body, "no such disc", allowed=f"0 to {grains.discs.count - 1}"))
-    return chosen

@@ -8,18 +8,16 @@ corners and segments: a listing follows each one of the discs' pair list.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.neighbors.pair_list import PairList
-from porescale.dem.contact.law import memory_of
+from porescale.dem.discs import Discs
 from porescale.dem.forces.segments import RULES, Segments
-
-if TYPE_CHECKING:
-    from porescale.dem.grains import Grains
+from porescale.dem.forces.walls import Box
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -29,22 +27,24 @@ STATE = ("corner", "corner_memory", "near", "near_memory")
 
 
 class SegmentList:
-    """Segments of the rigid bodies (clumps) of ``grains``, between their corners.
+    """Segments of the rigid bodies (clumps) of ``discs``, between their corners.
 
     ends (s, 2): discs at the ends of each, members of one clump with one radius;  long (s,): whether a segment is kept
-    out of the cells;  rule : see segments.py.
+    out of the cells;  group (n,) int32: clump of every disc, -1 for none;  skin : m;  rule : see segments.py.
 
     beside_corner (n,) m: shortest segment that ends at a disc, 0 if none does;  corner, near and their memories: see
     Segments, of the last listing.
     """
 
-    def __init__(self, grains: Grains, ends: Index, long: NDArray[np.bool_], rule: str = "outline") -> None:
+    def __init__(
+        self, discs: Discs, group: NDArray[np.int32], box: Box, skin: float, ends: Index, long: NDArray[np.bool_],
+        rule: str = "outline",
+    ) -> None:  # fmt: skip
         if rule not in RULES:
             raise InputError(Fault("segments.rule", rule, "no such rule", allowed=", ".join(RULES)))
-        self._grains, self.ends, self.long = grains, np.asarray(ends, np.int64).reshape(-1, 2), np.asarray(long, bool)
+        self.ends, self.long = np.asarray(ends, np.int64).reshape(-1, 2), np.asarray(long, bool)
         self.rule = rule
-        count, clumps = grains.discs.count, grains.steering.clumps
-        self.group = clumps.group
+        count, self.group, self._period = discs.count, group, box.period
         self.is_corner = np.zeros(count, bool)
         self.is_corner[self.ends.ravel()] = True
         both = np.concatenate((self.ends, self.ends[:, ::-1]))
@@ -52,45 +52,42 @@ class SegmentList:
         self._other = np.ascontiguousarray(both[order, 1])
         self._of = np.tile(np.arange(len(self.ends)), 2)[order]  # the segment of each entry of other
         self._start = np.searchsorted(both[order, 0], np.arange(count + 1)).astype(np.int64)
-        length = np.hypot(*(grains.discs.position[self.ends[:, 1]] - grains.discs.position[self.ends[:, 0]]).T)
+        length = np.hypot(*(discs.position[self.ends[:, 1]] - discs.position[self.ends[:, 0]]).T)
         shortest = np.full(count, np.inf)
         np.minimum.at(shortest, self.ends.ravel(), np.repeat(length, 2))
         self.beside_corner = np.where(self.is_corner, shortest, 0.0)
         self._short = np.flatnonzero(~self.long)
-        box = grains.box
-        self._search = PairList(count + len(self._short), grains.pairs.skin, box.lower, box.upper, box.periodic)
+        self._search = PairList(count + len(self._short), skin, box.lower, box.upper, box.periodic)
         own = np.concatenate((self.group, self.group[self.ends[self._short, 0]]))
         self._search.group = own.astype(np.int32)
         self._listed = -1  # builds of the discs' pair list at the last listing
-        memory = memory_of(grains.contact)
         self.corner, self.near = np.zeros((0, 2), np.int64), np.zeros((0, 2), np.int64)
-        self.corner_memory, self.near_memory = np.zeros((0, memory)), np.zeros((0, memory))
+        self.corner_memory, self.near_memory = np.zeros((0, 1)), np.zeros((0, 1))
         self.arrays = self._pack()
 
-    def now(self) -> Segments:
-        """The segments as kernels take them, with room for the springs of the law as it is."""
-        if self.near_memory.shape[1] != memory_of(self._grains.contact):
-            self.build()
+    def now(self, discs: Discs, memory: int, builds: int) -> Segments:
+        """The segments as kernels take them, with ``memory`` springs for each contact; see update."""
+        if self.near_memory.shape[1] != memory:
+            self._build(discs, memory, builds)
         return self.arrays
 
-    def update(self) -> None:
-        """List anew if the discs' pair list has been; springs of contacts listed before are kept."""
-        if self._grains.pairs.builds != self._listed:
-            self.build()
+    def update(self, discs: Discs, memory: int, builds: int) -> None:
+        """List anew if the discs' pair list has been, ``builds`` times; springs of contacts listed before are kept."""
+        if builds != self._listed:
+            self._build(discs, memory, builds)
 
-    def build(self) -> None:
+    def _build(self, discs: Discs, memory: int, builds: int) -> None:
         """List the candidates of where everything is now."""
-        corner, near = self._found()
-        memory = memory_of(self._grains.contact)
+        corner, near = self._found(discs)
         self.corner_memory = _carried(self.corner, self.corner_memory, corner, memory)
         self.near_memory = _carried(self.near, self.near_memory, near, memory)
         self.corner, self.near = corner, near
-        self._listed = self._grains.pairs.builds
+        self._listed = builds
         self.arrays = self._pack()
 
-    def _found(self) -> tuple[Index, Index]:
+    def _found(self, d: Discs) -> tuple[Index, Index]:
         """(pairs with a corner, discs with segments) within reach of each other and the skin, rising."""
-        d, count = self._grains.discs, self._grains.discs.count
+        count = d.count
         at, way = d.position[self.ends[:, 0]], d.position[self.ends[:, 1]] - d.position[self.ends[:, 0]]
         half, thickness = 0.5 * np.hypot(*way.T), d.radius[self.ends[:, 0]]
         short = self._short
@@ -123,7 +120,7 @@ class SegmentList:
 
     def _image(self, difference: Array) -> Array:
         """Nearest images of differences (m, 2) m."""
-        for axis, period in enumerate(self._grains.box.period):
+        for axis, period in enumerate(self._period):
             if period > 0.0:
                 difference[:, axis] -= period * np.rint(difference[:, axis] / period)
         return difference
@@ -154,20 +151,23 @@ class SegmentList:
         """Copies of the listing and its springs."""
         return {**{name: getattr(self, name).copy() for name in STATE}, "listed": self._listed}
 
-    def restore(self, state: dict[str, Any]) -> None:
-        """Go on exactly from ``state()`` of segments made alike; InputError where it lists what is not there."""
+    def restore(self, state: dict[str, Any], builds: int) -> None:
+        """Overwrite the listing with that of ``state()``; InputError where it lists a segment or disc that is absent.
+
+        builds : of the discs' pair list, once restored.
+        """
         for name, others in (("corner", len(self.group)), ("near", len(self.ends))):
             refuse_beyond(f"segments.{name}", state[name], len(self.group), others)
         for name in STATE:
             setattr(self, name, np.array(state[name], getattr(self, name).dtype))
-        self._listed = int(state["listed"]) if self._grains.pairs.builds else -1  # with the discs' list, if that is due
+        self._listed = int(state["listed"]) if builds else -1  # with the discs' list, if that is due
         self.arrays = self._pack()
 
 
-def no_segments(grains: Grains) -> Segments:
-    """Segments as kernels take them, where there are none."""
-    none, memory = np.zeros((0, 2), np.int64), np.zeros((0, memory_of(grains.contact)))
-    start = np.zeros(grains.discs.count + 1, np.int64)
+def no_segments(count: int, springs: int) -> Segments:
+    """Segments as kernels take them, where there are none, of ``count`` discs whose contacts have ``springs``."""
+    none, memory = np.zeros((0, 2), np.int64), np.zeros((0, springs))
+    start = np.zeros(count + 1, np.int64)
     return Segments(0, none, start, np.zeros(0, np.int64), none, memory, none, none, memory)
 
 

@@ -33,7 +33,7 @@ from numpy.typing import NDArray
 from porescale.common.compiled.jit import inline, kernel
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.discs import Discs
-from porescale.dem.measures.contacts import Contacts
+from porescale.dem.measures.contact_list import Contacts
 from porescale.dem.measures.region import Region
 from porescale.dem.motion.periodic_cell import Straining, period_of
 

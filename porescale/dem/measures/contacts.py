@@ -8,7 +8,7 @@ list taken between two steps sums to ``discs.force`` after the second.  Nothing 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -19,82 +19,16 @@ from porescale.dem.contact.law import MU, memory_of
 from porescale.dem.forces.pairs import pair_forces
 from porescale.dem.forces.rectangle import BOTTOM, LEFT, RIGHT, TOP, add_rectangle_forces, nearest_face
 from porescale.dem.forces.walls import HIGH, LOW, NX, PRESENT, PX, X, add_plate_forces, add_wall_forces
-from porescale.dem.grains import Grains
+from porescale.dem.listing import current_pairs
+from porescale.dem.measures.contact_list import NOBODY, Contacts, listed, nearest_image
+from porescale.dem.measures.contacts_segments import bond_contacts, segment_contacts
+from porescale.dem.state import State
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-AT_LIMIT = 1.0 - 1e-9
-"""Share of the friction limit from which a contact counts as sliding: the law cuts to the limit, within round-off."""
-NOBODY = -1
 
-
-@dataclass(frozen=True)
-class Contacts:
-    """c contacts, pairs first in the order of the pair list, then walls, plates and rectangles, then segments and bonds
-    (contacts_segments.py); SI per metre of depth.
-
-    first (c,) disc i;  second (c,) disc j, or -1 at a surface;  surface (c,) index into ``names``, or -1 for a pair;
-    point (c, 2) m, where both bodies feel the force, beside disc i (a periodic image of it may lie elsewhere);
-    normal (c, 2) unit vector from i outwards;  start (c, 2) m, the centroid of the body of i, its clump or itself;
-    branch (c, 2) m, from there to the centroid of the nearest image of the body of j, or to the point at a surface;
-    overlap (c,) m;  normal_force (c,) N/m, > 0 pushes apart;  tangential_force (c,) N/m, that on i along
-    t = (-n_y, n_x);  force (c, 2) N/m, of i on the other;  torque (c, 2) N m/m, on i and on j (of a surface, about
-    the point: what resists rolling);  spring (c,) m, after the step's slip;  sliding (c,) bool: friction is at its
-    limit.
-    """
-
-    first: Index
-    second: Index
-    surface: Index
-    names: tuple[str, ...]
-    point: Array
-    normal: Array
-    start: Array
-    branch: Array
-    overlap: Array
-    normal_force: Array
-    tangential_force: Array
-    force: Array
-    torque: Array
-    spring: Array
-    sliding: NDArray[np.bool_]
-
-    @property
-    def count(self) -> int:
-        """Number of contacts."""
-        return len(self.first)
-
-    @property
-    def pairs(self) -> NDArray[np.bool_]:
-        """Which contacts are between two discs, (c,) bool."""
-        return np.not_equal(self.second, NOBODY)
-
-    def of(self, name: str) -> Contacts:
-        """The contacts with one surface."""
-        return self.chosen(self.surface == self.names.index(name))
-
-    def chosen(self, which: NDArray[Any]) -> Contacts:
-        """Some of the contacts, by mask or index."""
-        parts = {it.name: getattr(self, it.name) for it in fields(self)}
-        return Contacts(**{name: part if name == "names" else part[which] for name, part in parts.items()})
-
-    def of_bodies(self, bodies: Index) -> Contacts:
-        """The same between bodies: ``bodies`` (n,) is the number of a disc that stands for each disc's body."""
-        second = np.where(self.pairs, bodies[self.second], NOBODY)
-        return replace(self, first=bodies[self.first], second=second)
-
-    def resultants(self, count: int) -> tuple[Array, Array]:
-        """Contact force (count, 2) N/m and torque (count,) N m/m on each of ``count`` discs."""
-        force, torque = np.zeros((count, 2)), np.zeros(count)
-        np.subtract.at(force, self.first, self.force)
-        np.add.at(torque, self.first, self.torque[:, 0])
-        np.add.at(force, self.second[self.pairs], self.force[self.pairs])
-        np.add.at(torque, self.second[self.pairs], self.torque[self.pairs, 1])
-        return force, torque
-
-
-def contacts(grains: Grains) -> Contacts:
+def contacts(grains: State) -> Contacts:
     """All contacts of ``grains`` now, with the step that was last used (before the first step: none passes)."""
     names = (*grains.wall_names, *grains.plate_names, *(f"rectangle {k}" for k in range(len(grains.rectangles))))
     parts = [_pairs(grains)]
@@ -103,11 +37,10 @@ def contacts(grains: Grains) -> Contacts:
         surfaces = kind(grains)
         parts += [_surface(grains, first + w, *each) for w, each in enumerate(surfaces)]
         first += len(surfaces)
-    if grains.segments is not None or grains.bonds is not None:
-        from porescale.dem.measures.contacts_segments import bond_contacts, segment_contacts
-
-        parts += [] if grains.segments is None else segment_contacts(grains, grains.segments)
-        parts += [] if grains.bonds is None else [bond_contacts(grains, grains.bonds)]
+    if grains.segments is not None:
+        parts += segment_contacts(grains, grains.segments)
+    if grains.bonds is not None:
+        parts.append(bond_contacts(grains, grains.bonds))
     joined = {
         it.name: np.concatenate([getattr(part, it.name) for part in parts])
         for it in fields(Contacts)
@@ -120,21 +53,9 @@ def contacts(grains: Grains) -> Contacts:
     return Contacts(names=names, **joined)
 
 
-def nearest_image(difference: Array, period: tuple[float, float, float]) -> Array:
-    """Differences (n, 2) m between nearest periodic images, as cells.tilted_image; ``period``: see Grains.period."""
-    near = np.array(difference, dtype=np.float64)
-    width, height, tilt = period
-    if tilt != 0.0:
-        near[:, 0] -= tilt * np.rint(near[:, 1] * (1.0 / height))
-    for axis, length in enumerate((width, height)):
-        if length > 0.0:
-            near[:, axis] -= length * np.rint(near[:, axis] * (1.0 / length))
-    return near
-
-
-def _pairs(grains: Grains) -> Contacts:
+def _pairs(grains: State) -> Contacts:
     """Contacts between discs: the pair list as one where every pair has two discs of its own."""
-    pairs, d = grains.current_pairs(), grains.discs
+    pairs, d = current_pairs(grains), grains.discs
     i = np.repeat(np.arange(d.count), np.diff(pairs.start))
     j = pairs.partner.astype(np.int64)
     apart = nearest_image(d.position[j] - d.position[i], grains.period)
@@ -163,7 +84,7 @@ Surface = tuple[Array, Array, Callable[[Index, Array, Array], Array], Array]
 """Closest point (n, 2) m and signed distance (n,) m of every disc; the step's forces on some; friction by material."""
 
 
-def _surface(grains: Grains, number: int, nearest: Array, distance: Array, forces: Any, friction: Array) -> Contacts:
+def _surface(grains: State, number: int, nearest: Array, distance: Array, forces: Any, friction: Array) -> Contacts:
     """The contacts of one surface."""
     d = grains.discs
     i = np.flatnonzero(distance < d.radius)
@@ -182,12 +103,12 @@ def _surface(grains: Grains, number: int, nearest: Array, distance: Array, force
     )  # fmt: skip
 
 
-def _material(grains: Grains, discs: Index) -> NDArray[Any]:
+def _material(grains: State, discs: Index) -> NDArray[Any]:
     """Numbers of the materials of some discs."""
     return np.zeros(len(discs), np.uint8) if grains.material is None else grains.material[discs]
 
 
-def _wall(grains: Grains) -> list[Surface]:
+def _wall(grains: State) -> list[Surface]:
     """Straight sides."""
     d = grains.discs
     made: list[Surface] = []
@@ -199,7 +120,7 @@ def _wall(grains: Grains) -> list[Surface]:
     return made
 
 
-def _plate(grains: Grains) -> list[Surface]:
+def _plate(grains: State) -> list[Surface]:
     """Upright plates; one that is gone touches nothing."""
     x, y = grains.discs.position.T
     made: list[Surface] = []
@@ -212,7 +133,7 @@ def _plate(grains: Grains) -> list[Surface]:
     return made
 
 
-def _rectangle(grains: Grains) -> list[Surface]:
+def _rectangle(grains: State) -> list[Surface]:
     """Rectangles, from outside, or from inside through the nearest face."""
     made: list[Surface] = []
     at = grains.discs.position
@@ -228,7 +149,7 @@ def _rectangle(grains: Grains) -> list[Surface]:
     return made
 
 
-def _single(grains: Grains, kernel: Any, table: Array, laws: Array, spring: Array, w: int) -> Any:
+def _single(grains: State, kernel: Any, table: Array, laws: Array, spring: Array, w: int) -> Any:
     """The forces of row ``w`` of a table on discs by index; the spring that results, (c,) m, is returned."""
 
     def forces(i: Index, force: Array, torque: Array) -> Array:
@@ -242,17 +163,3 @@ def _single(grains: Grains, kernel: Any, table: Array, laws: Array, spring: Arra
         return spent
 
     return forces
-
-
-def listed(
-    first: Index, second: Index, surface: Index, point: Array, normal: Array, start: Array, branch: Array,
-    overlap: Array, force: Array, torque: Array, spring: Array, friction: Array,
-) -> Contacts:  # fmt: skip
-    """Contacts with their forces resolved along normal and tangent."""
-    pushing = np.sum(force * normal, axis=1)
-    along = force[:, 0] * normal[:, 1] - force[:, 1] * normal[:, 0]  # force on i is -force; t = (-n_y, n_x)
-    limit = friction * np.maximum(pushing, 0.0)
-    return Contacts(
-        first, second, surface, (), point, normal, start, branch, overlap, pushing, along, force, torque, spring,
-        (limit > 0.0) & (np.abs(along) >= AT_LIMIT * limit),
-    )  # fmt: skip

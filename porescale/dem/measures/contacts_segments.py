@@ -10,21 +10,22 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.dem.bodies.bonding import beside, segments_now
 from porescale.dem.contact.law import MU
-from porescale.dem.forces.bonds import BondList, beside, pressing, touched
+from porescale.dem.forces.bonds import BondList, pressing, touched
 from porescale.dem.forces.segment_list import SegmentList
 from porescale.dem.forces.segments import OUTLINE, Segments, add_segment_forces, hand_over, meeting, weight_of
-from porescale.dem.grains import Grains
-from porescale.dem.measures.contacts import NOBODY, Contacts, listed, nearest_image
+from porescale.dem.measures.contact_list import NOBODY, Contacts, listed, nearest_image
+from porescale.dem.state import State
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 
-def segment_contacts(grains: Grains, own: SegmentList) -> list[Contacts]:
+def segment_contacts(grains: State, own: SegmentList) -> list[Contacts]:
     """Contacts of discs and corners with segments, of corners of weight 1, and what others take off."""
     d, cell = grains.discs, grains.cell
-    known = own.now()
+    known = segments_now(grains)
     known = known._replace(corner_memory=known.corner_memory.copy(), near_memory=known.near_memory.copy())
     pairs = own.corner if known.rule == OUTLINE else own.corner[:0]
     way = nearest_image(d.position[pairs[:, 1]] - d.position[pairs[:, 0]], grains.period)
@@ -55,7 +56,7 @@ def segment_contacts(grains: Grains, own: SegmentList) -> list[Contacts]:
 
 
 def _alone(
-    grains: Grains, known: Segments, members: Index, memory: Array, way: Array,
+    grains: State, known: Segments, members: Index, memory: Array, way: Array,
     overlap: Array | None = None, share: Array | None = None,
 ) -> Contacts:  # fmt: skip
     """Contacts of ``members`` (c, 2) corners, or (c, 3) disc and ends of a segment, each by itself.
@@ -96,7 +97,7 @@ def _alone(
     )  # fmt: skip
 
 
-def bond_contacts(grains: Grains, own: BondList) -> Contacts:
+def bond_contacts(grains: State, own: BondList) -> Contacts:
     """Bonds that hold, each with its back tension as a normal force below zero."""
     known = beside(grains)[0]
     assert known is not None
@@ -104,7 +105,7 @@ def bond_contacts(grains: Grains, own: BondList) -> Contacts:
     return _taken_off(grains, known, own.ends[whole], own.back[whole])
 
 
-def _taken_off(grains: Grains, known: Segments, ends: Index, back: Array | None) -> Contacts:
+def _taken_off(grains: State, known: Segments, ends: Index, back: Array | None) -> Contacts:
     """Rows of ``ends`` (c, 3), see Bonds, that press with -back (c,) N/m; None: with the elastic force by weight."""
     d, count = grains.discs, len(ends)
     if back is None:

@@ -15,13 +15,12 @@ Velocities that an owner writes between steps are no work here: held components 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import kernel
 from porescale.common.core.errors import Fault, InputError
+from porescale.dem.bodies.bonding import beside
 from porescale.dem.contact.law import (
     BEFORE_SPIN,
     BEFORE_X,
@@ -38,15 +37,13 @@ from porescale.dem.contact.law import (
     recall,
     stored,
 )
-from porescale.dem.forces.bonds import beside, stored_in_bonds
+from porescale.dem.forces.bonds import stored_in_bonds
 from porescale.dem.forces.rectangle import BOTTOM, LEFT, RIGHT, TOP, VELOCITY_X
 from porescale.dem.forces.segments import survey_segments
 from porescale.dem.forces.walls import HIGH, LOW, NX, NY, PRESENT, PX, TURN, VELOCITY, VX, X
 from porescale.dem.motion.affine_strain import WORK
 from porescale.dem.motion.periodic_cell import before, image
-
-if TYPE_CHECKING:
-    from porescale.dem.grains import Grains
+from porescale.dem.state import State
 
 Array = NDArray[np.float64]
 
@@ -94,7 +91,7 @@ def elastic_surface(distance, radius, memory, laws, law):
     return normal, tangential, rolling
 
 
-def distances(grains: Grains, position: Array, dt: float) -> list[tuple[Array, Array, Array]]:
+def distances(grains: State, position: Array, dt: float) -> list[tuple[Array, Array, Array]]:
     """(distance (n,) m, springs (n, s) m, laws (m, COLUMNS)) of every surface, ``dt`` (s) before now.
 
     Negative inside of rectangles and behind walls, infinite from plates that are gone.
@@ -117,7 +114,7 @@ def distances(grains: Grains, position: Array, dt: float) -> list[tuple[Array, A
     return found
 
 
-def elastic(grains: Grains, dt: float = 0.0) -> tuple[float, float, float]:
+def elastic(grains: State, dt: float = 0.0) -> tuple[float, float, float]:
     """Elastic energy of all contacts, J/m, ``dt`` (s) before now: (normal, tangential, rolling).
 
     That of back tension (bonds.py), below zero, belongs to the normal part.
@@ -135,7 +132,7 @@ def elastic(grains: Grains, dt: float = 0.0) -> tuple[float, float, float]:
     return normal, tangential, rolling
 
 
-def kinetic(grains: Grains, book: Array) -> tuple[float, float]:
+def kinetic(grains: State, book: Array) -> tuple[float, float]:
     """Kinetic energy of the last force evaluation, J/m: (translation, rotation), without held components.
 
     Members of a clump translate with its centroid; what they move besides is its rotation.  In a strained cell
@@ -147,8 +144,8 @@ def kinetic(grains: Grains, book: Array) -> tuple[float, float]:
     if len(grains.held):
         along, around = np.where(grains.held[:, :2], 0.0, along), np.where(grains.held[:, 2], 0.0, around)
     moving, turning = 0.5 * float(d.mass @ along.sum(axis=1)), 0.5 * float(d.inertia @ around)
-    if grains.steered and grains.steering.clumps.count:
-        clumps = grains.steering.clumps
+    if grains.drivers is not None and grains.drivers.clumps.count:
+        clumps = grains.drivers.clumps
         body, share = clumps.group[clumps.member], d.mass[clumps.member]
         now, then = (
             np.array([np.bincount(body, share * speed[clumps.member, axis], clumps.count) for axis in range(2)])
@@ -156,14 +153,14 @@ def kinetic(grains: Grains, book: Array) -> tuple[float, float]:
         )
         rest = 0.5 * float(share @ along[clumps.member].sum(axis=1)) - 0.5 * float(np.sum(now * then / clumps.mass))
         moving, turning = moving - rest, turning + rest
-        if grains.steering.cell is not None:
+        if grains.drivers.cell is not None:
             own, first = clumps.inertia.copy(), clumps.member[clumps.start[:-1]]
             own -= np.bincount(body, d.inertia[clumps.member], clumps.count)
             turning += 0.5 * float(own @ (d.spin[first] * book[first, BEFORE_SPIN])) - rest
     return moving, turning
 
 
-def open_book(grains: Grains, book: Array, dt: float) -> Array:
+def open_book(grains: State, book: Array, dt: float) -> Array:
     """Start of the book before a first step of ``dt`` (s): (kinetic and elastic energy J/m, sum m x, sum m y kg m/m).
 
     Overwrites the velocities before the last force in ``book``: those of now.
@@ -173,14 +170,14 @@ def open_book(grains: Grains, book: Array, dt: float) -> Array:
     return np.array([sum(kinetic(grains, book)) + sum(elastic(grains, dt)), *moment(grains, dt)])
 
 
-def moment(grains: Grains, dt: float) -> Array:
+def moment(grains: State, dt: float) -> Array:
     """Sum of m x over discs, (2,) kg m/m, ``dt`` (s) before now."""
     d = grains.discs
     total: Array = d.mass @ (d.position - dt * d.velocity)
     return total
 
 
-def energy_book(grains: Grains, acceleration: tuple[float, float] = (0.0, 0.0)) -> dict[str, float]:
+def energy_book(grains: State, acceleration: tuple[float, float] = (0.0, 0.0)) -> dict[str, float]:
     """The book of ``grains`` by the names of its entries, J/m, since its first step; zeros before that.
 
     acceleration : of free fall, m/s^2; its work is the potential energy, and what the external forces did besides is
@@ -203,8 +200,8 @@ def energy_book(grains: Grains, acceleration: tuple[float, float] = (0.0, 0.0)) 
         "work of external forces (J/m)": float(total[EXTERNAL]) + height - height_before,
         **{name: float(total[column]) for name, column in WORKS.items()},
     }
-    if grains.steered and grains.steering.cell is not None:
-        works["work of the cell (J/m)"] = float(grains.steering.cell[WORK])
+    if grains.drivers is not None and grains.drivers.cell is not None:
+        works["work of the cell (J/m)"] = float(grains.drivers.cell[WORK])
     kept = moving + turning + normal + tangential + rolling
     residual = kept + height - float(start[0]) - height_before + sum(losses.values()) - sum(works.values())
     changes = [kept - float(start[0]), height - height_before, *losses.values(), *works.values()]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.measures.contacts import Contacts
+from porescale.dem.measures.contact_list import Contacts
 from porescale.dem.measures.region import Period, Region
 from porescale.dem.measures.stress import principal
 

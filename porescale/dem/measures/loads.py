@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.dem.discs import Discs
-from porescale.dem.measures.contacts import Contacts
+from porescale.dem.measures.contact_list import Contacts
 
 Array = NDArray[np.float64]
 

@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import spsolve
 
+from porescale.dem.bodies.bonding import beside
 from porescale.dem.contact.linear import Linear
-from porescale.dem.forces.bonds import beside, touched
+from porescale.dem.forces.bonds import touched
 from porescale.dem.prepare.rock import Rock
 
 Array = NDArray[np.float64]

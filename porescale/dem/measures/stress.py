@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.dem.discs import Discs
-from porescale.dem.measures.contacts import Contacts
+from porescale.dem.measures.contact_list import Contacts
 from porescale.dem.measures.porosity import disc_areas
 from porescale.dem.measures.region import Period, Region
 

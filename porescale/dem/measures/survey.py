@@ -11,14 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel
+from porescale.dem.bodies.bonding import segments_now
 from porescale.dem.bodies.rigid import clumps_of
 from porescale.dem.contact.law import material_of, recall, stored
 from porescale.dem.discs import Discs
 from porescale.dem.forces.rectangle import BOTTOM, LEFT, RIGHT, TOP, nearest_face
 from porescale.dem.forces.segments import survey_segments
 from porescale.dem.forces.walls import HIGH, LOW, NX, NY, PRESENT, PX, PY, X
-from porescale.dem.grains import Grains
 from porescale.dem.motion.periodic_cell import image
+from porescale.dem.state import State
 
 Array = NDArray[np.float64]
 
@@ -135,7 +136,7 @@ def potential_energy(discs: Discs, acceleration: tuple[float, float]) -> float:
     return -float(np.sum(discs.mass * (discs.position @ np.asarray(acceleration))))
 
 
-def elastic_energy(grains: Grains) -> float:
+def elastic_energy(grains: State) -> float:
     """Stored in the normal and tangential springs of pairs, walls, plates, rectangles and segments, J/m."""
     surfaces = (_survey_walls(grains), _survey_plates(grains), _survey_rectangles(grains))
     return float(_survey(grains)[3] + sum(found[3] for found in surfaces) + sum(_survey_segments(grains)[3:]))
@@ -160,7 +161,7 @@ def centre_of_mass(discs: Discs) -> Array:
     return centre
 
 
-def max_overlap(grains: Grains) -> Overlap:
+def max_overlap(grains: State) -> Overlap:
     """The deepest overlap of all pairs, walls, plates, rectangles and segments, as a share of the (smaller) radius; at
     segments and corners of the sum of radius and thickness, where a disc would go through.
     """
@@ -181,7 +182,7 @@ def max_overlap(grains: Grains) -> Overlap:
     return deepest
 
 
-def coordination(grains: Grains) -> float:
+def coordination(grains: State) -> float:
     """Mean number of contacts of a disc or clump with others (walls are not counted)."""
     _survey(grains)
     bodies = grains.discs.count
@@ -190,14 +191,14 @@ def coordination(grains: Grains) -> float:
     return float(grains.touching.sum()) / bodies if bodies else 0.0
 
 
-def unbalanced(grains: Grains) -> float:
+def unbalanced(grains: State) -> float:
     """Mean net force on a disc over mean weight-like external force of the last step; 0 in equilibrium."""
     net = np.hypot(grains.discs.force[:, 0], grains.discs.force[:, 1]).mean()
     load = np.hypot(grains.external_force[:, 0], grains.external_force[:, 1]).mean()
     return float(net / load) if load > 0.0 else 0.0
 
 
-def _survey(grains: Grains) -> tuple[float, int, int, float]:
+def _survey(grains: State) -> tuple[float, int, int, float]:
     """survey_pairs of ``grains``; fills ``grains.touching``."""
     result: tuple[float, int, int, float] = survey_pairs(
         grains.discs.position, grains.discs.radius, grains.pairs.start, grains.pairs.partner,
@@ -206,7 +207,7 @@ def _survey(grains: Grains) -> tuple[float, int, int, float]:
     return result
 
 
-def _survey_walls(grains: Grains) -> tuple[float, int, int, float]:
+def _survey_walls(grains: State) -> tuple[float, int, int, float]:
     d = grains.discs
     result: tuple[float, int, int, float] = survey_walls(
         d.position, d.radius, grains.walls, grains.wall_laws, grains.wall_spring, grains.contact
@@ -220,7 +221,7 @@ def _survey_walls(grains: Grains) -> tuple[float, int, int, float]:
     return float(share[w, i]), int(i), int(w), result[3]
 
 
-def _survey_plates(grains: Grains) -> tuple[float, int, int, float]:
+def _survey_plates(grains: State) -> tuple[float, int, int, float]:
     d = grains.discs
     result: tuple[float, int, int, float] = survey_plates(
         d.position, d.radius, grains.plates, grains.plate_laws, grains.plate_spring, grains.contact
@@ -228,17 +229,17 @@ def _survey_plates(grains: Grains) -> tuple[float, int, int, float]:
     return result
 
 
-def _survey_segments(grains: Grains) -> tuple[float, int, int, float, float, float]:
+def _survey_segments(grains: State) -> tuple[float, int, int, float, float, float]:
     d = grains.discs
     if grains.segments is None:
         return 0.0, -1, 0, 0.0, 0.0, 0.0
     result: tuple[float, int, int, float, float, float] = survey_segments(
-        d.position, d.radius, grains.segments.now(), grains.contact, grains.cell
+        d.position, d.radius, segments_now(grains), grains.contact, grains.cell
     )
     return result
 
 
-def _survey_rectangles(grains: Grains) -> tuple[float, int, int, float]:
+def _survey_rectangles(grains: State) -> tuple[float, int, int, float]:
     d = grains.discs
     if not len(grains.rectangles):
         return 0.0, -1, -1, 0.0

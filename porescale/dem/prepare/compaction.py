@@ -25,10 +25,10 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import Fault, InputError, PorescaleError
+from porescale.common.core.hdf5 import writing
 from porescale.common.neighbors.placement import place
-from porescale.common.record.atomic import write_bytes
-from porescale.common.record.hdf5 import writing
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box

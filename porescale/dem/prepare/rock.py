@@ -19,10 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.dem.bodies.bonding import bond
 from porescale.dem.bodies.frames import Frame, chain, framed, polygon
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import Discs, make_discs
-from porescale.dem.forces.bonds import bond
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
 from porescale.dem.measures.survey import max_overlap

@@ -24,10 +24,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.cache import cache_root, hash_of
+from porescale.common.core.atomic import write_bytes
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import Fault, InputError, PorescaleError
 from porescale.common.neighbors import place
-from porescale.common.record.atomic import write_bytes
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Law
 from porescale.dem.discs import Discs, make_discs

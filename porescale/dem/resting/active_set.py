@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +10,8 @@ from numpy.typing import NDArray
 from porescale.dem.contact.law import KernelLaw
 from porescale.dem.forces.threads import Serial, serial
 from porescale.dem.resting.sleep_kernels import list_part, return_springs
+from porescale.dem.state import State
 from porescale.dem.step import contact_steps
-
-if TYPE_CHECKING:
-    from porescale.dem.grains import Grains
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -59,7 +56,7 @@ class Part:
     sweep: Serial
 
     def steps(
-        self, grains: Grains, count: int, dt: float, drag: float, limit: float, first: bool, surfaces: bool = True
+        self, grains: State, count: int, dt: float, drag: float, limit: float, first: bool, surfaces: bool = True
     ) -> tuple[int, bool]:
         """Up to ``count`` contact steps of ``dt`` (s): (steps done, whether the system's list must be renewed first).
 
@@ -85,7 +82,7 @@ class Part:
         )  # fmt: skip
         return int(done), bool(moved)
 
-    def springs_back(self, grains: Grains) -> None:
+    def springs_back(self, grains: State) -> None:
         """Copy the springs at surfaces and the energy book, if any, back to the system."""
         for own, kept in (
             (self.wall_spring, grains.wall_spring), (self.plate_spring, grains.plate_spring),
@@ -98,7 +95,7 @@ class Part:
 
 
 def part_of(
-    grains: Grains, asleep: NDArray[np.uint8], index: Index, *, frozen: bool, pairs: bool = True
+    grains: State, asleep: NDArray[np.uint8], index: Index, *, frozen: bool, pairs: bool = True
 ) -> Part:  # fmt: skip
     """The discs ``index`` of ``grains``, whose list is up to date, without external loads.
 

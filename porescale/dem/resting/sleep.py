@@ -14,7 +14,7 @@ One thread works; results are the same at any number.  Clumps, frames, bonds and
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,7 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.law import BEFORE_SPIN, BEFORE_X, DRAG
 from porescale.dem.forces.rectangle import VELOCITY_X, VELOCITY_Y
 from porescale.dem.forces.walls import LOW, PRESENT, VELOCITY, VX, WALL
+from porescale.dem.listing import current_pairs
 from porescale.dem.resting.active_set import Part, part_of
 from porescale.dem.resting.sleep_kernels import (
     ASLEEP,
@@ -36,9 +37,7 @@ from porescale.dem.resting.sleep_kernels import (
     take_out,
     wake,
 )
-
-if TYPE_CHECKING:
-    from porescale.dem.grains import Grains
+from porescale.dem.state import State
 
 Array = NDArray[np.float64]
 
@@ -58,10 +57,10 @@ class Sleep:
     changing discs by hand.  Raises InputError where there is more than discs.
     """
 
-    def __init__(self, grains: Grains, weight: Array, share: float = 0.01, after: float | None = None) -> None:
+    def __init__(self, grains: State, weight: Array, share: float = 0.01, after: float | None = None) -> None:
         if grains.steered or grains.segments is not None or grains.bonds is not None or grains.reach is not None:
             raise InputError(Fault("sleep", None, "knows free discs only", repair="leave it out"))
-        count, stiffness = grains.discs.count, grains.hardest()[0]
+        count, stiffness = grains.discs.count, grains.stiffest_contact()[0]
         self.allowed = share * np.abs(weight)
         self.speed = share * np.sqrt(np.abs(weight) * grains.discs.radius / grains.discs.mass)
         lightest = float(grains.discs.mass.min(initial=np.inf))
@@ -88,13 +87,13 @@ class Sleep:
         self.asleep[:], self.quiet[:] = 0, 0.0
         self._some, self._part = False, None
 
-    def wake_disc(self, grains: Grains, disc: int) -> None:
+    def wake_disc(self, grains: State, disc: int) -> None:
         """Wake a disc and its neighbours, before it is moved by hand."""
         self.called[disc] = 1
-        grains.current_pairs()
+        current_pairs(grains)
         self._wake(grains)
 
-    def step(self, grains: Grains, dt: float, drag: float, count: int) -> int:
+    def step(self, grains: State, dt: float, drag: float, count: int) -> int:
         """Up to ``count`` contact steps with the external loads of ``grains``; how many are left, for all awake."""
         self._look(grains, dt)
         left = count
@@ -102,16 +101,16 @@ class Sleep:
             part = self._part
             assert part
             self._take_out(grains, part)
-            done, grains._stale = part.steps(grains, left, dt, drag, grains.pairs.room**2, True)
+            done, grains.stale = part.steps(grains, left, dt, drag, grains.pairs.room**2, True)
             calls = self._put_back(grains, part, done, left == count)
             left -= done
             grains.steps += done
-            grains._steps_of_dt += done
+            grains.steps_of_dt += done
             if calls:
                 self._wake(grains)
         return left
 
-    def _look(self, grains: Grains, dt: float) -> None:
+    def _look(self, grains: State, dt: float) -> None:
         """End all sleep where surfaces move or are others; else, at every look, put to sleep who has rested."""
         still = not self._moving(grains)
         if not still or self._others(grains):
@@ -133,7 +132,7 @@ class Sleep:
             grains.book[self.asleep == ASLEEP, BEFORE_X : BEFORE_SPIN + 1] = 0.0
         self._some, self._part = True, None
 
-    def _moving(self, grains: Grains) -> bool:
+    def _moving(self, grains: State) -> bool:
         """Whether a wall, a rectangle, or a plate that reaches below the highest disc moves."""
         if any_speed(grains.walls, VX, WALL) or any_speed(grains.rectangles, VELOCITY_X, VELOCITY_Y + 1):
             return True
@@ -145,11 +144,11 @@ class Sleep:
         top = float((grains.discs.position[:, 1] + grains.discs.radius).max(initial=-np.inf))
         return bool((grains.plates[rising, LOW] < top).any())
 
-    def _surfaces_of(self, grains: Grains) -> tuple[Array, Array, Array]:
+    def _surfaces_of(self, grains: State) -> tuple[Array, Array, Array]:
         """What there is of surfaces: places of walls and rectangles, and which plates are there (p, 1)."""
         return grains.walls[:, :VX].copy(), grains.rectangles[:, :VELOCITY_X].copy(), grains.plates[:, PRESENT:].copy()
 
-    def _others(self, grains: Grains) -> bool:
+    def _others(self, grains: State) -> bool:
         """Whether these are no longer what they were."""
         walls, rectangles, plates = self._surfaces
         if len(walls) != len(grains.walls) or len(rectangles) != len(grains.rectangles):
@@ -157,10 +156,10 @@ class Sleep:
         present = np.not_equal(grains.plates[:, PRESENT:], plates).any()
         return bool(differs(grains.walls, walls, VX) or differs(grains.rectangles, rectangles, VELOCITY_X) or present)
 
-    def _part_now(self, grains: Grains, dt: float) -> bool:
+    def _part_now(self, grains: State, dt: float) -> bool:
         """Whether anybody sleeps; then the part is up to date, and nobody within is out of balance."""
         while self._some:
-            pairs = grains.current_pairs()
+            pairs = current_pairs(grains)
             if self._part is None or self._builds != pairs.builds:
                 self._divide(grains, dt)
                 self._builds = pairs.builds
@@ -176,13 +175,13 @@ class Sleep:
             self._wake(grains)
         return False
 
-    def _wake(self, grains: Grains) -> None:
+    def _wake(self, grains: State) -> None:
         """Wake who is called, and their neighbours."""
         pairs = grains.pairs
         wake(self.asleep, self.called, pairs.start, pairs.partner, self.quiet)
         self._some, self._part = bool(self.asleep.any()), None
 
-    def _divide(self, grains: Grains, dt: float) -> None:
+    def _divide(self, grains: State, dt: float) -> None:
         """The discs that move and those beside them as a part; of all others the balance of their frozen contacts."""
         find_border(self.asleep, grains.pairs.start, grains.pairs.partner, self._role)
         sleepers = np.flatnonzero(self.asleep)
@@ -197,7 +196,7 @@ class Sleep:
         self._loads = against.load, against.plate_load, against.rectangle_load
         self._part = part_of(grains, self.asleep, np.flatnonzero(self._role), frozen=False)
 
-    def _take_out(self, grains: Grains, part: Part) -> None:
+    def _take_out(self, grains: State, part: Part) -> None:
         """Bring the part to the state of the system."""
         d = grains.discs
         take_out(
@@ -206,7 +205,7 @@ class Sleep:
             part.external_torque,
         )  # fmt: skip
 
-    def _put_back(self, grains: Grains, part: Part, done: int, first: bool) -> int:
+    def _put_back(self, grains: State, part: Part, done: int, first: bool) -> int:
         """Bring the system to the state of the part after ``done`` steps; how many sleepers are called."""
         d = grains.discs
         calls: int = put_back(

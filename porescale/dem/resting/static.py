@@ -4,30 +4,9 @@ them from outside.  Their contact steps change nothing else, and are left out.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
-
 from porescale.common.compiled.jit import kernel
 from porescale.dem.motion.periodic_cell import image
-
-if TYPE_CHECKING:
-    from porescale.dem.grains import Grains
-
-Array = NDArray[np.float64]
-
-
-class Standing(NamedTuple):
-    """What a system was when a step in full left it as it was: copies of positions (n, 2) m, radii (n,) m and walls
-    (w, WALL), since owners write into those; step (s), drag (1/s).
-    """
-
-    position: Array
-    radius: Array
-    walls: Array
-    dt: float
-    drag: float
+from porescale.dem.state import State, StaticState
 
 
 @kernel
@@ -99,29 +78,29 @@ def bear(
     return True
 
 
-def others_are_about(grains: Grains) -> bool:
+def others_are_about(grains: State) -> bool:
     """Whether a step does more than discs and walls: plates, rectangles, bodies, bonds, sleep or an energy book."""
-    others = grains._steering, grains.segments, grains.bonds, grains.sleep, grains.book
+    others = grains.drivers, grains.segments, grains.bonds, grains.sleep, grains.book
     return bool(len(grains.plates) or len(grains.rectangles) or any(other is not None for other in others))
 
 
-def what_stands(grains: Grains, drag: float) -> Standing | None:
+def what_stands(grains: State, drag: float) -> StaticState | None:
     """What ``grains`` are right after a step in full, if another would leave them so; None if something may change.
 
     Copies go into those of the step before, if there are any.
     """
-    d, pairs, walls, last = grains.discs, grains.pairs, grains.walls, grains.standing
-    if grains._stale or others_are_about(grains) or not resting(grains.held, d.velocity, d.spin):
+    d, pairs, walls, last = grains.discs, grains.pairs, grains.walls, grains.static
+    if grains.stale or others_are_about(grains) or not resting(grains.held, d.velocity, d.spin):
         return None
     if not clear(d.position, d.radius, pairs.start, pairs.partner, walls, grains.cell):
         return None
     if last is None or last.walls.shape != walls.shape:
-        return Standing(d.position.copy(), d.radius.copy(), walls.copy(), grains.last_dt, drag)
+        return StaticState(d.position.copy(), d.radius.copy(), walls.copy(), grains.last_dt, drag)
     last.position[:], last.radius[:], last.walls[:] = d.position, d.radius, walls
     return last._replace(dt=grains.last_dt, drag=drag)
 
 
-def leave_out(grains: Grains, last: Standing, dt: float, count: int, drag: float) -> bool:
+def leave_out(grains: State, last: StaticState, dt: float, count: int, drag: float) -> bool:
     """Do ``count`` contact steps under grains.external_force and external_torque, if all stands as it did ``last``,
     without doing each; else False, and nothing is done.  Other arguments as in Grains.step.
     """
@@ -134,6 +113,6 @@ def leave_out(grains: Grains, last: Standing, dt: float, count: int, drag: float
     ):  # fmt: skip
         return False
     grains.steps += count
-    grains._steps_of_dt += count
+    grains.steps_of_dt += count
     grains.last_count = count
     return True

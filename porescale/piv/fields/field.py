@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.atomic import write_text
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.record.atomic import write_text
 from porescale.piv.estimate.measure import Vectors
 
 Array = NDArray[np.float64]

@@ -12,7 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from porescale.common.record.atomic import write_bytes
+from porescale.common.core.atomic import write_bytes
 from porescale.piv.fields.compare import Comparison
 from porescale.piv.fields.field import Field
 from porescale.piv.fields.vortices import vortices

@@ -14,8 +14,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.atomic import write_bytes, write_text
 from porescale.common.pictures.film import write_film
-from porescale.common.record.atomic import write_bytes, write_text
 from porescale.common.record.open_run import Run
 from porescale.piv.images.camera import Shooting, frames
 

@@ -18,7 +18,7 @@ from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
 from porescale.dem.measures.survey import angular_momentum, kinetic_energy, momentum
-from porescale.dem.step import packing_limit
+from porescale.dem.timestep import packing_limit
 
 Array = NDArray[np.float64]
 

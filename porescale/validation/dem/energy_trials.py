@@ -15,8 +15,9 @@ from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
 from porescale.dem.measures.energy import energy_book
 from porescale.dem.motion.control import Moved, Placed, Pushed
-from porescale.dem.motion.drivers import Clump, Steering
+from porescale.dem.motion.drivers import Clump
 from porescale.dem.motion.time_function import Sine
+from porescale.dem.steering import Steering
 from porescale.validation.dem.discs_trials import DENSITY, MASS, RADIUS, STIFFNESS
 
 Array = NDArray[np.float64]

@@ -16,7 +16,7 @@ from typing import Any
 
 import h5py
 
-from porescale.common.record.atomic import whole
+from porescale.common.core.atomic import whole
 
 
 class Forgiving(io.RawIOBase):

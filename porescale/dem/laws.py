@@ -1,0 +1,84 @@
+"""Which contact law holds where in a system: between discs, by their materials, and at every surface."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.neighbors.pair_list import PairList
+from porescale.dem.bodies.rigid import masses
+from porescale.dem.contact.law import COLUMNS, memory_of
+from porescale.dem.contact.materials import Law, Materials
+from porescale.dem.state import State
+
+Array = NDArray[np.float64]
+
+
+def material_numbers(law: Law | Materials, material: ArrayLike | None, count: int) -> NDArray[np.uint8] | None:
+    """Numbers (count,) of the discs' materials, or None where there is one; InputError at a number that is none."""
+    if not isinstance(law, Materials) or len(law.names) == 1:
+        return None
+    given = np.broadcast_to(np.asarray(0 if material is None else material), (count,))
+    bad = np.flatnonzero((given < 0) | (given >= len(law.names)))
+    if len(bad):
+        raise InputError(
+            Fault("material", given[bad[0]].item(), f"of grain {bad[0]}", allowed=f"0 to {len(law.names) - 1}")
+        )
+    return given.astype(np.uint8)
+
+
+def set_law(grains: State, law: Law | Materials, wall_law: Law | None = None) -> None:
+    """Use ``law`` between discs and ``wall_law`` (default: the same) at sides and plates from now on.
+
+    One law holds between all materials.  Raises InputError when the laws are of different kinds, or have fewer
+    materials than the discs.
+    """
+    known = 1 if grains.material is None else int(grains.material.max(initial=0)) + 1
+    if isinstance(law, Materials):
+        if known > len(law.names):
+            raise InputError(Fault("material", known - 1, "no such material", allowed=f"< {len(law.names)}"))
+        at_walls = law.against(law.wall) if wall_law is None else [wall_law] * len(law.names)
+        table, used = law.table(), [*law.all(), *at_walls]
+    else:
+        at_walls = [law if wall_law is None else wall_law] * known
+        table, used = np.tile(law.row(), (known, known, 1)), [law, *at_walls]
+    if len({type(each) for each in used}) > 1:
+        raise InputError(Fault("contact.law", "linear and hertz", "all laws of a system must be of one kind"))
+    grains.law, grains.laws_at_walls, grains.laws = law, at_walls, used
+    grains.wall_law = law if wall_law is None and not isinstance(law, Materials) else wall_law
+    kind = used[0].kind(grains.springs > 1 or any(each.rolls for each in used))
+    grains.contact = kind(table, grains.material, masses(grains), grains.book)
+    _widen(grains, memory_of(grains.contact))
+    grains.wall_laws = surface_laws(grains, grains.wall_frictions)
+    grains.plate_laws = surface_laws(grains, grains.plate_frictions)
+    grains.rectangle_laws = surface_laws(grains, grains.rectangle_frictions)
+
+
+def surface_laws(grains: State, frictions: Sequence[float | None]) -> Array:
+    """Rows (surfaces, materials, COLUMNS) of the wall laws, with its own friction where a surface has one."""
+    grains.free_law = None  # see resting/frictionless.py
+    rows = [
+        [(each if own is None else each.with_friction(own)).row() for each in grains.laws_at_walls] for own in frictions
+    ]
+    return np.array(rows).reshape(len(rows), len(grains.laws_at_walls), COLUMNS)
+
+
+def _widen(grains: State, springs: int) -> None:
+    """Arrays for ``springs`` springs per contact; what there is is kept, new ones are zero."""
+    more = springs - grains.springs
+    if more == 0:
+        return
+    box = grains.box
+    pairs = PairList(grains.discs.count, grains.skin, box.lower, box.upper, box.periodic, carried=springs)
+    if grains.springs > 0:
+        state = grains.pairs.state()
+        pairs.group = grains.pairs.group
+        pairs.restore({**state, "carried": np.pad(state["carried"], ((0, 0), (0, more)))})
+    grains.pairs = pairs
+    grains.sweeps.forget()
+    grains.springs = springs
+    for name in ("wall_spring", "plate_spring", "rectangle_spring"):
+        setattr(grains, name, np.pad(getattr(grains, name), ((0, 0), (0, 0), (0, more))))

@@ -1,0 +1,172 @@
+"""State of a system of grains: arrays and settings, without what steps it (step.py, grains.py) or measures it.
+
+Kernels write into the arrays; functions over a State stand in the files that import it.  Positions are not wrapped on
+periodic sides.  SI units per metre of depth.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.neighbors.pair_list import PairList
+from porescale.dem.contact.law import BOOK, KernelLaw
+from porescale.dem.contact.materials import Law, Materials
+from porescale.dem.discs import Discs
+from porescale.dem.forces.bonds import BondList
+from porescale.dem.forces.segment_list import SegmentList
+from porescale.dem.forces.threads import Sweeps
+from porescale.dem.forces.walls import Box, Plate
+from porescale.dem.motion.drivers import Drivers
+from porescale.dem.motion.periodic_cell import Still, Straining, period_of
+
+Array = NDArray[np.float64]
+
+
+class StaticState(NamedTuple):
+    """What a system was when a full step left it as it was, see resting/static.py: copies of positions (n, 2) m, radii
+    (n,) m and walls (w, WALL), since owners write into those; step (s), drag (1/s).
+    """
+
+    position: Array
+    radius: Array
+    walls: Array
+    dt: float
+    drag: float
+
+
+class Sleeping(Protocol):
+    """What the state keeps of discs that sleep: resting/sleep.py."""
+
+    asleep: NDArray[np.uint8]  # (n,)
+    allowed: Array  # (n,) N/m, beyond which a disc out of balance wakes
+    removed: Array  # (n,) J/m, kinetic energy taken so far
+
+    @property
+    def count(self) -> int:
+        """Number of discs that sleep."""
+
+    def step(self, grains: State, dt: float, drag: float, count: int) -> int:
+        """Up to ``count`` contact steps of the discs that are awake; returns how many are left for all."""
+
+    def state(self) -> dict[str, Any]:
+        """What decides from here on which discs sleep."""
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Overwrite it with what ``state`` returned."""
+
+
+class State:
+    """Discs, the laws of their contacts, and what they touch.
+
+    discs, box, material (n,) uint8 or None where there is one;  book (n, BOOK) or None: energy budget, see
+    measures/energy.py, book_start: its values before the first step.
+    Laws: law (as given), wall_law, laws_at_walls (one for each material), laws (all in use), contact (as kernels take
+    it), free_law (as steps of free discs take it, None: not known yet), springs: springs of a contact.
+    Walls: wall_names, walls (w, WALL), wall_frictions (None: that of the law), wall_laws (w, m, COLUMNS), wall_spring
+    (w, n, s) m, wall_load (w, 3) N/m, N m/m of the last step, with its views wall_force (w, 2) and wall_moment (w,),
+    about the walls' points.  Plates: plate_names, plates (p, 5), plate_frictions, plate_laws, plate_spring (p, n, s),
+    plate_force (p, 2).  Rectangles: rectangles (k, 6) and likewise.  Springs: tangential and, with rolling resistance,
+    rolling.
+    Pairs: pairs, skin (m), reach (n,) m where it is more than the radii, stale: the list must be checked before the
+    next step, sweeps, touching (n,): discs that touch each disc, of the last survey.
+    Loads: external_force (n, 2) N/m, external_torque (n,) N m/m.  held (n, 3): not 0 where x, y, rotation of a disc is
+    held;  withheld (n, 3) N/m, N/m, N m/m: force and torque that held components did not follow, mean over the last
+    call of ``step``; both (0, 3) until first used.
+    Parts: drivers (clumps, controls, moving walls, strain), segments, bonds, sleep; None where there is none.
+    Clock: steps, last_count (steps of the last call), last_dt (s), seconds (before the step last changed), steps_of_dt
+    (since then).  Last check: plate_sides (p, 3, n): right of the plate, beside it, height, valid if plates_checked.
+    static: where nothing can move, see resting/static.py.
+    """
+
+    law: Law | Materials
+    wall_law: Law | None
+    laws_at_walls: list[Law]
+    laws: list[Law]
+    contact: KernelLaw
+    wall_laws: Array
+    plate_laws: Array
+    rectangle_laws: Array
+    pairs: PairList
+
+    def __init__(
+        self, discs: Discs, box: Box, plates: list[Plate], material: NDArray[np.uint8] | None, skin: float, energy: bool
+    ) -> None:
+        """Discs in ``box`` with ``plates``, without laws (laws.set_law) and so without a pair list."""
+        count = discs.count
+        self.discs, self.box, self.material, self.skin = discs, box, material, skin
+        self.book = np.zeros((count, BOOK)) if energy else None
+        self.book_start: Array | None = None
+        self.springs = 0
+        self.free_law: KernelLaw | None = None
+        self.wall_names, self.walls = box.walls()
+        self.wall_frictions: list[float | None] = [None] * len(self.walls)
+        self.wall_spring = np.zeros((len(self.walls), count, 0))
+        self.load_walls()
+        self.plate_names = [plate.name for plate in plates]
+        self.plates = np.array([plate.row() for plate in plates]).reshape(-1, 5)
+        self.plate_frictions = [plate.friction for plate in plates]
+        self.plate_spring, self.plate_force = np.zeros((len(plates), count, 0)), np.zeros((len(plates), 2))
+        self.rectangle_frictions: list[float | None] = []
+        self.rectangles, self.rectangle_spring = np.zeros((0, 6)), np.zeros((0, count, 0))
+        self.rectangle_force = np.zeros((0, 2))
+        self.sweeps, self.stale, self.touching = Sweeps(count), True, np.zeros(count, np.int64)
+        self.reach: Array | None = None
+        self.external_force, self.external_torque = np.zeros((count, 2)), np.zeros(count)
+        self.held, self.withheld = np.zeros((0, 3), np.uint8), np.zeros((0, 3))
+        self.drivers: Drivers | None = None
+        self.segments: SegmentList | None = None
+        self.bonds: BondList | None = None
+        self.sleep: Sleeping | None = None
+        self.still = Still(*box.period)
+        self.steps, self.last_count, self.last_dt, self.seconds, self.steps_of_dt = 0, 0, 0.0, 0.0, 0
+        self.plate_sides, self.plates_checked = np.zeros((len(plates), 3, count)), False
+        self.static: StaticState | None = None
+
+    def load_walls(self) -> None:
+        """Arrays for the load on as many walls as there are now."""
+        self.wall_load = np.zeros((len(self.walls), 3))
+        self.wall_force, self.wall_moment = self.wall_load[:, :2], self.wall_load[:, 2]
+
+    @property
+    def surfaces(self) -> int:
+        """Number of walls, plates and rectangles."""
+        return len(self.walls) + len(self.plates) + len(self.rectangles)
+
+    @property
+    def cell(self) -> Still | Straining:
+        """The periodic cell now, as kernels over pairs take it (periodic_cell.image), strained or not."""
+        return self.still if self.drivers is None else self.drivers.shape()
+
+    @property
+    def period(self) -> tuple[float, float, float]:
+        """Width and height of the periodic cell now, 0 where not periodic, and its tilt, m."""
+        return period_of(self.cell)
+
+    @property
+    def steered(self) -> bool:
+        """Whether there is or was a clump, a control, a moving wall or a strained cell."""
+        return self.drivers is not None
+
+    @property
+    def time(self) -> float:
+        """Seconds done; the same bits however the steps were divided into calls."""
+        return self.seconds + self.steps_of_dt * self.last_dt
+
+    def reset_clock(self) -> None:
+        """Count steps and seconds from zero again."""
+        self.steps, self.seconds, self.steps_of_dt = 0, 0.0, 0
+
+    def law_of(self, discs: NDArray[Any]) -> KernelLaw:
+        """The law as kernels take it for some of the discs, by index, without an energy budget."""
+        law = self.contact
+        own = None if law.material is None else law.material[discs]
+        return type(law)(law.table, own, law.mass[discs], None)
+
+    def stiffest_contact(self) -> tuple[float, float]:
+        """Normal stiffness (N/m) and dashpot (N s/m) of the stiffest contact there can be."""
+        d = self.discs
+        found = [law.stiffest(float(d.mass.min()), float(d.radius.min())) for law in self.laws]
+        return max(law.stiffness for law in found), max(law.damping for law in found)
