@@ -24,7 +24,7 @@ from porescale.build.frame_build import Placed
 from porescale.common.core.errors import Fault
 from porescale.coupling.limits import HELD_ONLY
 from porescale.lbm.collision.choose import choose
-from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
+from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
 from porescale.lbm.scales import Scales
 from porescale.scene.bodies_of_grains import by_hand, least_density
 from porescale.scene.sections import Scene

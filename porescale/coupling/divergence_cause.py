@@ -52,7 +52,8 @@ def _held_only(now: Circumstances) -> Found:
     if now.density_ratio is None or now.solid_operator not in limits.HELD_ONLY:
         return None
     return float("inf"), (
-        f"fluid.solid_operator = '{now.solid_operator}' with free grains, which run away with it; take {limits.RECOMMENDED!r}"
+        f"fluid.solid_operator = '{now.solid_operator}' with free grains, which run away with it;"
+        f" take {limits.RECOMMENDED!r}"
     )
 
 

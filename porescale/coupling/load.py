@@ -18,8 +18,8 @@ def accumulate_load_row(y, rows, patches, motion, periodic_x, ramp, scratch, par
     """Load of one collided row on the bodies in it.
 
     scratch (3, BLOCK + nx + BLOCK): rho, then j along x and y, times B/sum e, as collide_saturated_row leaves them,
-    and zero beyond the box;  the rest as in ``rasterize_row``.  Overwrites partial (5 * BLOCK,), and row_load (n, largest
-    height, 5) for these bodies and rows: force along x and y, torque, inside mass and its moment of inertia;
+    and zero beyond the box;  the rest as in ``rasterize_row``.  Overwrites partial (5 * BLOCK,), and row_load (n,
+    largest height, 5) for these bodies and rows: force along x and y, torque, inside mass and its moment of inertia;
     where rims are soft, with a fourth row of scratch, the slip |u - v|, also the sums of e (1 - e) times slip and of
     e (1 - e) (partial 7 * BLOCK, row_load 7).
     """

@@ -13,7 +13,7 @@ from porescale.lbm.boundary.links import Rim
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.boundary.thin_plate import Plate, exchange
 from porescale.lbm.collision.choose import choose, without_force
-from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
+from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
 from porescale.lbm.equilibrium import equilibrium
 from porescale.lbm.moments import moment_fields
 from porescale.lbm.stream import sweep

@@ -13,7 +13,7 @@ from porescale.common.schema.sections import Refused, Section, quantity
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting.choose import WEIGHTINGS, fitting_weight, fitting_weights
 from porescale.lbm.collision.choose import OPERATORS
-from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
+from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
 from porescale.lbm.scales import NAMES
 
 CHOICES: dict[str, Collection[str]] = {

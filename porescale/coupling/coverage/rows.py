@@ -43,11 +43,11 @@ class Motion(NamedTuple):
     spin (load.py);  theta (n,): softness of the rims (soft_rim.py).
     """
 
-    centre: NDArray[np.float64]
-    velocity: NDArray[np.float64]
-    spin: NDArray[np.float64]
-    shift: NDArray[np.float64]
-    theta: NDArray[np.float64]
+    centre: NDArray[np.floating]
+    velocity: NDArray[np.floating]
+    spin: NDArray[np.floating]
+    shift: NDArray[np.floating]
+    theta: NDArray[np.floating]
 
 
 class Rows(NamedTuple):

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import DTypeLike
 
 from porescale.common.core.register import discover
-from porescale.coupling.solid.law import SolidOperator
+from porescale.coupling.solid.entry import SolidOperator
 
 SOLID_OPERATORS: dict[str, SolidOperator] = discover(__package__, "SOLID_OPERATOR")
 """Every ``SOLID_OPERATOR`` of a file of this folder, by name."""

@@ -1,7 +1,8 @@
 """A partially saturated cell that holds a plane wall where it is, at every relaxation time.
 
 Momentum, the other antisymmetric moments q and the symmetric part of the populations relax with rates of their own,
-functions of the solid fraction e.  With t = 1 - e, k = tau - 1/2, 1/beta = 1/b - 1/2, lambda = 1/s_q - 1/2, k0 = 1/s_e - 1/2:
+functions of the solid fraction e.  With t = 1 - e, k = tau - 1/2, 1/beta = 1/b - 1/2, lambda = 1/s_q - 1/2 and
+k0 = 1/s_e - 1/2:
 
     j*  = j + F + b (rho v - j - F/2)          b: weight ``wall`` of weighting/wall.py
     q*  = (1 - s_q) q
@@ -29,9 +30,8 @@ import numpy as np
 
 from porescale.common.compiled.jit import inline
 from porescale.coupling.coverage.soft_rim import SLIP_FACTOR
+from porescale.coupling.solid.entry import Holds, SolidOperator
 from porescale.coupling.solid.law import (
-    Holds,
-    SolidOperator,
     blend,
     collide_with_solid,
     force_share,

@@ -12,9 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from porescale.coupling.solid.entry import Holds, SolidOperator
 from porescale.coupling.solid.law import (
-    Holds,
-    SolidOperator,
     blend,
     collide_then_blend,
     collide_with_solid,

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from porescale.coupling.solid.entry import SolidOperator
 from porescale.coupling.solid.law import (
-    SolidOperator,
     blend,
     collide_then_blend,
     collide_with_solid,

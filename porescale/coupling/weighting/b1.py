@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.coupling.weighting.law import Weighting, weight
+from porescale.coupling.weighting.entry import Weighting
+from porescale.coupling.weighting.law import weight
 from porescale.lbm.collision.law import numbers
 
 

@@ -7,7 +7,7 @@ from numpy.typing import DTypeLike
 
 from porescale.common.core.register import discover
 from porescale.coupling.solid.choose import solid_operator
-from porescale.coupling.weighting.law import Weighting
+from porescale.coupling.weighting.entry import Weighting
 
 WEIGHTINGS: dict[str, Weighting] = discover(__package__, "WEIGHTING")
 """Every ``WEIGHTING`` of a file of this folder, by name."""

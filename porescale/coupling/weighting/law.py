@@ -1,15 +1,13 @@
 """What every weight B of a partially saturated cell provides.
 
 A weight is one file of this folder: its law, a flat NamedTuple in the dtype of the populations; a body of ``weight``
-for that law; and its row in the register, ``WEIGHTING = Weighting(...)``, which choose.py finds.
+for that law; and its row in the register, ``WEIGHTING = Weighting(...)``, which choose.py finds (entry.py).
 
 B follows from the solid area fraction e (Noble & Torczynski 1998): 0 where e = 0, 1 where e = 1.  tau in it is the
 molecular relaxation time: with an eddy viscosity the geometry must not breathe with the flow.  Grains that share a cell
 have B of min(1, sum of e), split in proportion to e; summing B(e) would make contacts porous.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
@@ -30,25 +28,6 @@ class WeightLaw(Protocol):
 
 
 weight = by_law(WeightLaw.weight)
-
-
-@dataclass(frozen=True)
-class Weighting:
-    """A row of the register.
-
-    name : in scenes;  purpose : what it is good for, one line;  law : its NamedTuple, whose field ``k`` is tau - 1/2;
-    others come from ``constants``;  soft_law : that of bodies with soft rims, where it has one;  general : whether it
-    goes with every solid operator that has no weight of its own;  order : place in lists, the first general one is used
-    where none is named.
-    """
-
-    name: str
-    purpose: str
-    law: Any
-    constants: Mapping[str, float] = field(default_factory=dict)
-    soft_law: Any = None
-    general: bool = True
-    order: int = 100
 
 
 @kernel

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from porescale.coupling.coverage.soft_rim import SLIP_FACTOR
-from porescale.coupling.weighting.law import Weighting, weight
+from porescale.coupling.weighting.entry import Weighting
+from porescale.coupling.weighting.law import weight
 from porescale.lbm.collision.law import numbers
 
 

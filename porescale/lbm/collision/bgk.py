@@ -8,9 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from porescale.lbm.collision.entry import Operator, Stability
 from porescale.lbm.collision.law import (
-    Operator,
-    Stability,
     collide,
     collide_partial,
     half_force,

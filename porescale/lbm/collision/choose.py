@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import DTypeLike
 
 from porescale.common.core.register import discover
-from porescale.lbm.collision.law import Operator
-from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
+from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL, Operator
 
 OPERATORS: dict[str, Operator] = discover(__package__, "OPERATOR")
 """Every ``OPERATOR`` of a file of this folder, by name."""

@@ -5,14 +5,12 @@ An operator is one file of this folder.  It holds
   - its law: a flat NamedTuple of numbers whose first fields are ``rate`` (1/tau), ``fx`` and ``fy`` (body force
     density), lattice units, in the dtype of the populations;
   - bodies for that law of the four functions of ``CollisionLaw``, each a kernel:  ``@collide.of(MyLaw)``;
-  - its row in the register, ``OPERATOR = Operator(...)``, which choose.py finds.
+  - its row in the register, ``OPERATOR = Operator(...)``, which choose.py finds (entry.py).
 
 Kernels take the law as their last argument and are compiled once for each law in use.  Numbers of a kernel come from
 ``numbers``, or they would promote single precision.  Directions in opposite pairs and shifted populations: lattice.py.
 """
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -78,41 +76,6 @@ half_force = by_law(CollisionLaw.half_force)
 shear_rate = by_law(CollisionLaw.shear_rate)
 collide = by_law(CollisionLaw.collide)
 collide_partial = by_law(CollisionLaw.collide_partial)
-
-
-class Stability(NamedTuple):
-    """Cell Reynolds numbers |u|/nu up to which an operator holds on the map of docs/stability/stability.md, rounded
-    down: in the open (a thin double shear layer, lbm.shear) and under a lid that starts at once (lbm.cavity), without
-    and with an eddy viscosity of Smagorinsky's constant 0.1.  With eddies a flow holds, but is right only where the
-    molecular viscosity leads."""
-
-    in_the_open: float
-    in_the_open_with_eddies: float
-    under_a_lid: float
-    under_a_lid_with_eddies: float
-
-
-@dataclass(frozen=True)
-class Operator:
-    """A row of the register.
-
-    name : in scenes;  purpose : what it is good for, one line;  law, eddy_law : its NamedTuples, without and with an
-    eddy viscosity (``eddy_version``);  third_order_rate : of a law, the rate of the antisymmetric moments that are not
-    momentum;  constants : values of further fields of the law (``magic`` is given by its user);  law_without_force :
-    with the same fields, for a force of zero;  holds : see ``Stability``, None where it was not measured;  soft_rim :
-    whether grains get soft rims with it unless the scene says otherwise;  order : place in lists.
-    """
-
-    name: str
-    purpose: str
-    law: Any
-    eddy_law: Any
-    third_order_rate: Callable[[Any], float]
-    constants: Mapping[str, float] = field(default_factory=dict)
-    law_without_force: Any = None
-    holds: Stability | None = None
-    soft_rim: bool = False
-    order: int = 100
 
 
 class Numbers(NamedTuple):

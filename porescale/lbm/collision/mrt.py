@@ -18,9 +18,8 @@ from typing import NamedTuple
 import numpy as np
 
 from porescale.common.compiled.jit import inline
+from porescale.lbm.collision.entry import Operator, Stability
 from porescale.lbm.collision.law import (
-    Operator,
-    Stability,
     collide,
     collide_partial,
     collide_then_add,

@@ -10,9 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from porescale.common.compiled.jit import inline
+from porescale.lbm.collision.entry import Operator, Stability
 from porescale.lbm.collision.law import (
-    Operator,
-    Stability,
     collide,
     collide_partial,
     half_force,
@@ -22,8 +21,6 @@ from porescale.lbm.collision.law import (
     shear_rate,
 )
 from porescale.lbm.collision.smagorinsky import eddy_version
-
-MAGIC_MIDWAY_WALL = 3 / 16
 
 
 class Trt(NamedTuple):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from porescale.common.evidence.validations import Measured, Validations
-from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
+from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
 from porescale.validation.lbm import cavity as verify_cavity
 from porescale.validation.lbm import channels_flows as lab
 from porescale.validation.lbm import open_sides as verify_open
