@@ -164,9 +164,10 @@ def table(folder: Path, name: str) -> dict[str, Array]:
 
 def validations() -> Validations:
     """All rows of ``verify``."""
-    from continuum_sph.validation.validations import VALIDATIONS
+    from porescale.common.evidence.discover import registers
+    from porescale.common.evidence.validations import Validations
 
-    return VALIDATIONS
+    return Validations(registers("continuum_sph.validation", "VALIDATIONS"))
 
 
 def benchmarks() -> Benchmarks:

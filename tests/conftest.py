@@ -3,6 +3,12 @@
 from __future__ import annotations
 
 import os
+import random
+import signal
+import sys
+import tracemalloc
+from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -17,6 +23,7 @@ os.environ.setdefault("NUMBA_NUM_THREADS", str(max(2, os.cpu_count() or 1)))
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--share", default="0/1", help="run every n-th of the chosen tests, from the k-th: k/n")
+    parser.addoption("--shuffle", type=int, help="run files, and the tests of each, in an order by this seed")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -28,3 +35,38 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if parts > 1:
         config.hook.pytest_deselected(items=[item for k, item in enumerate(items) if k % parts != part])
         items[:] = items[part::parts]
+    if config.option.shuffle is not None:
+        dice = random.Random(config.option.shuffle)
+        files = {path: dice.random() for path in sorted({item.path for item in items})}
+        places = {item.nodeid: dice.random() for item in items}
+        items.sort(key=lambda item: (files[item.path], places[item.nodeid]))
+
+
+def process_state() -> dict[str, Any]:
+    """What one test could change for the next: folder, handlers of signals, tracing, environment."""
+    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM, signal.SIGXFSZ)
+    return {
+        "folder": os.getcwd(),
+        "signals": {number: signal.getsignal(number) for number in numbers},
+        "tracing": tracemalloc.is_tracing(),
+        "environment": {key: value for key, value in os.environ.items() if key != "PYTEST_CURRENT_TEST"},
+    }
+
+
+@pytest.fixture(autouse=True)
+def the_next_test_finds_the_process_as_it_was() -> Iterator[None]:
+    """Threads of the kernels as before each test, and an error where a test leaves anything else changed.
+
+    Libraries may set variables of the environment when they are imported.
+    """
+    before = process_state()
+    threads = sys.modules["numba"].get_num_threads() if "numba" in sys.modules else None
+    yield
+    if "numba" in sys.modules:
+        numba = sys.modules["numba"]
+        numba.set_num_threads(threads or numba.config.NUMBA_NUM_THREADS)
+    after = process_state()
+    after["environment"] = {key: after["environment"].get(key) for key in before["environment"]}
+    tracemalloc.stop()
+    os.chdir(before["folder"])
+    assert after == before

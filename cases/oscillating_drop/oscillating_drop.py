@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.validation import fluids_trials as trials_fluids
+from continuum_sph.validation import fluids as trials_fluids
 from continuum_sph.validation.exact_drop import drop_swing, swing_period
-from continuum_sph.validation.fluids_trials import OUTER, SWINGING, TENSION
+from continuum_sph.validation.fluids import OUTER, SWINGING, TENSION
 from continuum_sph.validation.trials import run_until
 from porescale.output.case import conclude, options, stage
 

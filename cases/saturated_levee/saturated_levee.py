@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from continuum_sph.build.seepage_model import SeepageSimulation
-from continuum_sph.validation.levee_trials import FAR, OVER, PARTS, Levee
+from continuum_sph.validation.levee import FAR, OVER, PARTS, Levee
 from porescale.common.pictures.film import write_film
 from porescale.output.case import conclude, draw, options
 from porescale.output.case_bodies import pixels

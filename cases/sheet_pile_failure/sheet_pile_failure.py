@@ -13,8 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from continuum_sph.build.seepage_model import SeepageSimulation
-from continuum_sph.validation.pile import BOUNDS
-from continuum_sph.validation.pile_trials import FREELY, WATER, Heave
+from continuum_sph.validation.pile import BOUNDS, FREELY, WATER, Heave
 from porescale.common.core.constants import GRAVITY
 from porescale.common.pictures.film import write_film
 from porescale.output.case import conclude, options

@@ -1,12 +1,298 @@
-"""Validations of ground between prescribed levels and of ground being wetted under a constant head."""
+"""Validations of ground between prescribed levels and of ground being wetted under a constant head.
+
+A dam of held ground between water at two levels: seepage with a free surface, and what is known of it.  SI.
+
+Water that stands on dry soil and sinks into it.  SI.
+
+Without capillarity the wetted soil above the front, at depth z, is full; at its surface stands the water that is left,
+h = h0 - n z.  Darcy: n dz/dt = k (h + z)/z, so that with a = 1 - n
+
+    t = (n/k) {z/a - (h0/a²) ln(1 + a z/h0)}
+
+and z = √(2 k h0 t/n) at first, imbibition under a constant head (Green & Ampt 1911).
+"""
 
 from __future__ import annotations
 
 import functools
+import math
+from dataclasses import dataclass
 
-from continuum_sph.validation.dam_trials import STATIONS, Dam, steady
-from continuum_sph.validation.infiltration_trials import Imbibition
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from continuum_sph.build.instruments import Cloud, Level, surface
+from continuum_sph.seepage import Frame, PoreFlow, Reservoir, Resistance, Seepage, Supply
+from continuum_sph.seepage.overlap import Overlap
+from continuum_sph.seepage.reservoir import BERTH, berths
+from continuum_sph.validation.seepage_trials import COLUMNS, water_in
+from continuum_sph.validation.soil_trials import SKIN
+from continuum_sph.water.density import LINEAR
+from continuum_sph.water.eos import Tait
+from continuum_sph.water.fluids import Fluid
+from continuum_sph.water.parameters import Law
+from continuum_sph.water.pressure_walls import tank_walls
+from continuum_sph.water.smoothing import Smoothing
+from continuum_sph.water.state import Layer
+from porescale.common.core.constants import GRAVITY
 from porescale.common.evidence.validations import Measured, Validations
+from porescale.common.neighbors import PairList, square_lattice
+
+Floats = NDArray[np.float64]
+
+WATER = 1000.0  # kg/m³
+POROSITY = 0.4
+
+STATIONS = (0.25, 0.5, 0.75)  # of the length
+SURFACE = {
+    (1.0, 0.0): (0.918, 0.797, 0.634),
+    (2.0, 0.0): (0.886, 0.735, 0.540),
+    (1.0, 0.3): (0.922, 0.810, 0.663),
+}
+"""Heights of the free surface over H1 there, by (L, H2) over H1: the free-boundary problem solved by a variational
+inequality, three digits."""
+
+
+def held_between(
+    size: tuple[float, float], spacing: float, soil: Floats, water: Floats, pressure: Floats, pools: list[Reservoir],
+    permeability: float, sound_speed: float, ratio: float, most: int, **options: float | bool
+) -> Seepage:  # fmt: skip
+    """Ground that is held at ``soil`` (s, 2) m in a tank (width, height), m, water at ``water`` (n, 2) m under
+    ``pressure`` (n,) Pa, and ``pools``; ``most`` particles of water at once."""
+    (width, height), smoothing = size, Smoothing("wendland", ratio * spacing)
+    layers = int(np.ceil(smoothing.support / spacing - 0.5 - 1e-9))
+    walls, state = tank_walls(width, height, spacing, layers), Tait(WATER, sound_speed)
+    frame = Frame(soil, spacing**2, POROSITY, permeability)
+    law = {"alpha": 0.1, "diffusion": 0.02, "noise": LINEAR, "cut": True, "corrected": True, "shifting": 0.0} | options
+    rules = Law(smoothing, spacing, (Fluid(state),), (0.0, -GRAVITY), **law)  # type: ignore[arg-type]
+    margin, skin, present = layers * spacing, SKIN * smoothing.length, len(water)
+    berth = berths(most, width, height + margin, BERTH * smoothing.support)
+    x = np.concatenate((water, berth[present:], walls))
+    rho = np.full(most, WATER)
+    rho[:present] = state.density_at(pressure)
+    mass = np.full(len(x), WATER * spacing**2)
+    mass[:present] = rho[:present] * spacing**2
+    mass[present:most] = 0.0
+    layer = Layer(most, x, np.zeros_like(x), mass, rho)
+    box = (-margin, -margin), (width + margin, float(berth[-1, 1]) + BERTH * smoothing.support)
+    flow = PoreFlow(
+        layer, rules, PairList(layer.count, skin, *box, full=True), skeleton=frame.skeleton,
+        overlap=Overlap(most, len(soil), smoothing.length, skin, *box), resistance=Resistance(POROSITY),
+    )  # fmt: skip
+    flow.lower[:] = 0.0
+    flow.upper[:] = width, np.inf
+    both = Seepage(flow, frame)
+    both.start()
+    layer.mass[:present] *= flow.porosity[:present]
+    both.supply = Supply(layer, pools, berth, spacing, WATER, WATER * sound_speed**2, GRAVITY)
+    both.supply.keep(0.0)
+    both.start()
+    return both
+
+
+@dataclass(frozen=True)
+class Dam:
+    """Ground between x = basin and basin + L.
+
+    rows : particles over the upstream level H1;  upstream, downstream, length : H1, H2, L, m;  basin : width of the
+    water on either side, m;  permeability m/s;  sound_speed m/s;  ratio : of smoothing length to spacing, 2: in
+    pores water's particles lie 1/√n further apart;  full : begins with water below a parabola, else dry.
+    """
+
+    rows: int = 20
+    upstream: float = 1.0
+    downstream: float = 0.0
+    length: float = 1.0
+    basin: float = 0.5
+    permeability: float = 0.1
+    sound_speed: float = 30.0
+    ratio: float = 2.0
+    full: bool = True
+
+    @property
+    def discharge(self) -> float:
+        """k (H1² - H2²)/2L, m²/s, whatever the surface (Charny 1951)."""
+        return self.permeability * (self.upstream**2 - self.downstream**2) / (2.0 * self.length)
+
+    @property
+    def surface(self) -> Floats:
+        """Exact heights (m) of the free surface at `STATIONS`; of a shape that `SURFACE` has."""
+        shape = round(self.length / self.upstream, 9), round(self.downstream / self.upstream, 9)
+        return self.upstream * np.array(SURFACE[shape])
+
+    def build(self, **options: float | bool) -> Seepage:
+        """At rest, reservoirs full."""
+        spacing = self.upstream / self.rows
+        face, end = self.basin, self.basin + self.length
+        size = end + self.basin, 1.2 * self.upstream
+        soil = square_lattice((face, 0.0), (end, size[1]), spacing)
+        x = square_lattice((0.0, 0.0), size, spacing)
+        top = np.where(x[:, 0] < face, self.upstream, 0.0)
+        if self.full:
+            part = np.clip((x[:, 0] - face) / self.length, 0.0, 1.0)
+            # Dupuit's parabola down to about where water comes out: nearly what it ends as
+            exit2 = max(self.downstream, 0.37 * (self.upstream**2 - self.downstream**2) / self.length) ** 2
+            parabola = np.sqrt(self.upstream**2 - (self.upstream**2 - exit2) * part)
+            top = np.where(x[:, 0] < end, parabola, self.downstream)
+        wet = x[:, 1] < top
+        pressure = WATER * GRAVITY * (top - x[:, 1])[wet]
+        zero = np.zeros(1)
+        gap = min(3.0 * spacing, 0.3 * self.basin)
+        pools = [
+            Reservoir("upstream", 0.0, face - gap, 0.0, zero, np.array([self.upstream]), (True, False)),
+            Reservoir("downstream", end + gap, size[0], 0.0, zero, np.array([self.downstream]), (False, True)),
+        ]
+        most = round(size[0] / spacing) * (self.rows + 2)
+        return held_between(
+            size, spacing, soil, x[wet], pressure, pools, self.permeability, self.sound_speed, self.ratio, most,
+            **options,
+        )  # fmt: skip
+
+    def heights(self, both: Seepage) -> Floats:
+        """Heights (m) of the free surface at `STATIONS`, each over a tenth of the length."""
+        cloud = water_there(both, self.upstream / self.rows, 2.0 * self.basin + self.length)
+        places = [self.basin + part * self.length for part in STATIONS]
+        return np.array([surface(Level(name="", x=x, breadth=0.1 * self.length), cloud) for x in places])
+
+    def course(self, both: Seepage, end: float, every: float) -> Floats:
+        """Rows (k, 6) at multiples of ``every`` (s) up to ``end`` (s): time s, water let in upstream and out downstream
+        so far m², heights at `STATIONS` m."""
+        assert both.supply is not None
+        above, below = both.supply.reservoirs
+        rows: list[tuple[float, ...]] = []
+        while len(rows) * every <= end:
+            while both.time < len(rows) * every:
+                both.advance()
+            let_in, let_out = above.let_in - above.let_out, below.let_out - below.let_in
+            rows.append((both.time, let_in / WATER, let_out / WATER, *self.heights(both)))
+        return np.array(rows)
+
+
+def water_there(both: Seepage, spacing: float, width: float) -> Cloud:
+    """Particles of water that there are, in a tank of ``width`` (m), each with the volume of ground that it fills."""
+    layer, n = both.water.layer, both.water.layer.fluid
+    there = layer.mass[:n] > 0.0
+    volume = (layer.mass[:n] / (both.water.porosity * layer.density))[there]
+    return Cloud(
+        layer.x[:n][there], volume, layer.pressure[:n][there], layer.v[:n][there],
+        both.water.law.smoothing.length, spacing, width,
+    )  # fmt: skip
+
+
+def steady(rows: Floats, begin: float) -> tuple[float, float, Floats]:
+    """Mean discharge (m²/s) into and out of a dam and heights (3,) m from ``begin`` (s) on, of the rows of a course."""
+    late = rows[rows[:, 0] >= begin]
+    into, out = (late[-1, 1:3] - late[0, 1:3]) / (late[-1, 0] - late[0, 0])
+    heights: Floats = late[:, 3:].mean(axis=0)
+    return float(into), float(out), heights
+
+
+@dataclass(frozen=True)
+class Infiltration:
+    """rows : particles over the soil's height;  height : of the soil, standing : h0, of the water on it, m;
+    permeability m/s;  sound_speed m/s."""
+
+    rows: int = 30
+    height: float = 0.3
+    standing: float = 0.15
+    permeability: float = 0.03
+    sound_speed: float = 40.0
+    porosity: float = 0.4
+
+    def time(self, depth: float) -> float:
+        """When (s) the front is at ``depth`` (m)."""
+        a, h0 = 1.0 - self.porosity, self.standing
+        return float(self.porosity / self.permeability * (depth / a - h0 / a**2 * np.log(1.0 + a * depth / h0)))
+
+    def front(self, time: float) -> float:
+        """Depth (m) of the front at ``time`` (s) while water still stands on the soil."""
+        return float(brentq(lambda z: self.time(z) - time, 0.0, self.standing / self.porosity))
+
+    def build(self) -> Seepage:
+        """Held, dry soil in a periodic column, and still water on it that is let go."""
+        spacing = self.height / self.rows
+        size = COLUMNS * spacing, self.height + self.standing
+        soil = Frame(
+            square_lattice((0.0, 0.0), (size[0], self.height), spacing), spacing**2, self.porosity, self.permeability
+        )
+        x = square_lattice((0.0, self.height), size, spacing)
+        return water_in(
+            soil, x, WATER * GRAVITY * (size[1] - x[:, 1]), size, spacing, self.sound_speed, Resistance(self.porosity),
+            gravity=GRAVITY, cut=True, alpha=0.1, shifting=1.0,
+        )  # fmt: skip
+
+    def reached(self, both: Seepage) -> float:
+        """Depth (m) of the front below the soil's surface."""
+        return self.height - half_full(both, self.rows, COLUMNS, self.height)
+
+
+def half_full(both: Seepage, rows: int, columns: int, height: float) -> float:
+    """Lowest height (m) at which a level across a column's soil is half full of water and its grains; ``height`` (m) of
+    the soil, ``rows`` by ``columns`` of particles, where none is."""
+    layer, h = both.water.layer, both.water.law.smoothing.length
+    n = layer.fluid
+    volume = layer.mass[:n] / (both.water.porosity * layer.density)
+    heights = np.linspace(0.0, height, 40 * rows + 1)
+    q = np.abs(heights[:, None] - layer.x[:n, 1]) / h
+    kernel = (np.maximum(0.0, 2.0 - q) ** 3 - 4.0 * np.maximum(0.0, 1.0 - q) ** 3) / (6.0 * h)
+    full = kernel @ volume * rows / (columns * height)
+    wet = np.flatnonzero(full > 0.5)
+    return float(heights[wet[0]]) if wet.size else height
+
+
+@dataclass(frozen=True)
+class Imbibition:
+    """Water drawn into dry soil from a face of constant head, without gravity: x_f = √(2 k h0 t/n).
+
+    The face is the end of a column of water that moves along with it: what is pressed with ρ g h0 there has lost none
+    of it where it enters the soil.  Fields as of `Infiltration`;  head : h0, m;  columns : of particles
+    across;  ratio : of smoothing length to spacing, 2: water's particles lie 1/n as far apart along pores as across.
+    """
+
+    rows: int = 40
+    height: float = 0.3
+    head: float = 0.3
+    permeability: float = 0.03
+    sound_speed: float = 40.0
+    porosity: float = 0.4
+    columns: int = 12
+    ratio: float = 2.0
+
+    def front(self, time: float) -> float:
+        """Way (m) of the front at ``time`` (s)."""
+        return float((2.0 * self.permeability * self.head * time / self.porosity) ** 0.5)
+
+    def build(self) -> Seepage:
+        """Held, dry soil in a periodic column, and water over it as much as fills its pores, under a piston."""
+        spacing = self.height / self.rows
+        standing = math.ceil(self.porosity * self.rows + 4) * spacing
+        size = self.columns * spacing, self.height + standing
+        soil = Frame(
+            square_lattice((0.0, 0.0), (size[0], self.height), spacing), spacing**2, self.porosity, self.permeability
+        )
+        x = square_lattice((0.0, self.height), size, spacing)
+        held = WATER * GRAVITY * self.head
+        # At the start pressure falls to none where the soil begins
+        pressure = held * (x[:, 1] - self.height) / standing
+        return water_in(
+            soil, x, pressure, size, spacing, self.sound_speed, Resistance(self.porosity), drained={"lid": held},
+            ratio=self.ratio, cut=True, alpha=0.1,
+        )  # fmt: skip
+
+    def advance(self, both: Seepage) -> None:
+        """One step, the face going along."""
+        both.advance()
+        (face,) = both.water.drains
+        behind = both.water.layer.x[face.rows, 1]
+        layers = len(behind) // self.columns
+        # Rows of the face lie half a spacing and more behind it
+        face.point = (0.0, float(behind.mean()) - 0.5 * layers * self.height / self.rows)
+
+    def reached(self, both: Seepage) -> float:
+        """Way (m) of the front."""
+        return self.height - half_full(both, self.rows, self.columns, self.height)
+
 
 VALIDATIONS = Validations()
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from continuum_sph.seepage import Seepage
 from continuum_sph.soil import SoilFlow
 from continuum_sph.soil.state import YY
-from continuum_sph.validation.infiltration_trials import Infiltration
+from continuum_sph.validation.levels import Infiltration
 from continuum_sph.validation.seepage_trials import (
     WATER,
     Consolidation,

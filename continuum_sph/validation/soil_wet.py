@@ -1,14 +1,105 @@
-"""Validations of slopes under water and of permeability; each function takes what its failing twin changes."""
+"""Validations of slopes under water and of permeability; each function takes what its failing twin changes.
+
+Endless layers of saturated soil on a slope, in still water and with water that seeps along them.  SI.
+
+Without dilatancy soil shears along a slope where τ = σ' sin φ.  In still water its weight less buoyancy both drives and
+holds, (1 - n)(ρ_s - ρ_w) g = γ', so the limit is tan β = sin φ as in air.  Water that flows along the slope with its
+surface in that of the soil has no pressure to give along it: the whole weight γ_sat drives and γ' holds,
+tan β = γ'/γ_sat sin φ, about half of it.  Beyond, soil and water go together: what drives less what holds over γ_sat/g.
+
+In a layer that repeats along the slope still water has no level.  Its pressure along the slope is put as the force that
+it is: none on the water, of its weight, and -(1 - n) ρ_w g sin β on the soil.
+"""
 
 from __future__ import annotations
 
 import functools
 import math
+from dataclasses import dataclass, replace
 
-from continuum_sph.validation.seepage_trials import discharge, permeated
-from continuum_sph.validation.soil_wet_trials import WetSlope
+from continuum_sph.build.soil_build import geostatic
+from continuum_sph.seepage import Resistance, Seepage
+from continuum_sph.soil import Material, SoilFlow
+from continuum_sph.validation.seepage_trials import COLUMNS, GRAINS, WATER, discharge, permeated, water_in
+from continuum_sph.validation.soil_trials import in_tank
 from porescale.common.core.constants import GRAVITY
 from porescale.common.evidence.validations import Measured, Validations
+from porescale.common.neighbors import square_lattice
+
+
+@dataclass(frozen=True)
+class WetSlope:
+    """degrees : β;  seeping : water flows along the slope, else it is still;  rows : particles over the depth of 1 m;
+    friction : sin φ;  permeability m/s;  stiffness : E, Pa;  sound_speed : of the water, m/s."""
+
+    degrees: float
+    seeping: bool
+    rows: int = 20
+    friction: float = 0.5
+    porosity: float = 0.4
+    permeability: float = 1e-2
+    stiffness: float = 2e6
+    sound_speed: float = 45.0
+
+    @property
+    def buoyant(self) -> float:
+        """γ'/g, kg/m³."""
+        return (1.0 - self.porosity) * (GRAINS - WATER)
+
+    @property
+    def whole(self) -> float:
+        """γ_sat/g, kg/m³."""
+        return self.porosity * WATER + (1.0 - self.porosity) * GRAINS
+
+    def driving(self, seeping: bool) -> float:
+        """Weight that drives over that which holds."""
+        return self.whole / self.buoyant if seeping else 1.0
+
+    def limit(self) -> float:
+        """Slope from which on it shears, degrees."""
+        return math.degrees(math.atan(self.friction / self.driving(self.seeping)))
+
+    def acceleration(self, seeping: bool | None = None) -> float:
+        """Of soil and water beyond the limit, m/s², less than none below;  seeping: other than its own."""
+        tilt, seeping = math.radians(self.degrees), self.seeping if seeping is None else seeping
+        return (
+            GRAVITY * self.buoyant / self.whole
+            * (self.driving(seeping) * math.sin(tilt) - self.friction * math.cos(tilt))
+        )  # fmt: skip
+
+    def build(self) -> tuple[Seepage, SoilFlow]:
+        """Both layers, and the soil of them, at rest with the stress of the weight across."""
+        spacing, tilt, n = 1.0 / self.rows, math.radians(self.degrees), self.porosity
+        size = (COLUMNS * spacing, 2.0)
+        material = Material(self.stiffness, (1.0 - n) * GRAINS, friction=self.friction, porosity=n)
+        x = square_lattice((0.0, 0.0), (size[0], 1.0), spacing)
+        across = GRAVITY * math.cos(tilt)
+        # σ_xx = σ_yy is what shearing along the slope leads to: soil that is not there yet contracts and presses water.
+        stress = geostatic(1.0 - x[:, 1], replace(material, density=self.buoyant), across, 1.0)
+        ground = in_tank(x, stress, size, spacing, material, gravity=GRAVITY, tilt=tilt, sides="none")
+        if not self.seeping:
+            along = GRAVITY * math.sin(tilt) * self.buoyant / material.density
+            ground.law = replace(ground.law, gravity=(along, -across))
+        both = water_in(
+            ground, x.copy(), WATER * across * (1.0 - x[:, 1]), size, spacing, self.sound_speed, Resistance(n),
+            permeability=self.permeability, gravity=across, modulus=material.column_modulus, alpha=0.1, cut=True,
+        )  # fmt: skip
+        if self.seeping:
+            both.water.law = replace(both.water.law, gravity=(GRAVITY * math.sin(tilt), -across))
+        both.start()
+        return both, ground
+
+    def slides(self, early: float = 0.2, late: float = 0.6) -> tuple[float, float]:
+        """(mean acceleration of the soil between two times, m/s²;  its mean speed at the second, m/s)."""
+        both, ground = self.build()
+        soil, marks = ground.soil, []
+        for time in (early, late):
+            while both.time < time:
+                both.advance()
+            marks.append((both.time, float(soil.v[: soil.soil, 0].mean())))
+        (t0, v0), (t1, v1) = marks
+        return (v1 - v0) / (t1 - t0), v1
+
 
 VALIDATIONS = Validations()
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from continuum_sph.build.instruments import Level, surface
 from continuum_sph.seepage import Reservoir, Seepage
-from continuum_sph.validation.dam_trials import WATER, held_between, water_there
+from continuum_sph.validation.levels import WATER, held_between, water_there
 from porescale.common.core.constants import GRAVITY
 from porescale.common.neighbors import square_lattice
 

@@ -27,7 +27,7 @@ from porescale.lbm.lattice import viscosity
 from porescale.lbm.sanity import SOUND, WORST_MACH, sane
 from porescale.lbm.scales import Scales
 from porescale.validation.coupling.grains_trials import LAW, faxen
-from porescale.validation.lbm.channels_flows import one_thread
+from porescale.validation.lbm.channels import one_thread
 
 STABILITY = Stability()
 Array = NDArray[np.floating]

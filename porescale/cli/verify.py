@@ -1,4 +1,4 @@
-"""``porescale verify``: the validations of every room."""
+"""``porescale verify``: the validations of every folder below `porescale.validation`."""
 
 from __future__ import annotations
 
@@ -9,15 +9,8 @@ if TYPE_CHECKING:
 
 
 def validations() -> Validations:
-    """All rows, room by room."""
+    """All rows, file by file."""
+    from porescale.common.evidence.discover import registers
     from porescale.common.evidence.validations import Validations
-    from porescale.validation.coupling.grains import VALIDATIONS as COUPLING
-    from porescale.validation.dem.discs import VALIDATIONS as DEM
-    from porescale.validation.homogenise import VALIDATIONS as SCENE
-    from porescale.validation.lbm.channels import VALIDATIONS as LBM
-    from porescale.validation.piv.pairs import VALIDATIONS as PIV
 
-    rows = Validations()
-    for room in (LBM, DEM, COUPLING, SCENE, PIV):
-        rows.include(room)
-    return rows
+    return Validations(registers("porescale.validation", "VALIDATIONS"))

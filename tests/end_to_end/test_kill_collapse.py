@@ -40,9 +40,11 @@ import sys, time
 from porescale.cli.main import main
 from porescale.coupling.step import Coupled
 
-step, done = Coupled.advance, []
+hold, step, done = int(sys.argv.pop(1)), Coupled.advance, []
 
 def advance(self):
+    if self.fluid.step == hold:
+        time.sleep(600)
     if not done:
         print("first step", flush=True)
     done.append(1)
@@ -52,7 +54,7 @@ def advance(self):
 Coupled.advance = advance
 sys.exit(main())
 """
-"""`porescale` that says when it begins and takes 1.2 s or more for its 600 steps, more than both delays together."""
+"""`porescale` that says when it begins, takes 2 ms or more for each step, and waits at step ``hold`` to be killed."""
 SAVE = ("--set", "output.checkpoint_seconds=0.001")
 """Saves with every row, at any speed of the machine, so that kills at different steps resume from different ones."""
 GATE = (55, 500)
@@ -125,10 +127,10 @@ def written(file: Path) -> int:
     return file.stat().st_mtime_ns if file.exists() else 0
 
 
-def killed_by_the_clock(delay: float, checkpoint: Path, *words: object) -> int:
-    """Exit code of the command line ``words`` in a process killed ``delay`` seconds after its first new checkpoint,
-    however long that takes on a busy machine."""
-    command = [sys.executable, "-c", SLOWED, *map(str, words)]
+def killed_by_the_clock(delay: float, hold: int, checkpoint: Path, *words: object) -> int:
+    """Exit code of the command line ``words`` in a process killed ``delay`` seconds after its first new checkpoint, at
+    step ``hold`` at the latest, however long that takes on a busy machine."""
+    command = [sys.executable, "-c", SLOWED, str(hold), *map(str, words)]
     with running(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         assert until(process, lambda: select.select([process.stdout], [], [], 0.0)[0])
         assert process.stdout.readline() == b"first step\n"
@@ -148,7 +150,8 @@ def test_killed_at_any_moment_it_ends_bit_for_bit_as_untouched(folder, scene, tm
     for number in range(2):
         resume = ("--resume",) if number else ()
         words = ("run", scene, "--out", out, "--quiet", "--threads", 1, *SAVE, *resume)
-        assert killed_by_the_clock(dice.uniform(0.0, 0.4), out / "checkpoint.h5", *words) == -signal.SIGKILL
+        delay, hold = dice.uniform(0.0, 0.4), (STEPS // 2, STEPS - 50)[number]
+        assert killed_by_the_clock(delay, hold, out / "checkpoint.h5", *words) == -signal.SIGKILL
         reached.append(read_checkpoint(out / "checkpoint.h5")["step"])  # whole, whenever it was
         assert all(np.isfinite(it.clouds["grains"].position).all() for it in open_run(out).snapshots())
     assert 0 < reached[0] < reached[1] < STEPS

@@ -39,10 +39,9 @@ def killed_in_the_middle(folder: Path, delay: float, *options: str) -> int:
         return size(series) > before and (any(folder.glob("parts/0*")) or any(folder.glob("*.vtkhdf")))
 
     with running(words(folder, *options), cwd=ROOT) as process:
-        until(process, moved)
+        assert until(process, moved)
         time.sleep(delay)
-        if process.poll() is None:
-            kill(process)
+        kill(process)
         talked(process)
         return process.returncode
 
@@ -70,12 +69,14 @@ def test_a_run_killed_again_and_again_ends_as_the_untouched_one(tmp_path, varyin
     ends = []
     for number in range(2):
         resume = ("--resume",) if number else ()
-        ends.append(killed_in_the_middle(killed, dice.uniform(0.0, 0.15), "--pause", "0.002", *resume, *options))
+        hold = ("--hold", str(120 + 60 * number))  # of 200 steps: however late the kill comes, there is a run to kill
+        delay = dice.uniform(0.0, 0.15)
+        ends.append(killed_in_the_middle(killed, delay, "--pause", "0.002", *hold, *resume, *options))
         run = open_run(killed)
         assert len(run) >= 1
         for snapshot in run.snapshots():
             assert np.isfinite(snapshot.grids["fields"].cells["velocity"]).all()
-    assert -signal.SIGKILL in ends
+    assert ends == [-signal.SIGKILL] * 2
     last = done(words(killed, "--resume", *options), cwd=ROOT)
     assert last.returncode == 0, last.stderr
     assert_same(untouched, killed)
@@ -86,7 +87,8 @@ def test_a_run_killed_again_and_again_ends_as_the_untouched_one(tmp_path, varyin
 def test_a_polite_stop_saves_and_says_so(tmp_path):
     untouched, stopped = tmp_path / "untouched", tmp_path / "stopped"
     run_toy(untouched, duration=0.2)
-    with running(words(stopped, "--pause", "0.002"), cwd=ROOT, stderr=subprocess.PIPE) as process:
+    slow = ("--pause", "0.1")  # 20 s for all steps: it still runs when the signal comes
+    with running(words(stopped, *slow), cwd=ROOT, stderr=subprocess.PIPE) as process:
         assert until(process, lambda: size(stopped / "series.csv"))
         process.send_signal(signal.SIGINT)
         _, said = talked(process)

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from continuum_sph.validation import fluids_trials as trials_fluids
+from continuum_sph.validation import fluids as trials_fluids
 from continuum_sph.validation import seepage as verify_seepage
 from porescale.output import case as cases
 from porescale.output.case import expected, missed

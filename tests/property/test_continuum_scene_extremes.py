@@ -99,10 +99,9 @@ def test_many_numbers_of_ground_end_in_a_report_or_in_refusals(changed, chosen):
     judged(changed, chosen)
 
 
-@pytest.mark.parametrize(("name", "key"), ALONE)
-def test_each_number_of_ground_alone_is_judged(name, key):
-    exponents = (-300, -12, -6, -3, 0, 3, 9, 15, 300)
-    verdicts = {said(name, {key: sign * 10.0**exponent}) for exponent in exponents for sign in (1, -1)}
-    verdicts.add(said(name, {key: 0.0}))
-    assert False in verdicts  # some of it is refused
-    assert not any(said(name, {key: value}) for value in (math.nan, math.inf))
+def test_each_number_of_ground_alone_is_judged(subtests):
+    values = [0.0, *(sign * 10.0**exponent for exponent in (-300, -12, -6, -3, 0, 3, 9, 15, 300) for sign in (1, -1))]
+    for name, key in ALONE:
+        with subtests.test(name=name, key=key):
+            assert False in {said(name, {key: value}) for value in values}  # some of it is refused
+            assert {said(name, {key: value}) for value in (math.nan, math.inf)} == {False}

@@ -16,6 +16,7 @@ import numpy as np
 from porescale.common.core.errors import PorescaleError, Unstable
 from porescale.common.record.drive import Outcome, drive
 from porescale.common.record.model import Cloud, Grid, Snapshot
+from tests.reference.waiting import PATIENCE
 
 
 class Toy:
@@ -23,7 +24,9 @@ class Toy:
 
     step_seconds = 1e-3
 
-    def __init__(self, beads: int = 7, pause: float = 0.0, breaks_at: int = 1 << 60, varying: bool = False) -> None:
+    def __init__(
+        self, beads: int = 7, pause: float = 0.0, breaks_at: int = 1 << 60, varying: bool = False, hold: int = 1 << 60
+    ) -> None:
         self.random = np.random.default_rng(1)
         self.x = self.random.random((beads, 2))
         self.v = np.zeros((beads, 2))
@@ -31,11 +34,13 @@ class Toy:
         self.step, self.time = 0, 0.0
         self.pause, self.breaks_at, self.variable_step = pause, breaks_at, varying
         self.calls: list[int] = []
+        self.hold = hold
+        """The step that it comes to and no further: it waits there until it is killed."""
 
     def advance(self, steps: int) -> None:
         self.calls.append(steps)
         for _ in range(steps):
-            time.sleep(self.pause)
+            time.sleep(self.pause if self.step < self.hold else PATIENCE)
             dt = self.step_seconds
             self.v += dt * (0.5 - self.x) * 40 + 1e-3 * self.random.normal(size=self.v.shape)
             self.x += dt * self.v
@@ -103,8 +108,9 @@ def main() -> int:
     parser.add_argument("--varying", action="store_true")
     parser.add_argument("--pause", type=float, default=0.0)
     parser.add_argument("--duration", type=float, default=0.2)
+    parser.add_argument("--hold", type=int, default=1 << 60)
     given = parser.parse_args()
-    model = Toy(pause=given.pause, varying=given.varying)
+    model = Toy(pause=given.pause, varying=given.varying, hold=given.hold)
     try:
         options = {"duration": given.duration, "checkpoint_seconds": 0.02, "resume": given.resume}
         run_toy(given.folder, model=model, **options)

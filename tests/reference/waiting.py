@@ -1,7 +1,7 @@
-"""Waiting for other processes, but not for ever: one that hangs says where, is killed, and the test fails.
+"""Waiting for what the operating system does in its own time, but not for ever: the one place where tests wait.
 
-A Python process that has faulthandler enabled prints the stacks of its threads on SIGABRT, also from within compiled
-code and while it waits for a lock.
+A process that hangs says where, is killed, and the test fails.  A Python process that has faulthandler enabled prints
+the stacks of its threads on SIGABRT, also from within compiled code and while it waits for a lock.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from typing import Any
 PATIENCE = 600.0
 """Seconds after which a child counts as hanging.  None takes more than a minute or two, compiling included."""
 LOOK = 2e-3
-"""Seconds between looks at a child that was forked."""
-LAST_WORDS = 5.0
-"""Seconds that a child has for printing its stacks."""
+"""Seconds between looks."""
+LAST_WORDS = 30.0
+"""Seconds that a child has for printing its stacks, on a busy machine too."""
 WORDS = 8000
 """Characters of what a child said that are shown."""
 
@@ -41,13 +41,16 @@ def done(command: Sequence[object], patience: float = PATIENCE, **named: Any) ->
 
 @contextmanager
 def running(command: Sequence[object], **named: Any) -> Iterator[subprocess.Popen[Any]]:
-    """A process of its own group with faulthandler enabled; killed with all that it started when left."""
+    """A process of its own group with faulthandler enabled; killed with all that it started when left.
+
+    Nothing of it runs afterwards, of what started no group of its own.
+    """
     env = {**named.pop("env", os.environ), "PYTHONFAULTHANDLER": "1"}
     process = subprocess.Popen([*map(str, command)], env=env, start_new_session=True, **named)
     try:
         yield process
     finally:
-        if process.poll() is None:
+        if process.poll() is None or living(process.pid):
             kill(process)
         process.wait()
         for pipe in (process.stdin, process.stdout, process.stderr):
@@ -56,11 +59,11 @@ def running(command: Sequence[object], **named: Any) -> Iterator[subprocess.Pope
 
 
 def talked(process: subprocess.Popen[Any], patience: float = PATIENCE) -> tuple[Any, Any]:
-    """``process.communicate()``; Hung after ``patience`` s."""
+    """``process.communicate()``; Hung after ``patience`` s, with the stacks of the process and of what it started."""
     try:
         return process.communicate(timeout=patience)
     except subprocess.TimeoutExpired:
-        process.send_signal(signal.SIGABRT)
+        os.killpg(process.pid, signal.SIGABRT)  # it is not waited for yet, so that its group is there
     try:
         said = process.communicate(timeout=LAST_WORDS)
     except subprocess.TimeoutExpired:
@@ -82,10 +85,35 @@ def until(process: subprocess.Popen[Any], happens: Callable[[], object], patienc
     return True
 
 
+def awaited(happens: Callable[[], Any], patience: float = PATIENCE) -> Any:
+    """What ``happens()`` gives as soon as that is true; Hung after ``patience`` s."""
+    began = time.monotonic()
+    while not (found := happens()):
+        if time.monotonic() - began > patience:
+            raise Hung(f"waited for {patience:g} s in vain")
+        time.sleep(LOOK)
+    return found
+
+
+def living(group: int) -> list[int]:
+    """Processes of a group that still run: a zombie, which waits to be waited for, does not."""
+    found = []
+    for status in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(FileNotFoundError, ProcessLookupError):  # it ends while it is looked at
+            state, _, its_group = status.read_text(errors="replace").rpartition(")")[2].split()[:3]
+            if state not in "ZX" and int(its_group) == group:
+                found.append(int(status.parent.name))
+    return found
+
+
 def kill(process: subprocess.Popen[Any]) -> None:
-    """SIGKILL to a process of `running` and to what it started."""
+    """SIGKILL to a process of `running` and to what it started; returns when none of them runs any more.
+
+    SIGKILL is on its way when the call that sends it returns: what it ends may still write, or be seen to run.
+    """
     with suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
+    awaited(lambda: not living(process.pid))
 
 
 def ended(number: int, patience: float = PATIENCE, said: Path | None = None, look: float = LOOK) -> int:

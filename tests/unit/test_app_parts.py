@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
 import sys
 import tomllib
 from collections.abc import Iterator
@@ -21,6 +20,7 @@ from porescale.common.record.model import Model, Snapshot
 from porescale.common.schema.sections import LEVELS, Section, load, scene_as_dict
 from porescale.scene.sections import Scene
 from tests.reference.scenes import column, dry, table, write
+from tests.reference.waiting import done
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 ROOT = Path(__file__).resolve().parents[2]
@@ -59,13 +59,13 @@ def test_the_package_and_its_help_wait_for_no_compiler():
     )
     for command in commands:
         words = [sys.executable, "-c", watch.format(command)]
-        assert subprocess.run(words, cwd=ROOT, check=False, capture_output=True).returncode == 0
+        assert done(words, cwd=ROOT).returncode == 0
     compiled = [
         sys.executable,
         "-c",
         watch.format("import porescale.common.compiled.compiling"),
     ]  # the twin: it would be seen
-    assert subprocess.run(compiled, cwd=ROOT, check=False).returncode == 1
+    assert done(compiled, cwd=ROOT).returncode == 1
 
 
 def test_the_template_states_every_section_and_is_a_scene(tmp_path):

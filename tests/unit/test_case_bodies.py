@@ -24,8 +24,8 @@ from porescale.output.case_bodies import (
     pixels,
     shot,
 )
-from porescale.validation.dem.rock_trials import DENSITY, law
-from porescale.validation.dem.segments_trials import OPEN
+from porescale.validation.dem.rock import DENSITY, law
+from porescale.validation.dem.segments import OPEN
 
 SQUARE = np.array([(0.0, 0.0), (0.01, 0.0), (0.01, 0.01), (0.0, 0.01)])
 

@@ -9,11 +9,10 @@ from porescale.coupling.coverage.overlap import overlapping, take_off
 from porescale.coupling.displaced import displaced, whole
 from porescale.coupling.step import buoyant_weight
 from porescale.dem.bodies.union import outline
+from porescale.validation.coupling import clumps as lab
 from porescale.validation.coupling import clumps as verify_clumps
-from porescale.validation.coupling import clumps_trials as lab
-from porescale.validation.coupling.clumps import VALIDATIONS
-from porescale.validation.coupling.clumps_trials import R, sunk
-from porescale.validation.coupling.clumps_trials import immersed_clumps as immersed
+from porescale.validation.coupling.clumps import VALIDATIONS, R, sunk
+from porescale.validation.coupling.clumps import immersed_clumps as immersed
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 TWO = [[(12.0, 20.0, 5.0), (16.0, 23.0, 4.0)], [(30.0, 24.0, 5.0), (34.0, 22.0, 5.0)]]

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import tracemalloc
-
 import numpy as np
 import pytest
 
 from porescale.coupling.psm import Saturated
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX
+from tests.reference.memory import peak
 
 SIDE = 600
 PAPER_SIDE = 12_000
@@ -30,13 +29,7 @@ def held(spacing):
     fluid = Fluid(SIDE, SIDE, 0.8, dtype=np.float32)
     motion = np.zeros_like(centre), np.zeros(len(centre))
     Saturated(fluid, radius).advance(fluid, centre, *motion)  # compiled before it counts
-    tracemalloc.start()
-    try:
-        wet = Saturated(fluid, radius)
-        wet.advance(fluid, centre, *motion)
-        return tracemalloc.get_traced_memory()[1]
-    finally:
-        tracemalloc.stop()
+    return peak(lambda: Saturated(fluid, radius).advance(fluid, centre, *motion))
 
 
 @pytest.mark.usefixtures("one_thread")

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-import tracemalloc
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from porescale.common.compiled.jit import set_threads, threads
+from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError
 from porescale.coupling.coverage import polygon as shapes
 from porescale.coupling.coverage.discs import cover
@@ -27,6 +26,7 @@ from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
 from porescale.validation.coupling import polygons_trials as lab
+from tests.reference.memory import peak
 from tests.reference.polygons import fractions_of
 
 EPS = np.finfo(float).eps
@@ -216,12 +216,11 @@ def test_a_state_of_polygons_goes_on_bit_for_bit():
 
 
 def test_two_threads_give_the_bits_of_one():
-    before, found = threads(), []
+    found = []
     for count in (1, 2):
         set_threads(count)
         coupled = flight(steps=30)
         found.append((coupled.fluid.populations.copy(), coupled.polygons.velocity.copy(), coupled.polygons.spin.copy()))
-    set_threads(before)
     for one, other in zip(*found, strict=True):
         np.testing.assert_array_equal(one, other)
 
@@ -229,13 +228,8 @@ def test_two_threads_give_the_bits_of_one():
 @pytest.mark.usefixtures("one_thread")
 def test_a_step_allocates_nothing_that_grows():
     coupled = flight(steps=4)
-    tracemalloc.start()
-    try:
-        for _ in range(5):
-            coupled.advance()
-        assert tracemalloc.get_traced_memory()[1] < 20_000  # views and numbers; a field of the box has 18 432 bytes
-    finally:
-        tracemalloc.stop()
+    held = peak(lambda: [coupled.advance() for _ in range(5)])
+    assert held < 20_000  # views and numbers; a field of the box has 18 432 bytes
 
 
 def test_corners_share_force_torque_and_weight_of_their_polygon():

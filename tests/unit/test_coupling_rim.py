@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import simpson
 
+from porescale.cli.verify import validations
 from porescale.coupling.coverage import soft_rim as rim
 from porescale.coupling.coverage.rows import make_patches
 from porescale.coupling.psm import Saturated
@@ -16,10 +17,10 @@ from porescale.coupling.solid.choose import choose_solid
 from porescale.coupling.weighting.choose import choose_weight
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
-from porescale.validation.coupling.fast import fast_starts
-from porescale.validation.coupling.fast_trials import STARTED, started
-from porescale.validation.coupling.grains import VALIDATIONS
+from porescale.validation.coupling.fast import STARTED, fast_starts, started
 from tests.reference.cylinder_start import CylinderStart
+
+VALIDATIONS = validations()
 
 EPS = np.finfo(float).eps
 PERIODIC = Sides("periodic", "periodic", "periodic", "periodic")

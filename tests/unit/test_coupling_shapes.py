@@ -11,7 +11,7 @@ from porescale.coupling.coverage.ring import Ring
 from porescale.coupling.psm import Saturated
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
-from porescale.validation.coupling import shapes_trials as lab
+from porescale.validation.coupling import rings as lab
 from tests.reference.shapes import POINTS, fractions
 
 EPS = np.finfo(float).eps

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import copy
-import tracemalloc
 
 import numba
 import numpy as np
 import pytest
 
-from porescale.common.compiled.jit import set_threads, threads
+from porescale.common.compiled.jit import set_threads
 from porescale.coupling import psm_kernels as solid_collision
 from porescale.coupling.psm import Saturated
 from porescale.coupling.solid.choose import choose_solid
@@ -19,6 +18,7 @@ from porescale.lbm.collision.choose import third_order_rate
 from porescale.lbm.fluid import Fluid
 from porescale.validation.coupling import grains_trials as lab
 from tests.reference import lbm as plain
+from tests.reference import memory
 from tests.reference import psm as twin
 
 EPS = np.finfo(float).eps
@@ -175,7 +175,6 @@ def test_an_empty_saturated_row_is_a_plain_one(operator, weighting):
 
 def final(count, steps=60, restart=None):
     """Populations and discs of a handful on ``count`` threads, after a restart from its own state if wanted."""
-    before = threads()
     set_threads(count)
     coupled = lab.handful(sides=("wall", "wall"), acceleration=(1e-5, -5e-5), gate=True)
     for step in range(steps):
@@ -188,7 +187,6 @@ def final(count, steps=60, restart=None):
             coupled.grains.move_plate(lab.GATE, 0.05)
         coupled.advance()
         coupled.fluid.plates[0].lower_edge += coupled.fluid.plates[0].speed
-    set_threads(before)
     d = coupled.grains.discs
     inside = coupled.fluid.populations[:, 1:-1, 1:-1]
     return [part.copy() for part in (inside, d.position, d.velocity, d.spin, coupled.force, coupled.torque)]
@@ -227,14 +225,6 @@ def test_reading_a_coupled_run_leaves_its_bits():
         np.testing.assert_array_equal(silent, read)
 
 
-def growth(step):
-    """Bytes by which memory grew at most within ``step``; numpy reports its arrays to tracemalloc."""
-    tracemalloc.reset_peak()
-    held = tracemalloc.get_traced_memory()[0]
-    step()
-    return tracemalloc.get_traced_memory()[1] - held
-
-
 def many():
     """8192 discs that meet each other, walls and a gate in 512 x 1024 cells: a byte a disc is 8 kB, a number 64 kB."""
     x, y = np.meshgrid(np.arange(64), np.arange(128))
@@ -252,12 +242,11 @@ def grown(coupled, step, steps=60):
     sizes, rebuilt, pairs = [], [], coupled.grains.pairs
     for _ in range(4):
         step()
-    tracemalloc.start()
-    for _ in range(steps):
-        before = pairs.builds, pairs._bounds.size
-        sizes.append(growth(step))
-        rebuilt.append((pairs.builds, pairs._bounds.size) != before)
-    tracemalloc.stop()
+    with memory.traced():
+        for _ in range(steps):
+            before = pairs.builds, pairs._bounds.size
+            sizes.append(memory.grown(step))
+            rebuilt.append((pairs.builds, pairs._bounds.size) != before)
     return np.array(sizes), np.array(rebuilt)
 
 

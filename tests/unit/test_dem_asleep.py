@@ -15,7 +15,7 @@ from porescale.dem.measures.energy import energy_book
 from porescale.dem.resting import sleep_kernels as kernels
 from porescale.dem.resting.sleep import Sleep
 from porescale.scene.sections import Scene
-from porescale.validation.dem import sleep_trials as lab
+from porescale.validation.dem import sleep as lab
 
 LONG = round(20 * lab.AFTER / 1.5e-5)
 

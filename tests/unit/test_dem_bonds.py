@@ -18,7 +18,7 @@ from porescale.dem.measures.contacts import contacts
 from porescale.dem.measures.energy import energy_book
 from porescale.dem.motion.control import Moved
 from porescale.dem.motion.drivers import Clump
-from porescale.validation.dem.segments_trials import OPEN, THICKNESS, mixed_cloud, regular
+from porescale.validation.dem.segments import OPEN, THICKNESS, mixed_cloud, regular
 
 K, R = 1e6, 0.01
 LAW = Linear(K)

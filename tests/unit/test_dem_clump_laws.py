@@ -19,7 +19,7 @@ from porescale.dem.measures.contacts import contacts
 from porescale.dem.measures.energy import energy_book
 from porescale.dem.measures.loads import on_surface
 from porescale.dem.prepare.settle import come_to_rest, weights_of
-from porescale.validation.dem.bodies_trials import clumped_cloud
+from porescale.validation.dem.bodies import clumped_cloud
 from porescale.validation.dem.discs_trials import DENSITY, MASS, RADIUS, STIFFNESS
 from tests.reference.pairs import neighbours, rows_of
 

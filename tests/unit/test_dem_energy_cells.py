@@ -10,7 +10,7 @@ import pytest
 from porescale.dem.contact.linear import Linear
 from porescale.dem.measures.energy import energy_book
 from porescale.dem.motion.periodic_cell import Still, Straining, before
-from porescale.validation.dem.bodies_trials import clumped_cell, random_cell
+from porescale.validation.dem.bodies import clumped_cell, random_cell
 
 LAW = Linear(1e7, 200.0, 2.5e6, 100.0, 0.4)
 CONTACT = math.pi / math.sqrt(2.0 * 1e7 / 0.785)  # s, of two of the largest discs

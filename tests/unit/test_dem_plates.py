@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import tracemalloc
-
 import numpy as np
 import pytest
 
 from porescale.common.core.errors import Unstable
+from porescale.dem import step as integrate
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.finite import first_without_number
 from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.measures import survey as measure
 from porescale.dem.prepare.merge import joined
+from tests.reference.memory import peak
 
 LAW = Linear(1e6, 0.0, 3e5, 0.0, 0.4)
 
@@ -114,11 +113,11 @@ def test_a_disc_may_pass_below_a_rising_plate():
 
 def test_the_first_disc_without_a_number_is_found_position_first():
     position, velocity, spin, angle = np.zeros((4, 2)), np.zeros((4, 2)), np.zeros(4), np.zeros(4)
-    for find in (first_without_number, first_without_number.py_func):
+    for find in (integrate.first_without_number, integrate.first_without_number.py_func):
         assert find(position, velocity, spin, angle) == (-1, -1)
     for at, column in (((angle, 1), 3), ((spin, 1), 2), ((velocity, (2, 1)), 1), ((position, (3, 0)), 0)):
         at[0][at[1]] = np.inf if column else np.nan
-        for find in (first_without_number, first_without_number.py_func):
+        for find in (integrate.first_without_number, integrate.first_without_number.py_func):
             assert find(position, velocity, spin, angle) == (np.ravel(at[1])[0], column)
 
 
@@ -131,18 +130,15 @@ def test_a_step_that_rebuilds_the_list_makes_no_array():
     weights = np.zeros((discs.count, 2))
     for _ in range(4):  # compiles, and lets the buffers of both lists grow
         discs.position += rng.normal(0.0, 0.05 / side, places.shape)
-        grains.stale = True
+        grains._stale = True
         grains.step(1e-6, weights)
     builds = grains.pairs.builds
     discs.position += 0.5 / side  # all go together: the pairs stay
     grains.pairs.anchor[0] -= 1.0  # but one seems to have come from far, so the list is rebuilt
-    grains.stale = True
-    tracemalloc.start()
-    grains.step(1e-6, weights)
-    _, peak = tracemalloc.get_traced_memory()
-    tracemalloc.stop()
+    grains._stale = True
+    held = peak(lambda: grains.step(1e-6, weights))
     assert grains.pairs.builds == builds + 1
-    assert peak < discs.count  # not even a flag for each disc
+    assert held < discs.count  # not even a flag for each disc
 
 
 def test_joining_keeps_what_rests_and_adds_the_rest():

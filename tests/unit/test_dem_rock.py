@@ -12,7 +12,7 @@ from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.measures.network import stiffness, voigt
 from porescale.dem.prepare.rock import Curve, load, rock
-from porescale.validation.dem.rock_trials import DENSITY, GAP, PRESSED, STIFFNESS, law, packing, sample
+from porescale.validation.dem.rock import DENSITY, GAP, PRESSED, STIFFNESS, law, packing, sample
 
 COUNT, SEED = 40, 3
 SQUARE = np.array([(0.0, 0.0), (0.01, 0.0), (0.01, 0.01), (0.0, 0.01)])

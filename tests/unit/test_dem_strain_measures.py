@@ -14,7 +14,7 @@ from porescale.dem.measures.fabric import fabric
 from porescale.dem.measures.porosity import disc_areas, porosity
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress, kinetic_stress
-from porescale.validation.dem.bodies_trials import random_cell
+from porescale.validation.dem.bodies import random_cell
 
 LAW = Linear(1e7, 20.0, 5e6, 10.0, 0.5)
 EPS = np.finfo(float).eps

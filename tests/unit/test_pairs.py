@@ -281,7 +281,6 @@ def test_one_thread_and_many_list_the_same(full, monkeypatch):
         listed = PairList(400, 0.1, LOWER, UPPER, (True, False), full)
         listed.build(x, reach)
         lists.append(rows_of(listed))
-    set_threads(None)
     assert lists[0] == lists[1] == neighbours(x, reach, 0.1, LOWER, UPPER, (True, False), full)
 
 

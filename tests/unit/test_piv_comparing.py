@@ -22,7 +22,7 @@ from porescale.piv.fields.vortices import Vortex, matched
 from porescale.piv.images.camera import Shooting, frames, shooting
 from porescale.piv.images.flows import Discs
 from porescale.piv.images.synth import Camera
-from porescale.validation.piv import pairs_trials as lab
+from porescale.validation.piv import pairs as lab
 from porescale.validation.piv.pairs import VALIDATIONS
 
 pytestmark = pytest.mark.usefixtures("one_thread")

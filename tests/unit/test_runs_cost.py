@@ -7,6 +7,7 @@ import time
 import pytest
 
 from porescale.common.record.cost import PACED, UNCOUNTED, Cost
+from tests.reference.waiting import awaited
 
 
 def counted(*blocks: tuple[int, float]) -> Cost:
@@ -27,13 +28,22 @@ def test_the_pace_is_that_of_the_beginning():
     assert cost.pace() == pytest.approx(1.1 * PACED / 20)
 
 
-def test_what_is_besides_steps_goes_on_over_sessions():
-    cost = Cost()
-    until = time.process_time() + 0.02
-    while time.process_time() < until:
-        pass
-    cost.block(1, 0.005)  # of which so much was a step
-    assert 0.01 < cost.besides() < 10.0
+def test_what_is_besides_steps_goes_on_over_sessions(monkeypatch):
+    spent = [100.0]
+    monkeypatch.setattr(time, "process_time", lambda: spent[0])
+    cost = Cost(began=100.0)
+    spent[0] += 20.0
+    cost.block(1, 5.0)  # of which so much was a step
+    assert cost.besides() == 15.0
     later = Cost.restored(cost.state())
-    assert later.besides() >= cost.state()["besides"] - 1e-3
-    assert Cost.restored({}).besides() < 0.01  # of a version that did not count
+    older = Cost.restored({})  # of a version that did not count
+    for one, earlier in ((later, 15.0), (older, 0.0)):
+        one.began = 120.0
+        assert one.besides() == earlier
+    spent[0] += 1.0
+    assert (later.besides(), older.besides()) == (16.0, 1.0)
+
+
+def test_the_clock_is_that_of_the_cores_the_process_was_on():
+    cost = Cost()
+    assert awaited(lambda: cost.besides() > 0.0)

@@ -18,6 +18,7 @@ from porescale.common.record.model import Model
 from porescale.common.record.open_run import open_run
 from porescale.common.record.stop import polite_stop
 from tests.reference.toy_model import Toy, run_toy
+from tests.reference.waiting import PATIENCE
 
 
 def bits(model: Toy) -> bytes:
@@ -298,7 +299,7 @@ def test_outside_the_main_thread_a_run_still_runs(tmp_path):
     outcomes = []
     thread = threading.Thread(target=lambda: outcomes.append(run_toy(tmp_path, duration=0.05)))
     thread.start()
-    thread.join()
+    thread.join(PATIENCE)
     assert outcomes[0].outcome == "finished"
     with polite_stop() as stop:
         assert not stop

@@ -5,7 +5,6 @@ from __future__ import annotations
 import errno
 import shutil
 import signal
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -19,6 +18,7 @@ from porescale.common.record.stop import Interrupted
 from tests.reference.failing_disk import Disk, failing, whole
 from tests.reference.same_run import differences
 from tests.reference.toy_model import Toy, run_toy
+from tests.reference.waiting import awaited
 
 
 class Watched(Toy):
@@ -137,8 +137,7 @@ def test_a_second_stop_does_not_wait_and_loses_nothing(tmp_path, untouched):
     def twice() -> None:
         first = signal.getsignal(signal.SIGINT)
         signal.raise_signal(signal.SIGINT)
-        while signal.getsignal(signal.SIGINT) is first:  # two that are pending together would be taken as one
-            time.sleep(1e-3)
+        awaited(lambda: signal.getsignal(signal.SIGINT) is not first)  # two pending together would be taken as one
         signal.raise_signal(signal.SIGINT)
 
     before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it

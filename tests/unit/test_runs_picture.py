@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 
 import av
@@ -16,6 +15,7 @@ from porescale.common.pictures.look import GRAIN, WALL, Look, length_unit, rgb, 
 from porescale.common.pictures.picture import Painter, paint, pictures
 from porescale.common.record import card, snapshots
 from porescale.common.record.model import Cloud, Grid, Snapshot
+from tests.reference.waiting import done
 
 NY, NX, DX = 30, 50, 1e-3
 
@@ -226,5 +226,4 @@ def test_painting_needs_no_display():
     words = (
         "from porescale.common.pictures.picture import Painter; import sys; print('matplotlib.pyplot' in sys.modules)"
     )
-    done = subprocess.run([sys.executable, "-c", words], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "False"
+    assert done([sys.executable, "-c", words]).stdout.strip() == "False"

@@ -3,27 +3,28 @@
 from __future__ import annotations
 
 import io
-import time
+import threading
 
 import pytest
 from rich.console import Console
 
 from porescale.common.record import progress
 from porescale.common.record.progress import COMPILING, Watch, duration
+from tests.reference.waiting import awaited
 
 
-def watched(monkeypatch, *, terminal=False, quiet=False) -> str:
-    """What a run of a tenth of a second says when people are impatient."""
+def watched(monkeypatch, terminal=False) -> str:
+    """What a run says that goes on until it was heard, first while it compiles, then while it runs."""
     monkeypatch.setattr(progress, "PATIENCE", 0.02)
     monkeypatch.setattr(progress, "LINE_EVERY", 0.04)
-    watch = Watch("dam", 0.0, 2.0, quiet=quiet)
+    watch = Watch("dam", 0.0, 2.0)
     said = io.StringIO()
     watch.console = Console(file=said, force_terminal=terminal, width=200)
     with watch:
-        for step in range(40):
-            if step >= 15:
-                watch.update(step, step / 20)
-            time.sleep(0.02)
+        awaited(lambda: COMPILING in said.getvalue())
+        watch.update(15, 0.75)
+        watch.update(16, 0.80)
+        awaited(lambda: "running" in said.getvalue() and ("%" if terminal else " left\n") in said.getvalue())
     return said.getvalue()
 
 
@@ -42,8 +43,13 @@ def test_a_terminal_gets_a_bar_that_names_the_compiling(monkeypatch):
     assert "%" in said
 
 
-def test_quiet_is_quiet(monkeypatch):
-    assert watched(monkeypatch, quiet=True) == ""
+def test_quiet_is_quiet(capsys):
+    before = threading.active_count()
+    with Watch("dam", 0.0, 2.0, quiet=True) as watch:
+        assert threading.active_count() == before  # nobody is there who could speak later
+        watch.update(15, 0.75)
+        watch.say("done")
+    assert capsys.readouterr().err == ""
 
 
 def test_a_short_run_says_nothing(capsys):

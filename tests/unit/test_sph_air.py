@@ -11,7 +11,7 @@ from continuum_sph.build.air_build import AIR, dry_pores, gas, thickness, with_a
 from continuum_sph.build.seepage_model import SeepageSimulation
 from continuum_sph.build.seepage_report import seepage_report
 from continuum_sph.scene.sections import Scene
-from continuum_sph.validation.air_trials import TrappedAir
+from continuum_sph.validation.air import TrappedAir
 from continuum_sph.water.eos import Gas, Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law

@@ -9,8 +9,8 @@ from continuum_sph.build.bubble import bubble, pieces
 from continuum_sph.build.model import Simulation
 from continuum_sph.build.report import report
 from continuum_sph.cli import scene_type
-from continuum_sph.validation import fluids_trials as trials_fluids
-from continuum_sph.validation.fluids_trials import TENSION
+from continuum_sph.validation import fluids as trials_fluids
+from continuum_sph.validation.fluids import TENSION
 from continuum_sph.water.energy_budget import book
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate

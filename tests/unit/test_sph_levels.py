@@ -228,6 +228,5 @@ def test_one_thread_and_many_keep_the_same_levels_in_the_same_bits():
         model = SeepageSimulation(scene())
         model.advance(60)
         ends.append((model.both.water.layer.x.copy(), model.series()))
-    set_threads(None)
     assert np.array_equal(ends[0][0], ends[1][0])
     assert ends[0][1] == ends[1][1]

@@ -74,7 +74,6 @@ def test_one_thread_and_many_give_the_same_bits():
         model = Simulation(scene())
         model.advance(120)
         found.append(bits(model))
-    set_threads(None)
     assert found[0] == found[1]
 
 

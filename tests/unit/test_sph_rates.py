@@ -9,7 +9,7 @@ import pytest
 
 from continuum_sph.build.build import flow_of
 from continuum_sph.validation import trials
-from continuum_sph.validation.fluids_trials import drop
+from continuum_sph.validation.fluids import drop
 from continuum_sph.validation.trials import column_scene, open_box
 from continuum_sph.water import rates, rates_walls
 from continuum_sph.water import step as steps

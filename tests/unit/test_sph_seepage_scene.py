@@ -92,7 +92,6 @@ def test_one_thread_and_many_give_the_same_bits():
         for _ in range(20):
             both.advance()
         ends.append((both.water.layer.x.copy(), both.water.skeleton.v.copy(), both.water.heat.copy()))
-    set_threads(None)
     assert all(np.array_equal(one, many) for one, many in zip(*ends, strict=True))
 
 

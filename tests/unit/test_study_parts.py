@@ -14,7 +14,7 @@ from porescale.common.evidence.overhead import SMALLEST, Built, Kind, Kinds, byt
 from porescale.dem.contact.linear import Linear
 from porescale.lbm.fluid import Fluid
 from porescale.validation.coupling.grains_trials import immersed
-from porescale.validation.dem.sleep_trials import heap
+from porescale.validation.dem.sleep import heap
 
 ROUGH = Linear(5e5, 2.0, 1.25e5, 1.0, 0.5)
 SMOOTH = Linear(5e5, 2.0)

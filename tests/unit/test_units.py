@@ -1,7 +1,6 @@
 """Quantities: numbers pass, texts with units become SI by exact decimal conversion."""
 
 import math
-import subprocess
 import sys
 
 import pytest
@@ -9,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from porescale.common.core.units import to_si
+from tests.reference.waiting import done
 
 PREFIXES = {"km": 3, "m": 0, "dm": -1, "cm": -2, "mm": -3, "um": -6, "nm": -9}
 
@@ -83,5 +83,4 @@ def test_what_is_no_quantity_is_refused_in_words(value: object, unit: str, words
 
 def test_numbers_never_load_pint() -> None:
     code = "import sys; from porescale.common.core.units import to_si; to_si(1.0, 'm'); print('pint' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "False"
+    assert done([sys.executable, "-c", code]).stdout.strip() == "False"

@@ -13,6 +13,7 @@ import pytest
 
 from porescale.common.schema.sections import load
 from tests.reference.toy_package import ToyScene
+from tests.reference.waiting import done, running, talked
 
 
 def card(folder: str = "runs/decay") -> dict[str, Any]:
@@ -167,8 +168,8 @@ def test_asking_for_help_imports_nothing_heavy() -> None:
         "heavy = {'numba', 'numpy', 'pint', 'pydantic', 'matplotlib', 'h5py'} & set(sys.modules)\n"
         "sys.exit(code or (str(heavy) if heavy else 0))"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    it = done([sys.executable, "-c", code])
+    assert it.returncode == 0, it.stderr
 
 
 def test_a_reader_that_leaves_is_no_traceback(tmp_path: Path) -> None:
@@ -184,13 +185,8 @@ def test_a_reader_that_leaves_is_no_traceback(tmp_path: Path) -> None:
     read, write = os.pipe()
     os.close(read)
     (tmp_path / "card.json").write_text(json.dumps({"package": "toy", "scene": {}}))
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        stdout=write,
-        stderr=subprocess.PIPE,
-        text=True,
-        check=False,
-        cwd=tmp_path,
-    )
-    os.close(write)
-    assert (done.returncode, done.stderr) == (1, "")
+    command = [sys.executable, "-c", code]
+    with running(command, stdout=write, stderr=subprocess.PIPE, text=True, cwd=tmp_path) as process:
+        os.close(write)
+        _, said = talked(process)
+    assert (process.returncode, said) == (1, "")

@@ -6,9 +6,11 @@ from dataclasses import replace
 
 import pytest
 
+from continuum_sph.cli import validations
 from continuum_sph.validation import air as verify_air
 from continuum_sph.validation.air import CLOSED, OPEN
-from continuum_sph.validation.validations import VALIDATIONS
+
+VALIDATIONS = validations()
 
 
 def tolerance(name):

@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from continuum_sph.cli import validations
 from continuum_sph.validation import flows as verify_flows
 from continuum_sph.validation import fluids as verify_fluids
 from continuum_sph.validation import water as verify
-from continuum_sph.validation.validations import VALIDATIONS
 from continuum_sph.water import step
 from continuum_sph.water.smoothing import WENDLAND, kernel_slope, kernel_value
 from continuum_sph.water.state import VISCOUS, P
+
+VALIDATIONS = validations()
 
 QUICK = [row.name for row in VALIDATIONS if not row.slow]
 SLOW = [row.name for row in VALIDATIONS if row.slow]

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from porescale.benchmarks import endurance
+from porescale.cli.verify import validations
 from porescale.common.core.errors import Unstable
 from porescale.common.evidence.endurance import (
     ASK_EVERY,
@@ -23,8 +24,9 @@ from porescale.common.evidence.endurance import (
 from porescale.common.record.drive import CHECK_EVERY
 from porescale.validation.coupling import endurance as verify_endurance
 from porescale.validation.coupling.endurance import VALIDATIONS
-from porescale.validation.coupling.grains import VALIDATIONS as ALL
 from porescale.validation.coupling.grains_trials import handful
+
+ALL = validations()
 
 
 @pytest.mark.slow

@@ -10,13 +10,15 @@ import math
 import numpy as np
 import pytest
 
+from porescale.cli.verify import validations
 from porescale.coupling import psm as saturated
 from porescale.validation.coupling import arrays as verify_arrays
 from porescale.validation.coupling import polygons as verify_polygons
 from porescale.validation.coupling import polygons_trials as lab
-from porescale.validation.coupling.grains import VALIDATIONS
 from tests.reference.shapes import fractions
 from tests.reference.stokes_polygons import Turning, regular
+
+VALIDATIONS = validations()
 
 
 def tolerance(name):

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from porescale.cli.verify import validations
 from porescale.validation.coupling import rings as verify_rings
-from porescale.validation.coupling.grains import VALIDATIONS as ALL
-from porescale.validation.coupling.rings import VALIDATIONS
-from porescale.validation.coupling.rings_trials import RADII, torques
-from porescale.validation.coupling.shapes_trials import couette_error, piston_flux
+from porescale.validation.coupling.rings import RADII, VALIDATIONS, couette_error, piston_flux, torques
+
+ALL = validations()
 
 
 def tolerance(name: str) -> float:

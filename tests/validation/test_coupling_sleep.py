@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from porescale.cli.verify import validations
+from porescale.validation.coupling import sleep as lab
 from porescale.validation.coupling import sleep as verify_sleep
-from porescale.validation.coupling import sleep_trials as lab
-from porescale.validation.coupling.grains import VALIDATIONS as ALL
 from porescale.validation.coupling.sleep import VALIDATIONS
+
+ALL = validations()
 
 pytestmark = pytest.mark.slow
 

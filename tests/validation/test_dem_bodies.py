@@ -8,7 +8,7 @@ import pytest
 from porescale.common.core.constants import GRAVITY
 from porescale.dem.motion.control import Moved
 from porescale.dem.motion.drivers import Clump
-from porescale.validation.dem import bodies_trials as lab
+from porescale.validation.dem import bodies as lab
 from porescale.validation.dem import energy_trials as boxed
 from porescale.validation.dem.bodies import VALIDATIONS
 from porescale.validation.dem.discs_trials import momentum_drift

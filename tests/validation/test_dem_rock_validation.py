@@ -7,7 +7,7 @@ import pytest
 from porescale.dem.contact.linear import Linear
 from porescale.dem.measures.network import stiffness
 from porescale.dem.prepare.rock import load
-from porescale.validation.dem import rock_trials as lab
+from porescale.validation.dem import rock as lab
 from porescale.validation.dem.rock import FAST, SEEDS, VALIDATIONS
 
 ROWS = {row.name: row for row in VALIDATIONS}

@@ -7,7 +7,7 @@ import pytest
 
 from porescale.dem.bodies.frames import rod_moments
 from porescale.dem.discs import make_discs
-from porescale.validation.dem import segments_trials as lab
+from porescale.validation.dem import segments as lab
 from porescale.validation.dem.discs_trials import momentum_drift
 from porescale.validation.dem.segments import VALIDATIONS
 

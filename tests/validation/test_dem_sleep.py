@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from porescale.cli.verify import validations
+from porescale.validation.dem import sleep as lab
 from porescale.validation.dem import sleep as verify_sleep
-from porescale.validation.dem import sleep_trials as lab
-from porescale.validation.dem.discs import VALIDATIONS as ALL
 from porescale.validation.dem.sleep import VALIDATIONS
+
+ALL = validations()
 
 
 @pytest.mark.parametrize(

@@ -5,12 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.validation.lbm import cavity_flows as cavities
-from porescale.validation.lbm import channels_flows as lab
-from porescale.validation.lbm import open_sides_flows as opened
+from porescale.cli.verify import validations
+from porescale.validation.lbm import cavity as cavities
+from porescale.validation.lbm import channels as lab
+from porescale.validation.lbm import open_sides as opened
+from porescale.validation.lbm import operators as operators
 from porescale.validation.lbm import operators as verify_operators
-from porescale.validation.lbm import operators_flows as operators
-from porescale.validation.lbm.channels import HEIGHT, OTHER_MAGIC, VALIDATIONS, VISCOSITIES
+from porescale.validation.lbm.channels import HEIGHT, OTHER_MAGIC, VISCOSITIES
+
+VALIDATIONS = validations()
 
 EPS = np.finfo(float).eps
 

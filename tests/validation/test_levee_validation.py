@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from continuum_sph.cli import validations
 from continuum_sph.soil import SoilFlow
 from continuum_sph.soil.state import GROWN
-from continuum_sph.validation.levee import QUICK, STIFFER, gone
-from continuum_sph.validation.levee_trials import FAR, GRAINS, PARTS, Levee
-from continuum_sph.validation.validations import VALIDATIONS
+from continuum_sph.validation.levee import FAR, GRAINS, PARTS, QUICK, STIFFER, Levee, gone
+
+VALIDATIONS = validations()
 
 SLID = Levee(rows=8, end=3.2)
 """Until its soil has slid to the end of the land."""

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from continuum_sph.cli import validations
 from continuum_sph.validation.pile import (
     APART,
     AROUND,
@@ -17,13 +18,15 @@ from continuum_sph.validation.pile import (
     NARROW,
     QUICK,
     RISING,
+    Around,
     one_side,
+    rests,
     rising,
 )
-from continuum_sph.validation.pile_trials import Around, rests
 from continuum_sph.validation.seepage_steady_trials import SheetPile
-from continuum_sph.validation.validations import VALIDATIONS
 from tests.reference.sheet_pile import around, bounds, seen, weakest_prism
+
+VALIDATIONS = validations()
 
 ROW = VALIDATIONS["continuum.heave_behind_pile"]
 MIDDLE = 0.5 * sum(BOUNDS[QUICK.share])

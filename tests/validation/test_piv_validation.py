@@ -13,7 +13,7 @@ from porescale.piv.estimate import fit
 from porescale.piv.estimate.measure import Settings, measure
 from porescale.piv.images import flows, spots
 from porescale.piv.images.synth import pair
-from porescale.validation.piv import pairs_trials as lab
+from porescale.validation.piv import pairs as lab
 from porescale.validation.piv.pairs import VALIDATIONS
 
 pytestmark = pytest.mark.usefixtures("one_thread")

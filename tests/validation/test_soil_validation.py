@@ -9,10 +9,12 @@ from pathlib import Path
 import pytest
 
 from continuum_sph.build.soil_model import SoilSimulation
+from continuum_sph.cli import validations
 from continuum_sph.validation import soil as verify_soil
-from continuum_sph.validation.validations import VALIDATIONS
 from tests.reference import continuum_cases
 from tests.reference.continuum_cases import missed
+
+VALIDATIONS = validations()
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 series = partial(continuum_cases.series, SoilSimulation, 200)

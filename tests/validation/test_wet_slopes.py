@@ -5,12 +5,13 @@ from __future__ import annotations
 import pytest
 
 from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.cli import validations
 from continuum_sph.validation import soil_wet as verify_soil_wet
-from continuum_sph.validation.soil_wet import SEEPING, STILL
-from continuum_sph.validation.soil_wet_trials import WetSlope
-from continuum_sph.validation.validations import VALIDATIONS
+from continuum_sph.validation.soil_wet import SEEPING, STILL, WetSlope
 from tests.reference import continuum_cases
 from tests.reference.continuum_cases import missed
+
+VALIDATIONS = validations()
 
 STEEP = "soil.body=[{outline=[[0,0],[2.2,0],[2.2,0.2],[1.224,0.2],[0.3,0.8],[0,0.8]]}]"  # 33 degrees
 

@@ -43,13 +43,21 @@ def writable(folder: Path) -> bool:
 
 
 def keep_only_used(current: Path, pattern: str, days: float = 30.0) -> None:
-    """Mark the folder ``current`` as used now and remove its neighbours matching ``pattern`` unused for ``days``.
+    """Mark the folder or file ``current`` as used now; remove its neighbours matching ``pattern`` unused for ``days``.
 
     Best effort: what cannot be marked or removed stays as it is.  ``current`` need not exist and is never removed.
     """
     with suppress(OSError):
-        if current.is_dir():
-            os.utime(current)
-        for folder in current.parent.glob(pattern):
-            if folder != current and folder.is_dir() and folder.stat().st_mtime < time.time() - days * DAY:
-                shutil.rmtree(folder, ignore_errors=True)
+        mark_used(current)
+        for other in current.parent.glob(pattern):
+            if other != current and other.stat().st_mtime < time.time() - days * DAY:
+                if other.is_dir():
+                    shutil.rmtree(other, ignore_errors=True)
+                else:
+                    other.unlink(missing_ok=True)
+
+
+def mark_used(path: Path) -> None:
+    """Mark a file or folder as used now; best effort, it need not exist."""
+    with suppress(OSError):
+        os.utime(path)

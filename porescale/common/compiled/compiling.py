@@ -6,8 +6,13 @@ depend on how a loop was cut into vectors.
 
 from __future__ import annotations
 
+import hashlib
 import os
+import sys
+import warnings
 from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
 from types import FunctionType
 from typing import Any
 
@@ -16,20 +21,27 @@ from typing import Any
 # nothing.
 os.environ.setdefault("GOMP_SPINCOUNT", "3000")
 
+import llvmlite
 import llvmlite.binding as llvm
 import numba
+import numpy as np
 from llvmlite import ir
+from numba import types
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, _CacheLocator
+from numba.core.errors import NumbaWarning
 from numba.extending import intrinsic, overload
 
-from porescale.common.compiled.cache import writable
-from porescale.common.compiled.jit import cache_folder, fetch, part, prange, thread
+from porescale.common.compiled.cache import keep_only_used, mark_used, writable
+from porescale.common.compiled.jit import GIVEN, cache_folder, fetch, part, prange, thread
+from porescale.common.compiled.kernel_key import Unknown, key_of, warning
 
 # A row kernel reads and writes nine population rows: LLVM must compare 36 pairs of them before it vectorises,
 # and gives up at 8 by default.
 llvm.set_option("porescale", "-runtime-memory-check-threshold=256")
 
 # Where the folder cannot be written numba would cache beside the sources, or give up: compile anew then.
-_FLAGS: dict[str, Any] = {"error_model": "numpy", "cache": writable(cache_folder()), "nogil": True}
+_KEPT = writable(cache_folder())
+_FLAGS: dict[str, Any] = {"error_model": "numpy", "nogil": True}
 _INLINED: Any = {"error_model": "numpy", "nogil": True, "forceinline": True}
 _MEANT = {"prange": (prange, numba.prange), "thread": (thread, vars(numba)["get_thread_id"])}
 """What kernels import from jit.py under names that numba knows by its own objects only."""
@@ -41,7 +53,119 @@ def dispatcher(function: FunctionType, options: dict[str, Any]) -> Any:
     for name, (ours, own) in _MEANT.items():
         if name in function.__code__.co_names and names.get(name) is ours:
             names[name] = own
-    return numba.njit(**options, **_FLAGS)(function)
+    made: Any = numba.njit(**options, **_FLAGS)(function)
+    if _KEPT:
+        vars(made)["_cache"] = KernelCache(function, options)
+    return made
+
+
+_AT_RUN_TIME = ("NUMBA_CACHE_DIR", "NUMBA_DEBUG_CACHE", "NUMBA_NUM_THREADS", "NUMBA_THREADING_LAYER")
+"""Variables that leave compiled code as it is."""
+
+
+@lru_cache(maxsize=1)
+def surroundings() -> str:
+    """Hash of what every kernel depends on: these modules, the versions of what compiles, and numba's variables."""
+    sources = [Path(__file__).with_name(f"{name}.py").read_text(encoding="utf-8") for name in _MACHINERY]
+    versions = (sys.version, numba.__version__, llvmlite.__version__, np.__version__)
+    flags = sorted(it for it in os.environ.items() if it[0].startswith("NUMBA_") and it[0] not in _AT_RUN_TIME)
+    return hashlib.sha256(repr((sources, versions, flags)).encode()).hexdigest()
+
+
+_MACHINERY = ("compiling", "jit", "kernel_key", "simd", "simd_code")
+
+
+def _described(kind: Any) -> Any:
+    """The type of an argument as values that `key_of` hashes.  Raises Unknown for functions and other objects."""
+    if isinstance(kind, types.BaseTuple):
+        parts: Any = kind
+        return (str(kind), getattr(kind, "instance_class", None), tuple(_described(it) for it in parts))
+    if isinstance(kind, types.Omitted):
+        return ("omitted", kind.value)
+    if isinstance(kind, types.Literal):
+        return ("literal", kind.literal_value)
+    if isinstance(kind, types.Array):
+        return (str(kind), _described(kind.dtype))
+    if isinstance(kind, types.Number | types.Boolean | types.NoneType | types.UnicodeType | types.Record):
+        return repr(kind)
+    raise Unknown(f"an argument of type {kind}")
+
+
+class _Place(_CacheLocator):
+    """Where kernels are kept: one folder, whatever file they stand in."""
+
+    def __init__(self, file: str) -> None:
+        self._py_file = file
+
+    @classmethod
+    def from_function(cls, py_func: Any, py_file: str) -> Any:
+        """Where a function of a file is kept."""
+        return cls(py_file)
+
+    def get_cache_path(self) -> str:
+        """The folder."""
+        return str(cache_folder())
+
+    def get_source_stamp(self) -> str:
+        """None: the key holds all of it."""
+        return ""
+
+    def get_disambiguator(self) -> str:
+        """None: the key holds all of it."""
+        return ""
+
+
+class _Results(CompileResultCacheImpl):
+    """How results are written and read: numba's way, in our place."""
+
+    _locator_classes: Any = (_Place,)
+
+
+class _Files(IndexDataCacheFile):
+    """One file for each key, written whole or not at all; without an index, for the key says what is in it."""
+
+    cleaned = False
+    """Whether this process has removed what was not used for long."""
+
+    def load(self, key: str | None) -> Any:
+        """What was kept under the key, or None."""
+        try:
+            kept = self._load_data(f"{key}.nbc") if key else None
+        except OSError:
+            return None
+        mark_used(Path(self._data_path(f"{key}.nbc")))
+        return kept
+
+    def save(self, key: str | None, data: Any) -> None:
+        """Keep ``data`` under the key."""
+        if key is None:
+            return
+        self._save_data(f"{key}.nbc", data)
+        if not (GIVEN or _Files.cleaned):
+            _Files.cleaned = True
+            keep_only_used(Path(self._data_path(f"{key}.nbc")), "*.nbc*")
+
+
+class KernelCache(FunctionCache):
+    """Compiled kernels of one function on disk, kept under all that was compiled into them."""
+
+    _impl_class = _Results
+
+    def __init__(self, function: FunctionType, options: dict[str, Any]) -> None:
+        super().__init__(function)
+        self._function, self._options = function, options
+        self._cache_file = _Files(self._cache_path, "", "")
+
+    def _index_key(self, sig: Any, codegen: Any) -> str | None:
+        """Name of the file for these types of arguments; None, with a warning, where there is no key."""
+        try:
+            given = (tuple(_described(kind) for kind in getattr(sig, "args", sig)), codegen.magic_tuple())
+            key = key_of(self._function, self._options, given, surroundings(), _MEANT)
+        except Unknown as unknown:
+            warnings.warn(warning(self._function, unknown), NumbaWarning, stacklevel=2)
+            return None
+        name = f"{self._function.__module__}.{self._function.__qualname__}".replace("<", "").replace(">", "")
+        return f"{name[-120:]}-{key}"
 
 
 def choose_by_law(chosen: Callable[..., Any], bodies: dict[type, Any]) -> None:

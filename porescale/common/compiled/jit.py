@@ -5,8 +5,8 @@ numba takes longer to import than a wrong scene takes to be found wrong, so what
 compiling.py does the work then, and simd_code.py for simd.py.
 
 Kernels are compiled once and kept on disk.  numba stamps a cached kernel with its own file only, so an edited contact
-law would survive inside a cached pair loop; the cache folder is therefore named after a hash of all sources of both
-packages.
+law would survive inside a cached pair loop; kernels are therefore kept under a hash of all that is compiled into them,
+see kernel_key.py.  An edit compiles anew the kernels that contain what was edited, and no others.
 """
 
 from __future__ import annotations
@@ -34,15 +34,22 @@ def source_hash() -> str:
     return hash_of(root / package for package in PACKAGES)
 
 
+def cache_folder_name() -> str:
+    """Name of the folder for compiled kernels where none is given: one for this version of Python."""
+    return f"kernels-py{sys.version_info.major}{sys.version_info.minor}"
+
+
 def cache_folder() -> Path:
-    """Folder for compiled kernels: ``$NUMBA_CACHE_DIR`` if set, else one named after the sources' hash."""
+    """Folder for compiled kernels: ``$NUMBA_CACHE_DIR`` if set, else one in the cache's own place."""
     given = os.environ.get("NUMBA_CACHE_DIR")
     if given:
         return Path(given)
-    return cache_root() / f"kernels-{source_hash()}-py{sys.version_info.major}{sys.version_info.minor}"
+    return cache_root() / cache_folder_name()
 
 
-if not os.environ.get("NUMBA_CACHE_DIR"):
+GIVEN = bool(os.environ.get("NUMBA_CACHE_DIR"))
+"""Whether the folder was named by the user, or by the process that started this one: nothing is removed from it."""
+if not GIVEN:
     KERNELS = cache_folder()
     os.environ["NUMBA_CACHE_DIR"] = str(KERNELS)
     keep_only_used(KERNELS, "kernels-*")
@@ -76,17 +83,18 @@ def compiler() -> Any:
 class Kernel:
     """A function that is compiled when it is first called; also from within other kernels.
 
-    py_func : the function in plain Python;  compiled : what numba makes of it, whose attributes it has as well.
+    py_func : the function in plain Python;  options : numba's for it;  compiled : what numba makes of it, whose
+    attributes it has as well.
     """
 
     def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
         update_wrapper(self, function)
-        self.py_func, self._options = function, options
+        self.py_func, self.options = function, options
 
     @cached_property
     def compiled(self) -> Any:
         """numba's dispatcher."""
-        return compiler().dispatcher(self.py_func, self._options)
+        return compiler().dispatcher(self.py_func, self.options)
 
     @property
     def _numba_type_(self) -> Any:
@@ -154,7 +162,7 @@ def by_law(signature: F) -> Any:
 
         return add
 
-    vars(chosen).update(__name__=signature.__name__, __doc__=signature.__doc__, of=of, py_func=plain)
+    vars(chosen).update(__name__=signature.__name__, __doc__=signature.__doc__, of=of, py_func=plain, meaning=bodies)
     when_compiling(lambda machine: machine.choose_by_law(chosen, bodies))
     return chosen
 
@@ -170,7 +178,7 @@ def by_precision(build: Callable[[type], Any]) -> Any:
         """The constants of the precision of ``number``."""
         return constants[8 * np.dtype(type(number)).itemsize]
 
-    vars(chosen).update(__name__=build.__name__, __doc__=build.__doc__)
+    vars(chosen).update(__name__=build.__name__, __doc__=build.__doc__, meaning=constants)
     when_compiling(lambda machine: machine.choose_by_precision(chosen, constants))
     return chosen
 
@@ -205,7 +213,7 @@ def sum_by_halves(count: int) -> Any:
             left = left[:half] + left[half:]
         return left[0]
 
-    vars(total)["py_func"] = total
+    vars(total).update(py_func=total, meaning=count)
     when_compiling(lambda machine: machine.teach_sum_by_halves(total, count))
     return total
 

@@ -1,4 +1,4 @@
-"""What the functions of lanes.py are in kernels: the machine's own vectors of LANES float64, and their operators."""
+"""What the functions of simd.py are in kernels: the machine's own vectors of LANES float64, and their operators."""
 
 from __future__ import annotations
 

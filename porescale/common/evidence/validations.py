@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import time
 import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -92,8 +92,11 @@ class Validation:
 class Validations:
     """A register of validations, in the order of registration.  Names are ``room.what``."""
 
-    def __init__(self) -> None:
+    def __init__(self, others: Iterable[Validations] = ()) -> None:
+        """Empty, or with all of the ``others``."""
         self._known: dict[str, Validation] = {}
+        for other in others:
+            self.include(other)
 
     def row(
         self, name: str, *, source: str, because: str, tolerance: float, slow: bool = False

@@ -5,37 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from porescale.common.evidence.validations import Measured, Validations
-from porescale.validation.coupling import (
-    arrays as verify_arrays,
-)
-from porescale.validation.coupling import (
-    clumps as verify_clumps,
-)
-from porescale.validation.coupling import (
-    endurance as verify_endurance,
-)
-from porescale.validation.coupling import (
-    exact,
-)
-from porescale.validation.coupling import (
-    fast as verify_fast,
-)
+from porescale.validation.coupling import exact
 from porescale.validation.coupling import grains_trials as lab
-from porescale.validation.coupling import (
-    moving as verify_moving,
-)
-from porescale.validation.coupling import (
-    polygons as verify_polygons,
-)
-from porescale.validation.coupling import (
-    rings as verify_rings,
-)
-from porescale.validation.coupling import (
-    sleep as verify_sleep,
-)
-from porescale.validation.coupling import (
-    towed as verify_towed,
-)
 
 VALIDATIONS = Validations()
 
@@ -135,17 +106,3 @@ def mirror() -> Measured:
     """Difference over the box's width of a scene and its mirrored twin: discs, walls, a gate that goes, 1000 steps."""
     found = lab.mirror_error(FALL, 1000)
     return Measured(0.0, found, found)
-
-
-for _more in (
-    verify_arrays.VALIDATIONS,
-    verify_towed.VALIDATIONS,
-    verify_moving.VALIDATIONS,
-    verify_fast.VALIDATIONS,
-    verify_rings.VALIDATIONS,
-    verify_clumps.VALIDATIONS,
-    verify_polygons.VALIDATIONS,
-    verify_endurance.VALIDATIONS,
-    verify_sleep.VALIDATIONS,
-):
-    VALIDATIONS.include(_more)

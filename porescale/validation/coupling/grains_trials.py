@@ -24,7 +24,7 @@ from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
 from porescale.lbm.scales import Scales
-from porescale.validation.lbm.channels_flows import one_thread
+from porescale.validation.lbm.channels import one_thread
 
 Array = NDArray[np.floating]
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.validation.coupling import polygons_trials as lab
-from porescale.validation.coupling.towed_trials import square_array_drag
+from porescale.validation.coupling.towed import square_array_drag
 
 VALIDATIONS = Validations()
 

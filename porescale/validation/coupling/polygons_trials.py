@@ -20,7 +20,7 @@ from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
 from porescale.lbm.scales import Scales
 from porescale.validation.coupling.grains_trials import DEFAULT, LAW, TAU, Method
-from porescale.validation.lbm.channels_flows import one_thread
+from porescale.validation.lbm.channels import one_thread
 
 Array = NDArray[np.float64]
 NO_DISCS = np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0)

@@ -9,25 +9,7 @@ import numpy as np
 
 from porescale.common.core.constants import GRAVITY
 from porescale.common.evidence.validations import Measured, Validations
-from porescale.validation.dem import (
-    bodies as verify_bodies,
-)
-from porescale.validation.dem import (
-    contact as verify_contact,
-)
 from porescale.validation.dem import discs_trials as lab
-from porescale.validation.dem import (
-    measures as verify_measures,
-)
-from porescale.validation.dem import (
-    rock as verify_rock,
-)
-from porescale.validation.dem import (
-    segments as verify_segments,
-)
-from porescale.validation.dem import (
-    sleep as verify_sleep,
-)
 
 VALIDATIONS = Validations()
 
@@ -220,11 +202,3 @@ def critical_lattice() -> Measured:
     exact = [2.0 / math.sqrt(lab.lattice_frequency(shear)) for shear in shears]
     found = [lab.lattice_critical_step(shear) for shear in shears]
     return Measured(exact, found, lab.relative(found, exact))
-
-
-VALIDATIONS.include(verify_measures.VALIDATIONS)
-VALIDATIONS.include(verify_contact.VALIDATIONS)
-VALIDATIONS.include(verify_bodies.VALIDATIONS)
-VALIDATIONS.include(verify_segments.VALIDATIONS)
-VALIDATIONS.include(verify_rock.VALIDATIONS)
-VALIDATIONS.include(verify_sleep.VALIDATIONS)
