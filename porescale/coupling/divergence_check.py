@@ -99,7 +99,7 @@ def _sides_speed(sides: Sides) -> float:
     """The fastest that a side moves or lets in, cells per step."""
     speeds = [abs(sides.speed(name)) for name in NAMES]
     for name in NAMES:
-        if sides.kind(name) == "velocity":
+        if sides.boundary(name).prescribes_velocity:
             given = np.atleast_2d(np.asarray(getattr(sides, f"{name}_velocity"), float))
             speeds.append(float(np.hypot(given[:, 0], given[:, 1]).max()))
     return max(speeds)

@@ -61,8 +61,7 @@ class Saturated:
         ny, nx = fluid.ny, fluid.nx
         dtype = fluid.populations.dtype
         self.radius = np.ascontiguousarray(radius, float)
-        self.periodic_x = fluid.sides.left == "periodic"
-        self.periodic_y = fluid.sides.bottom == "periodic"
+        self.periodic_x, self.periodic_y = fluid.sides.periodic
         operator = solid_operator_of(solid_operator)
         third_order = third_order_rate(fluid.law)
         shift = operator.radius_shift * (fluid.relaxation_time - 0.5) * (1 / third_order - 0.5)

@@ -290,7 +290,7 @@ def test_no_kernel_of_a_step_allocates():
     from porescale.coupling.coverage import rows as coverage_rows
     from porescale.dem import step as integrate
     from porescale.lbm import stream
-    from porescale.lbm.boundary import sides
+    from porescale.lbm.boundary import links
     from porescale.lbm.boundary import thin_plate as plate
 
     coupled = lab.handful(sides=("wall", "wall"), gate=True)
@@ -301,7 +301,7 @@ def test_no_kernel_of_a_step_allocates():
         coupled.advance()
     used = [
         coverage.cover, coverage_rows.list_rows, load.add_rows, load.half_step_correction, step.to_lattice,
-        step.total_load, sides.fill_halo, sides.empty_halo, solid_collision.sweep,
+        step.total_load, links.fill_halo, links.empty_halo, solid_collision.sweep,
         stream.sweep, plate.exchange, integrate.contact_steps,
     ]  # fmt: skip
     assert [kernel.__name__ for kernel in used if allocates(kernel)] == []
