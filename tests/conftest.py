@@ -7,7 +7,8 @@ import random
 import signal
 import sys
 import tracemalloc
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -70,3 +71,30 @@ def the_next_test_finds_the_process_as_it_was() -> Iterator[None]:
     tracemalloc.stop()
     os.chdir(before["folder"])
     assert after == before
+
+
+@pytest.fixture
+def one_thread() -> Iterator[None]:
+    """Kernels on one thread: in scenes of a few cells waiting for a second one is all that is done."""
+    from porescale.common.compiled.jit import set_threads, threads
+
+    before = threads()
+    set_threads(1)
+    yield
+    set_threads(before)
+
+
+@pytest.fixture
+def toy(tmp_path: Path, monkeypatch, capsys) -> Callable[..., tuple[int, str, list[str]]]:
+    """Runs a command line in an empty folder; gives exit code, stdout, stderr lines."""
+    from porescale.common.cli.application import application, main
+    from tests.reference.toy_package import TOY
+
+    monkeypatch.chdir(tmp_path)
+
+    def _toy(*tokens: str) -> tuple[int, str, list[str]]:
+        code = main(application(TOY), tokens)
+        said = capsys.readouterr()
+        return code, said.out, said.err.splitlines()
+
+    return _toy

@@ -16,8 +16,8 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.version import VERSION
 
 if TYPE_CHECKING:
+    from porescale.build.scene import Scene as Tables
     from porescale.common.studies.runner import Campaign, Ended
-    from porescale.scene.sections import Scene as Tables
 
 SPECIMEN, PORES = "specimen.toml", "permeability.json"
 HEAD = """\
@@ -47,11 +47,11 @@ def homogenise(
     """
     refuse_no_scene(scene)
     from porescale.analysis.homogenise import asked_of, specimen
+    from porescale.build.scene import Scene as SceneType
     from porescale.common.schema.sections import open_scene
     from porescale.common.studies.parameter_table import Point
     from porescale.common.studies.runner import Campaign
     from porescale.demseg.convert import toml
-    from porescale.scene.sections import Scene as SceneType
 
     opened = open_scene(scene, SceneType, quality=quality, overrides=settings or ())
     test = specimen(opened.scene)
@@ -141,12 +141,12 @@ def write(
     from porescale.analysis.biaxial import curves
     from porescale.analysis.homogenise import packing_of, pressure_of
     from porescale.analysis.material import NAME, UNITS, known, tables, text
+    from porescale.build.initial.contact_laws import density_of
     from porescale.cli.homogenise_picture import picture
     from porescale.common.cli.folders import write_whole
     from porescale.common.record.series import read_series
     from porescale.common.studies.sweep_files import csv_text
     from porescale.demseg.convert import toml
-    from porescale.scene.contact import density_of
 
     found = known(rows)
     titles = {name: f"{name} ({unit})" if unit else name for name, unit in UNITS.items() if name in found}
@@ -169,8 +169,8 @@ def about(
 ) -> dict[str, Any]:
     """Where the numbers come from: [made] of the material file."""
     from porescale.analysis.homogenise import HARD, asked_of, packing_of, pressure_of, stiffness_over_pressure
+    from porescale.build.initial.contact_laws import density_of
     from porescale.common.core.machine import machine
-    from porescale.scene.contact import density_of
 
     assert scene.grains
     packing, asked, fluid = packing_of(scene), asked_of(scene), scene.fluid

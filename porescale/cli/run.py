@@ -6,15 +6,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from porescale.build.scene import Scene
     from porescale.build.simulation import Simulation
     from porescale.common.record.drive import Outcome
     from porescale.common.record.model import Array
-    from porescale.scene.sections import Scene
 
 
 def scene_type() -> type[Scene]:
     """The type of a porescale scene."""
-    from porescale.scene.sections import Scene
+    from porescale.build.scene import Scene
 
     return Scene
 
