@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from continuum_sph.benchmarks.extremes_seepage import SEEPAGE
-from continuum_sph.build.model import Simulation
 from continuum_sph.build.report import report
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.build.water import WaterPart
 from continuum_sph.scene.sections import Scene
-from continuum_sph.validation import trials
+from continuum_sph.validation.water import flows, setups
 from continuum_sph.water.energy_budget import book
 from porescale.common.core.constants import GRAVITY
 from porescale.common.evidence.extremes import Extreme, Extremes, Judged
@@ -43,7 +43,7 @@ def driven(model: Simulation, end: float, judged: bool = False) -> str | Judged:
     energy = book(model.flow)["energy balance"] / start if start else 1.0
     n = model.flow.layer.fluid
     pressure = model.flow.layer.pressure[:n]
-    outside = n - int(model.inside().sum())
+    outside = n - int(model.part(WaterPart).inside().sum())
     said = f"{model.step} steps to {model.time:.3g} s; fastest {fastest:.3g} m/s = {fastest / _sound(model):.2g} c0"
     said += f"; pressure {pressure.min():.3g} to {pressure.max():.3g} Pa; energy balance {energy:.3f} of the start"
     said += f"; {outside} particles outside" if outside else ""
@@ -67,7 +67,7 @@ def front(model: Simulation) -> float:
 @cache
 def mild_front() -> float:
     """The same of the mildest that is tried: sound twice as fast as it comes."""
-    scene = trials.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released")
+    scene = setups.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released")
     water = scene.water.model_copy(update={"sound_speed": FALL / 0.05})
     model = Simulation(scene.model_copy(update={"water": water}))
     while model.time < JUDGED:
@@ -123,7 +123,7 @@ def spun(tension: str, shifting: float) -> Callable[[], str]:
 
     def run() -> str:
         """A quarter turn: least pressure, how far it reaches, energies."""
-        flow = trials.spinning_square(24, cut=tension == "cut", shifting=shifting)
+        flow = flows.spinning_square(24, cut=tension == "cut", shifting=shifting)
         flow.layer.keep_book()
         layer, start, pull = flow.layer, book(flow)["energy balance"], 0.0
         while flow.time < 0.5 * np.pi:  # a quarter turn
@@ -141,7 +141,7 @@ def thrown(speed: float) -> Callable[[], str | Judged]:
 
     def run() -> str | Judged:
         """How it ends after half a second."""
-        model = Simulation(trials.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released"))
+        model = Simulation(setups.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released"))
         scene = model.scene.model_copy(update={"tank": model.scene.tank.model_copy(update={"lid": False})})
         model = Simulation(scene)
         layer = model.flow.layer
@@ -154,7 +154,7 @@ def thrown(speed: float) -> Callable[[], str | Judged]:
 
 def broken() -> str | Judged:
     """The collapse with a particle whose velocity is no number after 10 steps."""
-    model = Simulation(trials.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released"))
+    model = Simulation(setups.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released"))
     model.advance(10)
     model.flow.layer.v[7] = np.nan
     return driven(model, 0.5)
@@ -189,6 +189,5 @@ EXTREMES = Extremes(
         *(Extreme("leaving the domain", f"thrown up at {speed:g} c0", thrown(speed)) for speed in (0.3, 0.9)),
         *(Extreme("leaving the domain", f"thrown down at {speed:g} c0", thrown(-speed)) for speed in (0.3, 3.0)),
         Extreme("leaving the domain", "position lost", broken),
-        *SEEPAGE,
     ]
 )  # fmt: skip

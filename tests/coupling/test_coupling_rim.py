@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import simpson
 
-from porescale.cli.verify import validations
+from porescale.cli.main import PACKAGE
 from porescale.coupling.coverage import soft_rim as rim
 from porescale.coupling.coverage.rows import make_patches
 from porescale.coupling.psm import Saturated
@@ -20,7 +20,7 @@ from porescale.lbm.fluid import Fluid
 from porescale.validation.coupling.fast import STARTED, fast_starts, started
 from tests.reference.cylinder_start import CylinderStart
 
-VALIDATIONS = validations()
+VALIDATIONS = PACKAGE.validations()
 
 EPS = np.finfo(float).eps
 PERIODIC = Sides("periodic", "periodic", "periodic", "periodic")

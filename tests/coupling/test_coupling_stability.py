@@ -20,7 +20,7 @@ from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting.choose import WEIGHTINGS
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
-from porescale.validation.coupling.grains_trials import immersed
+from porescale.validation.coupling.setups import immersed
 from tests.reference.folders import ROOT
 
 MAP = ROOT / "docs" / "stability" / "stability.json"

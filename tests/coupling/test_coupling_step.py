@@ -16,7 +16,7 @@ from porescale.coupling.weighting.choose import choose_weight
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.collision.choose import third_order_rate
 from porescale.lbm.fluid import Fluid
-from porescale.validation.coupling import grains_trials as lab
+from porescale.validation.coupling import setups as lab
 from tests.reference import lbm as plain
 from tests.reference import memory
 from tests.reference import psm as twin

@@ -5,15 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from porescale.coupling.step import Coupled
 from porescale.lbm import fluid
-from porescale.validation.coupling import grains_trials as lab
+from porescale.validation.coupling import setups as lab
 
 
 @pytest.mark.parametrize("operator", ["exact-wall", "SC2"])
 def test_cells_with_discs_in_undriven_fluid_have_the_same_bits(monkeypatch, operator):
     def run(law):
         coupled = lab.handful(acceleration=(1e-5, -5e-5))
-        coupled = lab.Coupled(
+        coupled = Coupled(
             coupled.fluid, coupled.grains, coupled.scales, hydraulic_ratio=0.8, contact_steps=4,
             acceleration=(1e-5, -5e-5), solid_operator=operator,
         )  # fmt: skip
