@@ -45,13 +45,13 @@ class State(NamedTuple):
 
 
 class Near(NamedTuple):
-    """A half list of pairs: start (n + 1,), partner (p,), carried (p, 1) m, the springs; anchor (n, 2) m, where discs
-    were when it was made, and limit m², the square of how far they may go."""
+    """A half list of pairs: start (n + 1,), partner (p,), carried (p, 1) m, the springs; list_position (n, 2) m, where
+    discs were when it was made, and limit m², the square of how far they may go."""
 
     start: NDArray[np.int64]
-    partner: NDArray[np.int64]
+    partner: NDArray[np.int32]
     carried: Array
-    anchor: Array
+    list_position: Array
     limit: float
 
 
@@ -63,7 +63,7 @@ def smooth_steps(count, dt, law, discs, weight, near, walls):
     walls (w, 4) or wider: point and unit normal.
     """
     position, velocity, radius, mass, force = discs.position, discs.velocity, discs.radius, discs.mass, discs.force
-    start, partner, anchor, limit, k, c = near.start, near.partner, near.anchor, near.limit, law.k, law.c
+    start, partner, list_position, limit, k, c = near.start, near.partner, near.list_position, near.limit, law.k, law.c
     for step in range(count):
         force[:, :] = weight
         for i in range(radius.shape[0]):
@@ -98,7 +98,7 @@ def smooth_steps(count, dt, law, discs, weight, near, walls):
             velocity[i, 1] += dt * force[i, 1] / mass[i]
             position[i, 0] += dt * velocity[i, 0]
             position[i, 1] += dt * velocity[i, 1]
-            dx, dy = position[i, 0] - anchor[i, 0], position[i, 1] - anchor[i, 1]
+            dx, dy = position[i, 0] - list_position[i, 0], position[i, 1] - list_position[i, 1]
             if not dx * dx + dy * dy <= limit:
                 left = True
         if left:
@@ -124,8 +124,8 @@ def rough_steps(count, dt, law, discs, weight, turning, near, walls, wall_spring
     """
     position, velocity, radius, mass, force = discs.position, discs.velocity, discs.radius, discs.mass, discs.force
     angle, spin, inertia, torque = discs.angle, discs.spin, discs.inertia, discs.torque
-    start, partner, carried, anchor, limit = near.start, near.partner, near.carried, near.anchor, near.limit
-    k, c = law.k, law.c
+    start, partner, carried = near.start, near.partner, near.carried
+    list_position, limit, k, c = near.list_position, near.limit, law.k, law.c
     for step in range(count):
         force[:, :] = weight
         torque[:] = turning
@@ -176,7 +176,7 @@ def rough_steps(count, dt, law, discs, weight, turning, near, walls, wall_spring
             position[i, 0] += dt * velocity[i, 0]
             position[i, 1] += dt * velocity[i, 1]
             angle[i] += dt * spin[i]
-            dx, dy = position[i, 0] - anchor[i, 0], position[i, 1] - anchor[i, 1]
+            dx, dy = position[i, 0] - list_position[i, 0], position[i, 1] - list_position[i, 1]
             if not dx * dx + dy * dy <= limit:
                 left = True
         if left:
@@ -212,7 +212,7 @@ class PlainDiscs:
 
     def _some(self, count: int) -> int:
         """Steps until the list must be made anew, ``count`` at most."""
-        near = Near(self.pairs.start, self.pairs.partner, self.pairs.carried, self.pairs.anchor, self._limit)
+        near = Near(self.pairs.start, self.pairs.partner, self.pairs.carried, self.pairs.list_position, self._limit)
         if self._law.mu > 0.0:
             return int(rough_steps(
                 count, self._dt, self._law, self._state, self.weight, self.turning, near, self._walls, self._spring

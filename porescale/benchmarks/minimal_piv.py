@@ -39,7 +39,6 @@ def displacement(
     ``search`` px."""
     shifts = range(-search, search + 1)
     found = np.array([[correlation_at(pictures, masks, corner, size, (y, x)) for x in shifts] for y in shifts])
-    row, column = np.unravel_index(found[1:-1, 1:-1].argmax(), (2 * search - 1, 2 * search - 1))
-    row, column = int(row) + 1, int(column) + 1
+    row, column = (it + 1 for it in divmod(int(found[1:-1, 1:-1].argmax()), 2 * search - 1))
     across, down = found[row, column - 1 : column + 2], found[row - 1 : row + 2, column]
     return column - search + peak_offset(*across), row - search + peak_offset(*down)
