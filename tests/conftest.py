@@ -14,6 +14,8 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
+from tests.compile_times import CompileTimes
+
 # The same examples on every machine, however slow: a failure can be repeated, and a kernel may be compiled within one.
 settings.register_profile("steady", deadline=None, derandomize=True)
 settings.load_profile("steady")
@@ -25,6 +27,15 @@ os.environ.setdefault("NUMBA_NUM_THREADS", str(max(2, os.cpu_count() or 1)))
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--share", default="0/1", help="run every n-th of the chosen tests, from the k-th: k/n")
     parser.addoption("--shuffle", type=int, help="run files, and the tests of each, in an order by this seed")
+    parser.addoption("--compile-times", action="store_true", help="say which kernels took how long to compile")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if config.option.compile_times:
+        plugin = CompileTimes()
+        config.pluginmanager.register(plugin)
+        if hasattr(config, "workerinput") or not config.option.numprocesses:
+            plugin.listen()
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

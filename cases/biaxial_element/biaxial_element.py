@@ -9,7 +9,7 @@ import numpy as np
 
 from continuum_sph.soil import Material
 from continuum_sph.soil.state import XX, YY
-from continuum_sph.validation.soil_element_trials import biaxial, confined
+from continuum_sph.validation.soil.element import biaxial, confined
 from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
@@ -17,8 +17,8 @@ PRESSURE = 1e5  # Pa
 KINDS = {
     "m = 0": Material(3e7, 1590.0),
     "m = 0.5": Material(3e7, 1590.0, exponent=0.5),
-    "psi = 10 degrees": Material(3e7, 1590.0, dilatancy=math.sin(math.radians(10.0))),
-    "c = 10 kPa": Material(3e7, 1590.0, cohesion=1e4 * math.cos(math.radians(30.0))),
+    "psi = 10 degrees": Material(3e7, 1590.0, sin_dilatancy=math.sin(math.radians(10.0))),
+    "c = 10 kPa": Material(3e7, 1590.0, cohesion_intercept=1e4 * math.cos(math.radians(30.0))),
 }
 
 

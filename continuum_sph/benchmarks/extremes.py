@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from continuum_sph.benchmarks.extremes_seepage import SEEPAGE
-from continuum_sph.build.model import Simulation
 from continuum_sph.build.report import report
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.build.water import WaterPart
 from continuum_sph.scene.sections import Scene
-from continuum_sph.validation import trials
+from continuum_sph.validation.water import flows, setups
 from continuum_sph.water.energy_budget import book
 from porescale.common.core.constants import GRAVITY
-from porescale.common.evidence.extremes import Extreme, Extremes, Judged
+from porescale.common.evidence.extremes import Extreme, Extremes, Verdict
 from porescale.common.schema.sections import validate
 
 WATER = 1.002e-3  # Pa s
@@ -28,7 +28,7 @@ NEAR = 0.5 * SPACING  # m: particles of this size know a front no better
 CLOSED = 0.01  # of the energy at the start, by which its book may be off
 
 
-def driven(model: Simulation, end: float, judged: bool = False) -> str | Judged:
+def driven(model: Simulation, end: float, judged: bool = False) -> str | Verdict:
     """Take ``model`` to ``end`` (s) and say what became of it; Unstable where it leaves sense.  ``judged``: by how far
     water has run at JUDGED and by its book of energies."""
     model.flow.layer.keep_book()
@@ -43,14 +43,14 @@ def driven(model: Simulation, end: float, judged: bool = False) -> str | Judged:
     energy = book(model.flow)["energy balance"] / start if start else 1.0
     n = model.flow.layer.fluid
     pressure = model.flow.layer.pressure[:n]
-    outside = n - int(model.inside().sum())
+    outside = n - int(model.part(WaterPart).inside().sum())
     said = f"{model.step} steps to {model.time:.3g} s; fastest {fastest:.3g} m/s = {fastest / _sound(model):.2g} c0"
     said += f"; pressure {pressure.min():.3g} to {pressure.max():.3g} Pa; energy balance {energy:.3f} of the start"
     said += f"; {outside} particles outside" if outside else ""
     if not judged or way is None:
         return said
     off = way - mild_front()
-    return Judged(
+    return Verdict(
         f"{said}; front at {JUDGED:g} s {100.0 * off:+.1f} cm from that at Mach 0.05 with everything else as it comes",
         abs(off) < NEAR and abs(energy - 1.0) < CLOSED,
     )
@@ -67,7 +67,7 @@ def front(model: Simulation) -> float:
 @cache
 def mild_front() -> float:
     """The same of the mildest that is tried: sound twice as fast as it comes."""
-    scene = trials.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released")
+    scene = setups.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released")
     water = scene.water.model_copy(update={"sound_speed": FALL / 0.05})
     model = Simulation(scene.model_copy(update={"water": water}))
     while model.time < JUDGED:
@@ -79,7 +79,7 @@ def _sound(model: Simulation) -> float:
     return float(model.flow.law.state.sound_speed)
 
 
-def collapse(end: float = 0.8, lid: bool = True, judged: bool = True, **changes: Any) -> Callable[[], str | Judged]:
+def collapse(end: float = 0.8, lid: bool = True, judged: bool = True, **changes: Any) -> Callable[[], str | Verdict]:
     """COLUMN let go in TANK; changes of [water], [tank] (by name) and [numerics].  judged : as in `driven`."""
     tank = {"width": TANK[0], "height": TANK[1], "lid": lid}
     water = {
@@ -92,7 +92,7 @@ def collapse(end: float = 0.8, lid: bool = True, judged: bool = True, **changes:
     return lambda: _run(tank, water, None, numerics, end, judged)
 
 
-def bubble(ratio: float, end: float = 0.1) -> Callable[[], str | Judged]:
+def bubble(ratio: float, end: float = 0.1) -> Callable[[], str | Verdict]:
     """A disc of liquid ``ratio`` times lighter than the water around it, equally stiff, in a tank of 0.4 m."""
     tank = {"width": 0.4, "height": 0.6}
     water = {"column": [{"width": 0.4, "height": 0.4}]}
@@ -101,7 +101,7 @@ def bubble(ratio: float, end: float = 0.1) -> Callable[[], str | Judged]:
     return lambda: _run(tank, water, light, {"spacing": 0.02, "shifting": 1.0}, end)
 
 
-def _run(tank: Any, water: Any, inclusion: Any, numerics: Any, end: float, judged: bool = False) -> str | Judged:
+def _run(tank: Any, water: Any, inclusion: Any, numerics: Any, end: float, judged: bool = False) -> str | Verdict:
     """Check a scene of these sections as `run` does, and run it."""
     scene = validate(
         Scene,
@@ -123,7 +123,7 @@ def spun(tension: str, shifting: float) -> Callable[[], str]:
 
     def run() -> str:
         """A quarter turn: least pressure, how far it reaches, energies."""
-        flow = trials.spinning_square(24, cut=tension == "cut", shifting=shifting)
+        flow = flows.spinning_square(24, cut=tension == "cut", shifting=shifting)
         flow.layer.keep_book()
         layer, start, pull = flow.layer, book(flow)["energy balance"], 0.0
         while flow.time < 0.5 * np.pi:  # a quarter turn
@@ -136,12 +136,12 @@ def spun(tension: str, shifting: float) -> Callable[[], str]:
     return run
 
 
-def thrown(speed: float) -> Callable[[], str | Judged]:
+def thrown(speed: float) -> Callable[[], str | Verdict]:
     """The collapse in a tank without a lid, its uppermost row thrown up (or down) at ``speed`` times sound."""
 
-    def run() -> str | Judged:
+    def run() -> str | Verdict:
         """How it ends after half a second."""
-        model = Simulation(trials.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released"))
+        model = Simulation(setups.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released"))
         scene = model.scene.model_copy(update={"tank": model.scene.tank.model_copy(update={"lid": False})})
         model = Simulation(scene)
         layer = model.flow.layer
@@ -152,9 +152,9 @@ def thrown(speed: float) -> Callable[[], str | Judged]:
     return run
 
 
-def broken() -> str | Judged:
+def broken() -> str | Verdict:
     """The collapse with a particle whose velocity is no number after 10 steps."""
-    model = Simulation(trials.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released"))
+    model = Simulation(setups.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released"))
     model.advance(10)
     model.flow.layer.v[7] = np.nan
     return driven(model, 0.5)
@@ -189,6 +189,5 @@ EXTREMES = Extremes(
         *(Extreme("leaving the domain", f"thrown up at {speed:g} c0", thrown(speed)) for speed in (0.3, 0.9)),
         *(Extreme("leaving the domain", f"thrown down at {speed:g} c0", thrown(-speed)) for speed in (0.3, 3.0)),
         Extreme("leaving the domain", "position lost", broken),
-        *SEEPAGE,
     ]
 )  # fmt: skip

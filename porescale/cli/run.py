@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -68,12 +69,12 @@ def drive(
     return outcome
 
 
-def judge(folder: Path, card: dict[str, Any]) -> None:
+def check_resume(folder: Path, card: dict[str, Any]) -> None:
     """InputError where the run in ``folder`` cannot be gone on with as ``card`` asks."""
-    from porescale.common.record.drive import refuse_resume
+    from porescale.common.record.drive import check_resume
     from porescale.common.schema.migrations import completing
 
-    refuse_resume(folder, card, today=completing(scene_type(), card))
+    check_resume(folder, card, today=completing(scene_type(), card))
 
 
 def table(folder: Path, name: str) -> dict[str, Array]:
@@ -81,3 +82,10 @@ def table(folder: Path, name: str) -> dict[str, Array]:
     from porescale.common.record.series import read_series
 
     return read_series(folder / f"{name}.csv")
+
+
+def features() -> Mapping[str, Callable[[Path, float | None], Array]]:
+    """What a trade study may read of a run besides its tables."""
+    from porescale.analysis.features import FEATURES
+
+    return FEATURES

@@ -42,14 +42,14 @@ class DiscArrays(NamedTuple):
 class Pairs(NamedTuple):
     """A half list of pairs in CSR: partners of disc i are ``partner[start[i]:start[i + 1]]``.
 
-    start (n + 1,), partner (m,);  history (m, 1 or 2) m: springs, tangential and rolling;  listed_at (n, 2) m: where
-    discs were when listed;  limit_square m^2: of how far they may go from there.
+    start (n + 1,), partner (m,);  history (m, 1 or 2) m: springs, tangential and rolling;  checked_position
+    (n, 2) m: of discs at the last check;  limit_square m^2: of how far they may go from there.
     """
 
     start: NDArray[np.int64]
     partner: NDArray[np.int32]
     history: Array
-    listed_at: Array
+    checked_position: Array
     limit_square: float
 
 

@@ -152,7 +152,7 @@ class State:
     def pair_arrays(self) -> Pairs:
         """The pair list as kernels take it."""
         p = self.pairs
-        return Pairs(p.start, p.partner, p.carried, p.mark, p.room**2)
+        return Pairs(p.start, p.partner, p.carried, p.checked_position, p.skin_margin**2)
 
     def surface(self, kind: str) -> Surface:
         """All surfaces of a ``kind``, "wall", "plate" or "rectangle", as kernels take them."""

@@ -9,7 +9,7 @@ import pytest
 
 from porescale.dem.arrays import contact_arrays
 from porescale.dem.motion.leapfrog import withhold
-from porescale.validation.coupling import grains_trials as lab
+from porescale.validation.coupling import setups as lab
 
 EPS = np.finfo(float).eps
 FALL = (1e-5, -5e-5)

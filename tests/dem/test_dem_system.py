@@ -97,7 +97,7 @@ def test_kernels_do_the_same_as_plain_python():
         near = np.ones((len(grains.walls), walls.runs_of(len(d.radius))), np.uint8)
         call(walls.add_near_walls)(d, *grains.surface("wall"), 0, near, 0, len(d.radius), law, 1e-5)
         call(walls.add_plate_forces)(d, *grains.surface("plate"), 0, 0, len(d.radius), law, 1e-5)
-        call(kick.kick_drift)(d, pairs.listed_at, 1.0, 3.0, 1e-5)
+        call(kick.kick_drift)(d, pairs.checked_position, 1.0, 3.0, 1e-5)
         grains.kept = call(measure.survey_pairs)(d, pairs, grains.cell, law, grains.touching)
         grains.kept += call(measure.survey_walls)(d, *grains.surface("wall")[:3], law)
     assert (a.touching > 1).all()

@@ -9,7 +9,8 @@ import pytest
 
 from continuum_sph.build.soil_report import soil_report
 from continuum_sph.scene.material_file import DENSITY, VISCOSITY
-from continuum_sph.scene.sections import Scene, Water
+from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.water import WaterSection
 from porescale.analysis.material import Known, known, tables
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError
@@ -71,7 +72,7 @@ def test_a_scene_takes_over_every_number(tmp_path):
 
 
 def test_the_water_of_the_file_reader_is_that_of_a_scene_without_any():
-    water = Water()
+    water = WaterSection()
     assert (water.density, water.viscosity) == (DENSITY, VISCOSITY)
 
 

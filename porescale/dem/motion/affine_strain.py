@@ -201,7 +201,7 @@ def move_discs(d, pairs, drag, dt, sweep, cell):
 @move_discs.of(Still)
 def move_still(d, pairs, drag, dt, sweep, cell):
     """By one thread or several."""
-    return move_free(d, pairs.listed_at, pairs.limit_square, drag, dt, sweep)
+    return move_free(d, pairs.checked_position, pairs.limit_square, drag, dt, sweep)
 
 
 @move_discs.of(Deforming)
@@ -212,7 +212,7 @@ def move_deforming(d, pairs, drag, dt, sweep, cell):
     strain(cell.state, dt)
     limit = room_square(cell.state)
     affine_kick_drift(d, gxx, gxy, gyy, drag, dt)
-    return left_affine(d.position, pairs.listed_at, limit, cell.state)
+    return left_affine(d.position, pairs.checked_position, limit, cell.state)
 
 
 @kernel
@@ -245,36 +245,36 @@ def affine_kick_drift(d, gxx, gxy, gyy, drag, dt):
 
 
 @kernel
-def left_affine(position, listed_at, limit_square, state):
+def left_affine(position, checked_position, limit_square, state):
     """Whether some disc is further than allowed from where the strain has carried the place it was listed at."""
     f, h = state[WIDTH] / state[WIDTH_THEN], state[HEIGHT] / state[HEIGHT_THEN]
     slope = (state[TILT] - f * state[TILT_THEN]) / state[HEIGHT_THEN]
     moved = False
     for i in range(position.shape[0]):
-        dx = position[i, 0] - f * listed_at[i, 0] - slope * listed_at[i, 1]
-        dy = position[i, 1] - h * listed_at[i, 1]
+        dx = position[i, 0] - f * checked_position[i, 0] - slope * checked_position[i, 1]
+        dy = position[i, 1] - h * checked_position[i, 1]
         if not (dx * dx + dy * dy <= limit_square):  # also true for nan
             moved = True
     return moved
 
 
 @by_law
-def any_left(position, listed_at, limit_square, cell):
+def any_left(position, checked_position, limit_square, cell):
     """Whether some disc has gone further than allowed from where it was listed: the result of move_discs alone."""
 
 
 @any_left.of(Still)
-def left_still(position, listed_at, limit_square, cell):
+def left_still(position, checked_position, limit_square, cell):
     """By the positions themselves."""
     moved = False
     for i in range(position.shape[0]):
-        dx, dy = position[i, 0] - listed_at[i, 0], position[i, 1] - listed_at[i, 1]
+        dx, dy = position[i, 0] - checked_position[i, 0], position[i, 1] - checked_position[i, 1]
         if not (dx * dx + dy * dy <= limit_square):
             moved = True
     return moved
 
 
 @any_left.of(Deforming)
-def left_deforming(position, listed_at, limit_square, cell):
+def left_deforming(position, checked_position, limit_square, cell):
     """By the positions relative to the strain."""
-    return left_affine(position, listed_at, room_square(cell.state), cell.state)
+    return left_affine(position, checked_position, room_square(cell.state), cell.state)

@@ -66,11 +66,11 @@ def add_step_work(budget, d, drag, dt):
 
 
 @inline
-def kick_drift(d, listed_at, limit_square, drag, dt):
+def kick_drift(d, checked_position, limit_square, drag, dt):
     """Move all discs one step; True when one has gone further than allowed from where it was listed (or is no number).
 
     d: DiscArrays or Moving.  Overwrites position, angle, velocity and spin; with an angle (0,) nothing turns and spin
-    is left as it is.  listed_at (n, 2) m, limit_square m^2: the list's skin test;  drag 1/s: background damping
+    is left as it is.  checked_position (n, 2) m, limit_square m^2: the list's skin test;  drag 1/s: background damping
     -drag m v and -drag I w, central in time (0: none, to the bit);  dt s.
     """
     before = 1.0 - 0.5 * drag * dt
@@ -83,7 +83,7 @@ def kick_drift(d, listed_at, limit_square, drag, dt):
         d.velocity[i, 0], d.velocity[i, 1] = vx, vy
         x, y = d.position[i, 0] + dt * vx, d.position[i, 1] + dt * vy
         d.position[i, 0], d.position[i, 1] = x, y
-        dx, dy = x - listed_at[i, 0], y - listed_at[i, 1]
+        dx, dy = x - checked_position[i, 0], y - checked_position[i, 1]
         if not (dx * dx + dy * dy <= limit_square):  # also true for nan
             moved = True
     for i in range(d.angle.shape[0]):
@@ -94,7 +94,7 @@ def kick_drift(d, listed_at, limit_square, drag, dt):
 
 
 @parallel_kernel
-def kick_drift_threads(d, listed_at, limit_square, drag, dt):
+def kick_drift_threads(d, checked_position, limit_square, drag, dt):
     """As kick_drift, block by block."""
     count = d.mass.shape[0]
     moved = 0
@@ -104,22 +104,22 @@ def kick_drift_threads(d, listed_at, limit_square, drag, dt):
             d.position[first:last], d.angle[first:last], d.velocity[first:last], d.spin[first:last],
             d.mass[first:last], d.inertia[first:last], d.force[first:last], d.torque[first:last],
         )  # fmt: skip
-        moved += kick_drift(own, listed_at[first:last], limit_square, drag, dt)
+        moved += kick_drift(own, checked_position[first:last], limit_square, drag, dt)
     return moved > 0
 
 
 @by_law
-def move_free(d, listed_at, limit_square, drag, dt, sweep):
+def move_free(d, checked_position, limit_square, drag, dt, sweep):
     """As kick_drift, by as many threads as ``sweep`` says."""
 
 
 @move_free.of(Serial)
-def _move_serial(d, listed_at, limit_square, drag, dt, sweep):
+def _move_serial(d, checked_position, limit_square, drag, dt, sweep):
     """One loop over all discs."""
-    return kick_drift(d, listed_at, limit_square, drag, dt)
+    return kick_drift(d, checked_position, limit_square, drag, dt)
 
 
 @move_free.of(Threads)
-def _move_threads(d, listed_at, limit_square, drag, dt, sweep):
+def _move_threads(d, checked_position, limit_square, drag, dt, sweep):
     """Blocks by threads."""
-    return kick_drift_threads(d, listed_at, limit_square, drag, dt)
+    return kick_drift_threads(d, checked_position, limit_square, drag, dt)

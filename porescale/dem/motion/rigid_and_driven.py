@@ -107,6 +107,6 @@ def move_bodies(a, d, walls, pairs, drag, dt, moved, cell):
         gxx, gxy, gyy = drift_of(cell)
         affine_kick_drift(c, gxx, gxy, gyy, drag, dt)
         place_members(c, d, gxx, gxy, gyy)
-        moved = any_left(d.position, pairs.listed_at, pairs.limit_square, cell)
+        moved = any_left(d.position, pairs.checked_position, pairs.limit_square, cell)
     move_walls(walls, dt)
     return moved

@@ -101,7 +101,7 @@ def active_set(
         budget=None if grains.book is None else grains.book[index],
     )  # fmt: skip
     return ActiveSet(
-        index, own, Pairs(start, partner, listed.carried[origin], listed.mark[index], 0.0), origin,
+        index, own, Pairs(start, partner, listed.carried[origin], listed.checked_position[index], 0.0), origin,
         np.ascontiguousarray(grains.wall_spring[:, index]), np.ascontiguousarray(grains.plate_spring[:, index]),
         np.ascontiguousarray(grains.rectangle_spring[:, index]),
         np.zeros((len(grains.walls), 3)), np.zeros((len(grains.plates), 2)), np.zeros((len(grains.rectangles), 2)),

@@ -17,7 +17,7 @@ from porescale.common.core.errors import InputError
 from porescale.common.evidence import benchmarks, validations
 from porescale.common.evidence.bandwidth import Copy, flip
 from porescale.common.evidence.benchmarks import Benchmarks, Work, copy_bandwidth
-from porescale.common.evidence.select import choose
+from porescale.common.evidence.register import choose
 from porescale.common.evidence.timing import interleaved, rate
 from porescale.common.evidence.validations import Measured, Validations
 

@@ -7,8 +7,9 @@ import csv
 import numpy as np
 import pytest
 
-from continuum_sph.build.instruments import Cloud, Level, fit, surface, tables
-from continuum_sph.build.model import Simulation
+from continuum_sph.build.instruments import MeasuredWater, interpolate, level_row, surface_height
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.scene.instruments import LevelSection
 from continuum_sph.scene.sections import Scene
 from porescale.common.neighbors import square_lattice
 from porescale.common.record.drive import drive
@@ -23,43 +24,48 @@ def cloud(height=0.5, width=1.0):
     x += np.random.default_rng(2).uniform(-0.2, 0.2, x.shape) * SPACING
     p = 100.0 + 40.0 * x[:, 0] - 70.0 * x[:, 1]
     v = np.column_stack((x[:, 1], -2.0 * x[:, 0]))
-    return Cloud(x, np.full(len(x), SPACING**2), p, v, 1.3 * SPACING, SPACING, width)
+    return MeasuredWater(x, np.full(len(x), SPACING**2), p, v, 1.3 * SPACING, SPACING, width)
 
 
 @pytest.mark.parametrize("at", [(0.5, 0.25), (0.0, 0.0), (0.97, 0.5)])
 def test_probes_are_exact_in_linear_fields(at):
     exact = 100.0 + 40.0 * at[0] - 70.0 * at[1], at[1], -2.0 * at[0]
     # three moments of some 10 particles; one-sided places have moments of condition 1e3
-    np.testing.assert_allclose(fit(at, cloud()), exact, rtol=1e5 * eps, atol=1e5 * eps)
+    np.testing.assert_allclose(interpolate(at, cloud()), exact, rtol=1e5 * eps, atol=1e5 * eps)
 
 
 def test_a_probe_without_water_has_no_value_and_one_by_a_drop_has_the_drops():
     water = cloud()
-    assert np.isnan(fit((0.5, 2.0), water)).all()
-    drop = Cloud(
+    assert np.isnan(interpolate((0.5, 2.0), water)).all()
+    drop = MeasuredWater(
         np.array([[0.5, 0.9]]), np.array([SPACING**2]), np.array([7.0]), np.array([[1.0, 2.0]]), 0.065, SPACING, 1.0
     )
-    np.testing.assert_allclose(fit((0.52, 0.9), drop), [7.0, 1.0, 2.0], rtol=4 * eps)
+    np.testing.assert_allclose(interpolate((0.52, 0.9), drop), [7.0, 1.0, 2.0], rtol=4 * eps)
 
 
 @pytest.mark.parametrize("x", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize("height", [0.3, 0.5])
 def test_levels_are_heights_of_the_surface(x, height):
     # particles are off their places by up to 0.2 spacings, and so are those that are in the strip by chance
-    assert surface(Level(x=x, breadth=0.4), cloud(height)) == pytest.approx(height, abs=0.2 * SPACING)
+    assert surface_height(LevelSection(x=x, breadth=0.4), cloud(height)) == pytest.approx(height, abs=0.2 * SPACING)
 
 
 def test_a_drop_is_no_surface():
     water = cloud()
     x = np.vstack((water.x, [[0.5, 1.5]]))
     one = np.ones(len(x))
-    more = Cloud(x, SPACING**2 * one, one, np.zeros_like(x), water.length, SPACING, 1.0)
-    assert surface(Level(x=0.5), more) == pytest.approx(0.5, abs=0.3 * SPACING)
-    assert surface(Level(x=0.5), Cloud(x[-1:], one[-1:] * SPACING**2, one[-1:], x[-1:], 0.065, SPACING, 1.0)) == 0.0
+    more = MeasuredWater(x, SPACING**2 * one, one, np.zeros_like(x), water.length, SPACING, 1.0)
+    assert surface_height(LevelSection(x=0.5), more) == pytest.approx(0.5, abs=0.3 * SPACING)
+    assert (
+        surface_height(
+            LevelSection(x=0.5), MeasuredWater(x[-1:], one[-1:] * SPACING**2, one[-1:], x[-1:], 0.065, SPACING, 1.0)
+        )
+        == 0.0
+    )
 
 
 def test_levels_do_not_see_water_beside_their_strip():  # the twin that must fail
-    assert surface(Level(x=2.0, breadth=0.2), cloud(width=1.0)) == 0.0
+    assert surface_height(LevelSection(x=2.0, breadth=0.2), cloud(width=1.0)) == 0.0
 
 
 SCENE = {
@@ -97,4 +103,4 @@ def test_a_run_leaves_probes_and_levels_and_cuts_them_back_on_resume(tmp_path):
 def test_a_scene_without_instruments_has_no_tables():
     scene = validate(Scene, {**SCENE, "probe": [], "level": []})
     assert Simulation(scene).tables() == {}
-    assert set(tables(0.0, (), (Level(x=0.5),), cloud())) == {"levels"}
+    assert set(level_row((LevelSection(x=0.5),), cloud())) == {"level 0 (m)"}

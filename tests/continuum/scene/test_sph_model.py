@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.build.model import Simulation
 from continuum_sph.build.report import report
-from continuum_sph.validation import trials
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.validation.water import setups as trials
 from continuum_sph.water import kernel_correction as correction
 from continuum_sph.water import rates, shifting, step
 from continuum_sph.water.eos import Tait
@@ -280,7 +280,7 @@ def test_a_flow_without_a_next_step_names_particle_and_rule():
         flow.finish(0.0)
     flow.layer.acceleration[7] = 0.0
     flow.finish(0.0)
-    flow.pace = np.inf
+    flow.sound_rate = np.inf
     flow.layer.density[5] = 1e6
     with pytest.raises(Unstable, match=r"particle 5 .* limited by sound; .* 1e\+06 kg/m³"):
         flow.finish(0.0)

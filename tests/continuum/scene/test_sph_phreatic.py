@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from continuum_sph.build.instruments import Cloud
+from continuum_sph.build.instruments import MeasuredWater
 from continuum_sph.build.phreatic import FIRST, line_of, phreatic_row, places, top
 from porescale.common.neighbors import square_lattice
 from porescale.common.record.model import Cloud as Points
@@ -17,8 +17,8 @@ def wet(heights):
     x = square_lattice((0.0, 0.0), (WIDTH, 1.0), SPACING)
     x = x[x[:, 1] < heights(x[:, 0])]
     n = len(x)
-    cloud = Cloud(x, np.full(n, SPACING**2), np.zeros(n), np.zeros((n, 2)), 1.3 * SPACING, SPACING, WIDTH)
-    return phreatic_row(0.5, cloud)
+    cloud = MeasuredWater(x, np.full(n, SPACING**2), np.zeros(n), np.zeros((n, 2)), 1.3 * SPACING, SPACING, WIDTH)
+    return {"time (s)": 0.5} | phreatic_row(cloud)
 
 
 def test_a_level_surface_is_level():

@@ -5,14 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.build import seepage_build
-from continuum_sph.build.exit_gradient import NAME
-from continuum_sph.build.seepage_model import DRY, WET, SeepageSimulation
+from continuum_sph.build import pore_water
+from continuum_sph.build.mixture import DRY, WET
 from continuum_sph.build.seepage_report import seepage_report
+from continuum_sph.build.sheet_pile import NAME
+from continuum_sph.build.simulation import Simulation
 from continuum_sph.cli import PACKAGE
 from continuum_sph.scene.sections import Scene
+from continuum_sph.seepage import Seepage
 from continuum_sph.soil.state import YY
-from continuum_sph.validation.seepage_trials import saturated_box
+from continuum_sph.validation.seepage.saturated_box import saturated_box
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError
@@ -47,8 +49,8 @@ def test_soft_water_is_warned_of_and_second_fluids_are_refused():
 
 @pytest.mark.slow
 def test_soil_under_water_bears_its_weight_less_buoyancy_and_stays_at_rest():
-    model = SeepageSimulation(scene())
-    soil, n = model.soil.flow.soil, model.soil.flow.soil.soil
+    model = Simulation(scene())
+    soil, n = model.flow.ground.soil, model.flow.ground.soil.soil
     depth = 0.2 - soil.x[:n, 1]
     buoyant = 0.6 * 1650.0 * GRAVITY
     np.testing.assert_allclose(soil.stress[:n, YY], buoyant * depth, rtol=1e-12)
@@ -70,7 +72,7 @@ def test_soil_under_water_bears_its_weight_less_buoyancy_and_stays_at_rest():
 
 @pytest.mark.slow
 def test_a_resumed_run_goes_on_bit_for_bit():
-    whole, part, resumed = (SeepageSimulation(scene()) for _ in range(3))
+    whole, part, resumed = (Simulation(scene()) for _ in range(3))
     whole.advance(30)
     part.advance(13)
     resumed.restore(part.state())
@@ -78,8 +80,8 @@ def test_a_resumed_run_goes_on_bit_for_bit():
     assert dict(leaves(resumed.state())) == dict(leaves(part.state()))
     resumed.advance(17)
     assert dict(leaves(resumed.state())) == dict(leaves(whole.state()))
-    assert np.array_equal(whole.both.water.layer.x, resumed.both.water.layer.x)
-    assert np.array_equal(whole.soil.flow.soil.stress, resumed.soil.flow.soil.stress)
+    assert np.array_equal(whole.flow.water.layer.x, resumed.flow.water.layer.x)
+    assert np.array_equal(whole.flow.ground.soil.stress, resumed.flow.ground.soil.stress)
     assert whole.series() == resumed.series()
 
 
@@ -97,12 +99,12 @@ def test_one_thread_and_many_give_the_same_bits():
 
 @pytest.mark.slow
 def test_soil_that_forgets_its_buoyancy_swells(monkeypatch):  # the twin that must fail
-    monkeypatch.setattr(seepage_build, "submerge", lambda *_: None)
-    model = SeepageSimulation(scene())
+    monkeypatch.setattr(pore_water, "submerge", lambda *_: None)
+    model = Simulation(scene())
     model.advance(300)
     assert model.series()["soil: stress upright over weight ()"] > 0.8
 
 
 @pytest.mark.slow
 def test_the_command_builds_what_the_scene_holds():
-    assert isinstance(PACKAGE.build(scene()), SeepageSimulation)
+    assert isinstance(PACKAGE.build(scene()).flow, Seepage)

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.build.air_build import AIR, dry_pores, gas, thickness, with_air
-from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.build.air import AIR, air_fluid, dry_pores, specific_weights, with_air
 from continuum_sph.build.seepage_report import seepage_report
+from continuum_sph.build.simulation import Simulation
 from continuum_sph.scene.sections import Scene
-from continuum_sph.validation.air import TrappedAir
+from continuum_sph.validation.seepage.air import TrappedAir
 from continuum_sph.water.eos import Gas, Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
@@ -37,7 +37,7 @@ def scene(**changes):
 def test_air_resists_as_much_less_as_it_is_thinner():
     law = Law(Smoothing("wendland", 0.01), 0.01, (Fluid(Tait(1000.0, 40.0), 1e-3),), (0.0, -9.8))
     both = with_air(law, Fluid(Gas(1.2, 1e5), 2e-5))
-    found = thickness(np.array([0, AIR]), both, GRAVITY)
+    found = specific_weights(np.array([0, AIR]), both, GRAVITY)
     # β = n² μ/κ with one κ for both: that of water is ρ g n²/k
     assert found == pytest.approx([1000.0 * GRAVITY, 0.02 * 1000.0 * GRAVITY], rel=1e-15)
 
@@ -45,13 +45,13 @@ def test_air_resists_as_much_less_as_it_is_thinner():
 def test_air_is_in_pores_that_no_water_covers():
     given = scene(water={"column": [{"bottom": 0.1, "width": 0.2, "height": 0.2}]})
     soil = np.array([[0.1, 0.05], [0.1, 0.15], [0.19, 0.09]])
-    assert dry_pores(given, soil).tolist() == [[0.1, 0.05], [0.19, 0.09]]
+    assert dry_pores(given.water.column, soil).tolist() == [[0.1, 0.05], [0.19, 0.09]]
 
 
 def test_gas_follows_the_law_of_its_section():
     air = scene().air
-    assert gas(air).state == Gas(10.0, 5e3, 1.403, printed=False)
-    assert gas(air.model_copy(update={"law": "printed"})).state.printed
+    assert air_fluid(air).state == Gas(10.0, 5e3, 1.403, printed=False)
+    assert air_fluid(air.model_copy(update={"law": "printed"})).state.printed
 
 
 @pytest.mark.parametrize(
@@ -83,7 +83,7 @@ def test_trapped_air_stops_water_where_it_bears_it():
 
 @pytest.mark.slow
 def test_a_scene_with_air_books_both_fluids_and_shows_them():
-    model = SeepageSimulation(scene())
+    model = Simulation(scene())
     first = model.series()
     model.advance(300)
     model.check()
@@ -96,14 +96,14 @@ def test_a_scene_with_air_books_both_fluids_and_shows_them():
     assert row["air: pore volume (m2)"] < first["air: pore volume (m2)"]
     assert len(shot.clouds["air"].position) == 100
     assert shot.clouds["soil"].data["saturation"].max() < 1.0
-    assert "air: mass (kg/m)" not in SeepageSimulation(scene(air=None)).series()
+    assert "air: mass (kg/m)" not in Simulation(scene(air=None)).series()
 
 
 @pytest.mark.slow
 def test_a_scene_with_air_goes_on_bit_for_bit():
-    straight, resumed = SeepageSimulation(scene()), SeepageSimulation(scene())
+    straight, resumed = Simulation(scene()), Simulation(scene())
     straight.advance(40)
     resumed.restore(straight.state())
     for model in (straight, resumed):
         model.advance(40)
-    assert straight.both.water.layer.x.tobytes() == resumed.both.water.layer.x.tobytes()
+    assert straight.flow.water.layer.x.tobytes() == resumed.flow.water.layer.x.tobytes()

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.build.instruments import Cloud, Level, discharge
-from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.build.instruments import MeasuredWater, discharge
 from continuum_sph.build.seepage_report import seepage_report
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.scene.instruments import LevelSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import Reservoir, Supply
 from continuum_sph.seepage.reservoir import berths, moor, sound_out
@@ -157,8 +158,8 @@ def scene(**changes):
 def test_the_discharge_through_a_section_is_what_flows_in_pores():
     x = square_lattice((0.0, 0.0), (1.0, 0.5), SPACING)
     v = np.tile([0.3, 0.1], (len(x), 1))
-    cloud = Cloud(x, np.full(len(x), SPACING**2), np.zeros(len(x)), v, 1.3 * SPACING, SPACING, 1.0)
-    through = discharge(Level(x=0.5), cloud, np.full(len(x), 0.4))
+    cloud = MeasuredWater(x, np.full(len(x), SPACING**2), np.zeros(len(x)), v, 1.3 * SPACING, SPACING, 1.0)
+    through = discharge(LevelSection(x=0.5), cloud, np.full(len(x), 0.4))
     assert through == pytest.approx(0.4 * 0.3 * 0.5, rel=1e-12)  # n v H; a sum of 20 equal parts
 
 
@@ -188,13 +189,13 @@ def test_kernels_too_short_for_pores_and_shifting_are_warned_of():
 
 @pytest.mark.slow
 def test_a_dam_between_levels_is_resumed_bit_for_bit_and_books_its_water():
-    whole, part, resumed = (SeepageSimulation(scene()) for _ in range(3))
+    whole, part, resumed = (Simulation(scene()) for _ in range(3))
     before = whole.series()["mass (kg/m)"]
     whole.advance(300)
     part.advance(130)
     resumed.restore(part.state())
     resumed.advance(170)
-    assert np.array_equal(whole.both.water.layer.x, resumed.both.water.layer.x)
+    assert np.array_equal(whole.flow.water.layer.x, resumed.flow.water.layer.x)
     row = whole.series()
     assert row == resumed.series()
     assert row["upstream let in (kg/m)"] > 0.09 * 0.2 * 1000.0
@@ -202,13 +203,13 @@ def test_a_dam_between_levels_is_resumed_bit_for_bit_and_books_its_water():
     # sums of up to 600 particles' masses in two orders
     assert abs(row["mass (kg/m)"] - before - booked) < ROUND * 600 * row["mass (kg/m)"]
     cloud = whole.snapshot().clouds["water"]
-    layer = whole.both.water.layer
+    layer = whole.flow.water.layer
     assert len(cloud.position) == (layer.mass[: layer.fluid] > 0.0).sum()
 
 
 @pytest.mark.slow
 def test_water_of_a_reservoir_beside_a_dam_full_of_air_is_booked_and_air_keeps_its_mass():
-    model = SeepageSimulation(scene(air={"density": 20.0}))
+    model = Simulation(scene(air={"density": 20.0}))
     before = model.series()
     model.advance(400)
     model.check()
@@ -225,8 +226,8 @@ def test_one_thread_and_many_keep_the_same_levels_in_the_same_bits():
     ends = []
     for threads in (1, 2):
         set_threads(threads)
-        model = SeepageSimulation(scene())
+        model = Simulation(scene())
         model.advance(60)
-        ends.append((model.both.water.layer.x.copy(), model.series()))
+        ends.append((model.flow.water.layer.x.copy(), model.series()))
     assert np.array_equal(ends[0][0], ends[1][0])
     assert ends[0][1] == ends[1][1]

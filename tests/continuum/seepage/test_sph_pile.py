@@ -4,15 +4,23 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from continuum_sph.build.exit_gradient import NAME, beside
-from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.build.sheet_pile import NAME, beside, sheet_pile
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.scene.pile import SheetPileSection
 from continuum_sph.scene.sections import Scene
-from continuum_sph.seepage.sheet_pile import FREE, LEFT, RIGHT, UNDER, PartedList, Pile, hold_back, part, side_of
+from continuum_sph.seepage.sheet_pile import FREE, LEFT, RIGHT, UNDER, PartedList, hold_back, part, side_of
 from continuum_sph.water.smoothing import CUBIC, kernel_value
 from porescale.common.neighbors import PairList, square_lattice
 
 SPACING = 0.1
-PILE = Pile.instead_of(0.75, 0.4, SPACING, rough=False)
+
+
+def pile(tip):
+    """The pile for a sheet in the middle of the tank."""
+    return sheet_pile(SheetPileSection(x=0.75, tip=tip), SPACING)
+
+
+PILE = pile(0.4)
 
 
 def listed(x, partner_of):
@@ -125,7 +133,7 @@ def scene(**more):
 
 
 def test_a_scene_has_room_for_its_pile():
-    assert scene().pile.wall(SPACING) == PILE
+    assert sheet_pile(scene().pile, SPACING) == PILE
     for wrong in ({"x": 0.2, "tip": 0.4}, {"x": 0.75, "tip": 0.9}):
         with pytest.raises(ValidationError, match="pile"):
             scene(pile=wrong)
@@ -135,14 +143,14 @@ def test_a_scene_has_room_for_its_pile():
 def test_a_run_beside_a_pile_goes_on_bit_for_bit():
     rising = [{"left": 0, "right": 0.7, "bottom": 0.6, "rise": [[0.0, 0.8], [0.02, 0.95]]}]
     settings = scene(tank={"width": 1.5, "height": 1.0, "lid": False}, reservoir=rising)
-    first, second = SeepageSimulation(settings), SeepageSimulation(settings)
+    first, second = Simulation(settings), Simulation(settings)
     first.advance(40)
     second.restore(first.state())
     for model in (first, second):
         model.advance(40)
     for one, other in (
-        (first.both.water.layer, second.both.water.layer),
-        (first.soil.flow.soil, second.soil.flow.soil),
+        (first.flow.water.layer, second.flow.water.layer),
+        (first.flow.ground.soil, second.flow.ground.soil),
     ):
         assert np.array_equal(one.x, other.x)
         assert np.array_equal(one.v, other.v)
@@ -164,7 +172,7 @@ def field(level=0.8, slope=0.7, left=0.0):
 
 
 def test_the_exit_gradient_is_the_first_term_of_the_head_along_the_pile():
-    deep = Pile.instead_of(0.75, 0.1, SPACING, rough=False)  # 5 rows beside it, 3 of them fitted
+    deep = pile(0.1)  # 5 rows beside it, 3 of them fitted
     water, head, soil = field()
     assert beside(deep, water, head, soil) == pytest.approx(0.7, rel=1e-12)
     assert beside(deep, water, head, soil) != pytest.approx(
@@ -173,13 +181,13 @@ def test_the_exit_gradient_is_the_first_term_of_the_head_along_the_pile():
 
 
 def test_it_is_that_of_the_side_where_water_rises():
-    deep = Pile.instead_of(0.75, 0.1, SPACING, rough=False)
+    deep = pile(0.1)
     water, head, soil = field(slope=-0.2, left=-0.4)
     assert beside(deep, water, head, soil) == pytest.approx(0.4, rel=1e-12)
 
 
 def test_dry_ground_gives_the_head_at_its_surface_and_ground_that_is_gone_gives_none():
-    deep = Pile.instead_of(0.75, 0.1, SPACING, rough=False)
+    deep = pile(0.1)
     water, head, soil = field(level=0.6)
     under = water[:, 1] < 0.6
     assert beside(deep, water[under], head[under], soil) == pytest.approx(0.7, rel=1e-12)

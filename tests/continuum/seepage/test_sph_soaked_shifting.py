@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.validation.seepage_steady_trials import held_ground
+from continuum_sph.validation.seepage.sheet_pile import held_ground
 from continuum_sph.water.state import BY_SHIFTING
 
 eps = np.finfo(float).eps
@@ -26,7 +26,7 @@ def soaked():
     layer.keep_book()
     both.start()
     layer.predicted[:] = layer.density
-    flow.swiftest = 1.0
+    flow.max_speed = 1.0
     for _ in range(2):  # the pass over pairs takes the drift of the evaluation before
         flow.evaluate(0.0, 0.0)
     shifted, power, drift = layer.rate.copy(), layer.power.copy(), layer.drift.copy()

@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from continuum_sph.build.soil_build import geostatic, soil_law
-from continuum_sph.build.soil_model import SoilSimulation
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.build.soil import geostatic, soil_law
 from continuum_sph.build.soil_report import soil_report
 from continuum_sph.scene.sections import Scene
-from continuum_sph.scene.soil_sections import Body
+from continuum_sph.scene.soil import Body
 from continuum_sph.soil import Material, gradient, porosity
 from continuum_sph.soil import momentum as divergence
 from continuum_sph.soil.gradient import inverse, velocity_gradients
@@ -20,8 +20,8 @@ from continuum_sph.soil.plasticity import returned
 from continuum_sph.soil.state import MASS, VOLUME, XX, YY, X
 from continuum_sph.soil.stress import deform
 from continuum_sph.soil.tension import hold_apart
-from continuum_sph.validation.soil_element_trials import Element
-from continuum_sph.validation.soil_trials import body, in_tank
+from continuum_sph.validation.soil.element import Element
+from continuum_sph.validation.soil.setups import body, in_tank
 from continuum_sph.water.smoothing import slope_shape
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError, Unstable
@@ -97,8 +97,8 @@ def test_kernels_run_as_plain_python(monkeypatch):
     # Rates of 0.1 1/s; the compiler may add in another order
     np.testing.assert_allclose(soil.record, slow, rtol=0, atol=1e-12)
     deform.py_func(
-        soil.density, soil.stress, soil.material, flow.table, soil.matrix, soil.spread, soil.opening, soil.plastic,
-        soil.record, 1e-4, 1e-4, 1.0, law.most,
+        soil.density, soil.stress, soil.material, flow.table, soil.matrix, soil.spread,
+        soil.separation_strain, soil.plastic_shear, soil.record, 1e-4, 1e-4, 1.0, law.most,
     )  # fmt: skip
     rest = (*how, 0.0, -9.8, 1.0, False, 100.0, 0.0, 4.0, law.spacing, 0.0, 0.0)
     accelerate.py_func(*where, soil.force, soil.stress, soil.acceleration, soil.spread, soil.drift, *rest)
@@ -117,18 +117,20 @@ def test_the_correction_is_the_inverse_where_moments_are_good_and_none_where_the
 @pytest.mark.parametrize(
     ("p", "r"), [(1e4, 9e3), (1e4, 3e4), (-1e3, 2e3), (-5e3, 100.0), (-1e3, 0.0), (500.0, 900.0), (1e4, 1e3)]
 )
-@pytest.mark.parametrize("soil", [{}, {"cohesion": 1e3}, {"cohesion": 1e3, "tension": 800.0}, {"dilatancy": 0.5}])
+@pytest.mark.parametrize(
+    "soil", [{}, {"cohesion_intercept": 1e3}, {"cohesion_intercept": 1e3, "tension": 800.0}, {"sin_dilatancy": 0.5}]
+)
 def test_stress_brought_back_lies_on_yield_or_where_it_was(p, r, soil):
     material = Material(1e6, 1600.0, **soil)
     row = material.row()
     area, shear = material.area_modulus * 1e6, material.shear_modulus * 1e6
     q, s, flow, opened = returned.py_func(p, r, area, shear, row)
     slack = 1e-9 * (abs(p) + r)
-    assert s <= material.friction * q + material.cohesion + slack
+    assert s <= material.sin_friction * q + material.cohesion_intercept + slack
     assert q - s >= -material.tension - slack
     assert flow >= 0.0
     assert opened >= 0.0
-    if r <= material.friction * p + material.cohesion and p - r >= -material.tension:
+    if r <= material.sin_friction * p + material.cohesion_intercept and p - r >= -material.tension:
         assert (q, s, flow, opened) == (p, r, 0.0, 0.0)
 
 
@@ -193,7 +195,7 @@ def test_forces_of_other_layers_move_the_soil():
 
 
 def test_is_a_model():
-    model = SoilSimulation(scene())
+    model = Simulation(scene())
     assert isinstance(model, Model)
     row, shot = model.series(), model.snapshot()
     assert row["mass (kg/m)"] == pytest.approx(0.16 * 1590.0)
@@ -203,11 +205,11 @@ def test_is_a_model():
 
 @pytest.mark.parametrize("choice", [{}, {"gradient": "plain", "damping_of": "approach", "settle": 0.02}])
 def test_restored_soil_goes_on_bit_for_bit(tmp_path, choice):
-    straight = SoilSimulation(scene(numerics=choice))
+    straight = Simulation(scene(numerics=choice))
     straight.advance(150)
     write_checkpoint(tmp_path / "c.h5", straight.state())
     straight.advance(150)
-    resumed = SoilSimulation(scene(numerics=choice))
+    resumed = Simulation(scene(numerics=choice))
     resumed.restore(read_checkpoint(tmp_path / "c.h5"))
     resumed.advance(150)
     assert bits(straight) == bits(resumed)
@@ -218,7 +220,7 @@ def test_one_thread_and_many_give_the_same_bits():
     found = []
     for count in (1, 2):
         set_threads(count)
-        model = SoilSimulation(scene())
+        model = Simulation(scene())
         model.advance(120)
         found.append(bits(model))
     assert found[0] == found[1]
@@ -249,7 +251,7 @@ def test_an_array_in_a_step_would_be_noticed():  # the twin that must fail
 
 
 def test_soil_beyond_sense_is_said_to_be_unstable():
-    model = SoilSimulation(scene())
+    model = Simulation(scene())
     model.check()
     model.flow.soil.v[3] = 1e3, 0.0
     with pytest.raises(Unstable, match="speed"):
@@ -315,7 +317,7 @@ def test_soil_under_tension_pushes_apart_what_comes_near_and_nothing_else():
 
 def test_soil_without_cohesion_has_no_tension_to_hold():
     assert not in_tank(np.array([[0.05, 0.05]]), np.zeros((1, 4)), (0.2, 0.2), 0.1, SAND).pulling
-    clay = Material(1e6, 1600.0, cohesion=1e3, tension=500.0)
+    clay = Material(1e6, 1600.0, cohesion_intercept=1e3, tension=500.0)
     assert in_tank(np.array([[0.05, 0.05]]), np.zeros((1, 4)), (0.2, 0.2), 0.1, clay).pulling
 
 

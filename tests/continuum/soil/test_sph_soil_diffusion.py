@@ -9,7 +9,7 @@ from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
 from continuum_sph.soil import flow as flow_module
 from continuum_sph.soil.state import GROWN, GXX, SHEARING, VOLUME, YY
 from continuum_sph.soil.stress import deform
-from continuum_sph.validation.soil_trials import RATIO, body
+from continuum_sph.validation.soil.setups import RATIO, body
 from continuum_sph.water.smoothing import Smoothing, kernel_slope
 from porescale.common.core.errors import InputError
 from porescale.common.neighbors import PairList, square_lattice
@@ -53,8 +53,8 @@ def test_volumes_diffuse_where_soil_is_sheared_and_their_sum_stays():
     soil.record[: soil.soil, 12:] = 0.0  # nothing strains: what is left of a step is diffusion
     mass = soil.mass[: soil.soil]
     deform(
-        soil.density, soil.stress, soil.material, flow.table, soil.matrix, soil.spread, soil.opening, soil.plastic,
-        soil.record, 1e-3, 1e-3, 1.0, law.most,
+        soil.density, soil.stress, soil.material, flow.table, soil.matrix, soil.spread,
+        soil.separation_strain, soil.plastic_shear, soil.record, 1e-3, 1e-3, 1.0, law.most,
     )  # fmt: skip
     np.testing.assert_allclose(mass / soil.density, volume + 1e-3 * grown, rtol=4 * np.finfo(float).eps)
 
@@ -70,7 +70,7 @@ def swing_of_stress(most):
     """Largest σ_zz amid a block after ten steps of 0.6 ms sheared at 20 1/s, if it zig-zags by 1 Pa at the start."""
     x = square_lattice((0.0, 0.0), (1.4, 1.4), 0.1)
     amid = np.abs(x - 0.7).max(axis=1) < 0.2
-    flow = body(x, 0.1, Material(1e4, 1590.0, friction=0.0), (0.0, 0.0, 0.0, 0.0))
+    flow = body(x, 0.1, Material(1e4, 1590.0, sin_friction=0.0), (0.0, 0.0, 0.0, 0.0))
     flow.law = type("Law", (type(flow.law),), {"most": most})(**vars(flow.law)) if most else flow.law
     soil, n = flow.soil, flow.soil.soil
     soil.stress[:n, 3] = np.where((np.round(x / 0.1 - 0.5).sum(axis=1) % 2) > 0, 1.0, -1.0)
@@ -144,12 +144,12 @@ def test_a_step_longer_than_the_last_exchanges_no_more_than_there_is(short, monk
 def two_kinds():
     """A block whose left half is heavy, stiff and dilates, and whose right half does neither."""
     x = square_lattice((-0.5, -0.3), (0.5, 0.3), SPACING)
-    materials = (Material(1e7, 2400.0, dilatancy=0.3), Material(1e6, 1200.0))
+    materials = (Material(1e7, 2400.0, sin_dilatancy=0.3), Material(1e6, 1200.0))
     number = (x[:, 0] > 0.0).astype(np.int64)
     density, n = np.where(number, 1200.0, 2400.0), len(x)
     soil = Soil(n, x, np.zeros((n, 2)), density * SPACING**2, density, np.tile([1e4, 2e4, 0.0, 9e3], (n, 1)), number)
     smoothing = Smoothing("wendland", RATIO * SPACING)
-    law = SoilLaw(smoothing, SPACING, materials, (0.0, 0.0), apart=0.0)
+    law = SoilLaw(smoothing, SPACING, materials, (0.0, 0.0), spacing_recovery=0.0)
     return SoilFlow(soil, law, PairList(n, 0.15 * smoothing.length, (-1.0, -1.0), (1.0, 1.0), full=True))
 
 
@@ -204,7 +204,9 @@ def test_particles_of_another_size_than_the_spacing_says_are_refused():
 
 def test_diffusion_by_sound_that_takes_more_than_there_is_is_refused():
     def law(restless, courant):
-        return SoilLaw(Smoothing("wendland", 0.13), SPACING, (ELASTIC,), (0.0, 0.0), restless=restless, courant=courant)
+        return SoilLaw(
+            Smoothing("wendland", 0.13), SPACING, (ELASTIC,), (0.0, 0.0), sound_diffusion=restless, courant=courant
+        )
 
     assert law(0.0, 0.25).most == pytest.approx(1.0 / 700.0, rel=1e-15)
     assert law(0.2, 0.25).most == pytest.approx((1.0 - 0.35) / 700.0, rel=1e-14)

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.build.build import flow_of
-from continuum_sph.validation import trials
+from continuum_sph.build.water import water_flow
+from continuum_sph.validation.water import setups as trials
 from continuum_sph.water.artificial_viscosity import artificial
 from continuum_sph.water.density import LINEAR
 from continuum_sph.water.energy_budget import book
@@ -28,7 +28,7 @@ def column(walls="slip", particles="pressure", end=1.0, **numerics):
     scene = trials.column_scene(0.1, tank=(0.5, 1.2), column=(0.5, 1.0), **numerics)
     given = scene.model_dump()
     given["tank"] |= {"walls": walls, "wall_particles": particles}
-    return flow_of(validate(type(scene), given))
+    return water_flow(validate(type(scene), given))
 
 
 def stirred(**choices):
@@ -123,7 +123,7 @@ def test_a_book_without_heat_does_not_close():  # the twin that must fail
 def test_shifting_evens_out_a_clump_and_leaves_a_lattice_and_a_surface_alone():
     flow = stirred(shifting=1.0)
     flow.layer.v[:] = 0.0
-    flow.swiftest = 1.0
+    flow.max_speed = 1.0
 
     def spread():
         flow.evaluate(0.0, 0.0)
@@ -135,7 +135,7 @@ def test_shifting_evens_out_a_clump_and_leaves_a_lattice_and_a_surface_alone():
         now = spread()
     assert now < 0.3 * before
     still = column(shifting=1.0)
-    still.swiftest = 1.0
+    still.max_speed = 1.0
     still.evaluate(0.0, 0.0)
     top = still.layer.x[: still.layer.fluid, 1] > 0.7  # rows that see the surface; in its corners normals lean
     assert np.abs(still.layer.drift[top, 1]).max() < 0.01

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from continuum_sph.benchmarks.endurance import still
-from continuum_sph.build.build import flow_of
-from continuum_sph.build.model import Simulation
-from continuum_sph.validation.trials import column_scene
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.build.water import water_flow
+from continuum_sph.validation.water.setups import column_scene
 from continuum_sph.water import parameters as laws
 from continuum_sph.water.density import HYDROSTATIC, PLAIN, haste_of, pace
 from continuum_sph.water.eos import Tait
@@ -109,10 +109,10 @@ def test_little_diffusion_leaves_the_step_to_sound():
 def fastest_at_rest():
     """Largest speed over that of sound in 3000 steps of water at rest with the strongest diffusion of density, or the
     first beyond Mach 0.1."""
-    flow, largest = flow_of(column_scene(SPACING, tank=(0.5, 1.2), column=(0.5, DEPTH), density_diffusion=0.2)), 0.0
+    flow, largest = water_flow(column_scene(SPACING, tank=(0.5, 1.2), column=(0.5, DEPTH), density_diffusion=0.2)), 0.0
     for _ in range(3000):
         flow.advance()
-        largest = max(largest, flow.swiftest / flow.law.state.sound_speed)
+        largest = max(largest, flow.max_speed / flow.law.state.sound_speed)
         if not largest < 0.1:
             break
     return largest
@@ -147,13 +147,15 @@ def test_without_a_floor_of_noise_all_diffuses_as_published():  # the twin that 
 def test_noise_counts_from_a_share_of_the_weight_of_the_water():
     # Sound of a pressure p' moves at p'/(ρ c0), c0 = 10 √(2 g H) if not said: 1e-3 g H/c0.
     scene = column_scene(SPACING, tank=(0.5, 1.2), column=(0.5, DEPTH))
-    assert flow_of(scene).law.calm == pytest.approx(1e-3 * GRAVITY * DEPTH / (200.0 * GRAVITY * DEPTH) ** 0.5)
-    assert flow_of(column_scene(SPACING, tank=(0.5, 1.2), column=(0.5, DEPTH), noise_floor=0.0)).law.calm == 0.0
+    assert water_flow(scene).law.noise_speed == pytest.approx(1e-3 * GRAVITY * DEPTH / (200.0 * GRAVITY * DEPTH) ** 0.5)
+    assert (
+        water_flow(column_scene(SPACING, tank=(0.5, 1.2), column=(0.5, DEPTH), noise_floor=0.0)).law.noise_speed == 0.0
+    )
 
 
 def at_rest(**numerics):
     """Largest rate of density of a column that stands still, densities off by up to a hundredth, kg/(m³ s)."""
-    flow = flow_of(column_scene(SPACING, tank=(0.5, 1.2), column=(0.5, DEPTH), **numerics))
+    flow = water_flow(column_scene(SPACING, tank=(0.5, 1.2), column=(0.5, DEPTH), **numerics))
     flow.layer.predicted[:] *= 1.0 + 0.01 * np.random.default_rng(1).random(flow.layer.fluid)
     flow.evaluate(0.0, 0.0)
     return float(np.abs(flow.layer.rate).max())

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.build.bubble import bubble, pieces
-from continuum_sph.build.model import Simulation
+from continuum_sph.build.inclusion import inclusion_row, pieces
 from continuum_sph.build.report import report
+from continuum_sph.build.simulation import Simulation
 from continuum_sph.cli import scene_type
-from continuum_sph.validation import fluids as trials_fluids
-from continuum_sph.validation.fluids import TENSION
+from continuum_sph.validation.water import fluids as trials_fluids
+from continuum_sph.validation.water.fluids import TENSION
 from continuum_sph.water.energy_budget import book
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
@@ -115,7 +115,7 @@ def test_the_step_knows_of_gas_that_moves_against_the_stiffness_of_water():
 
 def test_what_is_said_of_a_bubble_is_true_of_a_disc_and_of_two():
     flow = Simulation(scene(numerics={"spacing": 0.02}, surface_tension=1.0)).flow
-    said = bubble(flow)
+    said = inclusion_row(flow)
     assert said["bubble centre x (m)"] == pytest.approx(0.5, abs=1e-9)
     assert said["bubble centre (m)"] == pytest.approx(0.4, abs=1e-3)
     assert said["bubble area (m2)"] == pytest.approx(np.pi * 0.04, rel=0.02)  # a quarter spacing of 10 in R, on a side

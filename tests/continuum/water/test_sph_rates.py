@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.build.build import flow_of
-from continuum_sph.validation import trials
-from continuum_sph.validation.fluids import drop
-from continuum_sph.validation.trials import column_scene, open_box
+from continuum_sph.build.water import water_flow
+from continuum_sph.validation.water import channels as trials
+from continuum_sph.validation.water.fluids import drop
+from continuum_sph.validation.water.setups import column_scene, open_box
 from continuum_sph.water import rates, rates_walls
 from continuum_sph.water import step as steps
 from continuum_sph.water.density import LINEAR, PLAIN
@@ -28,7 +28,7 @@ def walled(walls, particles="pressure", steps=20, **numerics):
     scene = column_scene(0.125, tank=(1.5, 1.5), column=(1.0, 1.0), pressure="released", viscosity=5.0, **numerics)
     given = scene.model_dump()
     given["tank"] |= {"walls": walls, "wall_particles": particles}
-    flow = flow_of(validate(type(scene), given))
+    flow = water_flow(validate(type(scene), given))
     for _ in range(steps):
         flow.advance()
     return flow
@@ -98,7 +98,7 @@ FLOWS = {
     "walls, lengths of their own": lambda: evolved(walled("stick", steps=0, smoothing_length="evolved")),
     "channel": channel,
     "box": boxed,
-    "gravity sideways, beta, calm": lambda: boxed(gravity=(3.0, -9.81), beta=2.0, calm=0.1),
+    "gravity sideways, beta, calm": lambda: boxed(gravity=(3.0, -9.81), beta=2.0, noise_speed=0.1),
     "cohesion": lambda: boxed(fluids=(Fluid(Tait(1000.0, 40.0), 1.0, 1e-2),)),
     "varied": lambda: boxed(varied=True, xsph=0.3),
     "two fluids": lambda: mixed(corrected=False, shifting=0.0),
