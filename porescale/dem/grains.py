@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -69,9 +69,7 @@ class Grains(State):
     @property
     def steering(self) -> steering.Steering:
         """Clumps, controlled bodies, moving walls and the strain of the cell: there from the first use on."""
-        if self.drivers is None:
-            self.drivers = steering.Steering(self)
-        return cast(steering.Steering, self.drivers)
+        return steering.steering_of(self)
 
     def add_wall(
         self, name: str, point: tuple[float, float], normal: tuple[float, float], friction: float | None = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -40,6 +41,13 @@ def hold(grains: State, disc: int | slice | Array, x: bool = True, y: bool = Tru
         grains.held, grains.withheld = np.zeros((grains.discs.count, 3), np.uint8), np.zeros((grains.discs.count, 3))
     grains.held[disc] = x, y, rotation
     grains.withheld[disc] = 0.0
+
+
+def steering_of(grains: State) -> Steering:
+    """Drivers of ``grains``: there from the first use on."""
+    if grains.drivers is None:
+        grains.drivers = Steering(grains)
+    return cast(Steering, grains.drivers)
 
 
 class Steering(Drivers):

@@ -18,6 +18,7 @@ from porescale.dem.forces.segments import Segments
 from porescale.dem.listing import current_pairs
 from porescale.dem.motion.drivers import Clump
 from porescale.dem.state import State
+from porescale.dem.steering import steering_of
 
 Index = NDArray[np.int64]
 
@@ -45,7 +46,7 @@ def bond(grains: State, bodies: Iterable[int | Clump] | None = None) -> int:
     Contacts that are bonded already stay as they are.  Raises InputError for a body that is not there, and in a cell
     that is strained.
     """
-    if grains.drivers is not None and grains.drivers.cell is not None:
+    if steering_of(grains).cell is not None:
         raise InputError(Fault("bonds", problem="are not made in a strained cell"))
     d, pairs = grains.discs, current_pairs(grains)
     first = np.repeat(np.arange(d.count), np.diff(pairs.start))

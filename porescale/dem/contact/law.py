@@ -25,7 +25,8 @@ rolling speed independent of the observer: Luding 2008, Granular Matter 10, 235.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,6 +60,121 @@ class KernelLaw(NamedTuple):
     table: Array
     friction: float | None
     rolling: float | None
+
+
+class Springs(Protocol):
+    """Stiffnesses (N/m) and dashpots (N s/m) per metre of depth: what the stable step takes of a law."""
+
+    @property
+    def stiffness(self) -> float:
+        """Normal stiffness."""
+
+    @property
+    def damping(self) -> float:
+        """Normal dashpot."""
+
+    @property
+    def tangential_stiffness(self) -> float:
+        """Tangential stiffness."""
+
+    @property
+    def tangential_damping(self) -> float:
+        """Tangential dashpot."""
+
+    @property
+    def rolling_stiffness(self) -> float:
+        """Rolling stiffness."""
+
+    @property
+    def rolling_damping(self) -> float:
+        """Rolling dashpot."""
+
+    @property
+    def rolls(self) -> bool:
+        """Whether there is rolling resistance."""
+
+
+class ContactLaw(Protocol):
+    """What a law of contacts provides.  A law is one file of this folder: parameters, formulas, source, consequences.
+
+    The file has a frozen dataclass with these members, ``LAW = TheClass`` for the register (choose.py), a class derived
+    from KernelLaw, and bodies for it of the four formulas: ``@stiffness.of(TheKernel)`` and so on.
+    """
+
+    name: ClassVar[str]
+    """In scenes: [contact] law."""
+    order: ClassVar[int]
+    """Place in lists."""
+    purpose: ClassVar[str]
+    """What it is good for, one line."""
+    kernel: ClassVar[type[KernelLaw]]
+    """Class of the law as kernels take it."""
+    keys: ClassVar[tuple[str, ...]]
+    """Keys of [contact] that belong to this law, restitution, friction and rolling_friction not counted."""
+    required: ClassVar[tuple[str, str]]
+    """The key that must be given, and its unit."""
+    damping_keys: ClassVar[tuple[str, ...]]
+    """Keys of which exactly one damps."""
+    of_materials: ClassVar[tuple[str, ...]]
+    """Keys that follow from two materials, and are not given for a pair."""
+    needs_radius: ClassVar[bool]
+    """Whether points, corners without thickness, have no contact."""
+
+    @property
+    def friction(self) -> float:
+        """Friction coefficient."""
+
+    @property
+    def rolling_friction(self) -> float:
+        """Coefficient of rolling friction."""
+
+    @property
+    def release(self) -> str:
+        """Rule for the end of a contact: one of RELEASES."""
+
+    @property
+    def rolls(self) -> bool:
+        """Whether there is rolling resistance."""
+
+    @classmethod
+    def from_numbers(cls, numbers: Mapping[str, float], release: str, mass: float, deepest: float) -> ContactLaw:
+        """The law of the keys of [contact];  mass (kg/m): of two grains each, whose restitution is given;  deepest:
+        overlap over radius that the stable step allows for."""
+
+    def with_numbers(self, numbers: Mapping[str, float], mass: float) -> ContactLaw:
+        """This law with other numbers, by the keys of [contact];  mass (kg/m): effective, of the restitution."""
+
+    def with_friction(self, friction: float) -> ContactLaw:
+        """The same law with another friction coefficient."""
+
+    def mixed(self, other: Any) -> ContactLaw:
+        """Between unlike materials, each of which has its law with itself; see materials.py for the rule."""
+
+    def row(self) -> Array:
+        """The law as kernels read it, (COLUMNS,) float64."""
+
+    def stiffest(self, mass: float, radius: float) -> Springs:
+        """Springs that bound it for the stable step, for a disc of ``mass`` (kg/m) and ``radius`` (m)."""
+
+    def shortest_contact(self, mass: float, radius: float) -> float:
+        """Seconds that the shortest contact lasts, at effective ``mass`` (kg/m) and reduced ``radius`` (m)."""
+
+    def restitution(self, mass: float) -> float:
+        """Parting speed over approach speed at effective ``mass`` (kg/m)."""
+
+    def ratio_of_damping(self, mass: float) -> float:
+        """Normal damping ratio at effective ``mass`` (kg/m)."""
+
+    def contact_report(self, mass: float, radius: float) -> tuple[float, str]:
+        """Seconds that a contact lasts at effective ``mass`` (kg/m) and reduced ``radius`` (m), and a remark on it."""
+
+    def impact(self, mass: float, radius: float, speed: float) -> tuple[float, float]:
+        """Deepest overlap (m) of an undamped impact at ``speed`` (m/s), effective ``mass`` (kg/m), reduced ``radius``
+        (m); and the power of the stiffness over overlap: what of it makes the overlap half as deep."""
+
+    @staticmethod
+    def rolling_problem(numbers: Mapping[str, float]) -> tuple[str, str, str] | None:
+        """What is wrong with the keys of rolling resistance: (key, problem, repair); None where nothing is."""
 
 
 class Relative(NamedTuple):
