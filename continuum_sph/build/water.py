@@ -25,7 +25,7 @@ from continuum_sph.build.sanity_fluids import bounds, sound_speeds
 from continuum_sph.scene.sections import Scene
 from continuum_sph.water.density import NAMES
 from continuum_sph.water.energy_budget import book, held
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import RULES, Law
 from continuum_sph.water.pressure_walls import tank_walls

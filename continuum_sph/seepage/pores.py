@@ -76,7 +76,7 @@ class PoreFlow(Flow):
         super().evaluate(step, ratio)
         self.thrust[:, :2] = x
         part_forces(
-            layer.fluid, layer.mass, layer.acceleration, *self.law.gravity, self.pores, layer.rate, self.book[0],
+            layer.fluid, layer.mass, layer.acceleration, *self.law.gravity, self.pores, layer.rate, self.budget[0],
             self.thrust,
         )  # fmt: skip
         bear(
@@ -87,11 +87,11 @@ class PoreFlow(Flow):
         """As of water alone, of the mixture."""
         super().sum_pairs(half)
         if self.law.shifting > 0.0:
-            keep_met(self.layer.fluid, self.pores, self.slant, self.layer.drift, self.layer.rate)
+            keep_met(self.layer.fluid, self.pores, self.density_gradient, self.layer.drift, self.layer.rate)
 
-    def show_walls(self, step: float, ratio: float) -> None:
+    def update_walls(self, step: float, ratio: float) -> None:
         """What the water sees of walls, of grains and of open faces, a ``step`` (s) on."""
-        super().show_walls(step, ratio)
+        super().update_walls(step, ratio)
         layer, pairs, smoothing = self.layer, self.pairs, self.law.smoothing
         how = (smoothing.kind, smoothing.length, *pairs.period)
         self.skeleton.show()

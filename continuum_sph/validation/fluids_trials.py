@@ -11,7 +11,7 @@ from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.exact import drop_period
 from continuum_sph.validation.exact_drop import swing_period
 from continuum_sph.validation.trials import run_until
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import Smoothing

@@ -14,7 +14,7 @@ from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.seepage.sheet_pile import PartedList, Pile
 from continuum_sph.validation.soil_trials import RATIO, SKIN
 from continuum_sph.water.density import LINEAR
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.pressure_walls import tank_walls

@@ -13,7 +13,7 @@ from continuum_sph.seepage import Drain, Frame, PoreFlow, Resistance, Seepage, s
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
 from continuum_sph.validation.soil_trials import RATIO, in_tank
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.pressure_walls import tank_walls

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.exact import taylor_green_vortices
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.pressure_walls import tank_walls

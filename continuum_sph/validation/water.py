@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from continuum_sph.build.water import water_flow
 from continuum_sph.validation import trials
 from continuum_sph.validation.exact import couette, poiseuille
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.smoothing import CUBIC, SUPPORT, WENDLAND, kernel_slope, kernel_value
 from porescale.common.core.constants import GRAVITY
 from porescale.common.evidence.validations import Measured, Validations

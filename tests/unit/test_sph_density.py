@@ -11,7 +11,7 @@ from continuum_sph.build.water import water_flow
 from continuum_sph.validation.trials import column_scene
 from continuum_sph.water import parameters as laws
 from continuum_sph.water.density import HYDROSTATIC, PLAIN, haste_of, pace
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import CUBIC, WENDLAND, Smoothing, kernel_slope

@@ -9,7 +9,7 @@ from continuum_sph.build.initial_pressure import released_pressure
 from continuum_sph.validation.exact import couette, drop_period, poiseuille
 from continuum_sph.validation.water import LATTICE
 from continuum_sph.water.artificial_viscosity import artificial
-from continuum_sph.water.eos import Tait, tait, tait_density
+from continuum_sph.water.eos.liquid import Tait, tait, tait_density
 from continuum_sph.water.smoothing import (
     CUBIC,
     WENDLAND,

@@ -10,7 +10,7 @@ from continuum_sph.build.simulation import Simulation
 from continuum_sph.validation import trials
 from continuum_sph.water import kernel_correction as correction
 from continuum_sph.water import rates, shifting, step
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid, table
 from continuum_sph.water.leapfrog import pressurise
 from continuum_sph.water.pressure_walls import tank_walls

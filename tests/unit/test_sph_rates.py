@@ -14,7 +14,7 @@ from continuum_sph.validation.trials import column_scene, open_box
 from continuum_sph.water import rates, rates_walls
 from continuum_sph.water import step as steps
 from continuum_sph.water.density import LINEAR, PLAIN
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from porescale.common.schema.sections import validate
 from tests.reference.sph_rates import pair_sums
