@@ -9,19 +9,15 @@ from typing import TYPE_CHECKING, Any
 from porescale.common.cli import application
 from porescale.common.cli.package import Package
 from porescale.common.core.version import VERSION
+from porescale.common.evidence.register import discovered
 
 if TYPE_CHECKING:
     from continuum_sph.scene.sections import Scene
     from porescale.common.cli.report import Report
-    from porescale.common.evidence.benchmarks import Benchmarks
-    from porescale.common.evidence.endurance import Endurances
-    from porescale.common.evidence.extremes import Extremes
-    from porescale.common.evidence.overhead import Kinds
-    from porescale.common.evidence.validations import Validations
     from porescale.common.record.drive import Outcome
     from porescale.common.record.model import Array, Model
 
-
+BENCHMARKS = "continuum_sph.benchmarks"
 FORMERLY = {"numerics": {"noise_floor": 0.0}}
 """What was done before keys were there whose defaults do something else: no run changes its physics when resumed."""
 
@@ -149,46 +145,6 @@ def table(folder: Path, name: str) -> dict[str, Array]:
     return read_series(folder / f"{name}.csv")
 
 
-def validations() -> Validations:
-    """All rows of ``verify``."""
-    from continuum_sph.validation.validations import VALIDATIONS
-
-    return VALIDATIONS
-
-
-def benchmarks() -> Benchmarks:
-    """All rows of ``bench``."""
-    from continuum_sph.benchmarks.rates import BENCHMARKS
-    from porescale.common.evidence.benchmarks import Benchmarks
-    from porescale.common.studies.budget_check import benchmark
-
-    rows = Benchmarks()
-    rows.include(BENCHMARKS)
-    rows.include(benchmark(PACKAGE, Path(__file__).resolve().parents[1] / "cases" / "collapsing_water_column"))
-    return rows
-
-
-def extremes() -> Extremes:
-    """What `study extremes` tries."""
-    from continuum_sph.benchmarks.extremes import EXTREMES
-
-    return EXTREMES
-
-
-def endurance() -> Endurances:
-    """What runs for a million steps."""
-    from continuum_sph.benchmarks.endurance import ENDURANCES
-
-    return ENDURANCES
-
-
-def parts() -> Kinds:
-    """Kinds of scenes for `study parts`."""
-    from continuum_sph.benchmarks.overhead import KINDS
-
-    return KINDS
-
-
 PACKAGE = Package(
     name="continuum-sph",
     summary="Soil, water and air as layers of smoothed particles (water and soil in a tank, seepage, bubbles).",
@@ -200,11 +156,12 @@ PACKAGE = Package(
     report=report,
     show=show,
     table=table,
-    validations=validations,
-    benchmarks=benchmarks,
-    extremes=extremes,
-    endurance=endurance,
-    parts=parts,
+    validations=discovered("continuum_sph.validation", "VALIDATIONS"),
+    benchmarks=discovered(BENCHMARKS, "BENCHMARKS"),
+    case=Path(__file__).resolve().parents[1] / "cases" / "collapsing_water_column",
+    extremes=discovered(BENCHMARKS, "EXTREMES"),
+    endurance=discovered(BENCHMARKS, "ENDURANCES"),
+    parts=discovered(BENCHMARKS, "KINDS"),
     judge=judge,
 )
 

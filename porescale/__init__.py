@@ -26,7 +26,7 @@ def __getattr__(name: str) -> Any:
 
         return build
     if name == "Scene":
-        from porescale.scene.sections import Scene
+        from porescale.build.scene import Scene
 
         return Scene
     if name == "Simulation":

@@ -28,7 +28,7 @@ from porescale.dem.motion.drivers import Clump
 from porescale.dem.motion.time_function import Table
 from porescale.output.case import conclude, options, stage
 from porescale.output.case_bodies import LARGEST, PLATE, Shot, draw_bodies, frame, pixels, shot
-from porescale.validation.dem.segments_trials import OPEN, REST, weights
+from porescale.validation.dem.segments import OPEN, REST, weights
 
 Array = NDArray[np.float64]
 

@@ -14,6 +14,7 @@ from filmed import BOX, FLOWS, RATE, STIRS, TANK, Place, film, lattice, named, r
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from porescale import Scene
 from porescale.cli.run import build
 from porescale.common.compiled.jit import set_threads
 from porescale.common.record.drive import drive
@@ -23,7 +24,6 @@ from porescale.output.case import conclude, options
 from porescale.piv.fields.compare import compare
 from porescale.piv.fields.field import Field
 from porescale.piv.fields.vortices import Vortex, vortices
-from porescale.scene.sections import Scene
 
 HERE = Path(__file__).resolve().parent
 FASTER = 240.0

@@ -21,6 +21,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from variants import VARIANTS, Variant
 
+from porescale import Scene
 from porescale.cli.run import build
 from porescale.common.core.atomic import save, write_text
 from porescale.common.core.errors import InputError
@@ -28,7 +29,6 @@ from porescale.common.record.drive import drive
 from porescale.common.record.open_run import open_run
 from porescale.common.schema.sections import open_scene, scene_as_dict
 from porescale.piv.fields.vortices import Vortex, vortices
-from porescale.scene.sections import Scene
 
 CASES = Path(__file__).resolve().parents[1]
 TIMES = (0.6, 1.0, 1.5)

@@ -7,10 +7,10 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from porescale import Scene
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import open_scene
 from porescale.output.case import draw, options, stage
-from porescale.scene.sections import Scene
 
 HERE = Path(__file__).resolve().parent
 IMPLIED = re.compile(r"imply ([0-9.e+-]+)")

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from porescale import Scene
 from porescale.cli.run import build
 from porescale.common.compiled.jit import set_threads
 from porescale.common.record.drive import drive
@@ -25,7 +26,6 @@ from porescale.piv.fields.of_run import field_of_run
 from porescale.piv.fields.vortices import Vortex, vortices
 from porescale.piv.images.camera import Frame, Shooting, frames, shooting
 from porescale.piv.images.synth import Camera
-from porescale.scene.sections import Scene
 
 Array = NDArray[np.float64]
 

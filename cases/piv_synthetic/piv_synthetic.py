@@ -18,7 +18,7 @@ from porescale.output.case import conclude, options, stage
 from porescale.piv.estimate.measure import Settings, measure
 from porescale.piv.images import flows
 from porescale.piv.images.synth import Camera, Pair, pair
-from porescale.validation.piv import pairs_trials as lab
+from porescale.validation.piv import pairs as lab
 
 Array = NDArray[np.float64]
 

@@ -17,7 +17,7 @@ from porescale.dem.measures.network import stiffness, voigt
 from porescale.dem.prepare.rock import Curve, Kind, Rock, load
 from porescale.output.case import conclude, options, stage
 from porescale.output.case_bodies import Shot, by_piece, draw_bodies, draw_cracks, frame, keep, pixels, shot
-from porescale.validation.dem import rock_trials as lab
+from porescale.validation.dem import rock as lab
 
 Array = NDArray[np.float64]
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 from continuum_sph.build.sanity import Now, advance_one
 from continuum_sph.soil import SoilFlow
-from continuum_sph.validation.seepage_trials import energies, saturated_box
-from porescale.common.evidence.extremes import Extreme
+from continuum_sph.validation.seepage.saturated_box import energies, saturated_box
+from porescale.common.evidence.extremes import Extreme, Extremes
 
 CHECKED = 20  # steps between two looks at the energies
 SPEED = 0.05  # m/s, of the stirring: strains of 0.2 %
@@ -37,6 +37,6 @@ def stirred(permeability: float, seconds: float = 0.2) -> Callable[[], str]:
     return run
 
 
-SEEPAGE = [
+EXTREMES = Extremes(
     Extreme("permeability", f"{k:g} m/s", stirred(k)) for k in (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
-]
+)

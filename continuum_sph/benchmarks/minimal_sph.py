@@ -77,8 +77,8 @@ def plain_walls(fluid, start, split, partner, record, h, g):
 
 @parallel_kernel
 def plain_pairs(
-    fluid, start, split, partner, record, acceleration, rate, smoothed, h, g, alpha, softening, delta, noise_speed, sound,
-    mu, xsph,
+    fluid, start, split, partner, record, acceleration, rate, smoothed, h, g, alpha, softening, delta, noise_speed,
+    sound, mu, xsph,
 ):  # fmt: skip
     """Overwrites ``acceleration`` (fluid, 2) and ``rate`` (fluid,), and ``smoothed`` (fluid, 2) if it is not None, as
     `rates.rates`;  g: downwards;  xsph: ε, or None."""
@@ -159,9 +159,10 @@ class PlainColumn:
         assert law.noise == HYDROSTATIC
         assert not any((law.sticky, law.corrected, law.shifting, law.beta, law.cut, law.filter_every))
         assert own.period == (0.0, 0.0)
-        self.fluid, self.law, self.state = layer.fluid, law, law.fluids[0].state
-        assert isinstance(self.state, Tait)
-        assert self.state.exponent == 7.0
+        state = law.fluids[0].state
+        assert isinstance(state, Tait)
+        assert state.exponent == 7.0
+        self.fluid, self.law, self.state = layer.fluid, law, state
         self.x, self.v, self.mass, self.density = (a.copy() for a in (layer.x, layer.v, layer.mass, layer.density))
         self.acceleration, self.record = layer.acceleration.copy(), layer.record.copy()
         self._rate, self._before, self._length = layer.rate.copy(), layer.rate_before.copy(), layer.length.copy()

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from continuum_sph.water.artificial_viscosity import artificial
 from continuum_sph.water.bundles import inverse_period, nearest_image, plus_scaled, scaled
 from continuum_sph.water.density import HYDROSTATIC, LINEAR, diffusion_share, noise_scale
 from continuum_sph.water.fluids import COHESION, SOUND, VISCOSITY, fluid_number, pair_fluid
 from continuum_sph.water.smoothing import kernel_kind, slope_scale, slope_shape, value_scale, value_shape
 from continuum_sph.water.state import COMPRESSIBILITY, RHO, VX, VY, P, X, Y
-from continuum_sph.water.viscosity import laminar, mutual
+from continuum_sph.water.viscosity import artificial, laminar, mutual
 from porescale.common.compiled.jit import inline
 from porescale.common.compiled.simd import LANES, nothing, root, take_four, take_rows, take_two, total
 

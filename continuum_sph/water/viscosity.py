@@ -10,12 +10,15 @@ On a square lattice of h = 1.3 spacings that is 14 % too stiff along the axes an
 particles have the mean.  (Adding ∇·(μ ∇vᵀ) from gradients in a second pass is the same on any lattice, but can make
 energy; it takes 2 % off the speed of Hysing's bubble.)  Source: Monaghan, Rep. Prog. Phys. 68 (2005) 1703; which form
 has which stress: Colagrossi et al., Phys. Rev. E 84 (2011) 026705.
+
+Artificial viscosity: eqs 35, 36 of Maeda & Sakai 2004 (Monaghan & Gingold, J. Comput. Phys. 52 (1983) 374).  Maeda &
+Sakai 2004 have μ_ij without h and with r·x for v·r.
 """
 
 from __future__ import annotations
 
 from porescale.common.compiled.jit import inline
-from porescale.common.compiled.simd import greater
+from porescale.common.compiled.simd import greater, lesser
 
 CENTRAL = 4.0
 """Friction along the line of centres over eq. 34's in all directions: 2(2 + 2) for 2, in the plane."""
@@ -51,3 +54,17 @@ def mutual(viscosity_i, viscosity_j, specific_i, approach, distance2):
     """
     above = 4.0 * CENTRAL * viscosity_i * specific_i * viscosity_j * approach
     return above / greater((viscosity_i + viscosity_j) * distance2, COINCIDENT)
+
+
+@inline
+def artificial(alpha, beta, sound_speed, length, softening, approach, distance2, density_sum):
+    """Π_ij, m⁵/(kg s²): (-α c μ + β μ²)/ρ̄ for approaching particles, μ = h v·r/(r² + ε h²), else 0.
+
+    approach v_ij · x_ij, m²/s;  beta: None for 0;  softening ε;  density_sum 2ρ̄, kg/m³.  Acceleration of i:
+    -m_j Π_ij ∇_i W.  One division: it is what a pair costs most.
+    """
+    soft = distance2 + softening * length * length
+    if beta is None:
+        return -2.0 * alpha * sound_speed * length * lesser(approach, 0.0) / (soft * density_sum)
+    per_mass = length * lesser(approach, 0.0) / (soft * density_sum)  # μ/2ρ̄
+    return 2.0 * (beta * per_mass * density_sum - alpha * sound_speed) * per_mass

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 
 from porescale.analysis.permeability import Measured, gebart, kozeny_carman, measure
 from porescale.build.derive import fluid_scales
+from porescale.build.initial.fluid_options import collision_options, solid_options
+from porescale.build.scene import Scene
 from porescale.common.core.atomic import write_bytes
 from porescale.common.record.model import Cloud
 from porescale.common.schema.sections import validate
-from porescale.scene.sections import Scene
 
 if TYPE_CHECKING:
     from porescale.common.record.open_run import Run
@@ -64,7 +65,8 @@ def measure_window(scene: Scene, grains: Cloud) -> Measured:
             periodic_x and window.width > scene.domain.width - near,
             periodic_y and window.height > scene.domain.height - near,
         ),
-        walls=walls, relaxation_time=scales.relaxation_time, laws=scene.fluid.laws, solid_laws=scene.fluid.solid_laws,
+        walls=walls, relaxation_time=scales.relaxation_time,
+        laws=collision_options(scene.fluid), solid_laws=solid_options(scene.fluid),
     )  # fmt: skip
 
 

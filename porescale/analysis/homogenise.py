@@ -11,13 +11,14 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from porescale.build.initial.contact_laws import density_of, laws
+from porescale.build.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.dem.contact.linear import Linear
 from porescale.dem.prepare.compaction import DEEPEST
-from porescale.scene.contact import density_of, laws
-from porescale.scene.measures import Homogenise
-from porescale.scene.sections import Packing, Scene
+from porescale.scene.measures.homogenise import Homogenise
+from porescale.scene.packing import Packing
 
 ROWS = 3000
 """Of the series of a test: some twenty before half of the strength is there."""

@@ -7,10 +7,10 @@ from typing import Any
 from porescale.benchmarks.lbm import bytes_of
 from porescale.benchmarks.psm import plain
 from porescale.build.build import build
+from porescale.build.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.evidence.benchmarks import PLAIN, Benchmarks, Dtype, Work
 from porescale.common.schema.sections import validate
-from porescale.scene.sections import Scene
 
 BENCHMARKS = Benchmarks()
 

@@ -12,10 +12,10 @@ from porescale.benchmarks.minimal_dem import PlainDiscs
 from porescale.benchmarks.minimal_lbm import PlainWater
 from porescale.build.build import build
 from porescale.build.report import PARTS
+from porescale.build.scene import Scene
 from porescale.build.simulation import Simulation
 from porescale.common.evidence.overhead import SMALLEST, Built, Kind, Kinds
 from porescale.common.schema.sections import validate
-from porescale.scene.sections import Scene
 
 CELLS = 256
 GRAINS = (0.09, 0.045)

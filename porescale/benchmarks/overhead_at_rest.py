@@ -16,9 +16,9 @@ from porescale.benchmarks.minimal_lbm import largest_of_rows
 from porescale.benchmarks.minimal_psm import PlainWet
 from porescale.benchmarks.overhead import Table, built, nothing_moves, parts_of, scene, water, without
 from porescale.build.build import build
+from porescale.build.scene import Scene
 from porescale.build.simulation import Simulation
 from porescale.common.evidence.overhead import SMALLEST, Built, Kind, Kinds
-from porescale.scene.sections import Scene
 
 PILE = (0.03, 0.02)
 """Width and height, m: some 300 grains, 10 cells each."""

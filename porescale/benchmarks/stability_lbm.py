@@ -18,7 +18,7 @@ from porescale.lbm.collision.smagorinsky import CONSTANT
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import relaxation_time, viscosity
 from porescale.lbm.sanity import SOUND, sane
-from porescale.validation.lbm.channels_flows import one_thread
+from porescale.validation.lbm.channels import one_thread
 
 STABILITY = Stability()
 

@@ -26,8 +26,9 @@ from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
 from porescale.lbm.sanity import SOUND, WORST_MACH, sane
 from porescale.lbm.scales import Scales
-from porescale.validation.coupling.grains_trials import LAW, faxen
-from porescale.validation.lbm.channels_flows import one_thread
+from porescale.validation.coupling.setups import LAW
+from porescale.validation.coupling.towed import faxen
+from porescale.validation.lbm.channels import one_thread
 
 STABILITY = Stability()
 Array = NDArray[np.floating]

@@ -59,7 +59,7 @@ def remember(derived: Derived, steps_per_second: float) -> None:
             write_bytes(_file(), json.dumps({"slowness": slowness}).encode())
 
 
-def refuse_too_large(derived: Derived) -> None:
+def require_memory(derived: Derived) -> None:
     """Raise InputError when the arrays would not fit into this machine's memory."""
     have = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     need = memory(derived)

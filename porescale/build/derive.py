@@ -10,23 +10,27 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from porescale.build.checks.frame_places import judge_frames, strays, thin_for
-from porescale.build.checks.geometry import judge_places, placed
+from porescale.build.checks.frame_places import check_frames, strays, thin_for
+from porescale.build.checks.grain_places import check_grain_places
+from porescale.build.checks.numbers import check_controls
+from porescale.build.checks.packing import check_compressed
 from porescale.build.checks.polygons_in_fluid import longest_step, too_few_cells, too_light
-from porescale.build.frame_build import Placed, lightest_frame, placed_frames, sizes_of
-from porescale.build.lattice import is_whole
-from porescale.build.regime import expected_speed, judge
+from porescale.build.checks.regime import check_regime, expected_speed
+from porescale.build.initial.clumps import lightest
+from porescale.build.initial.contact_laws import density_of, laws
+from porescale.build.initial.frames import Placed, lightest_frame, placed_frames, sizes_of
+from porescale.build.initial.packing import radii_of
+from porescale.build.initial.placed import by_hand, placed
+from porescale.build.initial.rock import rock_frames
+from porescale.build.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.materials import Law
 from porescale.dem.discs import make_discs
 from porescale.dem.timestep import packing_limit, stable_step
 from porescale.lbm.scales import NAMES, Scales, implied
-from porescale.scene.bodies_of_grains import by_hand, judge_bodies, lightest
-from porescale.scene.contact import Contact, density_of, laws
+from porescale.scene.contact import Contact
 from porescale.scene.fluid import Fluid
-from porescale.scene.packing import judge_compressed, radii_of
-from porescale.scene.rock import rock_frames
-from porescale.scene.sections import Scene
+from porescale.scene.lattice import is_whole
 
 MANY = 1e6
 """Contact steps in a step of the fluid beyond which somebody slipped in a unit."""
@@ -61,8 +65,8 @@ def derive(scene: Scene) -> Derived:
     scales, cells, column = _lattice(scene, faults) if scene.fluid else (None, None, None)
     if scene.gate and any(scene.domain.periodic):
         faults.append(Fault("gate", None, "stands in a periodic box", repair="give the box walls"))
-    judge_compressed(scene, faults)
-    judge_places(scene, diameters(scene), faults)
+    check_compressed(scene, faults)
+    check_grain_places(scene, diameters(scene), faults)
     frames = _frames(scene, faults)
     sizes = diameters(scene, held=False) or diameters(scene) or _equal(sizes_of(frames))
     law = wall_law = limit = step = steps = None
@@ -92,9 +96,9 @@ def derive(scene: Scene) -> Derived:
     if scales:
         light = too_light(frames, scales.spacing, scales.density)
         warnings += filter(None, [too_few_cells(frames, scales.spacing), light])
-        variation = judge(scene, scales, speed, sizes, faults, warnings)
+        variation = check_regime(scene, scales, speed, sizes, faults, warnings)
     _loads(scene, faults)
-    judge_bodies(scene, grain_count(scene) - len(scene.disc), faults)
+    check_controls(scene, grain_count(scene) - len(scene.disc), faults)
     if faults:
         raise InputError(faults)
     return Derived(
@@ -113,7 +117,7 @@ def _frames(scene: Scene, faults: list[Fault]) -> list[Placed]:
         faults += error.faults
         return []
     names, x, r = placed(scene)
-    faults += judge_frames(scene, frames, make_discs(x, r, np.ones(len(r))), names)
+    faults += check_frames(scene, frames, make_discs(x, r, np.ones(len(r))), names)
     return frames
 
 

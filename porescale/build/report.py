@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from porescale.analysis.permeability import gebart, kozeny_carman
-from porescale.build.cost import expected_seconds, memory, refuse_too_large
+from porescale.build.cost import expected_seconds, memory, require_memory
 from porescale.build.derive import Derived, derive
+from porescale.build.initial.fluid_options import has_soft_rim, weight_of
+from porescale.build.initial.random_polygons import copies_of
 from porescale.common.cli.report import Report
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting import WEIGHTINGS
 from porescale.dem.contact.linear import Linear
 from porescale.lbm.collision.choose import OPERATORS
-from porescale.scene.sections import Scene
+from porescale.scene.bodies.segments import PolygonBody, SegmentBody
+from porescale.scene.scene import Scene
 
 WEEK = 7 * 86400.0
 """s."""
@@ -29,7 +33,7 @@ PARTS = (
 def report(scene: Scene) -> Report:
     """All of the above; raises InputError with every refusal."""
     derived = derive(scene)
-    refuse_too_large(derived)
+    require_memory(derived)
     out = Report(scene.title or "scene")
     _parts(scene, out)
     if derived.scales:
@@ -83,8 +87,8 @@ def _operators(scene: Scene, out: Report) -> None:
     out.row("Smagorinsky constant", fluid.smagorinsky or "none")
     if scene.grains or scene.disc or scene.rectangle:
         out.row("solid", fluid.solid_operator, "", SOLID_OPERATORS[fluid.solid_operator])
-        out.row("rim", "soft" if fluid.soft_rim else "sharp", "", "soft: for grains that the fluid passes fast")
-        out.row("weight", fluid.weight, "", WEIGHTINGS[fluid.weight])
+        out.row("rim", "soft" if has_soft_rim(fluid) else "sharp", "", "soft: for grains that the fluid passes fast")
+        out.row("weight", weight_of(fluid), "", WEIGHTINGS[weight_of(fluid)])
     out.row("precision", fluid.precision)
 
 
@@ -119,10 +123,10 @@ def _grains(scene: Scene, derived: Derived, out: Report) -> None:
 
 def _frames(scene: Scene, derived: Derived, out: Report) -> None:
     """Bodies of segments, and what thickness they have."""
-    many = {"segments": scene.segment, "polygons": scene.polygon}
+    many: dict[str, Sequence[SegmentBody | PolygonBody]] = {"segments": scene.segment, "polygons": scene.polygon}
     out.heading("Bodies of segments")
     for name, sections in many.items():
-        out.row(name, sum(len(it.copies) for it in sections))
+        out.row(name, sum(len(copies_of(it)) for it in sections))
     out.row("containers", len(scene.container), "", "kept out of the cells")
     out.row("corners", derived.corners, "", "a side costs up to ten discs")
     thin = [it.thickness for it in (*scene.segment, *scene.polygon)] + [it.thickness for it in scene.container]

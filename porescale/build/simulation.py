@@ -8,12 +8,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.build import observe
 from porescale.build.derive import Derived
-from porescale.build.frame_build import Placed, disc_count, free_rows
-from porescale.build.grain_fields import GrainInstruments
-from porescale.build.instruments import LAMBDA, Instruments, total_pressure
-from porescale.build.outfit import energy_row
+from porescale.build.initial.control import control_row
+from porescale.build.initial.fluid_options import weight_of
+from porescale.build.initial.frames import Placed, disc_count, free_rows
+from porescale.build.parts import flow_fields
+from porescale.build.parts.bonds import Binder
+from porescale.build.parts.cell import Strained
+from porescale.build.parts.flow_instruments import LAMBDA, Instruments, total_pressure
+from porescale.build.parts.grain_instruments import GrainInstruments
+from porescale.build.parts.rectangles import Movers
+from porescale.build.parts.rock import RockWatch
+from porescale.build.parts.series import Watch, energy_row
+from porescale.build.parts.sleep import sleep_row
 from porescale.common.core.errors import Unstable
 from porescale.common.record.model import Cloud, Grid, Snapshot
 from porescale.coupling.divergence_check import Sense
@@ -21,14 +28,8 @@ from porescale.coupling.step import Coupled
 from porescale.dem.grains import Grains
 from porescale.lbm.boundary.thin_plate import Plate
 from porescale.lbm.fluid import Fluid
-from porescale.output.frame_clouds import FRAMES, frame_cloud
-from porescale.scene.bodies_of_grains import control_row
-from porescale.scene.bonds import BONDS, Binder
-from porescale.scene.cell import Strained
-from porescale.scene.rectangles import Movers
-from porescale.scene.rock import RockWatch
-from porescale.scene.sections import Scene
-from porescale.scene.sleep import sleep_row
+from porescale.output.frame_clouds import BONDS, FRAMES, frame_cloud
+from porescale.scene.scene import Scene
 
 Array = NDArray[Any]
 
@@ -92,7 +93,7 @@ class Simulation:
         self.step_seconds = derived.model_step
         self._mass = fluid.mass_excess() if fluid else 0.0
         free = grains is not None and free_rows(grains, frames, len(scene.disc)).size > 0
-        self._watch = observe.Watch(scene, grains, frames) if grains and scene.grains and free else None
+        self._watch = Watch(scene, grains, frames) if grains and scene.grains and free else None
         self._grain_instruments = GrainInstruments(scene, grains, frames) if grains and scene.grains else None
         self._binder = Binder(scene, grains, self.frames) if grains and (scene.bonds or scene.rock) else None
         if self._binder:
@@ -109,7 +110,7 @@ class Simulation:
             laws = scene.fluid
             self._sense = Sense(
                 fluid, derived.scales, coupled, operator=laws.operator, eddies=bool(laws.smagorinsky),
-                solid_operator=laws.solid_operator, weighting=laws.weight,
+                solid_operator=laws.solid_operator, weighting=weight_of(laws),
             )  # fmt: skip
 
     def advance(self, steps: int) -> None:
@@ -194,7 +195,7 @@ class Simulation:
             row |= self._watch.row(self.grains) | sleep_row(self.grains)
         if self.fluid:
             excess, ux, uy, solid = self.fields()
-            row |= observe.fluid_row(excess, ux, uy, solid, self.derived.scales)
+            row |= flow_fields.fluid_row(excess, ux, uy, solid, self.derived.scales)
             cells = self.fluid.nx * self.fluid.ny
             if self.scene.grains and self.scene.grains.hydraulic_radius_ratio:
                 row[LAMBDA] = self.scene.grains.hydraulic_radius_ratio
@@ -264,8 +265,8 @@ class Simulation:
         }  # fmt: skip
         if self.grains:
             cells["solid_fraction"] = solid.astype(np.float32)
-        cells |= observe.derived_fields(self.scene.output.fields, self.fluid, ux, uy, s)
-        units = {"velocity": "m/s", "pressure": "Pa", **observe.UNITS}
+        cells |= flow_fields.derived_fields(self.scene.output.fields, self.fluid, ux, uy, s)
+        units = {"velocity": "m/s", "pressure": "Pa", **flow_fields.UNITS}
         units = {name: unit for name, unit in units.items() if name in cells}
         return Grid((0.0, 0.0), (s.spacing, s.spacing), cells, units)
 

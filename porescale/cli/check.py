@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from porescale.build.scene import Scene
     from porescale.common.cli.report import Report
-    from porescale.scene.sections import Scene
 
 
 def report(scene: Scene) -> Report:

@@ -167,8 +167,8 @@ def _refuse_what_scenes_refuse(text: str) -> None:
     """InputError where the scene of a deck is beyond what scenes allow."""
     from tempfile import TemporaryDirectory
 
+    from porescale.build.scene import Scene
     from porescale.common.schema.sections import load
-    from porescale.scene.sections import Scene
 
     with TemporaryDirectory() as place:
         file = Path(place) / "scene.toml"

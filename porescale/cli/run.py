@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from porescale.build.scene import Scene
     from porescale.build.simulation import Simulation
     from porescale.common.record.drive import Outcome
     from porescale.common.record.model import Array
-    from porescale.scene.sections import Scene
 
 
 def scene_type() -> type[Scene]:
     """The type of a porescale scene."""
-    from porescale.scene.sections import Scene
+    from porescale.build.scene import Scene
 
     return Scene
 
@@ -81,3 +82,10 @@ def table(folder: Path, name: str) -> dict[str, Array]:
     from porescale.common.record.series import read_series
 
     return read_series(folder / f"{name}.csv")
+
+
+def features() -> Mapping[str, Callable[[Path, float | None], Array]]:
+    """What a trade study may read of a run besides its tables."""
+    from porescale.analysis.features import FEATURES
+
+    return FEATURES

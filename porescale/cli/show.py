@@ -18,13 +18,13 @@ def show(folder: Path) -> list[Path]:
     from porescale.common.pictures.look import Look
     from porescale.common.pictures.picture import paint_last, pictures
     from porescale.common.record.open_run import open_run
+    from porescale.output.breaks import write_breaks
     from porescale.output.frame_clouds import FRAMES
     from porescale.output.frame_pictures import cracks
     from porescale.output.grain_pictures import write_grain_pictures
     from porescale.output.lines import write_lines
     from porescale.output.rock_pictures import write_rock_picture
     from porescale.output.surface import write_surface
-    from porescale.scene.bonds import write_breaks
 
     run = open_run(folder)
     scene = run.card["scene"]
@@ -76,7 +76,7 @@ def gate_lines(scene: dict[str, Any]) -> Callable[[Snapshot], list[Line]]:
 
 def solid_lines(scene: dict[str, Any]) -> Callable[[Snapshot], list[Line]]:
     """The gate and the outlines of rectangles, at any time, from the scene on a run card."""
-    from porescale.scene.rectangles import outline
+    from porescale.scene.bodies.rectangle import outline
 
     gate, size = gate_lines(scene), (scene["domain"]["width"], scene["domain"]["height"])
 

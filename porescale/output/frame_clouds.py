@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from porescale.build.frame_build import Placed, disc_count
+from porescale.build.initial.frames import Placed, disc_count
 from porescale.common.record.model import Array, Cloud
 from porescale.dem.bodies.frames import cells_of
 from porescale.dem.grains import Grains
 
-FRAMES = "frames"
-"""Name of the cloud in snapshots."""
+FRAMES, BONDS = "frames", "bonds"
+"""Names of the clouds in snapshots."""
 KIND = {"segment": 0, "polygon": 1, "container": 2, "rock": 3, "plate": 4}
 """Numbers of the kinds of frames in the cloud."""
 

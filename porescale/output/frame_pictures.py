@@ -10,7 +10,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 
 from porescale.common.pictures.look import Line
 from porescale.common.record.model import Array, Cloud, Snapshot
-from porescale.scene.bonds import BONDS
+from porescale.output.frame_clouds import BONDS
 
 OPEN = 1.5
 """Bodies are shown as cracked off each other until they are this much further apart than when bonded."""

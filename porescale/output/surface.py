@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from porescale.build.observe import surface
 from porescale.common.core.atomic import write_bytes
 
 if TYPE_CHECKING:
@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 BIN_WIDTH = 2.0
 """Width of a bin in mean diameters: narrower ones show single grains, not a surface."""
+
+
+Array = NDArray[np.floating]
 
 
 def write_surface(run: Run, folder: Path) -> Path:
@@ -35,3 +38,18 @@ def write_surface(run: Run, folder: Path) -> Path:
     path = folder / "profile.csv"
     write_bytes(path, text.getvalue().encode())
     return path
+
+
+def surface(position: Array, radius: Array, edges: Array) -> Array:
+    """Height of the pile's surface in bins between ``edges`` (b + 1,) m: top of the highest disc reaching in, (b,) m.
+
+    Discs are taken at their true shape: over a bin, the highest point of the disc within it.
+    """
+    height = np.zeros(len(edges) - 1)
+    for (x, y), r in zip(position, radius, strict=True):
+        first = max(int(np.searchsorted(edges, x - r, side="right")) - 1, 0)
+        last = min(int(np.searchsorted(edges, x + r, side="left")), len(height))
+        for b in range(first, last):
+            off = min(max(x, edges[b]), edges[b + 1]) - x
+            height[b] = max(height[b], y + np.sqrt(max(r * r - off * off, 0.0)))
+    return height

@@ -1,31 +1,28 @@
-"""The fluid as a section: its numbers, its lattice, and the choice of operators by name."""
+"""[fluid]: its numbers, its lattice, and the choice of operators by name."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from typing import Any, Literal
+from collections.abc import Mapping
+from typing import Literal
 
 import pydantic
 
 from porescale.common.core.errors import Fault
 from porescale.common.schema.messages import nearest
 from porescale.common.schema.sections import Refused, Section, quantity
-from porescale.coupling.solid.choose import SOLID_OPERATORS
-from porescale.coupling.weighting import WEIGHTINGS, fitting_weight
-from porescale.lbm.collision.choose import OPERATORS
-from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
 from porescale.lbm.scales import NAMES
 
-CHOICES: dict[str, Collection[str]] = {
-    "operator": OPERATORS, "solid_operator": SOLID_OPERATORS, "weighting": WEIGHTINGS,
-}  # fmt: skip
-"""Keys of the section that name a law, and the names there are: the registers of the rooms below."""
+CHOICES: dict[str, Mapping[str, str]] = {}
+"""Keys of the section that name a law, and the names there are with what each is good for: the registers of the laws,
+put here by build/scene.py."""
+MAGIC_MIDWAY_WALL = 3 / 16
+"""Magic parameter at which walls lie half-way between nodes."""
 
 
 class Fluid(Section):
     """The fluid and its lattice.  Any three of spacing, step, relaxation_time and viscosity give the fourth.
 
-    Whether four agree is for the scene to say, which knows the box.
+    Whether four agree is checked by the scene, which has the box.
     """
 
     density: float = quantity("kg/m^3", 1000.0, ge=1e-3, le=1e5, help="density of the fluid")
@@ -53,7 +50,7 @@ class Fluid(Section):
         "m/s", (0.0, 0.0), ge=-1e4, le=1e4, help="velocity of all of the fluid at the start"
     )
 
-    @pydantic.field_validator(*CHOICES)
+    @pydantic.field_validator("operator", "solid_operator", "weighting")
     @classmethod
     def _known(cls, name: str | None, info: pydantic.ValidationInfo) -> str | None:
         known = CHOICES[str(info.field_name)]
@@ -74,40 +71,3 @@ class Fluid(Section):
                       repair=f"add {'one' if len(given) == 2 else str(3 - len(given))} of them")
             )  # fmt: skip
         return self
-
-    @pydantic.model_validator(mode="after")
-    def _weight_fits(self) -> Fluid:
-        try:
-            fitting_weight(self.solid_operator, self.weighting)
-        except ValueError:
-            fits = "'wall'" if self.solid_operator == "exact-wall" else "'B2' or 'B1'"
-            problem = f"does not go with the solid operator {self.solid_operator!r}"
-            raise Refused(Fault("weighting", self.weighting, problem, "", fits, "leave it out")) from None
-        return self
-
-    @pydantic.model_validator(mode="after")
-    def _rim_fits(self) -> Fluid:
-        if self.rim == "soft" and self.solid_operator != "exact-wall":
-            problem = f"does not go with the solid operator {self.solid_operator!r}"
-            raise Refused(Fault("rim", self.rim, problem, "", "'sharp'", "leave it out, or take 'exact-wall'"))
-        return self
-
-    @property
-    def laws(self) -> dict[str, Any]:
-        """What the operator is chosen by: keyword arguments of ``Fluid`` of the lattice."""
-        return {"operator": self.operator, "magic": self.magic, "smagorinsky": self.smagorinsky or 0.0}
-
-    @property
-    def weight(self) -> str:
-        """Name of the weight that is used."""
-        return fitting_weight(self.solid_operator, self.weighting)
-
-    @property
-    def soft_rim(self) -> bool:
-        """Whether grains have soft rims."""
-        return self.rim == "soft" or (self.rim is None and self.operator == "central" and self.weight == "wall")
-
-    @property
-    def solid_laws(self) -> dict[str, Any]:
-        """The same of cells that grains lie in: keyword arguments of ``Saturated`` and ``Coupled``."""
-        return {"solid_operator": self.solid_operator, "weighting": self.weight, "soft_rim": self.soft_rim}

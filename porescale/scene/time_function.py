@@ -1,18 +1,17 @@
-"""Numbers that change with time as a scene says: constant, a sine, a table; and what they say of a component."""
+"""Numbers that change with time: constant, a sine, a table; and what they prescribe of a component."""
 
 from __future__ import annotations
 
 import itertools
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, ClassVar
 
 import pydantic
 
 from porescale.common.core.errors import Fault
 from porescale.common.schema.sections import Quantity, Refused, Section, quantity
-from porescale.dem.motion.control import Control, Moved, Placed, Pushed
-from porescale.dem.motion.time_function import Constant, Schedule, Sine, Table
 
 LARGEST = 1e12
 """SI, of any number that changes with time: what lies beyond is a slip of the exponent."""
@@ -42,15 +41,6 @@ class Course(Section):
             key = "frequency" if self.amplitude else "amplitude"
             raise Refused(Fault(key, 0, "is needed for a sine", repair="give amplitude and frequency"))
         return self
-
-    @property
-    def schedule(self) -> Schedule:
-        """As the kernels' schedules take it."""
-        if self.times:
-            return Table(self.times, self.values)
-        if self.amplitude:
-            return Sine(self.amplitude, self.frequency, self.phase, self.mean)
-        return Constant(self.mean)
 
     @property
     def largest(self) -> float:
@@ -104,8 +94,6 @@ def with_courses(table: Any, units: Mapping[str, tuple[str, str]]) -> Any:
 
 
 def _below(key: str, fault: Fault) -> Fault:
-    from dataclasses import replace
-
     return replace(fault, key=f"{key}{'' if fault.key.startswith('[') or not fault.key else '.'}{fault.key}")
 
 
@@ -146,15 +134,6 @@ class Component(Section):
         if self.velocity:
             return self.velocity.largest
         return self.displacement.steepest if self.displacement else 0.0
-
-    @property
-    def control(self) -> Control | None:
-        """As the grains take it; None: free."""
-        if self.velocity:
-            return Moved(self.velocity.schedule)
-        if self.displacement:
-            return Placed(self.displacement.schedule)
-        return Pushed(self.force.schedule) if self.force else None
 
 
 class Turning(Component):

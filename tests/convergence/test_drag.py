@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from porescale.validation.coupling.arrays import SQUARE
-from porescale.validation.coupling.towed_trials import square_array_drag
+from porescale.validation.coupling.towed import square_array_drag
 
 PLACES = [((0.5 + 0.7549 * k) % 1, (0.5 + 0.5698 * k) % 1) for k in range(8)]
 """Spread evenly over a cell: multiples of the powers of 1/1.3247, the root of x³ = x + 1."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from porescale.validation.lbm import channels_flows as lab
+from porescale.validation.lbm import channels as lab
 
 
 @pytest.mark.parametrize("viscosity", [0.02, 0.05])

@@ -14,11 +14,11 @@ import numpy as np
 
 from porescale import build, load, open_run
 from porescale.common.record.checkpoint import read_checkpoint
+from tests.reference.folders import ROOT
 from tests.reference.same_run import contents, differences, state_of
 from tests.reference.scenes import STEPS
 from tests.reference.waiting import done, kill, running, talked, until
 
-ROOT = Path(__file__).resolve().parents[2]
 KILLED = """
 import os, signal, sys
 from porescale.cli.main import main
@@ -170,7 +170,7 @@ def test_two_threads_give_the_bits_of_one(folder, scene, porescale, tmp_path):
 
 def test_a_state_that_differs_in_one_bit_ends_differently(folder, scene, porescale, tmp_path, monkeypatch):
     # The twin that must fail: the comparison sees a run whose first grain starts one rounding error to the right.
-    import porescale.build.build as module
+    import porescale.build.initial.grains as module
 
     out, prepared = tmp_path / "nudged", module.prepared
 

@@ -10,14 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from porescale import open_run
+from porescale import Scene, open_run
 from porescale.common.schema.sections import open_scene
 from porescale.output.case import expected, missed
 from porescale.piv.fields.field import Field
 from porescale.piv.images.synth import Camera
-from porescale.scene.sections import Scene
-
-CASES = Path(__file__).resolve().parents[2] / "cases"
+from tests.reference.folders import CASES
 
 
 def script(case, name=None):

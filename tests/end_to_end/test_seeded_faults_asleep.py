@@ -7,10 +7,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from porescale import build
+from porescale import Scene, build
 from porescale.build.simulation import Simulation
 from porescale.common.schema.sections import validate
-from porescale.scene.sections import Scene
 from tests.reference.killing import ASLEEP
 from tests.reference.scenes import column, grain
 from tests.reference.seeded import INF, NAN, Running, put, running, times

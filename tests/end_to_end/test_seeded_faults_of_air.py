@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 
@@ -11,10 +10,11 @@ from continuum_sph.build.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import POROSITY
 from porescale.common.schema.sections import load
+from tests.reference.folders import ROOT
 from tests.reference.seeded import INF, NAN, Running, crowd, put, running, step, times
 
 pytestmark = pytest.mark.slow
-CASE = Path(__file__).resolve().parents[2] / "cases" / "trapped_air"
+CASE = ROOT / "cases" / "trapped_air"
 SAND, WATER = "flow.ground.soil.", "flow.water.layer."
 BOOKED = ("output.energy=true",)
 

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import shutil
 import sys
-from pathlib import Path
 
 import pytest
 
+from tests.reference.folders import ROOT
 from tests.reference.waiting import done
 
-ROOT = Path(__file__).resolve().parents[2]
 FIRST = {
     "porescale": "from porescale.cli.main import commands as app",
     "continuum_sph": "from continuum_sph.cli import PACKAGE\n"
@@ -49,7 +48,7 @@ def test_what_is_no_scene_is_said_before_numba_is_imported(tmp_path, package):
 
 
 WRONG = {
-    "porescale": ("porescale/app", "grains.packing.width=99", "out of the box", "fluid.viskosity=1e-6", "'viscosity'"),
+    "porescale": ("porescale/cli", "grains.packing.width=99", "out of the box", "fluid.viskosity=1e-6", "'viscosity'"),
     "continuum_sph": ("continuum_sph", "tank.width=0.1", "beyond the tank", "tank.hight=3", "'height'"),
 }
 """By package: folder of its template; a number that others contradict and words of its fault; a key that there is

@@ -10,10 +10,10 @@ from typing import Any
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from porescale import Scene
 from porescale.build.report import report
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
-from porescale.scene.sections import Scene
 from tests.reference.scenes import COLUMN, table
 
 LOW, HIGH = 1e-12, 1e9

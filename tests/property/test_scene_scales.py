@@ -6,11 +6,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from porescale import Scene
 from porescale.build.derive import fluid_scales
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.lbm.scales import AGREEMENT, NAMES, implied
-from porescale.scene.sections import Fluid, Scene
+from porescale.scene.fluid import Fluid
 from tests.reference.scenes import grain, table
 
 FOURS = st.builds(

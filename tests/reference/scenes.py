@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from porescale import Scene
 from porescale.common.schema.sections import validate
-from porescale.scene.sections import Scene
 
 COLUMN: dict[str, Any] = {
     "title": "A small column under water",

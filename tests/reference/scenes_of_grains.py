@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from porescale import Scene
 from porescale.build.build import build
 from porescale.build.derive import derive
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
-from porescale.scene.sections import Scene
 from tests.reference.scenes import dry, grain, table
 
 

@@ -5,25 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.validation.lbm import cavity_flows as cavities
-from porescale.validation.lbm import channels_flows as lab
-from porescale.validation.lbm import open_sides_flows as opened
+from porescale.cli.main import PACKAGE
+from porescale.validation.lbm import cavity as cavities
+from porescale.validation.lbm import channels as lab
+from porescale.validation.lbm import open_sides as opened
+from porescale.validation.lbm import operators as operators
 from porescale.validation.lbm import operators as verify_operators
-from porescale.validation.lbm import operators_flows as operators
-from porescale.validation.lbm.channels import HEIGHT, OTHER_MAGIC, VALIDATIONS, VISCOSITIES
+from porescale.validation.lbm.channels import HEIGHT, OTHER_MAGIC, VISCOSITIES
+
+VALIDATIONS = PACKAGE.validations()
 
 EPS = np.finfo(float).eps
-
-
-def rows():
-    for row in VALIDATIONS:
-        yield pytest.param(row, id=row.name, marks=[pytest.mark.slow] if row.slow else [])
-
-
-@pytest.mark.parametrize("validation", list(rows()))
-def test_the_validation_holds(validation):
-    row = validation.run()
-    assert row.passed, row
 
 
 @pytest.mark.parametrize("viscosity", [0.01, 1 / 6, 1.0])

@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from continuum_sph.cli import PACKAGE
 from continuum_sph.soil import SoilFlow
 from continuum_sph.soil.state import GROWN
-from continuum_sph.validation.levee import QUICK, STIFFER, gone
-from continuum_sph.validation.levee_trials import FAR, GRAINS, PARTS, Levee
-from continuum_sph.validation.validations import VALIDATIONS
+from continuum_sph.validation.seepage.levee import FAR, GRAINS, PARTS, QUICK, STIFFER, Levee, gone
+
+VALIDATIONS = PACKAGE.validations()
 
 SLID = Levee(rows=8, end=3.2)
 """Until its soil has slid to the end of the land."""

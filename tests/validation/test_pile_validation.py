@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.validation.pile import (
+from continuum_sph.cli import PACKAGE
+from continuum_sph.validation.seepage.heave import (
     APART,
-    AROUND,
     BOUNDS,
     CALM,
     HEADS,
@@ -17,13 +17,13 @@ from continuum_sph.validation.pile import (
     NARROW,
     QUICK,
     RISING,
-    one_side,
+    rests,
     rising,
 )
-from continuum_sph.validation.pile_trials import Around, rests
-from continuum_sph.validation.seepage_steady_trials import SheetPile
-from continuum_sph.validation.validations import VALIDATIONS
+from continuum_sph.validation.seepage.sheet_pile import AROUND, Around, SheetPile, one_side
 from tests.reference.sheet_pile import around, bounds, seen, weakest_prism
+
+VALIDATIONS = PACKAGE.validations()
 
 ROW = VALIDATIONS["continuum.heave_behind_pile"]
 MIDDLE = 0.5 * sum(BOUNDS[QUICK.share])

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.build.checks.polygons_in_fluid import judge_in_fluid
-from porescale.build.frame_build import Placed
+from porescale.build.checks.wall_places import across_walls
+from porescale.build.initial.frames import Placed
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Law
@@ -20,10 +20,9 @@ from porescale.dem.discs import Discs
 from porescale.dem.motion.control import Control, Moved, schedule_of
 from porescale.dem.motion.control import Placed as PlacedControl
 from porescale.dem.motion.time_function import schedule_rows, value_at
-from porescale.scene.walls import across_walls
 
 if TYPE_CHECKING:
-    from porescale.scene.sections import Scene
+    from porescale.scene.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -37,33 +36,7 @@ WAVES = 0.5
 """Share of the way to the middle of two segments that the speed to expect may press them: beyond, there is a word."""
 
 
-def judge_sections(scene: Scene) -> list[Fault]:
-    """What bodies of segments cannot be beside."""
-    given = {"segment": scene.segment, "polygon": scene.polygon, "container": scene.container, "rock": scene.rock}
-    frames = [name for name, it in given.items() if it]
-    if not frames:
-        return []
-    first, faults = frames[0], []
-    if scene.fluid:
-        faults += judge_in_fluid(scene, frames)
-    if scene.grains is None:
-        faults.append(Fault(first, None, "needs [grains], which says what is dense", repair="add [grains] and density"))
-    beside = {"gate": (scene.gate, "make it a [[container]] that moves"), "cell": (scene.cell, "leave one of them out"),
-              "rectangle": (scene.rectangle, "make it a [[container]]")}  # fmt: skip
-    faults += [Fault(name, None, f"does not go with [[{first}]]", repair=repair)
-               for name, (section, repair) in beside.items() if section]  # fmt: skip
-    names = [it.name for it in scene.material]
-    asked = [(f"segment[{k}]", it.material) for k, it in enumerate(scene.segment)]
-    asked += [(f"polygon[{k}]", it.material) for k, it in enumerate(scene.polygon)]
-    asked += [(f"container[{k}]", it.material) for k, it in enumerate(scene.container)]
-    for key, wanted in asked:
-        if wanted and wanted not in names:
-            allowed = ", ".join(names) or "none: there is no [[material]]"
-            faults.append(Fault(f"{key}.material", wanted, "no such material", "", allowed))
-    return faults
-
-
-def judge_frames(scene: Scene, placed: Sequence[Placed], discs: Discs, names: Sequence[str]) -> list[Fault]:
+def check_frames(scene: Scene, placed: Sequence[Placed], discs: Discs, names: Sequence[str]) -> list[Fault]:
     """Faults of the places of frames among each other and the discs placed by hand, which have ``names``."""
     faults = [*_out_of_the_box(scene, placed), *_too_thin(scene, placed)]
     moving = [it for it in placed if it.kind != "container"]
@@ -76,7 +49,7 @@ def judge_frames(scene: Scene, placed: Sequence[Placed], discs: Discs, names: Se
     return faults + ([found] if found else [])
 
 
-def refuse_overlaps_of_frames(scene: Scene, placed: Sequence[Placed], discs: Discs, names: Sequence[str]) -> None:
+def require_frames_apart(scene: Scene, placed: Sequence[Placed], discs: Discs, names: Sequence[str]) -> None:
     """InputError naming the first frame that lies in another, or in a disc; the first discs are the packing's."""
     packed = discs.count - len(names)
     every = [*["a grain of the packing"] * packed, *names]

@@ -12,8 +12,8 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.coupling.coverage.polygon import convex, least_width
 
 if TYPE_CHECKING:
-    from porescale.build.frame_build import Placed
-    from porescale.scene.sections import Scene
+    from porescale.build.initial.frames import Placed
+    from porescale.scene.scene import Scene
 
 THINNEST = 2.0
 """Cells across a polygon below which there is no full cell between its faces: of a plate of one cell drag is off by up
@@ -32,7 +32,7 @@ def longest_step(placed: Sequence[Placed], speed: float) -> float:
     return TRAVEL * thickness / speed if speed > 0.0 else math.inf
 
 
-def judge_in_fluid(scene: Scene, frames: Sequence[str]) -> list[Fault]:
+def check_in_fluid(scene: Scene, frames: Sequence[str]) -> list[Fault]:
     """What of the sections ``frames`` of bodies of segments cannot be in fluid: all but convex polygons."""
     repair = "take [[polygon]], [[rectangle]] or [[clump]], or leave [fluid] out"
     faults = [Fault(it, None, "is for dry grains", repair=repair) for it in frames if it != "polygon"]

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.discs import Discs
-from porescale.scene.rectangles import Rectangle, travelled
+from porescale.scene.bodies.rectangle import Rectangle, travelled
 
 if TYPE_CHECKING:
-    from porescale.scene.sections import Scene
+    from porescale.scene.scene import Scene
 
 EDGE = 1e-9
 """Relative slack of edges that meet."""
@@ -45,14 +45,14 @@ class Body(NamedTuple):
         return travelled(self.velocity, self.starts_at, self.stops_at, time)
 
 
-def judge_rectangles(scene: Scene, places: Array, radii: Array, names: Sequence[str], faults: list[Fault]) -> None:
+def check_rectangles(scene: Scene, places: Array, radii: Array, names: Sequence[str], faults: list[Fault]) -> None:
     """Add a fault for everything that the rectangles of a scene are in each other's, or anything else's, way.
 
     places (n, 2) m, radii (n,) m, names: of discs, grains or held, that were placed by hand.
     """
-    _judge_box(scene, faults)
-    _judge_packing(scene, faults)
-    _judge_discs(scene, places, radii, names, faults)
+    _check_box(scene, faults)
+    _check_packing(scene, faults)
+    _check_discs(scene, places, radii, names, faults)
     slack = EDGE * max(scene.domain.width, scene.domain.height)
     gate = _gate(scene)
     for k, it in enumerate(scene.rectangle):
@@ -108,7 +108,7 @@ def _in_the_way(k: int, what: str, time: float) -> Fault:
     return Fault(f"rectangle[{k}]", None, problem, repair=repair)
 
 
-def _judge_box(scene: Scene, faults: list[Fault]) -> None:
+def _check_box(scene: Scene, faults: list[Fault]) -> None:
     """It must come into the box and leave some of it free, be no longer than a period, and keep off open sides."""
     d, end = scene.domain, scene.time.end
     size = d.width, d.height
@@ -155,7 +155,7 @@ def _beyond(size: Pair) -> dict[str, Body]:
     }  # fmt: skip
 
 
-def _judge_packing(scene: Scene, faults: list[Fault]) -> None:
+def _check_packing(scene: Scene, faults: list[Fault]) -> None:
     """A packing is placed clear of rectangles, and settles between them, not onto them."""
     packing = scene.grains.packing if scene.grains else None
     if packing is None:
@@ -173,7 +173,7 @@ def _judge_packing(scene: Scene, faults: list[Fault]) -> None:
             )
 
 
-def _judge_discs(scene: Scene, places: Array, radii: Array, names: Sequence[str], faults: list[Fault]) -> None:
+def _check_discs(scene: Scene, places: Array, radii: Array, names: Sequence[str], faults: list[Fault]) -> None:
     """No disc starts in a rectangle, and one that is held, who would not give way, does not come into one."""
     held = {f"disc[{j}]": it for j, it in enumerate(scene.disc)}
     for k, it in enumerate(scene.rectangle):
@@ -211,7 +211,7 @@ def nearest(it: Rectangle, path: Body, place: Array, t0: float, t1: float) -> fl
     return min(distance(t0), distance(t1))
 
 
-def refuse_buried(scene: Scene, discs: Discs) -> None:
+def require_free_of_rectangles(scene: Scene, discs: Discs) -> None:
     """InputError naming the first disc, of a packing that has settled say, that a rectangle is in."""
     for k, it in enumerate(scene.rectangle):
         off = discs.position - np.clip(discs.position, it.lower, it.upper)

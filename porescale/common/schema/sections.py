@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, ClassVar, Generic, TypeVar, get_args
@@ -41,8 +41,17 @@ class Section(BaseModel):
 
     elsewhere: ClassVar[Mapping[str, str]] = {}
     """Of a scene: sections that it has not and every scene of another program has, and that program."""
+    checks: ClassVar[list[Callable[[Any], list[Fault]]]] = []
+    """Functions that return what is wrong with a valid section of this very class.  Checks between sections, and those
+    that need physics, are registered here by whoever builds: sections import neither."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=True)
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        """Every class has checks of its own."""
+        super().__pydantic_init_subclass__(**options)
+        cls.checks = []
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: pydantic.GetCoreSchemaHandler) -> CoreSchema:
@@ -51,9 +60,13 @@ class Section(BaseModel):
         def collect(value: Any, inner: pydantic.ValidatorFunctionWrapHandler) -> Any:
             """``value`` validated, with the faults that a section raises."""
             try:
-                return inner(cls._spell_booleans(value))
+                made = inner(cls._spell_booleans(value))
+                faults = [fault for check in cls.checks for fault in check(made)]
             except InputError as error:
                 raise Refused(*error.faults) from None
+            if faults:
+                raise Refused(*faults)
+            return made
 
         return core_schema.no_info_wrap_validator_function(collect, handler(source))
 

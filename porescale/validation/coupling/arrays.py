@@ -2,6 +2,8 @@
 
 References: drag F/(mu U), or torque, of point forces (tests/reference/stokes_array.py), U superficial; six digits and
 more.  Of square arrays Sangani & Acrivos 1982 print the same to all their digits but at 0.3.
+
+Arrays of discs in slow flow with exactly known loads, beside the square ones of experiments_towed; lattice units.
 """
 
 from __future__ import annotations
@@ -12,9 +14,131 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from porescale.common.evidence.validations import Measured, Validations
-from porescale.validation.coupling import arrays_trials as lab
-from porescale.validation.coupling.grains_trials import DEFAULT, TAU, Method
-from porescale.validation.coupling.towed_trials import square_array_drag
+from porescale.coupling.step import Coupled
+from porescale.lbm.lattice import viscosity
+from porescale.validation.coupling.setups import DEFAULT, TAU, Method
+from porescale.validation.coupling.towed import PERIODIC, SLOW, square_array_drag, steady, towed
+from porescale.validation.lbm.channels import one_thread
+
+
+def places(count: int) -> list[tuple[float, float]]:
+    """``count``² places in a quarter of a cell, of which all others are mirror images, at the middles of equal parts.
+
+    Their mean is that over the cell of whatever has less than 2 ``count`` waves in it.
+    """
+    at = (np.arange(count) + 0.5) / (2 * count)
+    return [(float(x), float(y)) for x in at for y in at]
+
+
+def _flux_through(coupled: Coupled, force: float, drag: float) -> float:
+    """Superficial velocity along x under a body force, steady;  drag: F/(mu U) expected, for the flow's memory."""
+    cells = coupled.fluid.nx * coupled.fluid.ny
+    memory = cells / (viscosity(coupled.fluid.relaxation_time) * drag)
+    return steady(coupled, lambda: coupled.fluid.momentum()[0] / cells, memory)
+
+
+def hexagonal_drag(
+    cells: tuple[int, int],
+    solid_fraction: float,
+    *,
+    relaxation_time: float = TAU,
+    place: tuple[float, float] = (0.3, 0.1),
+    method: Method = DEFAULT,
+) -> float:
+    """Drag F/(mu U) of a disc of an array with a disc at the corners and in the middle of a box of ``cells``.
+
+    Flow along x;  place: of the first within its cell, the second is half a box away.
+    """
+    across, along = cells
+    radius = math.sqrt(solid_fraction * across * along / (2 * math.pi))
+    nu = viscosity(relaxation_time)
+    force = 1e-6 * nu
+    first = across / 4 + place[0], along / 4 + place[1]
+    second = first[0] + across / 2, first[1] + along / 2
+    coupled = towed(
+        cells, [first, second], radius, relaxation_time=relaxation_time, sides=PERIODIC, force=(force, 0.0),
+        method=method,
+    )  # fmt: skip
+    area = across * along / 2
+    return force * area / (nu * _flux_through(coupled, force, 40.0))
+
+
+def pair_drags(
+    cells: int = 50,
+    *,
+    relaxation_time: float = TAU,
+    method: Method = DEFAULT,
+) -> tuple[float, float, float]:
+    """Drags Fx/(mu Ux) on discs of radius 0.2 and 0.12 at (0.3, 0.35) and (0.72, 0.7) of a periodic box of side 1.
+
+    And the flow Uy/Ux that they turn aside: driven by a body force G along x.  The force on a disc is its load and G
+    times the area it takes.
+    """
+    nu = viscosity(relaxation_time)
+    force = 1e-8 * nu  # inertia turns the flow by a share of its Reynolds number
+    place = np.array([(0.3, 0.35), (0.72, 0.7)]) * cells
+    coupled = towed(
+        (cells, cells), place, np.array([0.2, 0.12]) * cells, relaxation_time=relaxation_time, sides=PERIODIC,
+        force=(force, 0.0), method=method,
+    )  # fmt: skip
+    flux = _flux_through(coupled, force, 60.0)
+    taken = math.pi * coupled.saturated.covering_radius**2
+    first, second = (coupled.fluid_force[:, 0] + force * taken) / (nu * flux)
+    return float(first), float(second), coupled.fluid.momentum()[1] / (cells**2 * flux)
+
+
+def array_torque(
+    cells: int,
+    solid_fraction: float,
+    *,
+    relaxation_time: float = TAU,
+    place: tuple[float, float] = (0.3, 0.1),
+    method: Method = DEFAULT,
+) -> float:
+    """Torque T/(mu w) over the box, on discs of a square array that all turn at w; ``cells``² a disc."""
+    nu = viscosity(relaxation_time)
+    radius = cells * math.sqrt(solid_fraction / math.pi)
+    spin = SLOW / radius
+    coupled = towed(
+        (cells, cells), [(cells / 2 + place[0], cells / 2 + place[1])], radius, 0.0, spin,
+        relaxation_time=relaxation_time, sides=PERIODIC, method=method,
+    )  # fmt: skip
+    torque = steady(coupled, lambda: float(coupled.fluid_torque[0]), (cells / (2 * math.pi)) ** 2 / nu)
+    return -torque / (nu * spin * cells**2)
+
+
+def moving_drag(
+    diameter: float = 10.0,
+    *,
+    relaxation_time: float = TAU,
+    reynolds: float = 0.2,
+    degrees: float = 11.0,
+    drag: float = 15.4,
+    method: Method = DEFAULT,
+) -> float:
+    """Drag F/(mu U) of a disc that moves through a periodic box of four diameters, mean over ten cells of way.
+
+    U: velocity against the mean flow of box and disc, which a body force of ``drag``, F/(mu U) expected, holds back.
+    """
+    cells, nu = round(4 * diameter), viscosity(relaxation_time)
+    speed = reynolds * nu / diameter
+    along = np.array([math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])
+    against = -drag * nu * speed / cells**2
+    coupled = towed(
+        (cells, cells), [(cells / 2, cells / 2)], diameter / 2, speed * along, relaxation_time=relaxation_time,
+        sides=PERIODIC, force=(against * along[0], against * along[1]), method=method,
+    )  # fmt: skip
+    taken = math.pi * float(coupled.saturated.covering_radius[0]) ** 2
+    found = []
+    with one_thread():
+        for _ in range(math.ceil(cells**2 / nu)):
+            coupled.advance()
+        for _ in range(round(10 / speed)):
+            coupled.advance()
+            mean = np.array(coupled.fluid.momentum()) @ along / cells**2
+            found.append((-coupled.fluid_force[0] @ along - against * taken) / (nu * (speed - mean)))
+    return float(np.mean(found))
+
 
 VALIDATIONS = Validations()
 
@@ -54,7 +178,7 @@ def square(
     """Drags of square arrays, mean over ``count``² places, at every relaxation time."""
     cases = [(tau, c) for tau in taus for c in fractions]
     drags = (
-        square_array_drag(diameter, c, relaxation_time=tau, places=lab.places(count), method=method) for tau, c in cases
+        square_array_drag(diameter, c, relaxation_time=tau, places=places(count), method=method) for tau, c in cases
     )
     return means(drags, [SQUARE[c] for _, c in cases], share)
 
@@ -66,8 +190,8 @@ def hexagonal(
     """Drags of hexagonal arrays, mean over four places."""
     drags = [
         [
-            lab.hexagonal_drag(cells, c, relaxation_time=relaxation_time, place=place, method=method)
-            for place in lab.places(2)
+            hexagonal_drag(cells, c, relaxation_time=relaxation_time, place=place, method=method)
+            for place in places(2)
         ]
         for cells, c in arrays
     ]  # fmt: skip
@@ -135,7 +259,7 @@ def gebart(fraction: float) -> float:
 )
 def permeability() -> Measured:
     """K/R² at 40 cells per diameter, tau 0.8."""
-    drags = square_array_drag(40.0, 0.6, places=lab.places(1))
+    drags = square_array_drag(40.0, 0.6, places=places(1))
     found = math.pi / 0.6 / float(np.mean(drags))  # K = mu U/G = box/(F/mu U), box = pi R²/c
     return Measured(gebart(0.6), found, abs(found / gebart(0.6) - 1))
 
@@ -170,7 +294,7 @@ def dense_hexagonal_arrays() -> Measured:
 )
 def unlike_discs() -> Measured:
     """Drags, and the flow turned aside over that along x; box of 25 cells, tau 0.8."""
-    found = lab.pair_drags(25)
+    found = pair_drags(25)
     return Measured(PAIR, found, float(np.abs(np.divide(found, PAIR) - 1).max()))
 
 
@@ -184,9 +308,7 @@ def unlike_discs() -> Measured:
 def moving() -> Measured:
     """Drag of a disc through a box of four diameters, 10 cells wide: tau 0.8 at 11 and 37 degrees to the grid, tau 1 at
     26."""
-    found = [
-        lab.moving_drag(relaxation_time=tau, degrees=turn) for tau, turn in ((0.8, 11.0), (0.8, 37.0), (1.0, 26.0))
-    ]
+    found = [moving_drag(relaxation_time=tau, degrees=turn) for tau, turn in ((0.8, 11.0), (0.8, 37.0), (1.0, 26.0))]
     return Measured([MOVING] * len(found), found, float(np.abs(np.divide(found, MOVING) - 1).max()))
 
 
@@ -210,7 +332,7 @@ def order() -> Measured:
 
 def leak(diameter: float, method: Method = DEFAULT) -> float:
     """Largest K/R² of touching discs, of four places; tau 0.55."""
-    drags = square_array_drag(diameter, math.pi / 4, relaxation_time=0.55, places=lab.places(2), method=method)
+    drags = square_array_drag(diameter, math.pi / 4, relaxation_time=0.55, places=places(2), method=method)
     return 4 / min(drags)
 
 
@@ -230,7 +352,7 @@ def touching() -> Measured:
 def excess(cells: int, fraction: float, method: Method = DEFAULT) -> tuple[float, float]:
     """Torque of a turning array, and how much too big its discs look, times their radius, cells²."""
     exact, slope = TURNING[cells, fraction]
-    found = lab.array_torque(cells, fraction, method=method)
+    found = array_torque(cells, fraction, method=method)
     return found, math.log(found / exact) / slope * cells**2 * fraction / math.pi
 
 

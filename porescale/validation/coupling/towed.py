@@ -1,20 +1,267 @@
-"""Validations of held, towed and turning discs in slow flow, beside those on arrays of verify_arrays.py."""
+"""Validations of held, towed and turning discs in slow flow, beside those on arrays of verify_arrays.py.
+
+Discs that are held or towed in slow flow, with known drag and torque: arrays, channels, walls; lattice units.
+
+A disc towed so slowly that it stays in its place while the flow becomes steady gives the quasi-steady load.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Sequence
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from porescale.common.evidence.validations import Measured, Validations
-from porescale.validation.coupling import towed_trials as lab
-from porescale.validation.coupling.grains_trials import faxen, spinning_disc, weighing
+from porescale.coupling.psm import Saturated
+from porescale.coupling.step import Coupled
+from porescale.dem.discs import make_discs
+from porescale.dem.forces.walls import Box
+from porescale.dem.grains import Grains
+from porescale.lbm.boundary.sides import Sides
+from porescale.lbm.fluid import Fluid
+from porescale.lbm.lattice import viscosity
+from porescale.lbm.scales import Scales
+from porescale.validation.coupling.setups import DEFAULT, LAW, TAU, Method
+from porescale.validation.lbm.channels import one_thread
 
 VALIDATIONS = Validations()
 
+
+def faxen(k: float) -> float:
+    """Drag F/(mu U) of a cylinder towed midway between walls, k radius over half width (Faxen 1946)."""
+    return 4 * math.pi / (-math.log(k) - 0.9157 + 1.7244 * k**2 - 1.7302 * k**4 + 2.4056 * k**6 - 4.5913 * k**8)
+
+
+def weighing(
+    relaxation_time: float, cells: int = 40, radius: float = 5.0, steps: int = 5000, method: Method = DEFAULT
+) -> tuple[float, float]:
+    """Load over F of a disc held in a closed box under a downward body force F on the fluid, and the area it covers."""
+    force = 1e-6
+    fluid = Fluid(cells, cells, relaxation_time, force=(0.0, -force))
+    wet = Saturated(fluid, np.array([radius]), solid_operator=method.solid_operator, weighting=method.weighting)
+    place, rest, no_spin = np.array([[0.3, 0.1]]) + cells / 2, np.zeros((1, 2)), np.zeros(1)
+    with one_thread():
+        for _ in range(steps):
+            wet.advance(fluid, place, rest, no_spin)
+    return float(wet.force[0, 1]) / force, math.pi * float(wet.covering_radius[0]) ** 2
+
+
+def spinning_disc(
+    steps: Sequence[int], *, relaxation_time: float = 1.5, spin: float = 0.02, method: Method = DEFAULT
+) -> tuple[list[float], list[float]]:
+    """Density at the centre, and torque, of a disc kept spinning (radius 5 in 30 x 30 cells) after ``steps``."""
+    fluid = Fluid(30, 30, relaxation_time)
+    wet = Saturated(
+        fluid, np.array([5.0]), solid_operator=method.solid_operator, weighting=method.weighting
+    )  # fmt: skip
+    place, rest, turning = np.array([[15.3, 15.1]]), np.zeros((1, 2)), np.array([spin])
+    density, torque = [], []
+    with one_thread():
+        for step in range(1, max(steps) + 1):
+            wet.advance(fluid, place, rest, turning)
+            if step in steps:
+                density.append(float(fluid.fields()[0][15, 15]))
+                torque.append(float(wet.torque[0]))
+    return density, torque
+
+
+SLOW = 1e-9
+"""Speed of a disc that is towed in its place: less than a ten-thousandth of a cell until the flow is steady."""
+PERIODIC = Sides("periodic", "periodic", "periodic", "periodic")
+
+PLACES = ((0.0, 0.0), (0.3, 0.1), (0.5, 0.25), (0.4, 0.45))
+"""Places of a centre within a cell, of which the mean is taken."""
+
+
+def towed(
+    cells: tuple[int, int],
+    position: ArrayLike,
+    radius: ArrayLike,
+    velocity: ArrayLike = 0.0,
+    spin: ArrayLike = 0.0,
+    *,
+    relaxation_time: float = TAU,
+    sides: Sides | None = None,
+    force: tuple[float, float] = (0.0, 0.0),
+    density: ArrayLike = 1.0,
+    lubrication: bool = False,
+    solid_walls: bool = False,
+    method: Method = DEFAULT,
+) -> Coupled:
+    """Held discs in fluid at rest under a body force; they meet neither each other's images nor, by default, walls."""
+    fluid = Fluid(
+        *cells, relaxation_time, operator=method.operator, magic=method.magic, force=force, sides=sides or Sides()
+    )
+    kind = "solid" if solid_walls else "open"
+    box = Box((0.0, 0.0), (float(cells[0]), float(cells[1])), kind, kind, kind, kind)
+    grains = Grains(make_discs(position, radius, density, velocity, spin), LAW, box)
+    coupled = Coupled(
+        fluid, grains, Scales(1.0, 1.0, relaxation_time, 1.0), hydraulic_ratio=1.0, contact_steps=4,
+        acceleration=(0.0, 0.0), solid_operator=method.solid_operator, weighting=method.weighting,
+        lubrication=lubrication,
+    )  # fmt: skip
+    grains.hold(slice(None))
+    return coupled
+
+
+def steady(coupled: Coupled, value: Callable[[], float], memory: float, change: float = 1e-5) -> float:
+    """``value`` once it changes by less than ``change`` of itself over a ``memory`` (steps, at least 50)."""
+    before = math.nan
+    with one_thread():
+        while True:
+            for _ in range(max(50, math.ceil(memory))):
+                coupled.advance()
+            now = value()
+            if abs(now - before) <= change * abs(now):
+                return now
+            before = now
+
+
+def square_array_drag(
+    diameter: float,
+    solid_fraction: float,
+    *,
+    relaxation_time: float = TAU,
+    places: Sequence[tuple[float, float]] = PLACES,
+    method: Method = DEFAULT,
+) -> list[float]:
+    """Drag F/(mu U) of a square array of fixed discs about ``diameter`` wide, for each place of the centre in a cell.
+
+    The period is rounded to whole cells, the diameter follows.  Driven by a body force G: the drag is G times the box,
+    U the conserved flux sum f c/N, without half the force (Stokes flow).
+    """  # fmt: skip
+    cells = round(diameter * math.sqrt(math.pi / (4 * solid_fraction)))
+    radius = cells * math.sqrt(solid_fraction / math.pi)
+    nu = viscosity(relaxation_time)
+    force = 1e-6 * nu
+    found = []
+    for place in places:
+        coupled = towed(
+            (cells, cells), [(cells / 2 + place[0], cells / 2 + place[1])], radius, relaxation_time=relaxation_time,
+            sides=PERIODIC, force=(force, 0.0), method=method,
+        )  # fmt: skip
+        # what relaxes last is the mean flow, against the drag K mu on it
+        memory = cells**2 / (nu * (4 * math.pi / max(0.1, -0.5 * math.log(solid_fraction) - 0.7)))
+        flux = steady(coupled, lambda c=coupled: c.fluid.momentum()[0] / cells**2, memory)  # type: ignore[misc]
+        found.append(force * cells**2 / (nu * flux))
+    return found
+
+
+def channel_drag(
+    blockage: float,
+    diameter: float = 10.0,
+    *,
+    relaxation_time: float = TAU,
+    place: tuple[float, float] = (0.3, 0.0),
+    method: Method = DEFAULT,
+) -> tuple[float, float]:
+    """Drag F/(mu U) of a disc towed midway between walls at rest, and the blockage k = a/h that whole cells allow.
+
+    The channel is closed two heights off, where the disturbance has decayed by exp(-4.2 * 2 * 2): no net flux.
+    """  # fmt: skip
+    height = round(diameter / blockage)
+    cells = 4 * height, height
+    coupled = towed(
+        cells, [(cells[0] / 2 + place[0], height / 2 + place[1])], diameter / 2, (SLOW, 0.0),
+        relaxation_time=relaxation_time, method=method,
+    )  # fmt: skip
+    nu = viscosity(relaxation_time)
+    force = steady(coupled, lambda: float(coupled.fluid_force[0, 0]), (height / (2 * math.pi)) ** 2 / nu)
+    return -force / (nu * SLOW), diameter / height
+
+
+def near_wall(
+    motion: str,
+    gap: float = 0.2,
+    radius: float = 10.0,
+    *,
+    across: float = 12.0,
+    relaxation_time: float = TAU,
+    lubrication: bool = False,
+    method: Method = DEFAULT,
+) -> float:
+    """F/(mu U) along or towards the floor, or T/(mu a² w), of a disc with its rim ``gap`` radii above the floor.
+
+    motion: "along", "towards", "turning";  across: width of the closed box in radii, its height is half of it.
+    """  # fmt: skip
+    cells = round(across * radius), round(across * radius / 2)
+    ways = {"along": (SLOW, 0.0, 0.0), "towards": (0.0, -SLOW, 0.0), "turning": (0.0, 0.0, SLOW / radius)}
+    *velocity, spin = ways[motion]
+    coupled = towed(
+        cells, [(cells[0] / 2 + 0.3, radius * (1 + gap))], radius, velocity, spin, density=2.0,
+        relaxation_time=relaxation_time, lubrication=lubrication, solid_walls=True, method=method,
+    )  # fmt: skip
+    nu = viscosity(relaxation_time)
+    unit = nu * SLOW * (radius if motion == "turning" else 1.0)
+
+    def load() -> float:
+        """Drag, lift or torque over its unit, films included."""
+        if motion == "turning":
+            return -float(coupled.fluid_torque[0]) / unit
+        film = coupled.lubrication.force[0] if coupled.lubrication else np.zeros(2)
+        force = coupled.fluid_force[0] + film
+        return float(-force[0] if motion == "along" else force[1]) / unit
+
+    return steady(coupled, load, (cells[1] / (2 * math.pi)) ** 2 / nu)
+
+
+def jeffrey_onishi(motion: str, gap: float) -> float:
+    """The exact answers of ``near_wall`` for a plane wall and nothing else (Jeffrey & Onishi 1981)."""
+    alpha = math.acosh(1 + gap)
+    if motion == "along":
+        return 4 * math.pi / alpha
+    if motion == "towards":
+        return 4 * math.pi / (alpha - math.tanh(alpha))
+    return 4 * math.pi / math.tanh(alpha)
+
+
+def towed_noise(
+    diameter: float = 10.0,
+    *,
+    relaxation_time: float = TAU,
+    speed: float = 0.01,
+    degrees: float = 11.0,
+    method: Method = DEFAULT,
+) -> float:
+    """Rms of the drag over its mean: a disc towed through a periodic box of four diameters, at an angle to the grid.
+
+    A body force keeps the fluid from being carried along: the drag of the array, so that the mean flow is all but 0.
+    Over ten cells, once the flow is steady; a slow trend (parabola) is taken out.
+    """  # fmt: skip
+    cells, nu = round(4 * diameter), viscosity(relaxation_time)
+    along = np.array([math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])
+    against = -sangani_acrivos(math.pi / 4 * (diameter / cells) ** 2) * nu * speed / cells**2
+    coupled = towed(
+        (cells, cells), [(cells / 2, cells / 2)], diameter / 2, speed * along, relaxation_time=relaxation_time,
+        sides=PERIODIC, force=(against * along[0], against * along[1]), method=method,
+    )  # fmt: skip
+    drag = np.zeros(round(10 / speed))
+    with one_thread():
+        for _ in range(math.ceil(cells**2 / nu)):
+            coupled.advance()
+        for step in range(len(drag)):
+            coupled.advance()
+            drag[step] = -coupled.fluid_force[0] @ along
+    x = np.linspace(-1, 1, len(drag))
+    smooth = np.polyval(np.polyfit(x, drag, 2), x)
+    return float(np.sqrt(np.mean((drag - smooth) ** 2)) / abs(drag.mean()))
+
+
+def sangani_acrivos(solid_fraction: float) -> float:
+    """Drag F/(mu U) of a dilute square array, F per length, U superficial (Sangani & Acrivos 1982)."""
+    c = solid_fraction
+    return 4 * math.pi / (-0.5 * math.log(c) - 0.738 + c - 0.887 * c**2 + 2.038 * c**3)
+
+
 NEAR_WALL = {"along": 31.593, "towards": 181.712, "turning": 24.006}
 """Rim 0.2 radii above the floor of a closed box of 12 by 6 radii: tests/reference/stokes_box.py, five digits."""
+
 RADIUS = 7.3e-3
 """How much of its radius a disc 10 cells wide may look too big or small in one place: 2 % of a drag that goes as its
 power 2.75, as on arrays of solid fraction 0.2 (verify_arrays.py)."""
+
 FILMS = (0.02, 0.03, 0.05)
 """Gaps in radii of ten cells: a fifth to half a cell."""
 
@@ -27,7 +274,7 @@ FILMS = (0.02, 0.03, 0.05)
 )
 def channel() -> Measured:
     """Drag F/(mu U) at 10 cells per diameter."""
-    drags = [lab.channel_drag(k) for k in (0.2, 0.3)]
+    drags = [channel_drag(k) for k in (0.2, 0.3)]
     reference, found = [faxen(k) for _, k in drags], [drag for drag, _ in drags]
     return Measured(reference, found, float(np.abs(np.divide(found, reference) - 1).max()))
 
@@ -41,7 +288,7 @@ def channel() -> Measured:
 )
 def wide_channel() -> Measured:
     """Drag F/(mu U) at 10 cells per diameter."""
-    drag, k = lab.channel_drag(0.1)
+    drag, k = channel_drag(0.1)
     return Measured(faxen(k), drag, abs(drag / faxen(k) - 1))
 
 
@@ -53,9 +300,9 @@ def wide_channel() -> Measured:
     tolerance=0.046,
     slow=True,
 )
-def near_wall() -> Measured:
+def near_wall_row() -> Measured:
     """F/(mu U) along and towards the wall, T/(mu a² w), radius 10 cells, tau 0.6."""
-    found = [lab.near_wall(motion, relaxation_time=0.6) for motion in NEAR_WALL]
+    found = [near_wall(motion, relaxation_time=0.6) for motion in NEAR_WALL]
     reference = list(NEAR_WALL.values())
     return Measured(reference, found, float(np.abs(np.divide(found, reference) - 1).max()))
 
@@ -70,7 +317,7 @@ def near_wall() -> Measured:
 )
 def films() -> Measured:
     """Force over the law's at gaps of 0.2, 0.3 and 0.5 cells with the correction below one cell, radius 10."""
-    found = [lab.near_wall("towards", gap, lubrication=True) / lab.jeffrey_onishi("towards", gap) for gap in FILMS]
+    found = [near_wall("towards", gap, lubrication=True) / jeffrey_onishi("towards", gap) for gap in FILMS]
     return Measured([1.0] * len(found), found, float(np.abs(np.subtract(found, 1)).max()))
 
 
@@ -82,7 +329,7 @@ def films() -> Measured:
 )
 def noise() -> Measured:
     """Rms of the drag over its mean, at 0.01 and 11 degrees to the grid in a periodic box of 4 diameters."""
-    found = lab.towed_noise()
+    found = towed_noise()
     return Measured(0.0, found, found)
 
 

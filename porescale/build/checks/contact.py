@@ -1,0 +1,93 @@
+"""Contact laws: every number belongs to its law, and nothing is missing."""
+
+from __future__ import annotations
+
+from porescale.build.initial.contact_laws import merged
+from porescale.common.core.errors import Fault
+from porescale.dem.contact.materials import MOST
+from porescale.scene.contact import DAMPED, HERTZ, LINEAR, WAYS, Contact, Pair, Touch
+from porescale.scene.scene import Scene
+
+
+def check_contact(scene: Scene) -> list[Fault]:
+    """What is wrong with the laws of a scene that has [contact]."""
+    contact = scene.contact
+    assert contact
+    faults = []
+    for k, material in enumerate(scene.material):
+        if material.name in (it.name for it in scene.material[:k]):
+            faults.append(Fault(f"material[{k}].name", material.name, "is taken", repair="give each its own"))
+    if len(scene.material) > MOST:
+        faults.append(Fault("material", len(scene.material), "are too many", allowed=f"<= {MOST}"))
+    faults += _check_names(scene, contact)
+    sections: list[tuple[str, Touch]] = [("contact", contact)]
+    sections += [(f"material[{k}]", it) for k, it in enumerate(scene.material)]
+    sections += [(f"contact.pair[{k}]", it) for k, it in enumerate(contact.pair)]
+    for key, section in sections:
+        faults += _check_kind(key, section, contact.law)
+    if faults:
+        return faults
+    for key, section in sections[1 : 1 + len(scene.material)] or sections[:1]:
+        faults += _check_complete(key, merged(contact, section), contact)
+    return faults
+
+
+def _check_names(scene: Scene, contact: Contact) -> list[Fault]:
+    """Materials that are named must be there."""
+    known = [it.name for it in scene.material]
+    asked = [("contact.wall_material", contact.wall_material)]
+    asked += [(f"contact.pair[{k}].materials", name) for k, it in enumerate(contact.pair) for name in it.materials]
+    asked += [(f"disc[{k}].material", it.material) for k, it in enumerate(scene.disc)]
+    asked += [(f"clump[{k}].material", it.material) for k, it in enumerate(scene.clump)]
+    if scene.grains:
+        asked += [(f"grains.grain[{k}].material", it.material) for k, it in enumerate(scene.grains.grain)]
+        if scene.grains.packing:
+            asked.append(("grains.packing.material", scene.grains.packing.material))
+    allowed = ", ".join(known) or "none: there is no [[material]]"
+    faults = [Fault(key, name, "no such material", "", allowed) for key, name in asked if name and name not in known]
+    if known and contact.wall_friction is not None:
+        problem = "friction at walls follows from their material"
+        repair = "give wall_material, or a [[contact.pair]] with it"
+        faults.append(Fault("contact.wall_friction", contact.wall_friction, problem, repair=repair))
+    return faults
+
+
+def _check_kind(key: str, section: Touch, law: str) -> list[Fault]:
+    """Every number belongs to the law."""
+    others, name = (HERTZ, "hertz") if law == "linear" else (LINEAR, "linear")
+    plain = Contact.model_construct() if isinstance(section, Contact) else None
+    faults = []
+    for other in others:
+        value = getattr(section, other)
+        if value is not None and not (plain and value == getattr(plain, other)):
+            problem = f'belongs to law = "{name}", this is "{law}"'
+            faults.append(Fault(f"{key}.{other}", value, problem, repair=f'leave it out, or write law = "{name}"'))
+    if isinstance(section, Pair):
+        for other in ("young", "poisson"):
+            if getattr(section, other) is not None:
+                problem = "follows from the two materials"
+                faults.append(Fault(f"{key}.{other}", getattr(section, other), problem, repair="leave it out"))
+        if sum(getattr(section, other) is not None for other in DAMPED) > 1:
+            problem = "at most one of the two is needed"
+            faults.append(Fault(f"{key}.{', '.join(WAYS[law])}", None, problem, repair="give one"))
+    return faults
+
+
+def _check_complete(key: str, numbers: dict[str, float], contact: Contact) -> list[Fault]:
+    """What a law needs is there, and what it says has an effect."""
+    linear = contact.law == "linear"
+    faults = []
+    needed = "stiffness" if linear else "young"
+    if needed not in numbers:
+        faults.append(Fault(f"{key}.{needed}", None, "is missing", "N/m" if linear else "Pa", "> 0", "add it"))
+    ways = WAYS[contact.law]
+    if sum(way in numbers for way in ways) != 1:
+        problem, repair = "exactly one of the two is needed", "give one, leave the other out"
+        faults.append(Fault(f"{key}.{', '.join(ways)}", None, problem, repair=repair))
+    if linear:
+        resists = numbers.get("rolling_stiffness", 0.0) + numbers.get("rolling_damping", 0.0) > 0.0
+        if resists != (numbers.get("rolling_friction", 0.0) > 0.0):
+            one, other = ("rolling_stiffness", "rolling_friction")[:: -1 if resists else 1]
+            problem = f"is needed where there is {other}" if not resists else "is needed for rolling resistance"
+            faults.append(Fault(f"{key}.{one}", None, problem, "", "> 0", f"give both, or leave {other} out"))
+    return faults

@@ -1,0 +1,74 @@
+"""What a scene gives its grains besides places and a law: materials, energy budget, clumps, controls, walls, cell."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from porescale.build.initial.clumps import add_clumps
+from porescale.build.initial.contact_laws import materials_of
+from porescale.build.initial.control import add_controls
+from porescale.build.initial.frames import Placed
+from porescale.build.initial.placed import by_hand
+from porescale.build.initial.time_functions import schedule_of
+from porescale.build.initial.walls import add_walls, moving_sides
+from porescale.dem.contact.law import BOOK
+from porescale.dem.grains import Grains
+from porescale.dem.motion.time_function import Schedule
+from porescale.scene.cell import RATES, STRESSES
+from porescale.scene.scene import Scene
+from porescale.scene.time_function import Course
+
+
+def apply_sections(scene: Scene, grains: Grains, mass: float, placed: Sequence[Placed] = ()) -> list[str]:
+    """Give ``grains``, all discs in place, what the scene asks for; nothing is made of what it does not name.
+
+    mass (kg/m): of a mean grain, whose restitution is meant where a material gives one;  placed: its frames, whose
+    corners come last.  Returns the names of the bodies that are recorded.
+    """
+    materials = materials_of(scene, mass)
+    if scene.output.energy:
+        grains.book = np.zeros((grains.discs.count, BOOK))
+    if materials:
+        own = [it.frame.material for it in placed for _ in it.frame.corners]
+        names = names_of(scene, grains.discs.count - len(own))
+        if len(materials.names) > 1:
+            numbers = [materials.names.index(name or materials.names[0]) for name in names]
+            grains.material = np.array(numbers + own, np.uint8)
+        grains.set_law(materials)
+    elif scene.output.energy:
+        grains.set_law(grains.law, grains.wall_law)  # kernels find the book beside the law
+    if scene.clump or placed:
+        add_clumps(scene, grains, placed)
+    recorded = add_controls(scene, grains, placed) if scene.control or placed else []
+    if scene.wall or moving_sides(scene):
+        add_walls(scene, grains)
+    if scene.cell:
+        strain(scene, grains)
+    return recorded
+
+
+def names_of(scene: Scene, count: int) -> list[str]:
+    """The material of each of ``count`` discs by name, "" for the first."""
+    placed = [it.material for it in by_hand(scene)]
+    walls = scene.contact.wall_material if scene.contact else ""
+    held = [it.material or walls for it in scene.disc]
+    packing = scene.grains.packing if scene.grains else None
+    packed = count - len(placed) - len(held)
+    return [packing.material if packing else ""] * packed + placed + held
+
+
+def strain(scene: Scene, grains: Grains) -> None:
+    """Strain the cell of ``grains`` as the scene says."""
+    it = scene.cell
+    assert it
+
+    def told(name: str) -> Schedule | None:
+        """The course of a rate or stress over time; None where the scene names none."""
+        course: Course | None = getattr(it, name)
+        return schedule_of(course) if course else None
+
+    xx, yy, xy = (told(name) for name in RATES)
+    along, up, shear = (told(name) for name in STRESSES)
+    grains.steering.strain_cell(xx, yy, xy, pressure=(along, up), shear_stress=shear, limit=it.fastest or 0.0)

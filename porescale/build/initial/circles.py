@@ -1,0 +1,53 @@
+"""Circles read from files: a packing kept by an earlier run, a list, a picture."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.core.errors import InputError
+from porescale.common.neighbors.placement import part
+from porescale.dem.prepare.compaction import read_circles, read_packing
+from porescale.scene.circles import STILLS, Circles
+
+Array = NDArray[np.float64]
+
+
+def grains_of(circles: Circles, folder: Path | None) -> list[dict[str, float | str]]:
+    """Entries of [[grains.grain]] that say the same; raises InputError with keys of [grains]."""
+    path = (folder or Path()) / circles.file
+    try:
+        if path.suffix.lower() in STILLS:
+            position, radius = _pictured(circles, path)
+        elif path.suffix == ".h5":
+            position, radius = read_packing(path)
+            position = position + np.array([circles.left, circles.bottom])
+        else:
+            where = circles.left, circles.bottom
+            position, radius = read_circles(path, circles.unit, circles.y, circles.image_height, where)
+        if circles.part:
+            position = part(position, radius)
+    except InputError as error:
+        raise InputError([replace(fault, key=f"circles.{fault.key}") for fault in error.faults]) from None
+    return [
+        {"x": x, "y": y, "diameter": 2.0 * r, "material": circles.material}
+        for (x, y), r in zip(position.tolist(), radius.tolist(), strict=True)
+    ]
+
+
+def _pictured(circles: Circles, path: Path) -> tuple[Array, Array]:
+    """Places (n, 2) m and radii (n,) m of the discs of a picture."""
+    assert circles.pixel
+    assert circles.smallest
+    assert circles.largest
+    from porescale.analysis.detect_circles import circles_in
+    from porescale.piv.images.film import picture  # readers of pictures and films take a while to load
+
+    seen = picture(path)
+    sizes = circles.smallest / circles.pixel, circles.largest / circles.pixel
+    at, radius = circles_in(seen.astype(np.float32), *sizes, light=circles.shade == "light")
+    up = np.column_stack((at[:, 0], seen.shape[0] - at[:, 1]))
+    return up * circles.pixel + np.array([circles.left, circles.bottom]), radius * circles.pixel

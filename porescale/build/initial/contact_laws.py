@@ -1,0 +1,105 @@
+"""Contact laws from [contact], [[material]] and [[contact.pair]]."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from porescale.dem.contact.hertz import Hertz
+from porescale.dem.contact.linear import Linear, damping_from_restitution
+from porescale.dem.contact.materials import Law, Materials
+from porescale.dem.contact.restitution import ratio_from_restitution
+from porescale.scene.contact import DAMPED, Contact, Touch
+from porescale.scene.scene import Scene
+
+
+def merged(contact: Contact, own: Touch | None = None) -> dict[str, float]:
+    """The numbers of ``own`` over those of ``contact``; whichever way of damping it gives replaces the other."""
+    above = contact.numbers()
+    over = own.numbers() if own else {}
+    if any(key in over for key in DAMPED):
+        above = {key: value for key, value in above.items() if key not in DAMPED}
+    return {**above, **over}
+
+
+def law_of(numbers: dict[str, float], contact: Contact, mass: float) -> Law:
+    """The law of ``numbers``; a restitution of the linear one is that of two grains of ``mass`` (kg/m)."""
+    get = numbers.get
+    rolling = get("rolling_friction", 0.0)
+    if contact.law == "linear":
+        k = numbers["stiffness"]
+        damping = get("damping")
+        if damping is None:
+            damping = damping_from_restitution(numbers["restitution"], mass / 2, k, contact.release)
+        return Linear(
+            k, damping, get("tangential_stiffness", 0.0), get("tangential_damping", 0.0), get("friction", 0.0),
+            contact.release, rolling, get("rolling_stiffness", 0.0), get("rolling_damping", 0.0),
+        )  # fmt: skip
+    plain = Hertz.of(numbers["young"], numbers["poisson"], 1.0, get("friction", 0.0), contact.release, rolling)
+    ratio = get("damping_ratio")
+    if ratio is None:
+        ratio = ratio_from_restitution(numbers["restitution"], contact.release)
+    return replace(
+        plain, damping_ratio=ratio, tangential_damping_ratio=get("tangential_damping_ratio", ratio),
+        rolling_stiffness=get("rolling_stiffness_ratio", 1.0),
+        rolling_damping_ratio=get("rolling_damping_ratio", ratio), deepest=contact.deepest,
+    )  # fmt: skip
+
+
+RENAMED = {"rolling_stiffness_ratio": "rolling_stiffness"}
+"""Keys of sections that the law of Hertz calls otherwise."""
+
+
+def overridden(law: Law, numbers: dict[str, float], mass: float) -> Law:
+    """``law`` with the numbers of a pair; ``mass`` (kg/m): effective, of two grains of mean size."""
+    given = {RENAMED.get(key, key): value for key, value in numbers.items() if key != "restitution"}
+    restitution = numbers.get("restitution")
+    if isinstance(law, Linear):
+        if restitution is not None:
+            stiffness = given.get("stiffness", law.stiffness)
+            given["damping"] = damping_from_restitution(restitution, mass, stiffness, law.release)
+        return replace(law, **given)  # type: ignore[arg-type]
+    if restitution is not None:
+        given["damping_ratio"] = ratio_from_restitution(restitution, law.release)
+    return replace(law, **given)  # type: ignore[arg-type]
+
+
+def density_of(scene: Scene, material: str = "") -> float:
+    """Density of a material by name, "" for the first, kg/m^3."""
+    assert scene.grains
+    for it in scene.material:
+        if it.name == (material or scene.material[0].name):
+            return scene.grains.density if it.density is None else it.density
+    return scene.grains.density
+
+
+def materials_of(scene: Scene, mass: float) -> Materials | None:
+    """The materials of a scene, None where it has none; mass (kg/m): of a mean grain at the density of [grains]."""
+    if not (scene.material and scene.contact and scene.grains):
+        return None
+    contact = scene.contact
+    heavy = {it.name: mass * density_of(scene, it.name) / scene.grains.density for it in scene.material}
+    laws = {it.name: law_of(merged(contact, it), contact, heavy[it.name]) for it in scene.material}
+    mixing, between = Materials(laws), {}
+    for pair in contact.pair:
+        one, other = pair.materials
+        both = heavy[one] * heavy[other] / (heavy[one] + heavy[other])
+        between[one, other] = overridden(mixing.law(one, other), pair.numbers(), both)
+    return Materials(laws, between, contact.wall_material or None)
+
+
+def laws(scene: Scene, mass: float) -> tuple[Law, Law, list[Law]]:
+    """Contact law of the packing, or of the first material, with itself, at walls, and all laws that there are.
+
+    mass (kg/m): of a grain of mean diameter, whose restitution is meant where one is given.
+    """
+    assert scene.contact
+    assert scene.grains
+    materials = materials_of(scene, mass)
+    if materials:
+        packing = scene.grains.packing
+        name = (packing.material if packing else "") or materials.names[0]
+        return materials.law(name, name), materials.law(materials.wall, name), materials.all()
+    contact = scene.contact
+    law = law_of(contact.numbers(), contact, mass)
+    wall = law.with_friction(contact.friction if contact.wall_friction is None else contact.wall_friction)
+    return law, wall, [law, wall]

@@ -1,0 +1,28 @@
+"""Operators of [fluid] as keyword arguments of the lattice and of its coupling."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from porescale.coupling.weighting import fitting_weight
+from porescale.scene.fluid import Fluid
+
+
+def collision_options(fluid: Fluid) -> dict[str, Any]:
+    """What the collision operator is chosen by: keyword arguments of ``Fluid`` of the lattice."""
+    return {"operator": fluid.operator, "magic": fluid.magic, "smagorinsky": fluid.smagorinsky or 0.0}
+
+
+def weight_of(fluid: Fluid) -> str:
+    """Name of the weight that is used."""
+    return fitting_weight(fluid.solid_operator, fluid.weighting)
+
+
+def has_soft_rim(fluid: Fluid) -> bool:
+    """Whether grains have soft rims."""
+    return fluid.rim == "soft" or (fluid.rim is None and fluid.operator == "central" and weight_of(fluid) == "wall")
+
+
+def solid_options(fluid: Fluid) -> dict[str, Any]:
+    """What the laws of cells that grains lie in are chosen by: keyword arguments of ``Saturated`` and ``Coupled``."""
+    return {"solid_operator": fluid.solid_operator, "weighting": weight_of(fluid), "soft_rim": has_soft_rim(fluid)}

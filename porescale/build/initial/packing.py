@@ -1,0 +1,51 @@
+"""Radii of a packing, and packings that are pressed together."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.core.errors import InputError
+from porescale.common.neighbors.grading import graded_radii, lognormal_radii
+from porescale.dem.contact.linear import Linear
+from porescale.dem.contact.materials import Law
+from porescale.dem.prepare.compaction import Compressed, Press, kept
+from porescale.scene.packing import Packing
+from porescale.scene.scene import Scene
+
+Array = NDArray[np.float64]
+
+
+def radii_of(packing: Packing) -> Array | None:
+    """Radii (n,) m of a packing with a grading, lognormal sizes or compression; None for the plain one, drawn later."""
+    area = packing.packing_fraction * packing.width * packing.height
+    if packing.grading:
+        return graded_radii(packing.grading, area)
+    if packing.log_spread is not None:
+        per_grain = np.pi / 4.0 * packing.diameter**2
+        relative = lognormal_radii(1000, 1.0, packing.log_spread)
+        count = max(1, round(area / (per_grain * 4.0 * float(np.mean(relative**2)))))
+        return lognormal_radii(count, packing.diameter, packing.log_spread)
+    if packing.compress:
+        spread = packing.size_spread
+        count = max(1, round(area / (np.pi / 4.0 * packing.diameter**2 * (1.0 + spread**2 / 3.0))))
+        even = (np.arange(count) + 0.5) / count
+        return np.asarray(0.5 * packing.diameter * (1.0 + spread * (2.0 * even - 1.0)))
+    return None
+
+
+def compressed(scene: Scene, packing: Packing, law: Law) -> Compressed:
+    """The packing of a scene, pressed to its pressure or fraction; keys of faults are those of the scene."""
+    assert scene.grains
+    assert isinstance(law, Linear)  # check_compressed has made sure
+    radius = radii_of(packing)
+    assert radius is not None
+    box = (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height)
+    periodic = (False, False) if scene.rock else scene.domain.periodic
+    press = Press(*box, law, periodic, packing.settling_friction, scene.grains.density, packing.seed)
+    try:
+        return kept(press, radius, packing.pressure)
+    except InputError as error:
+        raise InputError([replace(fault, key=f"grains.packing.{fault.key}") for fault in error.faults]) from None

@@ -1,0 +1,55 @@
+"""Rectangles as fluid and grains have them, and the plates between which a packing settles."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from porescale.coupling.coverage.rectangle import Rectangle as LatticeRectangle
+from porescale.dem.forces.rectangle import Rectangle as GrainRectangle
+from porescale.dem.forces.walls import Plate
+from porescale.dem.grains import Grains
+from porescale.lbm.scales import Scales
+from porescale.scene.bodies.rectangle import Rectangle
+from porescale.scene.packing import Packing
+from porescale.scene.scene import Scene
+
+
+def on_the_lattice(scene: Scene, scales: Scales) -> list[LatticeRectangle]:
+    """The rectangles as the fluid sees them, at rest at the start: they set off in the first step."""
+    h = scales.spacing
+    return [LatticeRectangle(np.array(it.lower) / h, np.array(it.upper) / h) for it in scene.rectangle]
+
+
+def stand_ins(scene: Scene, packing: Packing) -> list[Plate]:
+    """Plates on the upright faces between which a packing settles: on those next to it, at its height."""
+    edges = packing.left, packing.left + packing.width
+    return [
+        Plate(x, it.lower[1], it.upper[1], friction=it.friction, name=f"rectangle {k} {side}")
+        for k, it in enumerate(scene.rectangle)
+        for side, x, edge in (("left", it.lower[0], edges[1]), ("right", it.upper[0], edges[0]))
+        if holds(it, packing) and abs(x - edge) < packing.diameter
+    ]
+
+
+def holds(it: Rectangle, packing: Packing) -> bool:
+    """Whether a rectangle stands at the height of the packing."""
+    return it.lower[1] < packing.bottom + packing.height and it.upper[1] > packing.bottom
+
+
+def beside(scene: Scene, packing: Packing) -> tuple[bool, bool]:
+    """Whether a face holds the packing on its left, and on its right, while it settles."""
+    names = [plate.name for plate in stand_ins(scene, packing)]
+    return any(name.endswith("right") for name in names), any(name.endswith("left") for name in names)
+
+
+def take_over(scene: Scene, grains: Grains) -> None:
+    """Rectangles instead of the plates that stood in for them, with the springs that those had; if there were any."""
+    grains.set_rectangles(
+        [GrainRectangle(it.lower, it.upper, friction=it.friction, name=f"rectangle[{k}]")
+         for k, it in enumerate(scene.rectangle)]
+    )  # fmt: skip
+    for k in range(len(scene.rectangle)):
+        for name in (f"rectangle {k} left", f"rectangle {k} right"):
+            if name in grains.plate_names:
+                grains.rectangle_spring[k] += grains.plate_spring[grains.plate(name)]
+                grains.remove_plate(name)

@@ -1,0 +1,119 @@
+"""A rock: the packing pressed, its discs or polygons with its centres as seeds, and the plates.
+
+Source: Matsushima, DEMseg tutorial II-4; see dem/prepare/rock.py, dem/prepare/tessellate.py.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.build.initial.contact_laws import density_of
+from porescale.build.initial.frames import FREE, HELD, PLATES, Placed, material_number
+from porescale.build.initial.packing import compressed
+from porescale.build.initial.time_functions import schedule_of
+from porescale.dem.bodies.frames import chain, polygon
+from porescale.dem.contact.linear import Linear
+from porescale.dem.contact.materials import Law
+from porescale.dem.discs import Discs, make_discs
+from porescale.dem.motion.control import Placed as PlacedControl
+from porescale.dem.motion.time_function import Constant, Schedule, Sine, Table
+from porescale.dem.prepare.tessellate import delaunay, shrunk, voronoi
+from porescale.scene.scene import Scene
+
+Array = NDArray[np.float64]
+
+BEYOND = 0.1
+"""Of the length of a plate's side of the sample: how far it stands out at both ends."""
+
+
+def rock_discs(scene: Scene, law: Law) -> Discs | None:
+    """The discs of a rock of discs, at rest; None of polygons."""
+    assert scene.rock
+    assert scene.grains
+    assert scene.grains.packing
+    if scene.rock.polygons:
+        return None
+    at, radius = _packing(scene, law)
+    return make_discs(at, radius, density_of(scene, scene.grains.packing.material))
+
+
+def rock_frames(scene: Scene, law: Law) -> list[Placed]:
+    """Polygons of a rock and its plates, the first plate before the second.  The packing is read from the cache, or
+    pressed, which takes seconds."""
+    assert scene.rock
+    assert scene.grains
+    assert scene.grains.packing
+    rock, packing = scene.rock, scene.grains.packing
+    at, radius = _packing(scene, law)
+    lower = (packing.left, packing.bottom)
+    upper = (packing.left + packing.width, packing.bottom + packing.height)
+    density, material = density_of(scene, packing.material), material_number(scene, packing.material)
+    made: list[Placed] = []
+    thickness = off = 0.5 * float(radius.mean())
+    if rock.polygons:
+        assert rock.gap
+        assert rock.pressed
+        thickness, off = 0.5 * (rock.gap + rock.pressed), 0.5 * rock.gap
+        for part in (voronoi if rock.kind == "cells" else delaunay)(at, lower, upper):
+            # A side shorter than the gap would be hidden behind the thickness of its neighbours.
+            left = shrunk(part, 0.5 * rock.gap, shortest=rock.gap)
+            if left is not None:
+                made.append(Placed("rock", "rock", polygon(left, thickness, density, material=material), FREE))
+    if rock.plates == "none":
+        return made
+    axis = 0 if rock.plates == "x" else 1
+    out = BEYOND * (upper[1 - axis] - lower[1 - axis])
+    moves = PlacedControl(_times(schedule_of(rock.strain), upper[axis] - lower[axis])) if rock.strain else HELD[axis]
+    for name, place in zip(PLATES, (lower[axis] - off, upper[axis] + off), strict=True):
+        ends = [(place, lower[1 - axis] - out), (place, upper[1 - axis] + out)]
+        points = ends if axis == 0 else [(x, y) for y, x in ends]
+        frame = chain(
+            points, thickness, density, width=2.0 * max(thickness, off), long=True,
+            material=material_number(scene, "", True),
+        )  # fmt: skip
+        told = list(HELD)
+        if name == PLATES[1]:
+            told[axis] = moves
+        made.append(Placed("rock", "plate", frame, (told[0], told[1], told[2]), name))
+    return made
+
+
+def _times(schedule: Schedule, factor: float) -> Schedule:
+    """A schedule with its values multiplied."""
+    if isinstance(schedule, Table):
+        return Table(schedule.times, [factor * value for value in schedule.values])
+    if isinstance(schedule, Sine):
+        return Sine(factor * schedule.amplitude, schedule.frequency, schedule.phase, factor * schedule.mean)
+    return Constant(factor * (schedule.value if isinstance(schedule, Constant) else schedule))
+
+
+def _packing(scene: Scene, law: Law) -> tuple[Array, Array]:
+    """Centres (n, 2) m and radii (n,) m of the packing pressed in its rectangle."""
+    assert isinstance(law, Linear)
+    return _pressed(_Asked(scene, law))
+
+
+class _Asked:
+    """A scene and a law, equal where they press the same packing."""
+
+    def __init__(self, scene: Scene, law: Linear) -> None:
+        assert scene.grains
+        self.scene, self.law = scene, law
+        self.key = scene.grains.packing, scene.grains.density, law
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Asked) and self.key == other.key
+
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+
+@lru_cache(maxsize=2)
+def _pressed(asked: _Asked) -> tuple[Array, Array]:
+    assert asked.scene.grains
+    assert asked.scene.grains.packing
+    discs = compressed(asked.scene, asked.scene.grains.packing, asked.law).grains.discs
+    return discs.position.copy(), discs.radius.copy()

@@ -1,0 +1,49 @@
+"""The strained cell of a dry scene: its strain, and what it says in series.csv."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.dem.bodies.rigid import areas
+from porescale.dem.grains import Grains
+
+Array = NDArray[np.float64]
+
+
+class Strained:
+    """Follows the strain of a cell; shear: the integral of its rate, since the tilt starts anew at half a width."""
+
+    def __init__(self, grains: Grains) -> None:
+        self.grains = grains
+        self.shear = 0.0
+
+    def advance(self, step: float) -> None:
+        """After a step of ``step`` (s): its rates stay till the next."""
+        self.shear += step * float(self.grains.steering.gradient()[0, 1])
+
+    def row(self) -> dict[str, float]:
+        """Columns of the series: strain (logarithms of the stretch of the edges; shear), the stress of the last step
+        (compression positive, shear of the sign of the strain that it drives), and the cell."""
+        grains = self.grains
+        (width, _), (tilt, height) = grains.steering.edges()
+        xx, xy, yy = grains.steering.cell_pressure()
+        return {
+            "strain xx ()": math.log(width / grains.box.period[0]),
+            "strain yy ()": math.log(height / grains.box.period[1]), "strain xy ()": self.shear,
+            "stress xx (Pa)": float(xx), "stress yy (Pa)": float(yy), "shear stress (Pa)": -float(xy),
+            "cell width (m)": width, "cell height (m)": height, "cell tilt (m)": tilt,
+            "solid fraction ()": float(areas(grains).sum()) / (width * height),
+        }  # fmt: skip
+
+    def seen(self) -> tuple[Array, Array]:
+        """Positions (n, 2) m of the discs within width and height of the cell; velocities (n, 2) with the cell's."""
+        steering, discs = self.grains.steering, self.grains.discs
+        (width, _), (tilt, height) = steering.edges()
+        position = discs.position.copy()
+        turns = np.floor(position[:, 1] / height)
+        position -= turns[:, None] * np.array([tilt, height])
+        position[:, 0] -= width * np.floor(position[:, 0] / width)
+        return position, discs.velocity + position @ steering.gradient().T

@@ -1,0 +1,56 @@
+"""Fields and numbers of the fluid: rows of series.csv, vorticity, stream function."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.lbm.fields import stream_function
+from porescale.lbm.fluid import Fluid
+from porescale.lbm.scales import Scales
+
+Array = NDArray[np.floating]
+
+
+def fluid_row(excess: Array, ux: Array, uy: Array, solid: Array, scales: Scales | None) -> dict[str, float]:
+    """Columns of the series for the fluid between the grains; arrays (ny, nx), SI."""
+    assert scales
+    square = ux**2 + uy**2
+    energy = 0.5 * float(np.sum((scales.density + excess) * square * (1 - solid))) * scales.spacing**2
+    return {
+        "kinetic energy of fluid (J/m)": energy,
+        "largest fluid speed (m/s)": float(np.sqrt(square.max())),
+        "Mach number ()": float(np.sqrt(square.max())) / scales.sound_speed,
+        "lowest relative density ()": 1 + float(excess.min()) / scales.density,
+        "highest relative density ()": 1 + float(excess.max()) / scales.density,
+    }
+
+
+UNITS = {"vorticity": "1/s", "stream_function": "m²/s"}
+"""Fields that a scene may ask for besides velocity and pressure, and their units."""
+
+
+def derived_fields(
+    names: Sequence[str], fluid: Fluid, ux: Array, uy: Array, scales: Scales
+) -> dict[str, NDArray[np.float32]]:
+    """Fields called ``names`` in the centres of cells, (ny, nx), of a velocity (ny, nx) m/s of ``fluid``.
+
+    The stream function is the mean of the four corners of a cell (lbm/fields.py).
+    """
+    fields = {}
+    if "vorticity" in names:
+        fields["vorticity"] = vorticity(ux, uy, scales.spacing).astype(np.float32)
+    if "stream_function" in names:
+        psi = stream_function(fluid, ux / scales.velocity, uy / scales.velocity)
+        centres = 0.25 * (psi[1:, 1:] + psi[1:, :-1] + psi[:-1, 1:] + psi[:-1, :-1])
+        fields["stream_function"] = (centres * scales.velocity * scales.spacing).astype(np.float32)
+    return fields
+
+
+def vorticity(ux: Array, uy: Array, spacing: float) -> Array:
+    """dv/dx - du/dy in every cell, (ny, nx) 1/s: central differences, one-sided at the sides."""
+    along: Array = np.gradient(uy, spacing, axis=1)
+    up: Array = np.gradient(ux, spacing, axis=0)
+    return along - up

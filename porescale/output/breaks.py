@@ -1,0 +1,38 @@
+"""Bonds that broke: breaks.csv."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from pathlib import Path
+
+import numpy as np
+
+from porescale.common.core.atomic import write_bytes
+from porescale.common.record.open_run import Run
+from porescale.output.frame_clouds import BONDS
+from porescale.scene.bodies.bonds import KINDS
+
+TABLE = "breaks.csv"
+
+
+def write_breaks(run: Run, folder: Path) -> list[Path]:
+    """Write breaks.csv, a row a bond that broke until the last snapshot, by time; [] where a run has no bonds."""
+    if not len(run) or BONDS not in (clouds := run.snapshot(-1, cells=()).clouds):
+        return []
+    data = {name: np.asarray(values)[::2] for name, values in clouds[BONDS].data.items()}
+    gone = np.flatnonzero(data["whole"] == 0)
+    gone = gone[np.argsort(data["broken_time"][gone], kind="stable")]
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(["time (s)", "x (m)", "y (m)", "strength (N/m)", "body ()", "other body ()"])
+    for k in gone.tolist():
+        x, y = (float(value) for value in data["broken_place"][k, :2])
+        names = [f"{KINDS[int(data[f'{it}_kind'][k])]} {int(data[f'{it}_number'][k])}" for it in ("first", "second")]
+        row = (float(data["broken_time"][k]), x, y, float(data["back_tension"][k]))
+        assert not math.isnan(row[0])
+        table.writerow([*map(repr, row), *names])
+    path = folder / TABLE
+    write_bytes(path, text.getvalue().encode())
+    return [path]

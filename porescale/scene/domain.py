@@ -1,0 +1,141 @@
+"""[domain]: the box and its sides: a word where a side has no numbers, a table where it has."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, get_args
+
+import pydantic
+
+from porescale.common.core.errors import Fault
+from porescale.common.schema.messages import nearest
+from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.scene.ranges import SPEED
+from porescale.scene.servo import SERVO, check_servo
+from porescale.scene.time_function import Course, with_courses
+
+Kind = Literal["wall", "slip", "periodic", "velocity", "pressure"]
+
+
+KINDS: tuple[str, ...] = get_args(Kind)
+
+
+SIDES = ("left", "right", "bottom", "top")
+
+
+PARABOLA_PEAK = 1.5
+"""Largest over mean velocity of a parabola between two walls."""
+
+
+class Side(Section):
+    """One side, as ``top = "slip"`` or ``left = { kind = "velocity", velocity = ["1 cm/s", 0] }``.
+
+    "wall" holds the fluid, and may slide along itself with ``speed``;  "slip" lets it slide (a flat water surface);
+    "periodic" joins opposite sides;  "velocity" lets it in or out with a mean ``velocity``, uniform or as the parabola
+    between two walls;  "pressure" holds the reduced ``pressure`` (what is above hydrostatic) and lets it in or out.
+    A "wall" of a dry scene may also move, with ``velocity``, or so that the grains press on it with a ``stress`` or
+    ``force``, > 0 for compression, no faster than ``fastest``.
+    For grains every side but a periodic one is solid: an inlet or outlet is a screen.
+    """
+
+    kind: Kind = "wall"
+    speed: float = quantity("m/s", 0.0, **SPEED, help="speed of a wall along itself, to the right or up")
+    velocity: tuple[float, float] | None = quantity("m/s", None, **SPEED, help="mean velocity of the fluid at the side")
+    profile: Literal["uniform", "parabola"] = "uniform"
+    pressure: float | None = quantity("Pa", None, ge=-1e9, le=1e9, help="pressure above hydrostatic")
+    stress: Course | None = None
+    force: Course | None = None
+    fastest: float | None = quantity("m/s", None, gt=0, le=1e4, help="largest speed under stress or force")
+
+    @pydantic.model_validator(mode="before")
+    @classmethod
+    def _from_word(cls, value: Any) -> Any:
+        """A word stands for a side of that kind without numbers."""
+        if not isinstance(value, str):
+            return with_courses(value, SERVO)
+        if value not in KINDS:
+            allowed = ", ".join(KINDS)
+            raise Refused(Fault("", value, "unknown choice", "", allowed, nearest(value, KINDS, "choices")))
+        return {"kind": value}
+
+    @pydantic.model_validator(mode="after")
+    def _of_its_kind(self) -> Side:
+        """Every number belongs to a kind of side."""
+        faults = []
+        for key, owner, given in (
+            ("speed", "wall", self.speed != 0),
+            ("velocity", "velocity", self.velocity is not None and self.kind != "wall"),
+            ("stress", "wall", self.stress is not None), ("force", "wall", self.force is not None),
+            ("profile", "velocity", self.profile != "uniform"), ("pressure", "pressure", self.pressure is not None),
+        ):  # fmt: skip
+            if given and self.kind != owner:
+                repair = f'leave it out, or write kind = "{owner}"'
+                faults.append(Fault(key, None, f'belongs to a side of kind "{owner}", this is a {self.kind}',
+                                    repair=repair))  # fmt: skip
+        if self.kind == "velocity" and self.velocity is None:
+            repair = 'write { kind = "velocity", velocity = [0.01, 0] }'
+            faults.append(Fault("velocity", None, "is missing", "m/s", repair=repair))
+        if self.kind == "wall":
+            faults += check_servo(self, self.velocity is not None)
+        if faults:
+            raise Refused(*faults)
+        return self
+
+    @property
+    def open(self) -> bool:
+        """Whether fluid passes it."""
+        return self.kind in ("velocity", "pressure")
+
+    @property
+    def peak(self) -> float:
+        """Largest speed that the side gives the fluid, m/s."""
+        if self.velocity is None:
+            return abs(self.speed)
+        mean = float((self.velocity[0] ** 2 + self.velocity[1] ** 2) ** 0.5)
+        return mean * (PARABOLA_PEAK if self.profile == "parabola" else 1.0)
+
+    def text(self) -> str:
+        """The side in words, for a report."""
+        if self.kind == "wall" and self.speed:
+            return f"wall moving at {self.speed:g} m/s"
+        if self.stress or self.force:
+            return "wall under stress" if self.stress else "wall under force"
+        if self.velocity is not None:
+            u, v = self.velocity
+            return f"velocity ({u:g}, {v:g}) m/s, {self.profile}" if self.open else f"wall moving at ({u:g}, {v:g}) m/s"
+        return f"pressure {self.pressure or 0.0:g} Pa" if self.kind == "pressure" else self.kind
+
+
+class Domain(Section):
+    """The box, lower left corner at the origin, and what each of its sides is."""
+
+    width: float = quantity("m", ge=1e-9, le=1e3, help="width of the box")
+    height: float = quantity("m", ge=1e-9, le=1e3, help="height of the box")
+    left: Side = Side()
+    right: Side = Side()
+    bottom: Side = Side()
+    top: Side = Side()
+
+    @pydantic.model_validator(mode="after")
+    def _joined(self) -> Domain:
+        for name, other_name in (("left", "right"), ("bottom", "top")):
+            one, other = self.side(name).kind, self.side(other_name).kind
+            if (one == "periodic") != (other == "periodic"):
+                raise Refused(
+                    Fault(name, one, f"but {other_name} is {other}", repair="make both sides periodic, or none")
+                )
+        return self
+
+    def side(self, name: str) -> Side:
+        """The side called left, right, bottom or top."""
+        side: Side = getattr(self, name)
+        return side
+
+    @property
+    def periodic(self) -> tuple[bool, bool]:
+        """Whether x and y are periodic."""
+        return self.left.kind == "periodic", self.bottom.kind == "periodic"
+
+    @property
+    def sides(self) -> dict[str, Side]:
+        """The four sides by name."""
+        return {name: self.side(name) for name in SIDES}

@@ -1,0 +1,14 @@
+"""[lubrication]: films between grains that are too thin for the lattice."""
+
+from __future__ import annotations
+
+from porescale.common.schema.sections import Section, quantity
+
+
+class Lubrication(Section):
+    """Squeeze films between grains, and at walls, that are too thin for the lattice: their normal force is added.
+
+    The gap is that between the radii that the fluid sees.
+    """
+
+    gap: float = quantity("", 1.0, gt=0, le=10, help="gap in cells below which films are corrected")

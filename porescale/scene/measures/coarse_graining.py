@@ -1,0 +1,36 @@
+"""[coarse_graining]: fields of the grains in snapshots."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import pydantic
+
+from porescale.common.core.errors import Fault
+from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.scene.ranges import LENGTH
+
+GrainField = Literal["density", "solid_fraction", "velocity", "strain_rate", "stress", "kinetic_stress"]
+
+
+class CoarseGraining(Section):
+    """Fields of the grains in snapshots, in grain_fields.vtkhdf: every grain and contact spread by a smooth kernel.
+
+    Compression is positive.  Mass is kept: what the kernel would put behind a wall lies before it.
+    """
+
+    spacing: float = quantity("m", **LENGTH, help="distance between the points at which fields are taken, about")
+    width: float | None = quantity(
+        "m", None, **LENGTH, help="radius within which a grain is felt (default: 2.5 mean diameters)"
+    )
+    fields: tuple[GrainField, ...] = pydantic.Field(
+        ("solid_fraction", "velocity", "stress"), min_length=1, description="which fields"
+    )
+
+    @pydantic.model_validator(mode="after")
+    def _resolved(self) -> CoarseGraining:
+        if self.width is not None and self.width < self.spacing:
+            repair = "widen it, to some grains, or take the points closer"
+            problem = "is less than the spacing: grains would fall between the points"
+            raise Refused(Fault("width", self.width, problem, "m", f">= {self.spacing:g}", repair))
+        return self

@@ -1,0 +1,21 @@
+"""[homogenise]: the soil that the packing makes."""
+
+from __future__ import annotations
+
+import pydantic
+
+from porescale.common.schema.sections import Section, quantity
+
+
+class Homogenise(Section):
+    """How `porescale homogenise` asks the scene's packing what soil it makes; runs of the scene do without it.
+
+    pressure : left out, that of the packing, else what the weight of half its height makes.
+    """
+
+    pressure: float | None = quantity("Pa", None, gt=0, le=1e12, help="mean stress at which the soil is measured")
+    grains: int = pydantic.Field(800, ge=100, le=100_000, description="grains in a specimen")
+    packings: int = pydantic.Field(6, ge=2, le=1000, description="specimens, from the packing's seed on")
+    strain: float = quantity("", 0.24, ge=0.03, le=1, help="logarithmic axial strain of a test")
+    inertial_number: float = quantity("", 1e-3, ge=1e-6, le=1e-2, help="rate of a test, quasi-static to 1e-3")
+    cells: int = pydantic.Field(12, ge=4, le=100, description="cells per hydraulic diameter of the flow")

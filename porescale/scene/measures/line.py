@@ -1,0 +1,36 @@
+"""[[line]] and [[flux]]: straight sections along which the fluid is recorded, or through which it flows."""
+
+from __future__ import annotations
+
+import pydantic
+
+from porescale.common.core.errors import Fault
+from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.scene.ranges import PLACE
+
+
+class Segment(Section):
+    """A straight section between two points."""
+
+    name: str = pydantic.Field("", description="name in the columns (default: its number)")
+    start: tuple[float, float] = quantity("m", **PLACE, help="first point")
+    end: tuple[float, float] = quantity("m", **PLACE, help="last point")
+
+    @pydantic.model_validator(mode="after")
+    def _has_length(self) -> Segment:
+        if self.start == self.end:
+            raise Refused(Fault("end", None, "is the same as start", "m", repair="move one of them"))
+        return self
+
+
+class Line(Segment):
+    """A straight line along which velocity and pressure are recorded at every snapshot: lines.csv."""
+
+    points: int = pydantic.Field(101, ge=2, le=100_000, description="points along the line, both ends included")
+
+
+class Flux(Segment):
+    """A straight section through which the volume flux is recorded over time: flux.csv.
+
+    Positive from left to right for one who looks from ``start`` to ``end``: upwards means to the right.
+    """

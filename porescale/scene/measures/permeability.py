@@ -1,0 +1,33 @@
+"""[permeability]: what the bed lets through."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import pydantic
+
+from porescale.common.schema.sections import Section, quantity
+from porescale.scene.ranges import LENGTH, PLACE
+
+
+class Window(Section):
+    """A part of the bed."""
+
+    left: float = quantity("m", **PLACE, help="left edge")
+    bottom: float = quantity("m", **PLACE, help="lower edge")
+    width: float = quantity("m", **LENGTH, help="width")
+    height: float = quantity("m", **LENGTH, help="height")
+
+
+class Permeability(Section):
+    """The permeability of the bed as it stands in the first and the last snapshot: permeability.csv.
+
+    The grains in the window are held, a body force drives fluid through them, slowly enough for Stokes flow; operators
+    and relaxation time are the run's, so that it is what this bed lets through in this run.
+    """
+
+    window: Window | None = None
+    direction: Literal["x", "y"] = pydantic.Field("y", description="direction of the flow")
+    spacing: float | None = quantity(
+        "m", None, **LENGTH, help="lattice spacing of the measurement (default: the run's)"
+    )

@@ -1,0 +1,23 @@
+"""Ranges of quantities, SI: far beyond what grains and water need.
+
+What lies outside is a slip of unit or exponent, and would end in numbers that are none.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+LENGTH: Any = {"ge": 1e-9, "le": 1e3}
+"""m."""
+PLACE: Any = {"ge": -1e3, "le": 1e3}
+"""m."""
+SPEED: Any = {"ge": -1e4, "le": 1e4}
+"""m/s."""
+SPIN: Any = {"ge": -1e7, "le": 1e7}
+"""rad/s."""
+TIME: Any = {"ge": 1e-12, "le": 1e9}
+"""s."""
+DENSITY: Any = {"ge": 1e-3, "le": 1e5}
+"""kg/m^3."""
+FRICTION: Any = {"ge": 0, "le": 1e3}
+"""Coefficient of friction."""

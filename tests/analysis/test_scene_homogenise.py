@@ -1,0 +1,151 @@
+"""What `porescale homogenise` makes of a scene, and of the tests of its specimens."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from porescale import Scene
+from porescale.analysis.biaxial import WINDOW, numbers, running
+from porescale.analysis.homogenise import WAVES, asked_of, pressure_of, ramp_of, specimen, stiffness_over_pressure
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import validate
+from porescale.validation import homogenise as verify
+from porescale.validation.homogenise import VALIDATIONS
+from tests.reference.scenes import column, dry
+
+
+def tolerance(name):
+    return VALIDATIONS[name].tolerance
+
+
+def test_means_and_slopes_of_a_straight_line_are_its_own():
+    x = np.linspace(0.0, 0.1, 198)  # no row at the rim of another's window
+    mean, slope = running(x, 3.0 * x + 1.0)
+    inside = np.isfinite(mean)
+    assert inside.sum() == ((x > 0.5 * WINDOW) & (x < 0.1 - 0.5 * WINDOW)).sum() > 100
+    assert mean[inside] == pytest.approx(3.0 * x[inside] + 1.0, rel=1e-12)
+    assert slope[inside] == pytest.approx(3.0, rel=1e-10)
+
+
+def test_a_known_soil_is_found():
+    assert VALIDATIONS["scene.biaxial_test_of_a_known_soil"].run().passed
+
+
+def test_soil_of_another_poisson_ratio_is_told_apart():  # the twin that must fail
+    found = verify.known_numbers(verify.known_test(poisson=0.25))
+    assert max(abs(value - 1.0) for value in found) > 1e9 * tolerance("scene.biaxial_test_of_a_known_soil")
+
+
+def test_a_peak_is_told_from_the_critical_state():
+    series = verify.known_test()
+    a = -series["strain yy ()"]
+    bump = 0.3 * np.exp(-(((a - 0.03) / 0.02) ** 2))
+    series["stress yy (Pa)"] = 1e4 + (series["stress yy (Pa)"] - 1e4) * (1.0 + bump)
+    (found,) = numbers([series])
+    assert found["critical friction angle"] == pytest.approx(verify.FRICTION, rel=1e-9)
+    assert found["peak friction angle"] > 1.1 * verify.FRICTION
+    assert found["porosity"] == pytest.approx(0.19, rel=1e-12)
+
+
+def test_a_peak_is_that_of_the_mean_not_the_largest_swing_of_each():
+    # Two tests that swing against each other about one strength: the mean has no peak, each of them has.
+    tests = []
+    for sign in (1.0, -1.0):
+        series = verify.known_test()
+        swing = 1.0 + sign * 0.1 * np.sin(40.0 * np.pi * -series["strain yy ()"])
+        q = series["stress yy (Pa)"] - 1e4
+        series["stress yy (Pa)"] = 1e4 + np.where(-series["strain yy ()"] > 0.02, q * swing, q)
+        tests.append(series)
+    both = numbers(tests)
+    mean = sum(math.sin(it["peak friction angle"]) for it in both) / 2.0
+    # sin φ = q/(q + 2p) is concave in q: swings of ± 10 % take at most 0.1² q p/(q + 2p)² off or on, below 0.001
+    assert mean == pytest.approx(math.sin(verify.FRICTION), abs=1e-3)
+    alone = math.sin(numbers(tests[:1])[0]["peak friction angle"])
+    assert alone > math.sin(verify.FRICTION) + 0.015
+
+
+def test_a_run_that_never_sheared_is_no_test():
+    series = {name: values[:20] for name, values in verify.known_test().items()}
+    with pytest.raises(InputError, match="holds no test"):
+        numbers([series])
+
+
+def test_flow_through_a_square_array_is_what_its_drag_says():
+    row = VALIDATIONS["scene.permeability_of_a_square_array"].run()
+    assert row.passed
+    assert abs(verify.array_permeability(0.9) - 1.0) > 10 * row.tolerance  # the twin that must fail
+
+
+@pytest.mark.slow
+def test_discs_reach_the_critical_state_of_the_paper_and_discs_without_friction_do_not():
+    row = VALIDATIONS["scene.critical_state_of_discs"].run()
+    assert row.passed, row
+    assert abs(verify.critical_angle(0.0, 1) - row.reference) > 3 * row.tolerance
+
+
+def test_pressure_is_what_is_asked_else_the_packings_else_the_weights():
+    # half of a height of 5.5 mm at a packing fraction of 0.7: wet grains of 2500 kg/m³ weigh 1500 kg/m³ times g
+    wet = column()
+    assert pressure_of(wet) == pytest.approx(0.5 * 0.7 * 1500.0 * 9.81 * 0.0055, rel=1e-3)
+    assert pressure_of(dry()) == pytest.approx(0.5 * 0.7 * 2500.0 * 9.81 * 0.0055, rel=1e-3)
+    assert pressure_of(column(homogenise__pressure="2 kPa")) == 2000.0
+    assert stiffness_over_pressure(column(homogenise__pressure="2 kPa")) == pytest.approx(100.0)
+
+
+def test_a_specimen_is_a_scene_of_the_same_grains_without_walls_weight_and_water():
+    given = column(homogenise={"pressure": 200, "grains": 300, "inertial_number": 2e-3})
+    table = specimen(given)
+    made = validate(Scene, table)
+    assert made.fluid is None
+    assert made.gate is None
+    assert all(made.domain.periodic)
+    assert not any(made.gravity)
+    assert made.grains
+    assert made.grains.packing
+    packing = made.grains.packing
+    assert (packing.diameter, packing.size_spread, packing.pressure) == (0.0008, 0.1, 200.0)
+    assert made.contact
+    assert given.contact
+    assert made.contact.friction == given.contact.friction
+    mass = math.pi / 4.0 * 0.0008**2 * 2500.0
+    assert made.cell
+    assert made.cell.rate_yy
+    rate = -made.cell.rate_yy.values[-1]
+    assert rate == pytest.approx(2e-3 * math.sqrt(200.0 / mass), rel=1e-12)
+    # the logarithmic strain at the end: the rate's integral, half of it while it grows
+    strain = rate * (made.time.end - 0.5 * made.cell.rate_yy.times[-1])
+    assert strain == pytest.approx(0.24, rel=1e-12)
+
+
+def test_the_first_loading_lasts_as_long_as_waves_take():
+    given = column(homogenise__pressure=200)
+    packing = given.grains.packing
+    table = specimen(given)
+    times, rate = table["cell"]["rate_yy"][1]
+    wave = table["domain"]["width"] * math.sqrt(2500.0 / given.contact.stiffness)
+    strain = 200.0 / given.contact.stiffness
+    assert math.sqrt(2.0 * strain * times / -rate) == pytest.approx(WAVES * wave, rel=1e-12)
+    assert ramp_of(asked_of(given), packing) == pytest.approx(-rate * times, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"grains__packing": None, "grains__grain": [{"x": 0.01, "y": 0.004, "diameter": 0.001}]}, "no packing"),
+        ({"contact": {"law": "hertz", "young": 1e7, "restitution": 0.5}}, "contact.law"),
+        ({"homogenise__pressure": "100 kPa"}, "would press"),
+        ({"gravity": [0, 0]}, "homogenise.pressure"),
+    ],
+)
+def test_what_cannot_be_homogenised_is_refused(changes, said):
+    with pytest.raises(InputError, match=said):
+        specimen(column(**changes))
+
+
+@pytest.mark.parametrize("changes", [{"pressure": 0}, {"packings": 1}, {"grains": 10}, {"strain": 2}, {"cels": 3}])
+def test_wrong_keys_are_refused(changes):
+    with pytest.raises(InputError, match="homogenise"):
+        column(homogenise=changes)

@@ -1,0 +1,204 @@
+"""Probes, lines, flux sections, load cells, permeability: what they read where it is known; none makes nothing."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from porescale.analysis.permeability import gebart, kozeny_carman, measure
+from porescale.build.build import build
+from porescale.build.parts.flow_fields import vorticity
+from porescale.common.core.errors import InputError
+from porescale.common.record.drive import drive
+from porescale.common.record.open_run import open_run
+from porescale.common.schema.sections import scene_as_dict
+from porescale.output.lines import write_lines
+from porescale.output.sample import Sampler, along, midpoints
+from tests.reference.scenes import dry, water
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+DISC = {"x": 0.004, "y": 0.004, "diameter": 0.002}
+MEASURED: dict[str, Any] = {
+    "probe": [{"name": "tap", "x": 0.001, "y": 0.002}],
+    "flux": [{"start": [0.006, 0.0], "end": [0.006, 0.008]}, {"start": [0.006, 0.008], "end": [0.006, 0.0]}],
+    "line": [{"start": [0.006, 0.0], "end": [0.006, 0.008], "points": 5}],
+    "loads": {"discs": [0], "speed": 0.01, "length": 0.002}, "disc": [DISC], "gravity": [0.0, 0.0],
+}  # fmt: skip
+
+
+def plane(x: Any, y: Any) -> Any:
+    return 2.0 + 3.0 * x - 5.0 * y
+
+
+def test_bilinear_interpolation_is_exact_for_a_plane():
+    y, x = (np.mgrid[:7, :9] + 0.5) * 0.5
+    points = [(0.25, 0.25), (1.1, 2.3), (4.25, 3.25), (3.99, 0.31)]
+    read = Sampler(points, (9, 7), 0.5)
+    # Four products of numbers of order ten: a few units in the last place.
+    assert read.of(plane(x, y)) == pytest.approx([plane(*it) for it in points], rel=1e-14)
+    # The twin that must fail: the nearest centre is half a cell off.
+    assert abs(plane(x, y)[4, 2] - plane(1.1, 2.3)) > 0.1
+
+
+def test_a_point_beyond_the_outermost_centres_reads_the_wall_cell_or_the_other_side():
+    values = np.arange(12.0).reshape(3, 4)
+    assert Sampler([(0.0, 0.0), (4.0, 3.0)], (4, 3), 1.0).of(values).tolist() == [0.0, 11.0]
+    assert Sampler([(0.0, 0.5), (4.0, 0.5)], (4, 3), 1.0, (True, False)).of(values).tolist() == [1.5, 1.5]
+
+
+def test_pressure_is_that_of_the_fluid_share_and_none_inside_solid():
+    solid, values = np.zeros((3, 4)), np.full((3, 4), 7.0)
+    solid[:, 2:] = 1.0
+    values[:, 2:] = -1000.0
+    read = Sampler([(2.0, 1.5), (3.0, 1.5)], (4, 3), 1.0)
+    outside, inside = read.in_fluid(values, solid)
+    assert outside == 7.0
+    assert math.isnan(inside)
+    assert read.of(values)[0] == pytest.approx((7 - 1000) / 2)  # the twin: plain interpolation takes the solid's
+
+
+def test_points_of_lines_and_sections():
+    assert along((0, 0), (2, 4), 3).tolist() == [[0, 0], [1, 2], [2, 4]]
+    assert midpoints((0, 0), (0, 4), 2).tolist() == [[0, 1], [0, 3]]
+
+
+def test_vorticity_of_a_solid_rotation_is_twice_its_rate():
+    y, x = (np.mgrid[:6, :8] + 0.5) * 0.1
+    # Differences of a linear field are exact but for round-off of 1e-16 over a spacing of 0.1.
+    assert vorticity(-3.0 * y, 3.0 * x, 0.1) == pytest.approx(6.0, abs=1e-13)
+
+
+def test_a_section_over_whole_cells_counts_what_flows_through_them():
+    simulation = build(water(**MEASURED))
+    simulation.advance(200)
+    assert simulation.fluid
+    _, ux, _, _ = simulation.fields()
+    row = simulation.tables()["flux"]
+    spacing = 0.0002
+    # x = 6 mm is the face between columns 29 and 30: the mean of the two, summed over 40 cells, to round-off.
+    expected = 0.5 * (ux[:, 29] + ux[:, 30]).sum() * spacing
+    assert row["section 0 volume flux (m²/s)"] == pytest.approx(expected, rel=1e-13)
+    assert row["section 1 volume flux (m²/s)"] == -row["section 0 volume flux (m²/s)"]
+    assert expected > 0
+    assert row["section 0 flux of solid (m²/s)"] == 0.0
+
+
+def test_in_steady_flow_the_load_of_a_disc_and_walls_balance_the_body_force():
+    simulation = build(water(**{**MEASURED, "domain__top": "periodic", "domain__bottom": "periodic",
+                                "fluid__viscosity": 1e-4}))  # fmt: skip
+    # The flow's memory is area/(nu F/(mu U)), F/(mu U) about 13 at a solid fraction of 0.03: 0.074 s.  After 16000
+    # steps of 4e-5 s 2e-4 of it is left.
+    simulation.advance(16000)
+    row = simulation.tables()["loads"]
+    # Nothing else holds the fluid.  The force acts on (1 - B) of every cell, B between 0 and the solid fraction: on an
+    # area between that of the box and that less the disc's, 1.7 % to either side of the middle.
+    area, disc = 0.012 * 0.008, math.pi * 0.001**2
+    assert row["disc 0 force x (N/m)"] == pytest.approx(10 * (area - disc / 2), rel=0.018)
+    assert abs(row["disc 0 force y (N/m)"]) < 1e-9 * row["disc 0 force x (N/m)"]
+    unit = 0.5 * 1000 * 0.01**2 * 0.002
+    assert row["disc 0 drag coefficient ()"] == pytest.approx(row["disc 0 force x (N/m)"] / unit, rel=1e-14)
+
+
+@pytest.mark.parametrize(("left_out", "tables"), [("probe", {"flux", "loads"}), ("flux", {"probes", "loads"}),
+                                                  ("loads", {"probes", "flux"})])  # fmt: skip
+def test_an_absent_instrument_writes_no_table(left_out, tables):
+    assert build(water(**MEASURED)).tables().keys() == {"probes", "flux", "loads"}
+    assert build(water(**{**MEASURED, left_out: None})).tables().keys() == tables
+
+
+def test_without_instruments_nothing_is_measured(monkeypatch):
+    from porescale.build.parts import flow_fields, flow_instruments
+
+    def refuse(*args: Any, **options: Any) -> None:
+        raise AssertionError("measured")
+
+    monkeypatch.setattr(flow_instruments.Instruments, "tables", refuse)
+    monkeypatch.setattr(flow_fields, "stream_function", refuse)
+    monkeypatch.setattr(flow_fields, "vorticity", refuse)
+    plain = build(water())
+    plain.advance(2)
+    assert plain.tables() == {}
+    assert plain.snapshot().grids["fields"].cells.keys() == {"velocity", "pressure"}
+    assert build(dry()).tables() == {}
+    with pytest.raises(AssertionError, match="measured"):  # the twin: with one, it is
+        build(water(**MEASURED)).tables()
+
+
+def test_tables_and_lines_of_a_run_are_files(tmp_path):
+    scene = water(**MEASURED, output__fields=["vorticity", "stream_function"], time__end=0.008)
+    drive(build(scene), tmp_path, 0.008, snapshot_interval=0.004, series_interval=0.001,
+          card={"scene": scene_as_dict(scene)}, quiet=True)  # fmt: skip
+    run = open_run(tmp_path)
+    assert len(run.table("probes")["tap pressure (Pa)"]) == len(run.series["time (s)"]) == 9
+    assert run.table("loads")["time (s)"].tolist() == run.series["time (s)"].tolist()
+    assert run.table("nothing") == {}
+    assert {"vorticity", "stream_function"} <= run.snapshot(-1).grids["fields"].cells.keys()
+    assert write_lines(run, tmp_path) == [tmp_path / "lines.csv"]
+    lines = run.table("lines")
+    assert len(lines["time (s)"]) == 3 * 5
+    last = lines["velocity x (m/s)"][-5:]
+    assert last[2] == pytest.approx(run.snapshot(-1).grids["fields"].cells["velocity"][19:21, 29:31, 0].mean())
+
+
+def test_permeability_of_a_square_array_is_what_its_drag_says():
+    # Stokes drag F/(mu U) = 51.53 at c = 0.2, so K = L²/51.53: within 2 % at ten cells anywhere in a cell.
+    size = 20.0
+    radius = size * math.sqrt(0.2 / math.pi)
+    place = np.array([[10.3, 10.1]])
+    box = {"periodic": (True, True), "direction": "x"}
+    found = measure(place, np.array([radius]), (0.0, 0.0), (size, size), 1.0, **box)
+    exact = size**2 / 51.53
+    assert found.steady
+    assert found.permeability == pytest.approx(exact, rel=0.02)
+    assert found.solid_fraction == pytest.approx(0.2, rel=1e-12)
+    assert found.cells == 2 * radius
+    upward = measure(
+        place[:, ::-1], np.array([radius]), (0.0, 0.0), (size, size), 1.0, direction="y", periodic=(True, True)
+    )
+    assert upward.permeability == pytest.approx(found.permeability, rel=1e-12)  # the same cells, transposed
+    smaller = measure(place, np.array([0.9 * radius]), (0.0, 0.0), (size, size), 1.0, **box)
+    assert smaller.permeability > 1.2 * found.permeability  # the twin that must fail
+
+
+def test_a_window_of_an_array_has_the_permeability_of_the_array():
+    # The window's faces cut discs wherever they fall; what is left of them is a diameter away from where the gradient
+    # is taken, and a position within the cells, for which single ones differ by up to 3 %.
+    size, n = 14.0, 10
+    radius = size * math.sqrt(0.4 / math.pi)
+    grid = np.array([[(i + 0.5) * size, (j + 0.5) * size] for i in range(-1, n) for j in range(-1, n)])
+    whole = measure(grid[:1] + size, np.array([radius]), (0.0, 0.0), (size, size), 1.0, periodic=(True, True))
+    part = measure(grid, np.full(len(grid), radius), (3.0, 4.0), (3.0 + 3 * size, 4.0 + 8 * size), 1.0)
+    assert part.permeability == pytest.approx(whole.permeability, rel=0.05)
+    with pytest.raises(InputError, match="diameters long"):
+        measure(grid, np.full(len(grid), radius), (3.0, 4.0), (3.0 + 3 * size, 4.0 + 2 * size), 1.0)
+    with pytest.raises(InputError, match="holds no grain"):
+        measure(grid + 1e4, np.full(len(grid), radius), (0.0, 0.0), (50.0, 80.0), 1.0)
+
+
+def test_the_bed_beside_a_window_is_its_mirror_image_or_a_wall():
+    # Slip flanks are mirrors: the same cells as a period that holds the mirror image, up to where each run is called
+    # steady, 2e-5 of the flux a block.  Walls hold back what flows along them.
+    size, radius = 16.0, 5.0
+    disc = np.array([[8.2, 7.1]])
+    image = np.array([[8.2, -7.1]])
+    beside = measure(disc, np.array([radius]), (0.0, 0.0), (size, size), 1.0, direction="x", periodic=(True, False))
+    both = np.concatenate([disc, image]) + np.array([0.0, size])
+    whole = measure(both, np.full(2, radius), (0.0, 0.0), (size, 2 * size), 1.0, direction="x", periodic=(True, True))
+    assert beside.permeability == pytest.approx(whole.permeability, rel=1e-4)
+    walled, one = (
+        measure(disc, np.array([radius]), (0.0, 0.0), (size, size), 1.0, direction="x", periodic=(True, False), walls=w)
+        for w in ((True, True), (True, False))
+    )
+    assert walled.permeability < one.permeability < 0.9 * beside.permeability
+
+
+def test_formulas_of_beds():
+    # Gebart 1992: 16/(9 pi sqrt 2) (sqrt(pi/(4 c)) - 1)^2.5 at c = 0.5: 0.40 * 0.2533^2.5; closed where discs touch.
+    assert gebart(0.5) == pytest.approx(0.40013 * (math.sqrt(math.pi / 2) - 1) ** 2.5, rel=1e-4)
+    assert gebart(math.pi / 4) == 0.0
+    assert gebart(0.8) == 0.0
+    assert gebart(0.8, hexagonal=True) > 0
+    assert kozeny_carman(0.5) == pytest.approx(0.125 / 5, rel=1e-15)

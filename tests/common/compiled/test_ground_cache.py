@@ -1,0 +1,110 @@
+"""The cache's folder, the hash of sources, and what is thrown away."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import time
+from pathlib import Path
+
+from porescale.common.compiled import jit
+from porescale.common.compiled.cache import DAY, cache_root, hash_of, keep_only_used
+from tests.reference.waiting import done
+
+
+def test_the_cache_lies_where_the_desktop_standard_says_and_an_empty_variable_counts_as_unset(monkeypatch, tmp_path):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert cache_root() == tmp_path / "porescale"
+    monkeypatch.setenv("XDG_CACHE_HOME", "")
+    monkeypatch.setenv("HOME", str(tmp_path / "me"))
+    assert cache_root() == tmp_path / "me" / ".cache" / "porescale"
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    assert cache_root() == tmp_path / "me" / ".cache" / "porescale"
+
+
+def test_the_hash_is_that_of_names_and_contents_wherever_they_lie(tmp_path):
+    one = tmp_path / "one" / "package"
+    (one / "room").mkdir(parents=True)
+    (one / "a.py").write_text("1")
+    (one / "room" / "b.py").write_text("2")
+    before = hash_of([one])
+    assert len(before) == 12
+    shutil.copytree(one, tmp_path / "two" / "package")
+    assert hash_of([tmp_path / "two" / "package"]) == before
+    (one / "notes.txt").write_text("no source")
+    assert hash_of([one]) == before
+    (one / "a.py").write_text("12")
+    assert hash_of([one]) != before  # the twins: content, name, and where one file ends
+    (one / "a.py").write_text("1")
+    assert hash_of([one]) == before
+    (one / "a.py").rename(one / "c.py")
+    assert hash_of([one]) != before
+
+
+def test_kernel_folders_unused_for_a_month_go_but_never_the_current_one(tmp_path):
+    now = time.time()
+    for name, days in {"kernels-old": 31, "kernels-young": 29, "kernels-current": 400, "packings": 400}.items():
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "content").write_text("x")
+        os.utime(tmp_path / name, (now - days * DAY, now - days * DAY))
+    current = tmp_path / "kernels-current"
+    keep_only_used(current, "kernels-*")
+    assert {path.name for path in tmp_path.iterdir()} == {"kernels-young", "kernels-current", "packings"}
+    assert current.stat().st_mtime >= now - DAY  # it counts as used now
+    keep_only_used(tmp_path / "nowhere" / "kernels-new", "kernels-*")  # nothing there: nothing to do
+
+
+def test_kernels_unused_for_a_month_go_when_another_is_kept_but_not_from_a_folder_of_the_users_own(tmp_path):
+    ask = "from porescale.common.neighbors.cells import minimum_image as k; k(0.9, 1.0)"
+    root = Path(jit.__file__).resolve().parents[3]
+    own, named = tmp_path / "porescale" / jit.cache_folder_name(), tmp_path / "named"
+    now = time.time()
+    for folder, given in ((own, ""), (named, str(named))):
+        folder.mkdir(parents=True)
+        for name, days in {"old.nbc": 31, "young.nbc": 29, "torn.nbc.tmp.1": 31, "other.txt": 400}.items():
+            (folder / name).write_text("x")
+            os.utime(folder / name, (now - days * DAY, now - days * DAY))
+        environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path), "NUMBA_CACHE_DIR": given}
+        assert done([sys.executable, "-c", ask], env=environment, cwd=root).returncode == 0
+    (kernel,) = (path for path in own.iterdir() if "minimum_image" in path.name)
+    assert {path.name for path in own.iterdir()} == {"young.nbc", "other.txt", kernel.name}
+    assert len(list(named.iterdir())) == 5  # the twin
+    os.utime(kernel, (0, 0))
+    environment["NUMBA_CACHE_DIR"] = ""
+    assert done([sys.executable, "-c", ask], env=environment, cwd=root).returncode == 0
+    assert kernel.stat().st_mtime >= now - DAY  # read: it counts as used
+
+
+def test_kernels_are_kept_below_the_cache_unless_a_folder_is_named(tmp_path):
+    ask = "from porescale.common.compiled import jit; print(jit.compiler().numba.config.CACHE_DIR)"
+    old = tmp_path / "porescale" / "kernels-old"
+    old.mkdir(parents=True)
+    os.utime(old, (0, 0))
+    root = Path(jit.__file__).resolve().parents[3]
+    environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
+    for named in ("", str(tmp_path / "named")):
+        assert old.exists() or not named
+        it = done([sys.executable, "-c", ask], env=environment | {"NUMBA_CACHE_DIR": named}, cwd=root)
+        folder = Path(it.stdout.strip())
+        if named:
+            assert folder == Path(named)
+        else:
+            assert folder.parent == tmp_path / "porescale"
+            assert folder.name.startswith("kernels-")
+            assert not old.exists()
+            old.mkdir()
+            os.utime(old, (0, 0))
+    assert old.exists()  # the twin: who names a folder of their own looks after it
+
+
+def test_kernels_work_where_no_cache_can_be_written(tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    ask = "from porescale.common.neighbors.cells import minimum_image as k; print(k(0.9, 1.0), type(k._cache).__name__)"
+    root = Path(jit.__file__).resolve().parents[3]
+    for place, cache in (("file", "NullCache"), ("folder", "KernelCache")):  # the second is the twin
+        environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / place), "NUMBA_CACHE_DIR": ""}
+        value, kind = done([sys.executable, "-c", ask], env=environment, cwd=root).stdout.split()
+        assert abs(float(value) + 0.1) < 1e-15  # one rounding of 0.9 - 1
+        assert kind == cache
+    assert (tmp_path / "file").read_text() == "in the way"

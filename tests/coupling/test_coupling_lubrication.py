@@ -1,0 +1,172 @@
+"""Films: the squeeze-film law below a cell, equal and opposite, stable at its thinnest; off unless asked for."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from porescale.common.core.errors import InputError
+from porescale.coupling import lubrication as law
+from porescale.coupling.step import Coupled
+from porescale.dem.discs import make_discs
+from porescale.dem.forces.walls import Box
+from porescale.dem.grains import Grains
+from porescale.validation.coupling import setups as lab
+
+EPS = np.finfo(float).eps
+MU = 0.1
+
+
+def dry(position, radius, velocity=0.0, density=2.0, skin=0.01):
+    """Discs in a closed box of 60 x 40 m with a skin so small that gaps are not listed by chance."""
+    return Grains(make_discs(position, radius, density, velocity), lab.LAW, Box((0.0, 0.0), (60.0, 40.0)), skin=skin)
+
+
+def films(grains, cut=1.0, dt=0.25, *, plain=False):
+    force = np.zeros((grains.discs.count, 2))
+    lub = law.Lubrication(grains, grains.discs.radius, viscosity=MU, cut=cut, dt=dt)
+    d, pairs = grains.discs, grains.current_pairs()
+    add = law.add_films.py_func if plain else law.add_films
+    add(
+        d.position, d.velocity, d.radius, d.mass, pairs.start, pairs.partner, *grains.box.period, grains.walls, MU,
+        cut, dt, force,
+    )  # fmt: skip
+    return force, lub
+
+
+def test_a_thin_film_is_the_limit_of_jeffrey_and_onishi():
+    # 4 pi/(alpha - tanh alpha) = 12 pi/alpha³ (1 + 2/5 alpha² + ...), alpha² = 2 g/R (1 - g/(6 R) + ...)
+    for gap in (1e-3, 1e-2):
+        alpha = math.acosh(1 + gap)
+        exact = 4 * math.pi / (alpha - math.tanh(alpha))
+        assert law.FILM * gap**-1.5 == pytest.approx(exact, rel=1.1 * gap * (4 / 5 + 1 / 4))
+
+
+@pytest.mark.parametrize("plain", [False, True])
+def test_films_between_discs_and_at_walls_follow_the_law(plain):
+    grains = dry(
+        [(20.0, 20.0), (29.5, 20.0), (5.3, 10.0)], [5.0, 4.0, 5.0], [(0.02, 0.01), (-0.01, 0.0), (-0.03, 0.02)]
+    )
+    force, _ = films(grains, plain=plain)
+
+    def c(radius, gap):
+        return law.FILM * MU * radius**1.5 * (gap**-1.5 - 1)
+
+    between, wall = c(20 / 9, 0.5) * 0.03, c(5.0, 0.3) * 0.03
+    # lengths of 30 and differences of 0.3: 100 eps, to the power 3/2
+    np.testing.assert_allclose(force, [(-between, 0), (between, 0), (wall, 0)], rtol=300 * EPS, atol=1e-15)
+
+
+def test_films_of_an_oblique_pair_are_equal_opposite_and_along_the_line_of_centres():
+    n = np.array([0.6, 0.8])
+    grains = dry([(20.0, 20.0), tuple(20.0 + 9.4 * n)], [5.0, 4.0], [(0.02, 0.01), (-0.01, 0.03)])
+    force, _ = films(grains)
+    np.testing.assert_array_equal(force[0], -force[1])
+    assert abs(force[0] @ (-0.8, 0.6)) < 1e-14
+    assert force[1] @ n > 0  # 0.03 * 0.6 - 0.02 * 0.8 > 0: they close
+
+
+@pytest.mark.parametrize(("gap", "acts"), [(1.001, False), (0.999, True), (1e-6, True), (-1e-6, False)])
+def test_a_film_acts_below_the_cut_and_not_in_contact(gap, acts):
+    force, _ = films(dry([(20.0, 20.0), (28.0 + gap, 20.0)], 4.0, [(0.01, 0.0), (0.0, 0.0)]))
+    assert (force != 0).any() == acts
+
+
+def test_gaps_up_to_the_cut_are_listed_only_when_films_ask_for_it():
+    grains = dry([(20.0, 20.0), (28.5, 20.0)], 4.0)
+    grains.refresh()
+    assert len(grains.pairs.partner) == 0
+    films(grains)
+    assert len(grains.pairs.partner) == 1
+
+
+def test_the_thinnest_film_is_stable_and_one_eight_times_as_stiff_is_not():
+    def last():
+        grains = dry([(20.0, 20.0), (28.0 + 1e-3, 20.0), (20.0, 28.001)], 4.0, [(1e-6, 1e-6), (0, 0), (0, 0)])
+        _, lub = films(grains)
+        start = np.abs(grains.discs.velocity).max()
+        for _ in range(60):
+            lub.step(grains, np.zeros((3, 2)), np.zeros(3), 1)
+            grains.discs.position[:] = [(20.0, 20.0), (28.001, 20.0), (20.0, 28.001)]
+        return np.abs(grains.discs.velocity).max() / start
+
+    def forced(stiffer):
+        grains = dry([(20.0, 20.0), (28.0 + 1e-3, 20.0)], 4.0, [(1e-6, 0), (0, 0)])
+        d = grains.discs
+        for _ in range(60):
+            force = np.zeros((2, 2))
+            push = stiffer * law.film(1e-3, 2.0, MU, 1.0, d.mass[0], 0.25) * (d.velocity[0, 0] - d.velocity[1, 0])
+            force[:, 0] = -push, push
+            grains.step(0.25, force)
+            d.position[:] = [(20.0, 20.0), (28.001, 20.0)]
+        return np.abs(d.velocity).max() / 1e-6
+
+    assert last() < 1.0
+    assert forced(1.0) < 1.0
+    assert forced(8.0) > 10.0  # C dt = 8/3 m on half the mass: beyond 2
+
+
+def test_a_step_too_long_for_any_film_is_refused():
+    with pytest.raises(InputError, match="lubrication"):
+        films(dry([(20.0, 20.0)], 4.0, density=0.1), dt=10.0)
+
+
+def lubricated(on=True):
+    plain = lab.immersed(
+        (40, 30), [(12.0, 12.2), (20.6, 12.9), (28.9, 4.5)], 4.0, [2.0, 3.0, 2.5],
+        [(0.02, 0.0), (-0.02, 0.01), (0.0, -0.01)], acceleration=(0.0, -2e-5), sides=("periodic", "wall"),
+    )  # fmt: skip
+    made = Coupled(
+        plain.fluid, plain.grains, plain.scales, hydraulic_ratio=1.0, contact_steps=4, acceleration=(0.0, -2e-5),
+        lubrication=on,
+    )  # fmt: skip
+    made.grains.hold(0)
+    return made
+
+
+def test_no_film_unless_asked_for():
+    assert lab.handful().lubrication is None
+
+
+def test_a_restored_run_with_films_goes_on_bit_for_bit():
+    whole, again = lubricated(), lubricated()
+    acted = 0
+    for step in range(60):
+        if step == 25:
+            kept = again.state()
+            again = lubricated()
+            again.restore(kept)
+        for coupled in (whole, again):
+            coupled.advance()
+        acted += bool(whole.lubrication.force.any())
+    assert acted > 20
+    for name in ("position", "velocity", "spin"):
+        np.testing.assert_array_equal(getattr(whole.grains.discs, name), getattr(again.grains.discs, name))
+
+
+def test_holders_bear_the_films_too_and_only_contacts_are_contacts():
+    coupled = lubricated()
+    met = 0
+    for _ in range(60):
+        coupled.advance()
+        bears = coupled.grains.withheld[0, :2]
+        rest = bears - coupled.force[0] - coupled.lubrication.force[0]
+        # sums of forces of some 0.1, four steps
+        np.testing.assert_allclose(coupled.contact_load()[0, :2], rest, rtol=0, atol=40 * EPS)
+        met += bool(coupled.lubrication.force[0].any())
+        if not coupled.grains.pairs.carried.any():
+            assert np.abs(rest).max() < 40 * EPS
+    assert met > 10
+
+
+def test_films_slow_an_approach():
+    speeds = []
+    for on in (True, False):
+        coupled = lubricated(on)
+        for _ in range(15):
+            coupled.advance()
+        d = coupled.grains.discs
+        speeds.append(d.velocity[0, 0] - d.velocity[1, 0])
+    assert 0 < speeds[0] < 0.9 * speeds[1]

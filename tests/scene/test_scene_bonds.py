@@ -1,0 +1,205 @@
+"""Bonds and rock of dry scenes: when and between whom they are made, what they bear, and runs that go on with them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from porescale import Scene
+from porescale.build.build import build
+from porescale.build.derive import derive
+from porescale.build.initial.rock import rock_discs
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import scene_as_dict, validate
+from porescale.dem.prepare.rock import rock as made_by_hand
+from porescale.output.frame_pictures import cracks
+from porescale.output.rock_pictures import drawn, write_rock_picture
+from tests.reference.scenes_of_grains import assert_same_bits, framed, resumed
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+STIFFNESS, OVERLAP = 2e5, 8e-7
+SIDE = 1e-3
+"""Of the squares; their lines are 0.1 mm apart less the overlap."""
+
+
+def wall(**changes: Any) -> Scene:
+    """Three squares side by side on nothing, without weight, the first held, with bonds."""
+    apart = SIDE + 1e-4 - OVERLAP
+    square = {"corners": [[0, 0], [SIDE, 0], [SIDE, SIDE], [0, SIDE]], "thickness": 5e-5}
+    at = [[2e-3 + k * apart, 2e-3] for k in range(3)]
+    rest = {axis: {"velocity": 0.0} for axis in ("x", "y", "rotation")}
+    return framed(**{
+        "polygon": [{**square, "at": at}], "gravity": [0, 0], "bonds": {}, "contact__restitution": 0.5,
+        "contact__stiffness": STIFFNESS, "control": [{"polygon": 0, **rest}], **changes,
+    })  # fmt: skip
+
+
+def test_squares_are_bonded_at_the_ends_of_their_sides_and_stand():
+    simulation = build(wall())
+    bonds = simulation.grains.bonds
+    # Side against side: four corners press, as many are counted twice at corner against corner and taken off again,
+    # so that the sum of back tensions is that of the two points that bear: 2 k d0 a pair.
+    assert bonds.back.sum() == pytest.approx(2 * 2 * STIFFNESS * OVERLAP, rel=1e-6)
+    simulation.advance(300)
+    # Contact and bond cancel to eps of the force; 300 steps of that push the last square by nothing to speak of.
+    assert np.abs(simulation.grains.steering.clumps.velocity).max() < 1e-9
+    assert simulation.series()["broken bonds ()"] == 0.0
+
+
+def test_without_bonds_they_fly_apart():  # the twin that must fail
+    simulation = build(wall(bonds=None))
+    simulation.advance(300)
+    assert simulation.grains.steering.clumps.velocity[2, 0] > 1e-3
+
+
+def strength(**bonds: Any) -> float:
+    """Largest force (N/m) on the held square while the third one is pulled away slowly."""
+    rest = wall().control[0].model_dump()
+    pull = {"polygon": 2, "x": {"velocity": 5e-4}, "y": {"velocity": 0.0}, "rotation": {"velocity": 0.0}}
+    simulation = build(wall(bonds=bonds, control=[{**rest, "record": True}, pull]))
+    most = 0.0
+    while simulation.time < 8e-3 and simulation.series()["broken bonds ()"] == 0.0:
+        simulation.advance(20)
+        most = max(most, simulation.tables()["control"]["polygon 0 contact force x (N/m)"])
+    return most
+
+
+def test_bonds_break_at_k_times_their_overlap_and_a_factor_makes_them_stronger():
+    plain = strength()
+    # Two points a side, k d0 each.  Pulled through 1.6 um in 3.2 ms, 20 periods of these springs, looked at every 20
+    # steps, in which the pull grows by 1 %.
+    assert plain == pytest.approx(2 * STIFFNESS * OVERLAP, rel=0.02)
+    assert strength(factor=1.5) == pytest.approx(1.5 * plain, rel=0.02)
+
+
+def test_bonds_are_made_at_their_time_between_the_chosen():
+    later = {"at": 2e-4, "bodies": ["polygon"], "within": [2.9e-3, 0, 5e-3, 5e-3]}
+    rest = [{"polygon": k, **{axis: {"velocity": 0.0} for axis in ("x", "y", "rotation")}} for k in range(3)]
+    simulation = build(wall(bonds=[later, {"at": 4e-4, "tension": 1.0}], control=rest))
+    counts = []
+    for time in (1e-4, 3e-4, 5e-4):
+        simulation.advance(round((time - simulation.time) / simulation.step_seconds))
+        counts.append(simulation.series()["bonds ()"])
+    assert counts[0] == 0.0 < counts[1]
+    assert counts[2] == 2 * counts[1]  # first the right pair, then the left one, alike
+    bonds = simulation.grains.bonds
+    new = bonds.back[len(bonds.back) // 2 :]
+    assert new[new > 0].mean() == pytest.approx(1.0, rel=1e-12)
+
+
+def test_a_run_goes_on_to_the_bit_before_and_after_bonds_are_made_and_broken():
+    rest = wall().control[0].model_dump()
+    scene = wall(bonds={"at": 2e-4}, control=[rest, {"polygon": 2, "x": {"velocity": 5e-3}, "record": True}],
+                 contact__damping=20, contact__restitution=None)  # fmt: skip
+    whole = build(scene)
+    whole.advance(600)
+    gone = whole.series()["broken bonds ()"]
+    assert gone > 0
+    for before in (10, 100, 400):
+        one, other = resumed(scene, before, 600 - before)
+        assert_same_bits(one, other)
+        assert_same_bits(whole, other)
+        np.testing.assert_array_equal(one.grains.bonds.broken, other.grains.bonds.broken)
+    assert validate(Scene, scene_as_dict(scene)) == scene
+
+
+def test_cracks_lie_along_the_common_side():
+    rest = wall().control[0].model_dump()
+    pull = {"polygon": 2, "x": {"velocity": 5e-3}, "y": {"velocity": 0.0}, "rotation": {"velocity": 0.0}}
+    simulation = build(wall(control=[rest, pull]))
+    while simulation.series()["broken bonds ()"] == 0.0:
+        assert cracks(simulation.snapshot()) == []
+        simulation.advance(20)
+    ((x0, y0), (x1, y1)), *more = cracks(simulation.snapshot())
+    assert abs(x1 - x0) < 1e-5
+    assert abs(y1 - y0) == pytest.approx(SIDE, rel=1e-3)
+    assert len(more) <= 1
+
+
+@pytest.mark.parametrize(
+    ("bonds", "line"),
+    [
+        ({"bodies": ["polygon 7"]}, "bonds[0].bodies[0] = 'polygon 7': there is no such body (allowed: of polygon)"),
+        ({"within": [5e-3, 5e-3, 6e-3, 6e-3]}, "bonds[0].at = 0.0 s: nothing touches, so there is nothing to bond"),
+        ({"known": [[0, 99, 0, 1.0]]}, "bonds[0].known[0]: there are 12 discs and corners, and 12 segments"),
+    ],
+)
+def test_bonds_between_nobody_are_refused(bonds, line):
+    with pytest.raises(InputError) as caught:
+        build(wall(bonds=bonds))
+    assert str(caught.value).startswith(line)
+
+
+ROCK: dict[str, Any] = {
+    "grains": {"density": 2500, "packing": {
+        "left": 0.05, "bottom": 0.05, "width": 0.2, "height": 0.2, "diameter": 0.04, "size_spread": 0.25,
+        "packing_fraction": 0.84, "pressure": 16e3, "seed": 2}},
+    "domain": {"width": 0.3, "height": 0.3}, "gravity": [0, 0], "contact": {
+        "stiffness": 1e7, "tangential_stiffness": 2.5e6, "damping": 3e3, "tangential_damping": 1.5e3, "friction": 0.5},
+}  # fmt: skip
+
+
+def rock(kind: str, **more: Any) -> Scene:
+    """A rock of some 26 discs, or polygons of them."""
+    own = {} if kind == "discs" else {"gap": 2e-3, "pressed": 8e-5}
+    return framed(**ROCK, rock={"kind": kind, **own, **more}, output__energy=False)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["discs", "triangles", "cells"])
+def test_rock_is_made_of_the_packing_and_bears_a_pull(kind):
+    simulation = build(rock(kind, strain=[[0, 0], [2e-3, 2e-4]]))
+    kinds = [it.kind for it in simulation.frames]
+    assert kinds[-2:] == ["plate", "plate"]
+    if kind != "discs":
+        assert len(simulation.snapshot().clouds) == 2  # frames and bonds: no disc is left
+        solid = simulation.grains.steering.clumps.area[:-2].sum()
+        # Sides stand 2 mm apart: of the sample, 0.2 m, that is 1 % for each of some 4 (cells) to 6 bodies across.
+        assert 0.80 * 0.2**2 < solid < 0.96 * 0.2**2
+    own, discs = simulation.derived.law, rock_discs(rock("discs"), simulation.derived.law)
+    polygons = {} if kind == "discs" else {"gap": 2e-3, "pressed": 8e-5}
+    assert own is not None
+    by_hand = made_by_hand(kind, discs, (0.05, 0.05), (0.25, 0.25), own, 2500.0, **polygons)
+    # The same sample as in Python, elsewhere in its box; places to eps of 0.25 m, overlaps of 4e-5 m.
+    assert simulation.series()["bonds ()"] == by_hand.bonds > 16
+    back = simulation.grains.bonds.back
+    assert back[back > 0].mean() == pytest.approx(by_hand.tension, rel=1e-10)
+    assert simulation.tables()["rock"]["stress (Pa)"] == 0.0
+    simulation.advance(round(2e-3 / simulation.step_seconds))
+    row = simulation.tables()["rock"]
+    assert row["strain ()"] == pytest.approx(
+        min(0.1 * simulation.time, 2e-4), rel=1e-9
+    )  # places to eps of 0.2 m, by 2e-5 m
+    # A fifth of what parts a contact of 16 kPa: it bears, by a stiffness of 0.1 to 10 contacts' (1e7 Pa).
+    assert 2e-4 * 1e6 < row["stress (Pa)"] < 2e-4 * 1e8
+
+
+def test_rock_without_a_pressed_packing_is_refused():
+    packing = {**ROCK["grains"]["packing"], "pressure": None, "settle": False, "packing_fraction": 0.5}
+    with pytest.raises(InputError) as caught:
+        derive(framed(**{**ROCK, "grains": {"density": 2500, "packing": packing}}, rock={"kind": "discs"}))
+    assert [fault.key for fault in caught.value.faults] == ["rock"]
+
+
+def test_a_rocks_picture_counts_the_breaks_of_its_table(tmp_path):
+    class Run:
+        name = "rock"
+
+        def __init__(self, rows: int) -> None:
+            self.rows = rows
+
+        def table(self, name: str) -> dict[str, Any]:
+            strain = np.linspace(0, 1e-3, self.rows)
+            return {"strain ()": strain, "stress (Pa)": 1e8 * strain, "broken bonds ()": np.arange(self.rows) // 2}
+
+    assert write_rock_picture(Run(1), tmp_path) == []  # type: ignore[arg-type]
+    (path,) = write_rock_picture(Run(11), tmp_path)  # type: ignore[arg-type]
+    assert path.read_bytes().startswith(b"\x89PNG")
+    table = Run(11).table("rock")
+    figure = drawn(*(table[name] for name in ("strain ()", "stress (Pa)", "broken bonds ()")), "rock")
+    stress, counts = figure.axes
+    assert "(kPa)" in stress.get_ylabel()
+    assert sum(bar.get_height() for bar in counts.patches) == 5.0
+    assert "5 in all" in counts.get_ylabel()

@@ -1,0 +1,172 @@
+"""Packings of a scene: graded, lognormal, compressed, from files; each refusal names its key and what to do."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from porescale import Scene
+from porescale.build.build import build
+from porescale.build.derive import derive
+from porescale.common.core.errors import InputError
+from porescale.common.neighbors.grading import percent_finer
+from porescale.common.schema.sections import scene_as_dict, validate
+from porescale.dem.measures.porosity import porosity, void_ratio
+from porescale.dem.measures.region import Region
+from porescale.dem.prepare.compaction import mean_stress, write_packing
+from tests.reference.scenes import dry, table
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+CURVE = [[0.0003, 0.0], [0.0006, 40.0], [0.0009, 100.0]]
+BOX = {"left": 0.0, "width": 0.012, "height": 0.008}
+ROUND = {f"domain__{side}": "periodic" for side in ("left", "right", "bottom", "top")}
+
+
+def grains_of(scene: Scene) -> Any:
+    """The grains of a scene, built."""
+    return build(scene).grains
+
+
+def packed(**keys: Any) -> Any:
+    """The dry column with other keys of its packing."""
+    return dry(**{f"grains__packing__{key}": value for key, value in keys.items()})
+
+
+def pressed(**keys: Any) -> Any:
+    """A periodic box full of grains under 500 Pa, no gravity."""
+    given = {**BOX, "compress": True, "pressure": 500, "packing_fraction": 0.82, "diameter": 0.001, **keys}
+    changes = {f"grains__packing__{key}": value for key, value in given.items()}
+    return dry(**ROUND, **{"grains__packing__settle": None, "gravity": [0.0, 0.0], **changes})
+
+
+@pytest.mark.parametrize("settle", [False, True])
+def test_grains_follow_their_grading_curve(settle):
+    gate = {"x": 0.008, "opens_at": 0.01, "lift_speed": 0.4} if settle else None
+    keys = {"grading": CURVE, "diameter": None, "settle": settle}
+    scene: Any = dry(gate=gate, **{f"grains__packing__{key}": value for key, value in keys.items()})
+    assert derive(scene).grain_count == grains_of(scene).discs.count
+    radius = grains_of(scene).discs.radius
+    own = 100 * 0.0009**2 / np.sum((2 * radius) ** 2)  # a disc of the largest, of some seventy
+    assert percent_finer(radius, np.array([0.0006]))[0] == pytest.approx(40.0, abs=own)
+    assert scene.grains.packing.diameter == pytest.approx(2 * radius.mean(), rel=1e-12)
+
+
+def test_lognormal_grains_and_void_ratio():
+    scene = packed(log_spread=0.2, void_ratio=1.0, packing_fraction=None)
+    assert scene.grains.packing.packing_fraction == 0.5
+    radius = grains_of(scene).discs.radius
+    assert 2 * radius.mean() == pytest.approx(0.0008, rel=1e-12)
+    assert np.pi * np.sum(radius**2) / (0.004 * 0.0055) == pytest.approx(0.5, abs=0.02)  # whole discs of 2.7 %
+
+
+def test_a_packing_is_compressed_to_its_pressure():
+    scene = pressed(settling_friction=0.0)
+    simulation: Any = build(scene)
+    assert mean_stress(simulation.grains) == pytest.approx(500.0, rel=5e-3)
+    start = simulation.grains.discs.position.copy()
+    simulation.advance(200)
+    assert np.median(np.hypot(*(simulation.grains.discs.position - start).T)) < 1e-3 * 0.001
+    assert mean_stress(simulation.grains) == pytest.approx(500.0, rel=0.02)
+
+
+def test_circles_of_a_file_are_grains_of_the_scene_and_of_its_card(tmp_path):
+    position = np.array([(0.002, 0.0005), (0.004, 0.0005)])
+    write_packing(tmp_path / "bed.csv", position, np.array([0.0005, 0.0004]))
+    given = table(fluid=None, gate=None, grains={"density": 2500, "circles": {"file": "bed.csv", "left": 0.001}})
+    scene: Any = validate(Scene, given, folder=tmp_path)
+    assert [(it.x, it.y, it.diameter) for it in scene.grains.grain] == [(0.003, 0.0005, 0.001), (0.005, 0.0005, 0.0008)]
+    again = validate(Scene, scene_as_dict(scene))  # elsewhere, without the file
+    assert again == scene
+    np.testing.assert_array_equal(grains_of(again).discs.radius, [0.0005, 0.0004])
+
+
+def test_a_packing_kept_under_pressure_is_taken_up_again(tmp_path):
+    first: Any = grains_of(pressed(settling_friction=0.0))
+    write_packing(tmp_path / "bed.h5", first.discs.position % (0.012, 0.008), first.discs.radius)
+    sides: dict[str, Any] = {**ROUND, "gravity": [0.0, 0.0], "fluid": None, "gate": None}
+    given = table(**sides, grains={"density": 2500, "circles": {"file": "bed.h5"}})
+    again = grains_of(validate(Scene, given, folder=tmp_path))
+    assert mean_stress(again) == pytest.approx(500.0, rel=5e-3)  # springs along the contacts are not kept
+    given["grains"]["overlap"] = 1e-4
+    with pytest.raises(InputError, match=r"grains.grain.*overlaps grain"):
+        grains_of(validate(Scene, given, folder=tmp_path))
+
+
+@pytest.mark.parametrize(("keys", "said"), [
+    ({"grading": [[0.0003, 0.0], [0.0006, 40.0]], "diameter": None}, r"grading.*0 to 100"),
+    ({"grading": CURVE}, r"grains.packing.diameter.*follows from grading.*leave diameter or grading out"),
+    ({"grading": CURVE, "diameter": None, "log_spread": 0.1}, r"log_spread.*leave one out"),
+    ({"void_ratio": 0.2}, r"packing_fraction.*follows from void_ratio: 0.8333"),
+    ({"pressure": 100.0, "settle": True}, r"settle.*compressed does not settle"),
+    ({"pressure": 100.0, "settle": None}, r"packing.width.*fills the box.*as large as the box"),
+    ({"log_spread": 0.9}, r"log_spread.*<= 0.46"),
+])  # fmt: skip
+def test_packings_that_contradict_themselves_are_refused(keys, said):
+    with pytest.raises(InputError, match=said):
+        derive(packed(**keys))
+
+
+def test_a_section_of_circles_that_is_wrong_is_named():
+    given = table(fluid=None, gate=None, grains={"density": 2500, "circles": {"file": "a.csv", "unit": "inch"}})
+    with pytest.raises(InputError, match=r"grains.circles.unit"):
+        validate(Scene, given)
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path):
+    given = table(fluid=None, gate=None, grains={"density": 2500, "circles": {"file": "none.csv"}})
+    with pytest.raises(InputError, match=r"grains.circles.file.*none.csv.*cannot be read"):
+        validate(Scene, given, folder=tmp_path)
+
+
+def test_a_void_ratio_that_is_asked_for_is_there():
+    wanted = 0.25
+    scene = pressed(pressure=None, packing_fraction=None, void_ratio=wanted, settling_friction=0.0)
+    grains = grains_of(scene)
+    solid = float(grains.discs.area.sum()) / (0.012 * 0.008)
+    # Sizes are drawn to whole grains: half of one of 122 more or less, 0.4 % of the area; in the box they are as drawn.
+    assert (1.0 - solid) / solid == pytest.approx(wanted, abs=0.5 / 122 * (1.0 + wanted) ** 2)
+    region = Region((0.0, 0.0), (0.012, 0.008))
+    pores = porosity(region, grains.discs.position, grains.discs.radius, grains.period)
+    assert void_ratio(pores) == pytest.approx((1.0 - solid) / solid, rel=1e-11)
+
+
+def test_friction_while_preparing_packs_loosely():
+    dense, loose = (
+        float(grains_of(pressed(settling_friction=friction)).discs.area.sum()) / (0.012 * 0.008)
+        for friction in (0.0, 0.8)
+    )
+    # Random close packing of discs is at 0.84, what friction holds from 0.77 on; 120 discs scatter by 0.01.
+    assert 0.82 < dense < 0.86
+    assert 0.75 < loose < dense - 0.02
+
+
+def test_a_packing_of_a_material_is_kept_and_found_again(monkeypatch):
+    sand = {"name": "sand", "density": 2000, "friction": 0.3}
+    steel = {"name": "steel", "density": 7800, "stiffness": 1e6}
+    keys = {"material": [steel, sand], "gate": {"x": 0.008, "opens_at": 1.0}, "grains__packing__settle": True,
+            "grains__packing__material": "sand", "contact__wall_material": "steel",
+            "grains__grain": [{"x": 0.002, "y": 0.002, "diameter": 0.001}]}  # fmt: skip
+    made = grains_of(dry(**keys))
+    monkeypatch.setattr("porescale.dem.prepare.settle.settle", None)  # it must not be settled again
+    found = grains_of(dry(**keys))
+    assert found.material.tolist() == [1] * (found.discs.count - 1) + [0]
+    np.testing.assert_allclose(found.discs.mass[:-1], 2000 * found.discs.area[:-1], rtol=1e-12)
+    assert found.discs.mass[-1] == pytest.approx(7800 * found.discs.area[-1])
+    for grains in (made, found):
+        grains.step(1e-6, count=20)
+    np.testing.assert_array_equal(found.discs.position, made.discs.position)
+    keys["material"] = [steel, {**sand, "friction": 0.4}]
+    with pytest.raises(TypeError):
+        grains_of(dry(**keys))  # the twin: another friction is another packing
+
+
+def test_circles_of_a_file_may_be_of_a_material(tmp_path):
+    write_packing(tmp_path / "bed.csv", np.array([(0.002, 0.0005), (0.004, 0.0005)]), np.array([0.0005, 0.0004]))
+    materials = [{"name": "sand"}, {"name": "steel", "density": 7800}]
+    given = table(fluid=None, gate=None, material=materials,
+                  grains={"density": 2500, "circles": {"file": "bed.csv", "material": "steel"}})  # fmt: skip
+    grains = grains_of(validate(Scene, given, folder=tmp_path))
+    assert grains.material.tolist() == [1, 1]
+    np.testing.assert_allclose(grains.discs.mass, 7800 * grains.discs.area)
