@@ -79,7 +79,7 @@ def brake(fluid, pores, v, law, factor, seconds, parts, push, heat):
     Overwrites ``push`` (fluid, 2), the impulse over the weight by which soil particles share it, and the scratch
     ``parts`` (4, fluid + LANES); adds to ``heat`` (fluid…,) J/m the work that it takes from both layers.
 
-    pores: of `meet`, `blend` and `against_soil`: slip and pull of now, the latter without drag;  law, factor: of
+    pores: of `gather_soil`, `blend` and `against_soil`: slip and pull of now, the latter without drag;  law, factor: of
     `Resistance`.
     """
     lines = pores.ravel()

@@ -1,7 +1,7 @@
 """Water and grains in one volume: porosity and flux at water particles, and what of their forces the grains bear.
 
 Notation and derivation: `continuum_sph.seepage`.  What water finds about it of the soil is gathered once a step, by
-`meet`, drag's sums too, with the weights of all pairs; soil finds its weights in `bear`.
+`gather_soil`, drag's sums too, with the weights of all pairs; soil finds its weights in `bear`.
 """
 
 from __future__ import annotations
@@ -27,15 +27,16 @@ LEAST_POROSITY = 0.05  # grains that crowd beyond this leave the water no more v
 
 
 @parallel_kernel
-def meet(fluid, near, soil, weight, record, mass, burden, gravity, thick, pores, h, period_x, period_y):
+def gather_soil(fluid, near, soil, weight, record, mass, burden, gravity, specific_weight, pores, reach):
     """Overwrites ``weight`` (m,) 1/m² of the water's rows, W, and all lines of ``pores`` (14, fluid…) but porosity,
     room and pull.
 
     near, soil, weight: rows of the overlap;  record: of the water alone;  mass (fluid…,) kg/m;  burden: see Skeleton;
-    gravity: g, m/s²;  thick (fluid,) N/m³, what stands for ρ g in the drag on particles of several fluids,
-    ρ_w g μ/μ_w; empty for one;  h: smoothing length;  periods, m or 0.
+    gravity: g, m/s²;  specific_weight (fluid,) N/m³, what stands for ρ g in the drag on particles of several fluids,
+    ρ_w g μ/μ_w; empty for one;  reach: see `overlap.Reach`.
     """
-    several = thick.shape[0] > 0
+    several = specific_weight.shape[0] > 0
+    h, period_x, period_y = reach.h, reach.period_x, reach.period_y
     turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
     turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
     for i in prange(fluid):
@@ -72,7 +73,7 @@ def meet(fluid, near, soil, weight, record, mass, burden, gravity, thick, pores,
         pores[MASSES, i] = total(masses)
         pores[DENSITY, i] = record[i, RHO]
         pores[MASS, i] = mass[i]
-        pores[WEIGHT, i] = thick[i] if several else record[i, RHO] * gravity
+        pores[WEIGHT, i] = specific_weight[i] if several else record[i, RHO] * gravity
         share = 1.0 / resists if resists > 0.0 else 0.0
         pores[SLIP_X, i] = record[i, VX] - share * total(flow_x) if resists > 0.0 else 0.0
         pores[SLIP_Y, i] = record[i, VY] - share * total(flow_y) if resists > 0.0 else 0.0
@@ -108,10 +109,10 @@ def blend(fluid, start, split, partner, record, home, pores, h, period_x, period
 
 
 @parallel_kernel
-def keep_met(fluid, pores, slant, drift, rate):
+def keep_place_density(fluid, pores, slant, drift, rate):
     """Takes off ``rate`` (fluid,) what `part_forces` will multiply too much: 1 - n of what shifting gives.
 
-    A particle that drifts meets the true density of another place, δu · ∇ρ, however little room grains leave there.
+    A particle that drifts takes the true density of another place, δu · ∇ρ, however little room grains leave there.
     slant (fluid, 2) kg/m⁴, drift (fluid, 2) m/s: those that `rates` has had.
     """
     for i in prange(fluid):

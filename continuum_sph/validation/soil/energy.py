@@ -55,7 +55,7 @@ class Book:
 
     def advance(self) -> None:
         """One step."""
-        flow, soil, law, pairs = self.flow, self.flow.soil, self.flow.law, self.flow.pairs
+        flow, soil, law = self.flow, self.flow.soil, self.flow.law
         n, step, lean = soil.soil, flow.next_step, np.array(law.gravity)
         mass, turned = soil.mass[:n], self.turned
         before = soil.stress[:n].copy()

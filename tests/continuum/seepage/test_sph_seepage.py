@@ -9,11 +9,12 @@ from reference import seepage as slow
 from continuum_sph.seepage import Frame, Resistance, exchange, mixture
 from continuum_sph.seepage import overlap as overlaps
 from continuum_sph.seepage.exchange import against_soil, brake, relaxed, take
-from continuum_sph.seepage.mixture import LINES, POROSITY, PULL_X, SLIP_X, SLIP_Y, bear, blend, meet, part_forces
-from continuum_sph.seepage.overlap import Overlap, closeness, overlap_weights
+from continuum_sph.seepage.mixture import LINES, POROSITY, PULL_X, SLIP_X, SLIP_Y, bear, blend, gather_soil, part_forces
+from continuum_sph.seepage.overlap import Overlap, Reach, closeness, overlap_weights
 from continuum_sph.seepage.pressure_face import drain_walls
 from continuum_sph.seepage.resistance import drag
 from continuum_sph.seepage.skeleton import show_soil, weigh
+from continuum_sph.water.bundles import Neighbours
 from continuum_sph.water.smoothing import WENDLAND, kernel_value
 from continuum_sph.water.state import RHO, VOLUME, VX, VY, P, X, Y
 from porescale.common.compiled.simd import LANES
@@ -65,15 +66,15 @@ def anew(place):
 
 
 def blended(place, k=1e-3):
-    """Record and pores after `meet` and `blend`, which make the water's weights."""
+    """Record and pores after `gather_soil` and `blend`, which make the water's weights."""
     n, rows, shown = len(place["x"]), anew(place), np.zeros((len(place["soil_x"]), 8))
     show_soil.py_func(place["soil_x"], place["soil_v"], place["soil_mass"], place["grains"], place["grains"] / k, shown)
     record = np.zeros((n, 8))
     record[:, [X, Y]], record[:, [VX, VY]] = place["x"], place["v"]
     record[:, RHO], record[:, P], record[:, VOLUME] = place["rho"], place["p"], place["mass"] / place["rho"]
     pores, none = np.ones((LINES, n + LANES)), np.zeros(n + 1, np.int64)
-    meet.py_func(
-        n, *rows, record, place["mass"], shown, Resistance(POROUS).gravity, np.zeros(0), pores, H, 1.0, 1.0
+    gather_soil.py_func(
+        n, *rows, record, place["mass"], shown, Resistance(POROUS).gravity, np.zeros(0), pores, Reach(H, 1.0, 1.0)
     )  # fmt: skip
     blend.py_func(n, none, none[:n], np.zeros(0, np.int32), record, place["x"], pores, H, 1.0, 1.0)
     np.testing.assert_array_equal(rows[2][: rows[0][n]], place["rows"][2][: rows[0][n]])
@@ -122,7 +123,7 @@ def braked(place, seconds, pores):
     weigh.py_func(resisting, soil_v, shown)
     slip = pores[[SLIP_X, SLIP_Y]].copy()
     against_soil.py_func(n, *place["rows"], shown, v, pores, SLIP_X)
-    # `meet` has them from velocities weighted in another order: a few roundings of sums of 25 terms
+    # `gather_soil` has them from velocities weighted in another order: a few roundings of sums of 25 terms
     np.testing.assert_allclose(pores[[SLIP_X, SLIP_Y], :n], slip[:, :n], atol=100 * eps)
     weigh.py_func(resisting, place["soil_a"], shown)
     against_soil.py_func(n, *place["rows"], shown, place["a"], pores, PULL_X)
@@ -192,9 +193,8 @@ def test_a_drained_face_holds_a_linear_pressure():
     pressure = np.zeros(7)
     start, split = np.array([0, 0, 0, 0, 0, 4, 8, 8]), np.array([0, 0, 0, 0, 4, 8, 8])
     partner = np.array([0, 1, 2, 3, 0, 1, 2, 3], np.int32)
-    drain_walls.py_func(
-        rows, np.full(3, 300.0), start, split, partner, x, record, pressure, 0.0, 0.0, 0.0, 1.0, WENDLAND, H, 0.0, 0.0
-    )
+    near = Neighbours(start, split, partner, None, None, WENDLAND, H)
+    drain_walls.py_func(rows, np.full(3, 300.0), near, x, record, pressure, 0.0, 0.0, 0.0, 1.0)
     np.testing.assert_allclose(pressure[4:6], 300.0 + 50.0 * x[4:6, 1], rtol=10 * eps)
     assert pressure[6] == 300.0  # no water near
     np.testing.assert_allclose(record[4:6, VY], 0.2, rtol=10 * eps)
