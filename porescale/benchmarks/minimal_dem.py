@@ -176,9 +176,9 @@ class PlainDiscs:
             return int(rough_steps(
                 count, self._dt, kn, cn, kt, ct, mu, d["position"], d["angle"], d["velocity"], d["spin"], d["radius"],
                 d["mass"], d["inertia"], d["force"], d["torque"], self.weight, self.turning, listed.start,
-                listed.partner, listed.carried, listed.anchor, self._limit, self._walls, self._spring,
+                listed.partner, listed.carried, listed.list_position, self._limit, self._walls, self._spring,
             ))  # fmt: skip
         return int(smooth_steps(
             count, self._dt, kn, cn, d["position"], d["velocity"], d["radius"], d["mass"], d["force"], self.weight,
-            listed.start, listed.partner, listed.anchor, self._limit, self._walls,
+            listed.start, listed.partner, listed.list_position, self._limit, self._walls,
         ))  # fmt: skip

@@ -17,7 +17,7 @@ from porescale.common.evidence.stability import Axis, Stability, Tried
 from porescale.coupling.psm import Saturated
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.step import Coupled
-from porescale.coupling.weighting import WEIGHTINGS, fitting_weight
+from porescale.coupling.weighting.choose import WEIGHTINGS, fitting_weight
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains

@@ -17,7 +17,7 @@ from porescale.coupling.divergence_cause import Circumstances, likely_cause
 from porescale.coupling.divergence_check import Sense, worst_cell
 from porescale.coupling.psm import Saturated
 from porescale.coupling.solid.choose import SOLID_OPERATORS
-from porescale.coupling.weighting import WEIGHTINGS
+from porescale.coupling.weighting.choose import WEIGHTINGS
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.validation.coupling.setups import immersed

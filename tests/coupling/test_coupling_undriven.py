@@ -20,15 +20,15 @@ def test_cells_with_discs_in_undriven_fluid_have_the_same_bits(monkeypatch, oper
         )  # fmt: skip
         coupled.fluid.set_flow(0.03, -0.01)
         seen = []
-        monkeypatch.setattr(fluid, "lean", lambda own: seen.append(law(own)) or seen[-1])
+        monkeypatch.setattr(fluid, "without_force", lambda own: seen.append(law(own)) or seen[-1])
         for _ in range(30):
             coupled.advance()
         return type(seen[-1]).__name__, coupled
 
-    lean = fluid.lean
+    without_force = fluid.without_force
     plain, one = run(lambda own: own)
-    free, other = run(lean)
-    assert (plain, free) == ("Trt", "FreeTrt")
+    free, other = run(without_force)
+    assert (plain, free) == ("Trt", "TrtWithoutForce")
     for a, b in ((one.fluid.populations, other.fluid.populations), (one.force, other.force), (one.torque, other.torque),
                  (one.grains.discs.position, other.grains.discs.position)):  # fmt: skip
         np.testing.assert_array_equal(a, b)

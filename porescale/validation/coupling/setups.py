@@ -17,7 +17,7 @@ from porescale.dem.forces.walls import Box
 from porescale.dem.forces.walls import Plate as GrainPlate
 from porescale.dem.grains import Grains
 from porescale.lbm.boundary.sides import Kind, Sides
-from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
+from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
 
