@@ -154,7 +154,7 @@ class PlainColumn:
     def __init__(self, flow: Flow) -> None:
         layer, law, own = flow.layer, flow.law, flow.pairs
         assert len(law.fluids) == 1
-        assert not any((law.images, law.varied, law.fluids[0].cohesion, law.gravity[0], layer.booked))
+        assert not any((law.images, law.varied, law.fluids[0].cohesion, law.gravity[0], layer.has_budget))
         assert law.smoothing.kind == WENDLAND
         assert law.noise == HYDROSTATIC
         assert not any((law.sticky, law.corrected, law.shifting, law.beta, law.cut, law.filter_every))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.seepage.exchange import against_soil, brake, take
+from continuum_sph.seepage.exchange import apply_drag, apply_reaction, relative_to_soil
 from continuum_sph.seepage.mixture import (
     LINES,
     POROSITY,
@@ -16,11 +16,11 @@ from continuum_sph.seepage.mixture import (
     ROOM,
     SLIP_X,
     SLIP_Y,
-    bear,
-    blend,
     gather_soil,
     keep_place_density,
-    part_forces,
+    load_soil,
+    mix_fluxes,
+    share_forces,
 )
 from continuum_sph.seepage.overlap import Overlap, Reach
 from continuum_sph.seepage.pressure_face import Drain, drain_walls, follow
@@ -72,11 +72,11 @@ class PoreFlow(Flow):
         self.overlap.update(x, soil.x)
         super().evaluate(step, ratio)
         self.thrust[:, :2] = x
-        part_forces(
+        share_forces(
             layer.fluid, layer.mass, layer.acceleration, *self.law.gravity, self.pores, layer.rate, self.budget[0],
             self.thrust,
         )  # fmt: skip
-        bear(
+        load_soil(
             layer.fluid, *self.overlap.rows, soil.x, soil.grains, self.thrust, soil.force, length, *self.pairs.period
         )  # fmt: skip
 
@@ -96,29 +96,29 @@ class PoreFlow(Flow):
             layer.fluid, *self.overlap.rows, layer.record, layer.mass, self.skeleton.burden, self.resistance.gravity,
             self.specific_weight, self.pores, Reach(*how),
         )  # fmt: skip
-        blend(layer.fluid, pairs.start, self.split, pairs.partner, layer.record, self.home, self.pores, *how)
+        mix_fluxes(layer.fluid, pairs.start, self.split, pairs.partner, layer.record, self.home, self.pores, *how)
         for face in self.drains:
             drain_walls(
                 face.rows, face.pressure, self.near(smoothing.kind), layer.x, layer.record, layer.pressure, *face.point,
                 *face.normal,
             )  # fmt: skip
 
-    def feel(self) -> None:
+    def update_pull(self) -> None:
         """Take up the accelerations that both layers have now, without drag, for the drag that follows."""
         layer, soil = self.layer, self.skeleton
         shown = soil.weigh(soil.acceleration)
-        against_soil(layer.fluid, *self.overlap.rows, shown, layer.acceleration, self.pores, PULL_X)
+        relative_to_soil(layer.fluid, *self.overlap.rows, shown, layer.acceleration, self.pores, PULL_X)
 
-    def glide(self) -> None:
+    def update_slip(self) -> None:
         """Take up the velocities that both layers have now; `evaluate` does so too."""
         layer, soil = self.layer, self.skeleton
-        against_soil(layer.fluid, *self.overlap.rows, soil.weigh(soil.v), layer.v, self.pores, SLIP_X)
+        relative_to_soil(layer.fluid, *self.overlap.rows, soil.weigh(soil.v), layer.v, self.pores, SLIP_X)
 
-    def brake(self, seconds: float) -> None:
+    def drag(self, seconds: float) -> None:
         """Drag of ``seconds`` between water and soil, with the velocities and accelerations taken up last."""
         layer, soil, law = self.layer, self.skeleton, self.resistance
-        brake(layer.fluid, self.pores, layer.v, law.number, law.factor, seconds, self.parts, self.push, self.heat)
-        take(
+        apply_drag(layer.fluid, self.pores, layer.v, law.number, law.factor, seconds, self.parts, self.push, self.heat)
+        apply_reaction(
             layer.fluid, *self.overlap.rows, self.push, soil.resisting, soil.mass, soil.v, seconds, self.borne,
             self.heat,
         )  # fmt: skip

@@ -21,7 +21,7 @@ from continuum_sph.soil.momentum import Choices, accelerate
 from continuum_sph.soil.parameters import RULES, SoilLaw
 from continuum_sph.soil.state import Soil
 from continuum_sph.soil.stress import Straining, deform
-from continuum_sph.soil.tension import hold_apart
+from continuum_sph.soil.tension import repel_under_tension
 from continuum_sph.soil.walls import place_walls, update_walls
 from continuum_sph.water.bundles import Neighbours
 from continuum_sph.water.no_step import no_step
@@ -142,7 +142,7 @@ class SoilFlow:
             self.near, choices,
         )  # fmt: skip
         if self.pulling:
-            hold_apart(
+            repel_under_tension(
                 soil.soil, soil.record, soil.stress, soil.acceleration, self.near, law.spacing, law.repulsion
             )  # fmt: skip
 

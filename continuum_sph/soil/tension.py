@@ -33,7 +33,7 @@ def tension_of(stress, i):
 
 
 @parallel_kernel
-def hold_apart(soil, record, stress, acceleration, near, spacing, strength):
+def repel_under_tension(soil, record, stress, acceleration, near, spacing, strength):
     """Adds to ``acceleration`` (soil, 2) m/s² what pushes particles under tension apart.
 
     record, stress: see `state.Soil`;  near: see `water.bundles`;  spacing, m;  strength: A.

@@ -47,9 +47,9 @@ class Layer:
     lengths: Floats = field(init=False)  # (n, 2) `length`, for pairs where it varies, and nothing
     matrix: Floats = field(init=False)  # (fluid, 4) xx, xy, yy of the gradient correction, how closed in: `correction`
     facing: Floats = field(init=False)  # (n, 4) of walls: nearest point of the surface, normal into the fluid
-    power: Floats = field(init=False)  # (fluid, 6) W/m, see VISCOUS, …, STOPPED; (0, 6) without `keep_book`
+    power: Floats = field(init=False)  # (fluid, 6) W/m, see VISCOUS, …, STOPPED; (0, 6) without `keep_budget`
     energy: Floats = field(init=False)  # the same summed over time, J/m
-    booked: bool = field(init=False, default=False)  # whether a book of them is kept
+    has_budget: bool = field(init=False, default=False)  # whether a budget of them is kept
 
     def __post_init__(self) -> None:
         n = len(self.x)
@@ -68,10 +68,10 @@ class Layer:
         self.ghost, self.facing, self.matrix = np.zeros((0, 2)), np.zeros((0, 4)), np.zeros((0, 4))
         self.power, self.energy = np.zeros((0, 6)), np.zeros((0, 6))
 
-    def keep_book(self) -> None:
-        """Book from now on what energies become: kernels do so where ``power`` and ``energy`` have rows."""
+    def keep_budget(self) -> None:
+        """Add up from now on what energies become: kernels do so where ``power`` and ``energy`` have rows."""
         self.power, self.energy = np.zeros((self.fluid, 6)), np.zeros((self.fluid, 6))
-        self.booked = True
+        self.has_budget = True
 
     @property
     def count(self) -> int:
@@ -80,11 +80,11 @@ class Layer:
 
     KEPT = ("x", "v", "mass", "density", "acceleration", "rate", "rate_before", "smoothed", "drift", "pressure",
     "length")  # fmt: skip
-    BOOK = ("power", "energy")
+    BUDGET = ("power", "energy")
 
     def kept(self) -> tuple[str, ...]:
         """Names of the arrays that later steps depend on."""
-        return self.KEPT + (self.BOOK if self.booked else ())
+        return self.KEPT + (self.BUDGET if self.has_budget else ())
 
     def state(self) -> dict[str, Floats]:
         """Copies of the arrays that later steps depend on."""

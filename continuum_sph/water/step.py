@@ -124,7 +124,7 @@ class Flow:
             table=self.table,
             properties=layer.properties if len(law.fluids) > 1 else None,
             lengths=layer.lengths if law.varied else None,
-            mass=layer.mass if layer.booked or cohesive else None,
+            mass=layer.mass if layer.has_budget or cohesive else None,
         )
         # XSPH asks for the kernel twice a pair, and is 2 % faster with Wendland's compiled in (alone it is no faster).
         self.kind = None if law.xsph > 0.0 and law.smoothing.kind == WENDLAND else law.smoothing.kind
@@ -152,7 +152,7 @@ class Flow:
     def budget(self) -> tuple[Floats | None, Floats | None]:
         """Power and energy, if a budget of energies is kept."""
         layer = self.layer
-        return (layer.power, layer.energy) if layer.booked else (None, None)
+        return (layer.power, layer.energy) if layer.has_budget else (None, None)
 
     def pressing(self, number: int) -> Pressing:
         """What makes pressures of the fluid of that ``number``."""
@@ -253,7 +253,7 @@ class Flow:
     def sum_pairs(self, half: float) -> None:
         """The pass over pairs from records as they are, at the end of a step of twice ``half`` (s)."""
         layer = self.layer
-        if self.law is not self.counted or (layer.booked and self.fluids.mass is None):
+        if self.law is not self.counted or (layer.has_budget and self.fluids.mass is None):
             self.count()
         rates(
             layer.fluid, layer.record, self.near(self.kind), self.fluids, self.walls, self.gradients, self.choices,

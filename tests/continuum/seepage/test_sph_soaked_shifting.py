@@ -23,7 +23,7 @@ def soaked():
     layer.x[:n] += np.random.default_rng(3).uniform(-0.02, 0.02, (n, 2))
     flow.law = replace(flow.law, shifting=1.0, gravity=(0.0, -GRAVITY))
     layer.density[:] = flow.law.state.settled_density(1.0 - layer.x[:n, 1], GRAVITY)
-    layer.keep_book()
+    layer.keep_budget()
     both.start()
     layer.predicted[:] = layer.density
     flow.max_speed = 1.0

@@ -23,7 +23,7 @@ from continuum_sph.soil.momentum import Choices, accelerate
 from continuum_sph.soil.plasticity import returned
 from continuum_sph.soil.state import MASS, VOLUME, XX, YY, X
 from continuum_sph.soil.stress import Straining, deform
-from continuum_sph.soil.tension import hold_apart
+from continuum_sph.soil.tension import repel_under_tension
 from continuum_sph.validation.soil.element import Element
 from continuum_sph.validation.soil.setups import body, in_tank
 from continuum_sph.water import bundles, smoothing
@@ -316,7 +316,7 @@ def pair(apart, pull):
     acceleration = np.zeros((2, 2))
     start, split, partner = np.array([0, 1, 2]), np.array([1, 2]), np.array([1, 0])
     near = Neighbours(start, split, partner, None, None, 1, 0.13)
-    hold_apart.py_func(2, record, stress, acceleration, near, 0.1, 10.0)
+    repel_under_tension.py_func(2, record, stress, acceleration, near, 0.1, 10.0)
     return acceleration
 
 

@@ -10,7 +10,7 @@ import pytest
 from continuum_sph.build.water import water_flow
 from continuum_sph.validation.water import setups as trials
 from continuum_sph.water.density import LINEAR
-from continuum_sph.water.energy_budget import book
+from continuum_sph.water.energy_budget import budget
 from continuum_sph.water.eos.adiabatic import AdiabaticGas
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.eos.printed import PrintedGas, printed_gas
@@ -35,7 +35,7 @@ def column(walls="slip", particles="pressure", end=1.0, **numerics):
 def stirred(**choices):
     """A box without walls, disordered, with other choices than its own."""
     flow = trials.open_box(12, seed=3)
-    flow.layer.keep_book()
+    flow.layer.keep_budget()
     flow.law = replace(flow.law, **choices)
     flow.start()
     return flow
@@ -105,10 +105,10 @@ def test_momentum_is_kept_with_and_without_corrected_gradients(choices):
 @pytest.mark.parametrize("choices", [{}, {"corrected": True}, {"noise": 2}, {"noise": 0}])
 def test_the_book_of_energies_closes(choices):
     flow = stirred(**choices)
-    before = book(flow)
+    before = budget(flow)
     for _ in range(100):
         flow.advance()
-    after = book(flow)
+    after = budget(flow)
     lost = before["total energy"] - after["total energy"]
     assert lost > 0.0
     # Power is that of one instant of a step of 0.25 h/c: of what changes over h/c it misses (Δt c/h)²/2 = 3 %
@@ -117,10 +117,10 @@ def test_the_book_of_energies_closes(choices):
 
 def test_a_book_without_heat_does_not_close():  # the twin that must fail
     flow = stirred()
-    before = book(flow)["total energy"]
+    before = budget(flow)["total energy"]
     for _ in range(100):
         flow.advance()
-    assert before - book(flow)["total energy"] > 0.1 * before
+    assert before - budget(flow)["total energy"] > 0.1 * before
 
 
 def test_shifting_evens_out_a_clump_and_leaves_a_lattice_and_a_surface_alone():

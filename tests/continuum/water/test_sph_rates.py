@@ -114,7 +114,7 @@ def found(flow, *, booked=True):
     """(acceleration, rate, smoothed, power) by the step's own call of the pass, from records as they are."""
     layer = flow.layer
     if booked:
-        layer.keep_book()
+        layer.keep_budget()
     for name in ("acceleration", "rate", "smoothed"):
         getattr(layer, name)[:] = 0.0
     flow.sum_pairs(HALF)
@@ -147,7 +147,7 @@ def test_sums_as_plain_python(name, monkeypatch):
 @pytest.mark.parametrize("name", ["slip", "all", "two fluids, corrected"])
 def test_a_book_changes_no_bit_of_the_flow(name):
     flow = FLOWS[name]()
-    flow.layer.booked = False
+    flow.layer.has_budget = False
     without = found(flow, booked=False)
     for a, b in zip(found(flow)[:3], without[:3], strict=True):
         np.testing.assert_array_equal(a, b)
