@@ -117,7 +117,7 @@ def apply_drag(fluid, pores, v, law, factor, seconds, parts, push, heat):
                 push[i, 1] = jy * parts[SHARE, i]
                 v[i, 0] -= jx * parts[INVERSE_MASS, i]
                 v[i, 1] -= jy * parts[INVERSE_MASS, i]
-                # Half the velocities before and after, kick included, times the impulse; that of soil: `apply_reaction`.
+                # Half the velocities before and after, kick included, times the impulse; of soil: `apply_reaction`.
                 work = jx * (wx + 0.5 * seconds * ax) + jy * (wy + 0.5 * seconds * ay)
                 heat[i] += work - 0.5 * (jx * jx + jy * jy) * parts[INVERSE_MASS, i]
 
