@@ -7,6 +7,7 @@ simulation.advance(100)
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
 from porescale.common.core.version import VERSION
@@ -22,9 +23,7 @@ def __getattr__(name: str) -> Any:
 
         return load_scene
     if name == "build":
-        from porescale.build.build import build
-
-        return build
+        return import_module("porescale.build")
     if name == "Scene":
         from porescale.build.scene import Scene
 

@@ -18,6 +18,7 @@ import porescale.coupling.step
 import porescale.dem.grains
 import porescale.lbm.boundary.thin_plate
 import porescale.lbm.fluid
+from porescale.build.parts.gate import GatePart
 from porescale.build.simulation import Simulation
 from tests.reference.same_run import leaves
 from tests.reference.scenes import column, dry, grain, table, water
@@ -130,7 +131,7 @@ def test_without_a_gate_there_is_no_plate(monkeypatch):
     forbid(monkeypatch, "Plate")
     for scene in (column(gate=None, grains__packing__settle=False), dry(), water()):
         simulation = build(scene)
-        assert simulation.gate is None
+        assert simulation.part(GatePart) is None
         assert simulation.fluid is None or simulation.fluid.plates == []
         assert simulation.grains is None or len(simulation.grains.plates) == 0
 

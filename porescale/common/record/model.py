@@ -101,12 +101,17 @@ class Model(Protocol):
     file: {"loads": {"time (s)": …, …}} goes to loads.csv, at the same times as the series and cut back like it.
     """
 
-    step: int
-    """Steps done."""
-    time: float
-    """Time reached, s."""
-    step_seconds: float
-    """Length of a step, s (of the next one, if it varies)."""
+    @property
+    def step(self) -> int:
+        """Steps done."""
+
+    @property
+    def time(self) -> float:
+        """Time reached, s."""
+
+    @property
+    def step_seconds(self) -> float:
+        """Length of a step, s (of the next one, if it varies)."""
 
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps.  May raise Unstable."""
