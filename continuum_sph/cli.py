@@ -1,4 +1,4 @@
-"""The command line ``continuum-sph``, made from the same workbench as ``porescale``."""
+"""The command line ``continuum-sph``, made of the same parts as ``porescale``."""
 
 from __future__ import annotations
 
@@ -9,19 +9,15 @@ from typing import TYPE_CHECKING, Any
 from porescale.common.cli import application
 from porescale.common.cli.package import Package
 from porescale.common.core.version import VERSION
+from porescale.common.evidence.register import discovered
 
 if TYPE_CHECKING:
     from continuum_sph.scene.sections import Scene
     from porescale.common.cli.report import Report
-    from porescale.common.evidence.benchmarks import Benchmarks
-    from porescale.common.evidence.endurance import Endurances
-    from porescale.common.evidence.extremes import Extremes
-    from porescale.common.evidence.overhead import Kinds
-    from porescale.common.evidence.validations import Validations
     from porescale.common.record.drive import Outcome
     from porescale.common.record.model import Array, Model
 
-
+BENCHMARKS = "continuum_sph.benchmarks"
 FORMERLY = {"numerics": {"noise_floor": 0.0}}
 """What was done before keys were there whose defaults do something else: no run changes its physics when resumed."""
 
@@ -40,18 +36,9 @@ def template() -> str:
 
 def build(scene: Scene) -> Model:
     """The simulation of a scene that `report` does not refuse."""
-    from continuum_sph.build.model import Simulation
-    from continuum_sph.build.seepage_model import SeepageSimulation
-    from continuum_sph.build.soil_model import SoilSimulation
+    from continuum_sph.build.simulation import Simulation
 
-    if scene.soil is None:
-        return Simulation(scene)
-    return SoilSimulation(scene) if dry(scene) else SeepageSimulation(scene)
-
-
-def dry(scene: Scene) -> bool:
-    """Whether there is soil and no water, now or later."""
-    return scene.soil is not None and not (scene.water.column or scene.reservoir)
+    return Simulation(scene)
 
 
 def drive(
@@ -95,12 +82,8 @@ def judge(folder: Path, card: dict[str, Any]) -> None:
 def report(scene: Scene) -> Report:
     """Every derived number of a scene; raises InputError with all refusals."""
     from continuum_sph.build.report import report as scene_report
-    from continuum_sph.build.seepage_report import seepage_report
-    from continuum_sph.build.soil_report import soil_report
 
-    if scene.soil is None:
-        return scene_report(scene)
-    return soil_report(scene) if dry(scene) else seepage_report(scene)
+    return scene_report(scene)
 
 
 def show(folder: Path) -> list[Path]:
@@ -162,47 +145,6 @@ def table(folder: Path, name: str) -> dict[str, Array]:
     return read_series(folder / f"{name}.csv")
 
 
-def validations() -> Validations:
-    """All rows of ``verify``."""
-    from porescale.common.evidence.discover import registers
-    from porescale.common.evidence.validations import Validations
-
-    return Validations(registers("continuum_sph.validation", "VALIDATIONS"))
-
-
-def benchmarks() -> Benchmarks:
-    """All rows of ``bench``."""
-    from continuum_sph.benchmarks.rates import BENCHMARKS
-    from porescale.common.evidence.benchmarks import Benchmarks
-    from porescale.common.studies.budget_check import benchmark
-
-    rows = Benchmarks()
-    rows.include(BENCHMARKS)
-    rows.include(benchmark(PACKAGE, Path(__file__).resolve().parents[1] / "cases" / "collapsing_water_column"))
-    return rows
-
-
-def extremes() -> Extremes:
-    """What `study extremes` tries."""
-    from continuum_sph.benchmarks.extremes import EXTREMES
-
-    return EXTREMES
-
-
-def endurance() -> Endurances:
-    """What runs for a million steps."""
-    from continuum_sph.benchmarks.endurance import ENDURANCES
-
-    return ENDURANCES
-
-
-def parts() -> Kinds:
-    """Kinds of scenes for `study parts`."""
-    from continuum_sph.benchmarks.overhead import KINDS
-
-    return KINDS
-
-
 PACKAGE = Package(
     name="continuum-sph",
     summary="Soil, water and air as layers of smoothed particles (water and soil in a tank, seepage, bubbles).",
@@ -214,11 +156,12 @@ PACKAGE = Package(
     report=report,
     show=show,
     table=table,
-    validations=validations,
-    benchmarks=benchmarks,
-    extremes=extremes,
-    endurance=endurance,
-    parts=parts,
+    validations=discovered("continuum_sph.validation", "VALIDATIONS"),
+    benchmarks=discovered(BENCHMARKS, "BENCHMARKS"),
+    case=Path(__file__).resolve().parents[1] / "cases" / "collapsing_water_column",
+    extremes=discovered(BENCHMARKS, "EXTREMES"),
+    endurance=discovered(BENCHMARKS, "ENDURANCES"),
+    parts=discovered(BENCHMARKS, "KINDS"),
     judge=judge,
 )
 

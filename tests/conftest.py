@@ -7,11 +7,14 @@ import random
 import signal
 import sys
 import tracemalloc
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import settings
+
+from tests.compile_times import CompileTimes
 
 # The same examples on every machine, however slow: a failure can be repeated, and a kernel may be compiled within one.
 settings.register_profile("steady", deadline=None, derandomize=True)
@@ -24,6 +27,15 @@ os.environ.setdefault("NUMBA_NUM_THREADS", str(max(2, os.cpu_count() or 1)))
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--share", default="0/1", help="run every n-th of the chosen tests, from the k-th: k/n")
     parser.addoption("--shuffle", type=int, help="run files, and the tests of each, in an order by this seed")
+    parser.addoption("--compile-times", action="store_true", help="say which kernels took how long to compile")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if config.option.compile_times:
+        plugin = CompileTimes()
+        config.pluginmanager.register(plugin)
+        if hasattr(config, "workerinput") or not config.option.numprocesses:
+            plugin.listen()
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -70,3 +82,30 @@ def the_next_test_finds_the_process_as_it_was() -> Iterator[None]:
     tracemalloc.stop()
     os.chdir(before["folder"])
     assert after == before
+
+
+@pytest.fixture
+def one_thread() -> Iterator[None]:
+    """Kernels on one thread: in scenes of a few cells waiting for a second one is all that is done."""
+    from porescale.common.compiled.jit import set_threads, threads
+
+    before = threads()
+    set_threads(1)
+    yield
+    set_threads(before)
+
+
+@pytest.fixture
+def toy(tmp_path: Path, monkeypatch, capsys) -> Callable[..., tuple[int, str, list[str]]]:
+    """Runs a command line in an empty folder; gives exit code, stdout, stderr lines."""
+    from porescale.common.cli.application import application, main
+    from tests.reference.toy_package import TOY
+
+    monkeypatch.chdir(tmp_path)
+
+    def _toy(*tokens: str) -> tuple[int, str, list[str]]:
+        code = main(application(TOY), tokens)
+        said = capsys.readouterr()
+        return code, said.out, said.err.splitlines()
+
+    return _toy

@@ -17,8 +17,8 @@ PRESSURE = 1e5  # Pa
 KINDS = {
     "m = 0": Material(3e7, 1590.0),
     "m = 0.5": Material(3e7, 1590.0, exponent=0.5),
-    "psi = 10 degrees": Material(3e7, 1590.0, dilatancy=math.sin(math.radians(10.0))),
-    "c = 10 kPa": Material(3e7, 1590.0, cohesion=1e4 * math.cos(math.radians(30.0))),
+    "psi = 10 degrees": Material(3e7, 1590.0, sin_dilatancy=math.sin(math.radians(10.0))),
+    "c = 10 kPa": Material(3e7, 1590.0, cohesion_intercept=1e4 * math.cos(math.radians(30.0))),
 }
 
 

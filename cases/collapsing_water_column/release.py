@@ -6,7 +6,7 @@ import argparse
 
 import numpy as np
 
-from continuum_sph.build.build import flow_of, wall_layers
+from continuum_sph.build.water import wall_layers, water_flow
 from continuum_sph.validation import trials
 from continuum_sph.validation import water as verify
 from continuum_sph.water.state import Layer
@@ -39,7 +39,7 @@ def gated(flow: Flow, spacing: float) -> tuple[Flow, slice]:
 def front(across: int, clears: float, pressure: str) -> np.ndarray:
     """(k, 2) of t √(2g/a) and front/a; a gate rises evenly and leaves the water at t √(2g/a) = ``clears``, 0: none."""
     spacing = WIDTH / across
-    flow = flow_of(trials.column_scene(spacing, tank=(5.0, 3.0), column=(WIDTH, HEIGHT), pressure=pressure))
+    flow = water_flow(trials.column_scene(spacing, tank=(5.0, 3.0), column=(WIDTH, HEIGHT), pressure=pressure))
     gate, speed = slice(0, 0), 0.0
     if clears > 0.0:
         flow, gate = gated(flow, spacing)

@@ -11,11 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from continuum_sph.build.soil_build import ground_of
-from continuum_sph.build.soil_model import SoilSimulation
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.build.soil import soil_section
 from continuum_sph.scene.material_file import speed
 from continuum_sph.scene.sections import Scene as SoilScene
-from continuum_sph.scene.soil_sections import Ground
+from continuum_sph.scene.soil import SoilSection
 from continuum_sph.validation.seepage_trials import Permeameter, upward
 from continuum_sph.validation.soil_element_trials import biaxial
 from porescale import build, load
@@ -79,7 +79,7 @@ def fall_of_pressure(simulation: Model, density: float) -> float:
     return found[0] - found[1] - density * GRAVITY * (TAPS[1] - TAPS[0])
 
 
-def darcy(soil: Ground, k: float, gradient: float) -> float:
+def darcy(soil: SoilSection, k: float, gradient: float) -> float:
     """Flux q of the continuum's permeameter of that soil over k i."""
     column = Permeameter(permeability=k, porosity=soil.porosity, sound_speed=0.6 / k)
     both = column.build(gradient)
@@ -104,7 +104,7 @@ def grains_fall(seed: int) -> Fall:
 def soil_falls(angle: float) -> Fall:
     """The column of soil of ground.toml with another angle of friction (rad)."""
     scene = ground((f"soil.friction_angle={angle!r}",))
-    simulation, rows = SoilSimulation(scene), []
+    simulation, rows = Simulation(scene), []
     particles = simulation.flow.soil.x[: simulation.flow.soil.soil]
     while simulation.time < scene.time.end:
         rows.append((simulation.time, float(particles[:, 0].mean())))
@@ -122,7 +122,7 @@ def surface(position: Array, radius: Array) -> Array:
 
 def measure(beds: int, columns: int) -> tuple[dict[str, float], Figure]:
     """Numbers of expected.toml, and the picture."""
-    soil = ground_of(ground())
+    soil = soil_section(ground())
     origin = soil.origin
     assert origin
     assert origin.intrinsic_permeability

@@ -12,7 +12,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.build.soil import SoilPart
 from continuum_sph.validation.levee import FAR, OVER, PARTS, Levee
 from porescale.common.pictures.film import write_film
 from porescale.output.case import conclude, draw, options
@@ -36,13 +37,13 @@ BROKEN = (
 """Stages to draw: column of the course, what it exceeds, and what that is."""
 
 
-def sight(axes: Axes, model: SeepageSimulation, given: Levee, title: str) -> None:
+def sight(axes: Axes, model: Simulation, given: Levee, title: str) -> None:
     """Soil by its displacement with velocities, over the water."""
-    soil, layer = model.both.water.skeleton, model.both.water.layer
+    soil, layer = model.flow.water.skeleton, model.flow.water.layer
     water = layer.x[: layer.fluid][layer.mass[: layer.fluid] > 0.0]
     size = 2200.0 / given.rows**2
     axes.scatter(*water.T, s=0.5 * size, c="#7fb0e8", lw=0)
-    moved = model.soil.displacement() / given.height
+    moved = model.part(SoilPart).displacement() / given.height
     shown = axes.scatter(*soil.x.T, s=size, c=moved, cmap="Wistia", vmin=0.0, vmax=1.0, lw=0)
     axes.figure.colorbar(shown, ax=axes, label="moved / H")
     fast = np.hypot(*soil.v.T) > 0.02

@@ -12,7 +12,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.build.soil import SoilPart
 from continuum_sph.validation.pile import BOUNDS, FREELY, WATER, Heave
 from porescale.common.core.constants import GRAVITY
 from porescale.common.pictures.film import write_film
@@ -36,13 +37,13 @@ def cases(rows: int) -> dict[float, Heave]:
     }
 
 
-def sight(where: tuple[Axes, Axes], model: SeepageSimulation, given: Heave, title: str) -> None:
+def sight(where: tuple[Axes, Axes], model: Simulation, given: Heave, title: str) -> None:
     """Soil by its displacement, with velocities;  excess pressure over water at rest at the level behind the pile."""
-    soil, flow = model.both.water.skeleton, model.both.water
+    soil, flow = model.flow.water.skeleton, model.flow.water
     layer, n = flow.layer, flow.layer.fluid
     there = layer.mass[:n] > 0.0
     water, pressure = layer.x[:n][there], layer.pressure[:n][there]
-    moved = np.hypot(*(soil.x - model.soil.first).T) / given.buried
+    moved = np.hypot(*(soil.x - model.part(SoilPart).first).T) / given.buried
     level = given.depth + round(given.cover * given.rows) * given.spacing
     excess = (pressure / (WATER * GRAVITY) - (level - water[:, 1])) / (given.critical * given.buried)
     size = 3600.0 / given.rows**2

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from continuum_sph.build.soil_build import geostatic
+from continuum_sph.build.soil import geostatic
 from continuum_sph.soil import Material, SoilFlow
 from continuum_sph.soil.state import XX, YY
 from continuum_sph.validation.soil_trials import in_tank, run_until
@@ -28,7 +28,7 @@ METHODS: dict[str, dict[str, float | bool]] = {
     "and parting": {},
 }  # fmt: skip
 """More of `SoilLaw`."""
-MATERIAL = Material(1e6, 2040.0, friction=float(np.sin(np.radians(21.9))))
+MATERIAL = Material(1e6, 2040.0, sin_friction=float(np.sin(np.radians(21.9))))
 WIDTH, HEIGHT = 0.2, 0.1  # m
 PARTNERS = 12  # nearest particles that a plane of stress is laid through
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.build.build import flow_of
+from continuum_sph.build.water import water_flow
 from continuum_sph.validation import trials
 from continuum_sph.validation.exact import poiseuille
 from continuum_sph.water.eos import Tait
@@ -37,7 +37,7 @@ METHODS: dict[str, dict[str, float | str | int]] = {
 def chosen(flow: Flow, name: str, alpha: float = 0.0) -> Flow:
     """``flow`` with the choices of a method, ready for its first step; walls and viscosity are those it has."""
     scene = trials.column_scene(0.05, tank=(1.0, 1.0), column=(0.5, 0.5), **METHODS[name])  # type: ignore[arg-type]
-    law, layer, pairs = flow_of(scene).law, flow.layer, flow.pairs
+    law, layer, pairs = water_flow(scene).law, flow.layer, flow.pairs
     law = replace(
         law, spacing=flow.law.spacing,
         smoothing=Smoothing(law.smoothing.name, scene.numerics.smoothing_ratio * flow.law.spacing),
@@ -72,7 +72,7 @@ def rest(name: str, rows: int, seconds: float) -> tuple[float, float]:
     table = scene.model_dump()
     if name == "as printed":
         table["tank"]["wall_particles"] = "images"
-    flow = trials.run_until(flow_of(validate(type(scene), table)), seconds)
+    flow = trials.run_until(water_flow(validate(type(scene), table)), seconds)
     layer, state = flow.layer, flow.law.state
     assert isinstance(state, Tait)
     n = layer.fluid

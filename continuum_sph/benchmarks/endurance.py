@@ -7,9 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from continuum_sph.build.model import Simulation
-from continuum_sph.build.seepage_model import SeepageSimulation
-from continuum_sph.build.soil_model import SoilSimulation
+from continuum_sph.build.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.trials import open_box
 from continuum_sph.water.step import Flow
@@ -65,7 +63,7 @@ def wet_ground() -> Scene:
 class Tank:
     """What is read of a scene's model: mass, where water and soil stand, how fast they go."""
 
-    def __init__(self, model: Simulation | SoilSimulation | SeepageSimulation, names: Mapping[str, str]) -> None:
+    def __init__(self, model: Simulation, names: Mapping[str, str]) -> None:
         """names : columns of the model's series, by what they are called here."""
         self.model, self._names = model, dict(names)
 
@@ -151,9 +149,9 @@ ENDURANCES = Endurances([
               lambda: Box(open_box(15, 1)), (exact(MASS), *(Held(name, rounded, ROUNDING) for name in MOMENTUM)),
               settles=0),
     Endurance("ground", "200 particles of level ground rest",
-              lambda: Tank(SoilSimulation(ground()), SOIL), (exact(MASS), LIES, RESTS)),
+              lambda: Tank(Simulation(ground()), SOIL), (exact(MASS), LIES, RESTS)),
     Endurance("ground under water", "100 particles of ground rest beneath water, for a fifth of the steps",
-              lambda: Tank(SeepageSimulation(wet_ground()), BOTH), (exact(MASS), exact(SOIL_MASS), STAYS, LIES, RESTS),
+              lambda: Tank(Simulation(wet_ground()), BOTH), (exact(MASS), exact(SOIL_MASS), STAYS, LIES, RESTS),
               share=0.2),
 ])  # fmt: skip
 """What `continuum-sph study endurance` runs."""

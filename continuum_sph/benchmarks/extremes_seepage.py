@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from continuum_sph.build.health import stepped
+from continuum_sph.build.sanity import Now, advance_one
 from continuum_sph.soil import SoilFlow
 from continuum_sph.validation.seepage_trials import energies, saturated_box
-from porescale.common.evidence.extremes import Extreme
+from porescale.common.evidence.extremes import Extreme, Extremes
 
 CHECKED = 20  # steps between two looks at the energies
 SPEED = 0.05  # m/s, of the stirring: strains of 0.2 %
@@ -26,7 +26,7 @@ def stirred(permeability: float, seconds: float = 0.2) -> Callable[[], str]:
         free = least = start
         growth = 0.0
         while both.time < seconds:
-            stepped(both.advance, both.water.step, both.time, "lower numerics.courant")
+            advance_one(both.advance, Now(both.step, both.time, "lower numerics.courant"))
             if both.water.step % CHECKED == 0:
                 parts = energies(both, ground)
                 free = parts["sum"] - parts["heat of drag"]
@@ -37,6 +37,6 @@ def stirred(permeability: float, seconds: float = 0.2) -> Callable[[], str]:
     return run
 
 
-SEEPAGE = [
+EXTREMES = Extremes(
     Extreme("permeability", f"{k:g} m/s", stirred(k)) for k in (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
-]
+)

@@ -191,7 +191,7 @@ class PlainColumn:
         plain_walls(*where, h, -law.gravity[1])
         plain_pairs(
             *where, self.acceleration, self._rate, self._smoothed, h, -law.gravity[1], law.alpha, law.softening,
-            2.0 * law.diffusion * h, law.calm, sound, law.fluids[0].viscosity, law.xsph or None,
+            2.0 * law.diffusion * h, law.noise_speed, sound, law.fluids[0].viscosity, law.xsph or None,
         )  # fmt: skip
         hardest = plain_kick(
             self.v, self.acceleration, self.density, self._rate, 0.5 * step, step, 0.8 * self.state.density

@@ -7,9 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from continuum_sph.benchmarks.minimal_sph import PlainColumn
-from continuum_sph.build.model import Simulation
-from continuum_sph.build.seepage_model import SeepageSimulation
-from continuum_sph.build.soil_model import SoilSimulation
+from continuum_sph.build.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from porescale.common.evidence.overhead import SMALLEST, Built, Kind, Kinds
 from porescale.common.schema.sections import validate
@@ -87,13 +85,13 @@ def ground(**more: Any) -> Scene:
     return validate(Scene, table | more)
 
 
-def settled(it: Scene) -> tuple[SoilSimulation | SeepageSimulation, int]:
+def settled(it: Scene) -> tuple[Simulation, int]:
     """The simulation of a scene with soil, on its way, and how many particles it has."""
-    made: SoilSimulation | SeepageSimulation = SeepageSimulation(it) if it.water.column else SoilSimulation(it)
+    made = Simulation(it)
     made.advance(SETTLING)
-    if isinstance(made, SoilSimulation):
+    if it.dry:
         return made, made.flow.soil.soil
-    return made, made.both.water.layer.fluid + made.both.water.skeleton.count
+    return made, made.flow.water.layer.fluid + made.flow.water.skeleton.count
 
 
 def soil_beside_water() -> Built:

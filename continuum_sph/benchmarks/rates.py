@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from continuum_sph.build.build import flow_of
-from continuum_sph.build.soil_build import geostatic
+from continuum_sph.build.soil import geostatic
+from continuum_sph.build.water import water_flow
 from continuum_sph.soil import Material
 from continuum_sph.validation.seepage_trials import saturated_box
 from continuum_sph.validation.soil_trials import in_tank
@@ -27,7 +27,7 @@ def collapsing(size: int | None, dtype: Dtype, **numerics: Any) -> Work:
         raise InputError(Fault("--dtype", dtype, "smoothed particles have", allowed="float64"))
     count = size or SIZE
     across = max(8, round((count / 2) ** 0.5))
-    flow = flow_of(column_scene(1.0 / across, tank=(4.0, 3.0), column=(1.0, 2.0), pressure="released", **numerics))
+    flow = water_flow(column_scene(1.0 / across, tank=(4.0, 3.0), column=(1.0, 2.0), pressure="released", **numerics))
 
     def steps() -> None:
         """The steps that are timed."""
@@ -77,7 +77,7 @@ def bench_soil(size: int | None, threads: int, dtype: Dtype) -> Work:
     across = max(8, round((2 * (size or SIZE)) ** 0.5))
     spacing = 0.2 / across
     high = across // 2 * spacing
-    material = Material(1e6, 2040.0, friction=0.37)
+    material = Material(1e6, 2040.0, sin_friction=0.37)
     x = square_lattice((0.0, 0.0), (0.2, high), spacing)
     flow = in_tank(x, geostatic(high - x[:, 1], material), (0.6, 0.15), spacing, material)
 

@@ -1,4 +1,4 @@
-"""What is measured in a tank, as sections, and what they read: probes.csv and levels.csv.
+"""What is measured in a tank: probes.csv and levels.csv.
 
 A probe takes the straight line through the particles about it (moving least squares with W as the weight), which is
 exact for linear fields; beside fewer than three it takes their mean, and without any it has no value.
@@ -12,10 +12,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import pydantic
 from numpy.typing import NDArray
 
-from porescale.common.schema.sections import Section, quantity
+from continuum_sph.scene.instruments import LevelSection, ProbeSection
+from continuum_sph.water.step import Flow
+from porescale.common.record.part import Part
 
 Floats = NDArray[np.float64]
 
@@ -23,24 +24,8 @@ SUPPORT = 2.0  # of the kernels, in smoothing lengths
 THIN = 1e-3  # of a mean square distance: particles on a line give no slope across it
 
 
-class Probe(Section):
-    """A point where pressure and velocity of the water are recorded over time: probes.csv."""
-
-    name: str = pydantic.Field("", description="name in the columns (default: its number)")
-    x: float = quantity("m", ge=0, le=1e5, help="place")
-    y: float = quantity("m", ge=0, le=1e5, help="place")
-
-
-class Level(Section):
-    """A strip in which the height of the free surface is recorded over time: levels.csv."""
-
-    name: str = pydantic.Field("", description="name in the columns (default: its number)")
-    x: float = quantity("m", ge=0, le=1e5, help="middle of the strip")
-    breadth: float | None = quantity("m", None, ge=1e-6, le=1e5, help="breadth of the strip (default: 4 spacings)")
-
-
 @dataclass(frozen=True)
-class Cloud:
+class MeasuredWater:
     """Water to be measured.  x (n, 2) m;  volume (n,) m², grains between it included;  pressure (n,) Pa;  v (n, 2) m/s;
     length : of smoothing, m;  spacing m;  width : of the tank, m."""
 
@@ -53,7 +38,7 @@ class Cloud:
     width: float
 
 
-def fit(at: tuple[float, float], cloud: Cloud) -> Floats:
+def interpolate(at: tuple[float, float], cloud: MeasuredWater) -> Floats:
     """Pressure (Pa) and velocity (m/s) at a point, (3,); no numbers where there is no water."""
     away = cloud.x - np.array(at)
     q = np.hypot(away[:, 0], away[:, 1]) / cloud.length
@@ -74,7 +59,7 @@ def fit(at: tuple[float, float], cloud: Cloud) -> Floats:
     return value
 
 
-def surface(level: Level, cloud: Cloud) -> float:
+def surface_height(level: LevelSection, cloud: MeasuredWater) -> float:
     """Height (m) of the free surface in the strip of ``level``; 0 where there is no water."""
     half = 0.5 * (level.breadth if level.breadth is not None else 4.0 * cloud.spacing)
     left, right = max(0.0, level.x - half), min(cloud.width, level.x + half)
@@ -94,7 +79,7 @@ def surface(level: Level, cloud: Cloud) -> float:
     return float(heights[top] + (heights[top + 1] - heights[top]) * full[top] / (full[top] - full[top + 1]))
 
 
-def discharge(level: Level, cloud: Cloud, share: Floats) -> float:
+def discharge(level: LevelSection, cloud: MeasuredWater, share: Floats) -> float:
     """Flow of water to the right (m²/s) through a section: Σ V_i s_i u_i/breadth over the strip of ``level``;
     ``share`` (n,): s, of each particle's volume that is water."""
     half = 0.5 * (level.breadth if level.breadth is not None else 4.0 * cloud.spacing)
@@ -103,21 +88,48 @@ def discharge(level: Level, cloud: Cloud, share: Floats) -> float:
     return float((cloud.volume * share * cloud.v[:, 0])[inside].sum()) / (right - left) if right > left else 0.0
 
 
-def tables(
-    time: float, probes: tuple[Probe, ...], levels: tuple[Level, ...], cloud: Cloud
-) -> dict[str, dict[str, float]]:
-    """A row of probes.csv and of levels.csv, of those that a scene asks for."""
-    rows: dict[str, dict[str, float]] = {}
-    if probes:
-        row = rows["probes"] = {"time (s)": time}
-        for k, probe in enumerate(probes):
-            name = probe.name or f"probe {k}"
-            p, u, v = fit((probe.x, probe.y), cloud)
-            row[f"{name} pressure (Pa)"] = float(p)
-            row[f"{name} velocity x (m/s)"] = float(u)
-            row[f"{name} velocity y (m/s)"] = float(v)
-    if levels:
-        row = rows["levels"] = {"time (s)": time}
-        for k, level in enumerate(levels):
-            row[f"{level.name or f'level {k}'} (m)"] = surface(level, cloud)
-    return rows
+def probe_row(probes: tuple[ProbeSection, ...], cloud: MeasuredWater) -> dict[str, float]:
+    """Columns of probes.csv."""
+    row = {}
+    for k, probe in enumerate(probes):
+        name = probe.name or f"probe {k}"
+        p, u, v = interpolate((probe.x, probe.y), cloud)
+        row[f"{name} pressure (Pa)"] = float(p)
+        row[f"{name} velocity x (m/s)"] = float(u)
+        row[f"{name} velocity y (m/s)"] = float(v)
+    return row
+
+
+def level_row(levels: tuple[LevelSection, ...], cloud: MeasuredWater) -> dict[str, float]:
+    """Columns of levels.csv."""
+    return {f"{level.name or f'level {k}'} (m)": surface_height(level, cloud) for k, level in enumerate(levels)}
+
+
+class WaterInstruments(Part):
+    """probes.csv and levels.csv of water in a tank.
+
+    width : of the tank, m.
+    """
+
+    def __init__(
+        self, probes: tuple[ProbeSection, ...], levels: tuple[LevelSection, ...], flow: Flow, width: float
+    ) -> None:
+        self.probes, self.levels, self.flow, self.width = probes, levels, flow, width
+
+    def measured(self) -> MeasuredWater:
+        """The water now."""
+        layer, law = self.flow.layer, self.flow.law
+        n = layer.fluid
+        return MeasuredWater(
+            layer.x[:n], layer.mass[:n] / layer.density, layer.pressure[:n], layer.v[:n], law.smoothing.length,
+            law.spacing, self.width,
+        )  # fmt: skip
+
+    def tables(self) -> dict[str, dict[str, float]]:
+        """A row of each table that the scene wants."""
+        cloud, found = self.measured(), {}
+        if self.probes:
+            found["probes"] = probe_row(self.probes, cloud)
+        if self.levels:
+            found["levels"] = level_row(self.levels, cloud)
+        return found

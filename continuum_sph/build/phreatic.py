@@ -1,6 +1,6 @@
 """The phreatic line: heights of the water's surface across the tank, in soil too, as a file and as a line in pictures.
 
-phreatic.csv has a column for each strip, PITCH spacings apart; heights are those of `instruments.surface`.
+phreatic.csv has a column for each strip, PITCH spacings apart; heights are those of `instruments.surface_height`.
 """
 
 from __future__ import annotations
@@ -10,7 +10,8 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.build.instruments import Cloud, Level, surface
+from continuum_sph.build.instruments import MeasuredWater, surface_height
+from continuum_sph.scene.instruments import LevelSection
 from porescale.common.pictures.look import Line
 from porescale.common.record.model import Snapshot
 
@@ -30,12 +31,12 @@ def places(width: float, spacing: float) -> Floats:
     return middles
 
 
-def phreatic_row(time: float, cloud: Cloud) -> dict[str, float]:
-    """A row of phreatic.csv: heights (m) of the water's surface at a ``time`` (s), 0 where there is none."""
+def phreatic_row(cloud: MeasuredWater) -> dict[str, float]:
+    """A row of phreatic.csv: heights (m) of the water's surface now, 0 where there is none."""
     x = places(cloud.width, cloud.spacing)
     breadth = max(2.0 * PITCH * cloud.spacing, cloud.width / len(x))
-    strips = (Level(name="", x=float(at), breadth=breadth) for at in x)
-    return {"time (s)": time} | {f"{FIRST}{strip.x:.6g} m (m)": surface(strip, cloud) for strip in strips}
+    strips = (LevelSection(name="", x=float(at), breadth=breadth) for at in x)
+    return {f"{FIRST}{strip.x:.6g} m (m)": surface_height(strip, cloud) for strip in strips}
 
 
 def line_of(table: Mapping[str, Floats], spacing: float) -> Callable[[Snapshot], list[Line]]:

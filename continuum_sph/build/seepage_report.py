@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from continuum_sph.build.air_build import air_report, dry_pores
-from continuum_sph.build.build import water_of
-from continuum_sph.build.report import report as water_report
-from continuum_sph.build.seepage_build import pore_law, stiffest
-from continuum_sph.build.soil_build import ground_of, soil_law, soil_particles
-from continuum_sph.scene.material_file import tell_origin
+from continuum_sph.build.air import air_report, dry_pores
+from continuum_sph.build.pore_water import largest_modulus, pore_law
+from continuum_sph.build.soil import soil_law, soil_particles, soil_section
+from continuum_sph.build.soil_report import report_origin
+from continuum_sph.build.water import water_state
+from continuum_sph.build.water_report import water_report
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.step import SHARE
@@ -25,12 +25,12 @@ def seepage_report(scene: Scene) -> Report:
         raise InputError(Fault("inclusion", "given", "cannot be with soil", repair="take out [inclusion] or [soil]"))
     if scene.tank.wall_particles == "images":
         raise InputError(Fault("tank.wall_particles", "images", "cannot be with soil", repair='use "pressure"'))
-    section = ground_of(scene)
+    section = soil_section(scene)
     if section.porosity < LEAST_POROSITY:
         least = f">= {LEAST_POROSITY:g} with water"
         raise InputError(Fault("soil.porosity", section.porosity, "leaves water no room", "", least, "raise it"))
     out = water_report(scene)
-    law, state, modulus = pore_law(scene), water_of(scene), stiffest(scene)
+    law, state, modulus = pore_law(scene), water_state(scene), largest_modulus(scene)
     soil, _ = soil_particles(scene)
     out.heading("soil")
     out.row("soil particles", len(soil))
@@ -51,12 +51,12 @@ def seepage_report(scene: Scene) -> Report:
         out.row("consolidation coefficient", spread, "m2/s")
         out.row("time to consolidate", section.height**2 / spread, "s", "of the soil's height, drained at one face")
     if scene.air:
-        air_report(out, scene, law, len(dry_pores(scene, soil)))
+        air_report(out, scene, law, len(dry_pores(scene.water.column, soil)))
     step = SHARE * law.smoothing.length / ((modulus + stiff / porosity) / whole) ** 0.5
     out.row("longest step for sound in both together", step, "s")
     step = min(step, law.limits(0.0, 0.0)[0])  # of air beside water
     out.row("expected time", scene.time.end / step * (len(soil) + len(soil)) / RATE, "s", "of both layers, about")
-    tell_origin(out, section.origin)
+    report_origin(out, section.origin)
     if scene.reservoir:
         levels(scene, out)
     if ratio < STIFF:
@@ -70,11 +70,11 @@ def seepage_report(scene: Scene) -> Report:
 
 def levels(scene: Scene, out: Report) -> None:
     """Rows on prescribed levels, and warnings about what keeps water from moving into soil as it should."""
-    numerics, porosity = scene.numerics, ground_of(scene).porosity
+    numerics, porosity = scene.numerics, soil_section(scene).porosity
     out.heading("prescribed levels")
-    for number, pool in enumerate(scene.reservoir):
-        breadth = (pool.right - pool.left) / numerics.spacing
-        out.row(pool.name or f"reservoir {number}", pool.table[-1][1], "m", f"{breadth:.3g} spacings broad, in the end")
+    for number, it in enumerate(scene.reservoir):
+        breadth = (it.right - it.left) / numerics.spacing
+        out.row(it.name or f"reservoir {number}", it.table[-1][1], "m", f"{breadth:.3g} spacings broad, in the end")
     reach = numerics.smoothing_ratio * porosity**0.5
     out.row("smoothing length over distances in pores", reach, "", f"at least {REACH:g}")
     if reach < REACH:

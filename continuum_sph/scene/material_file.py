@@ -13,7 +13,6 @@ from typing import Any
 
 import pydantic
 
-from porescale.common.cli.report import Report
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.units import to_si
@@ -141,16 +140,3 @@ def speed(intrinsic: float, water: Any) -> float:
 
     density, viscosity = number("density", "kg/m^3", DENSITY), number("viscosity", "Pa s", VISCOSITY)
     return intrinsic * density * GRAVITY / viscosity
-
-
-def tell_origin(out: Report, origin: Origin | None) -> None:
-    """Add to a report what a scene's soil was measured with, and how well."""
-    if origin is None:
-        return
-    out.heading("measured on grains")
-    out.row("file", origin.file, "", f"SHA-256 {origin.sha256[:12]}")
-    for name, (mean, error) in origin.measured.items():
-        out.row(name.replace("_", " "), mean, "", f"± {error:.2g} (standard error)")
-    for key in ("command", "version", "lambda", "cells", "pressure"):
-        if isinstance(value := origin.made.get(key), str | int | float):
-            out.row(key, value)

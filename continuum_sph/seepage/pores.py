@@ -36,7 +36,8 @@ Floats = NDArray[np.float64]
 class PoreFlow(Flow):
     """Water of a law among the grains of a skeleton.
 
-    resistance : law of drag;  thick (fluid,) N/m³, of several fluids, see `meet`, or empty;  drains : faces of given
+    resistance : law of drag;  specific_weight (fluid,) N/m³, of several
+    fluids, see `meet`, or empty;  drains : faces of given
     pressure;  pores (14, fluid + LANES) what water particles have about them, see `mixture`;  borne (soil, 2) N/m, drag
     on the soil of the last half step;  heat (fluid + soil,) J/m, work that drag took from both layers.
     """
@@ -44,7 +45,7 @@ class PoreFlow(Flow):
     skeleton: Skeleton = field(kw_only=True)
     overlap: Overlap = field(kw_only=True)
     resistance: Resistance = field(kw_only=True)
-    thick: Floats = field(default_factory=lambda: np.zeros(0), kw_only=True)
+    specific_weight: Floats = field(default_factory=lambda: np.zeros(0), kw_only=True)
     drains: list[Drain] = field(default_factory=list, kw_only=True)
 
     def __post_init__(self) -> None:
@@ -96,7 +97,7 @@ class PoreFlow(Flow):
         self.skeleton.show()
         meet(
             layer.fluid, *self.overlap.rows, layer.record, layer.mass, self.skeleton.burden, self.resistance.gravity,
-            self.thick, self.pores, *how[1:],
+            self.specific_weight, self.pores, *how[1:],
         )  # fmt: skip
         blend(layer.fluid, pairs.start, self.split, pairs.partner, layer.record, self.home, self.pores, *how[1:])
         for face in self.drains:

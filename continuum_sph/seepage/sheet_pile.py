@@ -117,11 +117,6 @@ class Pile:
     spacing: float
     rough: bool = False
 
-    @classmethod
-    def instead_of(cls, x: float, tip: float, spacing: float, rough: bool) -> Pile:
-        """The pile for a sheet without thickness in ``x`` whose tip is at the height ``tip``, to the nearest row, m."""
-        return cls((np.floor(x / spacing + 1e-9) + 0.5) * spacing, (round(tip / spacing) + 1) * spacing, spacing, rough)
-
     def holds(self, points: Floats) -> NDArray[np.bool_]:
         """Which of ``points`` (n, 2) m lie in it."""
         return (np.abs(points[:, 0] - self.x) < 0.5 * self.spacing) & (points[:, 1] > self.bottom)

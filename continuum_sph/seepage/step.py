@@ -59,6 +59,11 @@ class Seepage:
         self.wet = np.zeros_like(self.water.borne)
 
     @property
+    def step(self) -> int:
+        """Steps done."""
+        return self.water.step
+
+    @property
     def time(self) -> float:
         """s."""
         return self.water.time

@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from continuum_sph.errors import no_step
 from continuum_sph.soil.gradient import velocity_gradients
 from continuum_sph.soil.leapfrog import kick, kick_drift
 from continuum_sph.soil.material import DENSITY, TENSION, table
@@ -24,6 +23,7 @@ from continuum_sph.soil.state import Soil
 from continuum_sph.soil.stress import deform
 from continuum_sph.soil.tension import hold_apart
 from continuum_sph.soil.walls import place_walls, show_walls
+from continuum_sph.water.no_step import no_step
 from continuum_sph.water.rates import split_rows
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.neighbors import PairList
@@ -39,7 +39,7 @@ class SoilFlow:
 
     step : steps done;  time, next_step : s;  limited : steps that each of `law.RULES` limited, rule : the one that
     limits the next;  limit : longest step that other layers allow, s;  stopped : times a particle was stopped at
-    ``lower`` or ``upper`` (2,) m, infinite unless set;  pace : largest c/h, 1/s;  swiftest : largest speed, m/s;
+    ``lower`` or ``upper`` (2,) m, infinite unless set;  sound_rate : largest c/h, 1/s;  max_speed : m/s;
     strained : the last step, s, for which the diffusion that is under way was bounded;  before_force : called before
     accelerations, to overwrite ``soil.force``.
     """
@@ -55,8 +55,8 @@ class SoilFlow:
     limited: list[int] = field(default_factory=lambda: [0, 0, 0])
     rule: int = 0
     stopped: int = 0
-    pace: float = 0.0
-    swiftest: float = 0.0
+    sound_rate: float = 0.0
+    max_speed: float = 0.0
     strained: float = 0.0
 
     def __post_init__(self) -> None:
@@ -122,11 +122,12 @@ class SoilFlow:
             step, law.smoothing.kind, law.smoothing.length, *pairs.period,
         )  # fmt: skip
         quickest = deform(
-            soil.density, soil.stress, soil.material, self.table, soil.matrix, soil.spread, soil.opening, soil.plastic,
-            soil.record, step, min(step, LASTING * self.strained), -1.0 if law.printed_spin else 1.0, law.most,
+            soil.density, soil.stress, soil.material, self.table, soil.matrix, soil.spread,
+            soil.separation_strain, soil.plastic_shear, soil.record, step,
+            min(step, LASTING * self.strained), -1.0 if law.printed_spin else 1.0, law.most,
         )  # fmt: skip
         self.strained = step
-        self.pace = float(quickest) ** 0.5 / law.smoothing.length
+        self.sound_rate = float(quickest) ** 0.5 / law.smoothing.length
 
     def push(self) -> None:
         """Accelerations."""
@@ -137,8 +138,8 @@ class SoilFlow:
         accelerate(
             soil.soil, pairs.start, self.split, pairs.partner, soil.record, soil.facing, soil.force, soil.stress,
             soil.acceleration, soil.spread, soil.drift, law.smoothing.kind, law.smoothing.length, *law.gravity,
-            law.damping, law.printed_damping, law.diffusion, law.restless * self.pace, law.apart,
-            law.spacing, *pairs.period,
+            law.damping, law.printed_damping, law.diffusion, law.sound_diffusion * self.sound_rate,
+            law.spacing_recovery, law.spacing, *pairs.period,
         )  # fmt: skip
         if self.pulling:
             hold_apart(
@@ -151,8 +152,8 @@ class SoilFlow:
         soil = self.soil
         drag = self.law.drag if self.time < self.law.settle else 0.0
         hardest, swiftest = kick(soil.v, soil.acceleration, 0.5 * step, math.exp(-drag * step))
-        self.swiftest = float(swiftest) ** 0.5
-        limits = self.law.limits(float(hardest) ** 0.5, self.pace, self.limit)
+        self.max_speed = float(swiftest) ** 0.5
+        limits = self.law.limits(float(hardest) ** 0.5, self.sound_rate, self.limit)
         self.rule = int(np.argmin(limits))
         self.next_step = limits[self.rule]
         if not 0.0 < self.next_step < np.inf:
@@ -183,8 +184,8 @@ class SoilFlow:
             "limited": list(self.limited),
             "rule": self.rule,
             "stopped": self.stopped,
-            "pace": self.pace,
-            "swiftest": self.swiftest,
+            "pace": self.sound_rate,
+            "swiftest": self.max_speed,
             "strained": self.strained,
         }
 
@@ -196,5 +197,5 @@ class SoilFlow:
         split_rows(self.soil.soil, self.pairs.start, self.pairs.partner, self.split)
         self.step, self.time, self.next_step = state["step"], state["time"], state["next_step"]
         self.limit, self.limited, self.rule = state["limit"], list(state["limited"]), state["rule"]
-        self.stopped, self.pace, self.swiftest = state["stopped"], state["pace"], state["swiftest"]
+        self.stopped, self.sound_rate, self.max_speed = state["stopped"], state["pace"], state["swiftest"]
         self.strained = state["strained"]

@@ -21,9 +21,21 @@ from porescale.common.compiled.jit import inline
 
 Floats = NDArray[np.float64]
 
-AREA, SHEAR, ACROSS, EXPONENT, REFERENCE, LEAST, SLOPE, COHESION, DILATANCY, TENSION, YIELDS, DENSITY, GRAINS = range(
-    13
-)
+(
+    AREA,
+    SHEAR,
+    ACROSS,
+    EXPONENT,
+    REFERENCE,
+    LEAST,
+    SIN_FRICTION,
+    COHESION_INTERCEPT,
+    SIN_DILATANCY,
+    TENSION,
+    YIELDS,
+    DENSITY,
+    GRAINS,
+) = range(13)
 """Columns of the table: B/E and G/E, dσ_zz/dp; m; p0 Pa; least p for stiffness, Pa; sin φ; c cos φ, Pa; sin ψ; largest
 tension, Pa; 1 if it yields; density at the start, share of grains 1 - n at the start.  B and G are times E0."""
 
@@ -31,9 +43,9 @@ tension, Pa; 1 if it yields; density at the start, share of grains 1 - n at the 
 @dataclass(frozen=True)
 class Material:
     """stiffness : E0, Pa at the mean stress ``reference`` (p0, Pa);  exponent : m;  poisson : ν;  modulus : "plane
-    strain" or "printed";  friction : sin φ;  cohesion : c cos φ, Pa;  dilatancy : sin ψ;  tension : largest, Pa;
-    yields : else elastic for ever;  density : of grains per whole volume at the start, kg/m³;  porosity : n then;
-    least : mean stress (Pa) below which soil gets no softer.
+    strain" or "printed";  sin_friction : sin φ;  cohesion_intercept : c cos φ, Pa;  sin_dilatancy : sin ψ;
+    tension : largest, Pa;  yields : else elastic for ever;  density : of grains per whole volume at the start, kg/m³;
+    porosity : n then;  least : mean stress (Pa) below which soil gets no softer.
     """
 
     stiffness: float
@@ -43,9 +55,9 @@ class Material:
     reference: float = 1e5
     least: float = 10.0
     modulus: str = "plane strain"
-    friction: float = 0.5
-    cohesion: float = 0.0
-    dilatancy: float = 0.0
+    sin_friction: float = 0.5
+    cohesion_intercept: float = 0.0
+    sin_dilatancy: float = 0.0
     tension: float = 0.0
     yields: bool = True
     porosity: float = 0.4
@@ -76,8 +88,8 @@ class Material:
     def rest(self) -> float:
         """K0 of a column that settles under its weight from no stress: elastic, or as yielding leaves it."""
         elastic = (self.area_modulus - self.shear_modulus) / (self.area_modulus + self.shear_modulus)
-        if self.yields and self.cohesion == 0.0:
-            return max(elastic, (1.0 - self.friction) / (1.0 + self.friction))
+        if self.yields and self.cohesion_intercept == 0.0:
+            return max(elastic, (1.0 - self.sin_friction) / (1.0 + self.sin_friction))
         return elastic
 
     def stiffness_at(self, pressure: float) -> float:
@@ -88,11 +100,14 @@ class Material:
         """Its line of the table, (13,)."""
         across = 0.0 if self.printed else 2.0 * self.poisson
         # Tension beyond the tip of the cone, c cot φ, cannot be.
-        tension = min(self.tension, self.cohesion / self.friction if self.friction > 0.0 else math.inf)
+        tension = min(
+            self.tension, self.cohesion_intercept / self.sin_friction if self.sin_friction > 0.0 else math.inf
+        )
         return np.array(
             [
                 self.area_modulus * self.stiffness, self.shear_modulus * self.stiffness, across, self.exponent,
-                self.reference, self.least, self.friction, self.cohesion, self.dilatancy, tension, float(self.yields),
+                self.reference, self.least, self.sin_friction, self.cohesion_intercept, self.sin_dilatancy, tension,
+                float(self.yields),
                 self.density, 1.0 - self.porosity,
             ]
         )  # fmt: skip

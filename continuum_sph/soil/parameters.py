@@ -20,11 +20,11 @@ class SoilLaw:
     smoothing : kernel and h;  spacing : of the particles, m;  materials : by the numbers that particles carry;
     gravity : (x, y) m/s²;  damping : α, of the part of velocity differences that is not linear in place, or with
     ``printed_damping`` of all of it between particles that approach (eq. 36);  corrected : gradients exact for linear
-    fields;  diffusion : χ of stress and volume, per shear strain, see `divergence`;  restless : the same per passage of
-    sound through h, which never rests (for comparison);  apart : A, how fast particles nearer than a spacing part, per
-    shear strain;  repulsion : A of `tension`, where soil bears tension;  drag : 1/s, of all motion until ``settle``
-    (s), so that a start finds its equilibrium;  printed_spin : turn stress as eq. 38 has it, the wrong way;  courant :
-    the 0.25 of eq. 49.
+    fields;  diffusion : χ of stress and volume, per shear strain, see `momentum`;  sound_diffusion : the same per
+    passage of sound through h, which never rests (for comparison);  spacing_recovery : A, how fast particles nearer
+    than a spacing part, per shear strain;  repulsion : A of `tension`, where soil bears tension;  drag :
+    1/s, of all motion until ``settle`` (s), so that a start finds its equilibrium;  printed_spin : turn stress as
+    eq. 38 has it, the wrong way;  courant : the 0.25 of eq. 49.
     """
 
     smoothing: Smoothing
@@ -35,8 +35,8 @@ class SoilLaw:
     printed_damping: bool = False
     corrected: bool = True
     diffusion: float = 100.0
-    restless: float = 0.0
-    apart: float = 4.0
+    sound_diffusion: float = 0.0
+    spacing_recovery: float = 4.0
     repulsion: float = 10.0
     drag: float = 0.0
     settle: float = 0.0
@@ -46,14 +46,14 @@ class SoilLaw:
     def __post_init__(self) -> None:
         """InputError when diffusion at the pace of sound takes more of a zig-zag in a step than there is."""
         most = 1.0 / (FALL * self.courant)
-        if self.restless > most:
+        if self.sound_diffusion > most:
             key = "soil.numerics.restless_diffusion"
             repair = "or lower numerics.courant"
-            raise InputError(Fault(key, self.restless, "swings ever wider", "", f"<= {most:.3g}", repair))
+            raise InputError(Fault(key, self.sound_diffusion, "swings ever wider", "", f"<= {most:.3g}", repair))
 
     @property
     def most(self) -> float:
-        """Shear strain of one step that diffusion, and parting with it, follows.
+        """Shear strain of one step that diffusion, and spacing recovery with it, follows.
 
         A zig-zag from particle to particle falls by up to 2 · 2π W(0) h² χ = 7 χ times that (W(0) = 7/4πh² of Wendland
         C2, the spline has less), and would swing ever wider beyond 2: σ_zz does, which no strength bounds.  It may
@@ -61,7 +61,7 @@ class SoilLaw:
         integral 2π W(0): volumes stay between those around, so above zero, up to twice the lattice's particles in a
         place, and calm down up to four times.  What diffuses by sound is part of it.
         """
-        left = 1.0 - FALL * self.courant * self.restless
+        left = 1.0 - FALL * self.courant * self.sound_diffusion
         return max(0.0, left) / (FALL * self.diffusion) if self.diffusion > 0.0 else float("inf")
 
     def limits(self, acceleration: float, pace: float, others: float) -> tuple[float, float, float]:

@@ -22,11 +22,11 @@ import numpy as np
 from continuum_sph.soil.material import (
     ACROSS,
     AREA,
-    COHESION,
-    DILATANCY,
+    COHESION_INTERCEPT,
     EXPONENT,
     SHEAR,
-    SLOPE,
+    SIN_DILATANCY,
+    SIN_FRICTION,
     TENSION,
     YIELDS,
     softening,
@@ -38,9 +38,9 @@ from porescale.common.compiled.jit import inline
 def returned(p, r, area, shear, row):
     """(p, r, dγ, opened): a trial stress (Pa) brought back to yield, shear strain that did not come back and share of
     the volume that came apart;  area, shear: B and G, Pa;  row: the material's."""
-    slope = row[SLOPE]
-    cohesion = row[COHESION]
-    dilatancy = row[DILATANCY]
+    slope = row[SIN_FRICTION]
+    cohesion = row[COHESION_INTERCEPT]
+    dilatancy = row[SIN_DILATANCY]
     tension = row[TENSION]
     new_p = p
     new_r = r

@@ -23,8 +23,9 @@ class Soil:
     soil : number of soil particles, the first rows of every array;
     x (n, 2) m;  v (n, 2) m/s, of walls the wall's own;  mass (n,) kg per metre of depth, of soil that of its grains;
     density (soil,) kg/m³, grains per whole volume;  stress (n, 4) Pa, effective, of walls that of the soil before them;
-    material (n,) number of the particle's material.  What has happened to a particle: opening (soil,) by how much of
-    its volume it has come apart, plastic (soil,) shear strain that did not come back.  The rest is made of these.
+    material (n,) number of the particle's material.  What has happened to a particle: separation_strain (soil,)
+    by how much of its volume it has come apart, plastic_shear (soil,) shear strain that did not come back.
+    The rest is made of these.
     """
 
     soil: int
@@ -38,8 +39,8 @@ class Soil:
     acceleration: Floats = field(init=False)  # (soil, 2) m/s²
     drift: Floats = field(init=False)  # (soil, 2) m/s, what keeps particles apart adds to the velocity of moving
     spread: Floats = field(init=False)  # (soil, 5) Pa/s and m²/s, diffusion of stress and of volume
-    opening: Floats = field(init=False)
-    plastic: Floats = field(init=False)
+    separation_strain: Floats = field(init=False)
+    plastic_shear: Floats = field(init=False)
     record: Floats = field(init=False)  # (n, 16) all that a pair reads of a partner
     matrix: Floats = field(init=False)  # (soil, 5) of the gradient correction, see `gradient`
     facing: Floats = field(init=False)  # (n, 4) of walls: nearest point of the surface, normal into the soil
@@ -55,7 +56,7 @@ class Soil:
             self.material = np.zeros(n, np.int64)
         self.force, self.acceleration, self.drift = (np.zeros((self.soil, 2)) for _ in range(3))
         self.spread = np.zeros((self.soil, 5))
-        self.opening, self.plastic = np.zeros(self.soil), np.zeros(self.soil)
+        self.separation_strain, self.plastic_shear = np.zeros(self.soil), np.zeros(self.soil)
         self.record, self.facing, self.length = np.zeros((n, 16)), np.zeros((n, 4)), np.zeros(n)
         self.matrix = np.tile([1.0, 0.0, 1.0, 0.0, 0.0], (self.soil, 1))
 
@@ -69,14 +70,18 @@ class Soil:
         """Velocity gradients of the last step, (soil, 4) 1/s: ∂v_x/∂x, ∂v_x/∂y, ∂v_y/∂x, ∂v_y/∂y.  A view."""
         return self.record[: self.soil, GXX:]
 
-    KEPT = ("x", "v", "mass", "density", "stress", "force", "acceleration", "drift", "spread", "opening", "plastic",
-    "record", "matrix", "length")  # fmt: skip
+    KEPT = (
+        ("x", "x"), ("v", "v"), ("mass", "mass"), ("density", "density"), ("stress", "stress"), ("force", "force"),
+        ("acceleration", "acceleration"), ("drift", "drift"), ("spread", "spread"), ("opening", "separation_strain"),
+        ("plastic", "plastic_shear"), ("record", "record"), ("matrix", "matrix"), ("length", "length"),
+    )  # fmt: skip
+    """Names in a checkpoint, and the attributes that they are of."""
 
     def state(self) -> dict[str, Floats]:
         """Copies of the arrays that later steps depend on."""
-        return {name: getattr(self, name).copy() for name in self.KEPT}
+        return {name: getattr(self, own).copy() for name, own in self.KEPT}
 
     def restore(self, state: dict[str, Floats]) -> None:
         """Take over what `state` of an equal soil gave."""
-        for name in self.KEPT:
-            getattr(self, name)[:] = state[name]
+        for name, own in self.KEPT:
+            getattr(self, own)[:] = state[name]

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from continuum_sph.build.air_build import AIR, thickness
+from continuum_sph.build.air import AIR, specific_weights
 from continuum_sph.seepage import Frame, PoreFlow, Resistance, Seepage
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.validation.seepage_trials import COLUMNS, SKIN, WATER
@@ -127,7 +127,7 @@ class TrappedAir:
             resistance=Resistance(self.porosity),
         )  # fmt: skip
         if self.filled:
-            flow.thick = thickness(material[:n], law, GRAVITY)
+            flow.specific_weight = specific_weights(material[:n], law, GRAVITY)
         flow.lower[1] = 0.0
         both = Seepage(flow, ground)
         both.start()

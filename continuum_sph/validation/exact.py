@@ -9,23 +9,6 @@ from scipy.special import jv, jvp
 Floats = NDArray[np.float64]
 
 
-def released_pressure(
-    x: Floats, y: Floats, width: float, height: float, density: float, gravity: float, terms: int = 400
-) -> Floats:
-    """Pressure (Pa) in a column of incompressible water the instant its right face is set free.
-
-    ∇²p = 0 with p = 0 on the top y = H and the face x = a, ∂p/∂x = 0 on the wall x = 0, ∂p/∂y = -ρg on the floor.
-    With p = ρg{(H - y) - φ}: φ = Σ 2/(H k²) cos(k y) cosh(k x)/cosh(k a), k = (n + 1/2)π/H.
-    """
-    head = height - y
-    for n in range(terms):
-        k = (n + 0.5) * np.pi / height
-        # cosh(kx)/cosh(ka) without overflow
-        ratio = np.exp(k * (x - width)) * (1.0 + np.exp(-2.0 * k * x)) / (1.0 + np.exp(-2.0 * k * width))
-        head = head - 2.0 / (height * k * k) * np.cos(k * y) * ratio
-    return density * gravity * np.maximum(head, 0.0)
-
-
 def couette(y: Floats, time: float, gap: float, speed: float, viscosity: float) -> Floats:
     """Velocity (m/s) between a wall at rest (y = 0) and one that starts at ``speed`` (y = gap); ν in m²/s.
 

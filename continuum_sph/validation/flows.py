@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from continuum_sph.build.build import flow_of
+from continuum_sph.build.water import water_flow
 from continuum_sph.validation import trials
 from continuum_sph.validation.water import LATTICE, SPREAD
 from continuum_sph.water.energy_budget import book
@@ -58,7 +58,7 @@ def sunk(seconds: float, rows: int = 20) -> float:
     scene = trials.column_scene(
         1.0 / rows, tank=(0.5, 1.2), column=(0.5, 1.0), artificial_viscosity=0.1, gradient="corrected", shifting=2.0
     )
-    flow = flow_of(scene)
+    flow = water_flow(scene)
     height = flow.layer.x[: flow.layer.fluid, 1]
     before = float(height.mean())
     trials.run_until(flow, seconds)
@@ -85,7 +85,7 @@ def energy_growth(seconds: float, heat_kept: bool = False) -> tuple[float, float
     heat_kept : count the heat of viscosity as energy of flow, and so what viscosity took as growth.
     """
     scene = trials.column_scene(0.05, tank=(4.0, 3.0), column=(1.0, 2.0), pressure="released")
-    flow = flow_of(scene)
+    flow = water_flow(scene)
     flow.layer.keep_book()
     first = book(flow)
     scale, least, growth, drift = first["total energy"], np.inf, 0.0, 0.0

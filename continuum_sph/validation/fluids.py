@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.build.bubble import bubble
-from continuum_sph.build.build import flow_of
+from continuum_sph.build.inclusion import inclusion_row
+from continuum_sph.build.water import water_flow
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.exact import drop_period
 from continuum_sph.validation.exact_drop import swing_period
@@ -282,15 +282,15 @@ RISE, ROUNDNESS, HEIGHT = 0.2417, 0.9013, 1.081
 
 def rising(spacing: float, seconds: float) -> tuple[float, float, float]:
     """(largest rise velocity, m/s, least circularity, height of the centre at the end, m) of Hysing's bubble."""
-    flow = flow_of(hysing(spacing))
+    flow = water_flow(hysing(spacing))
     swiftest, flattest = 0.0, 1.0
     while flow.time < seconds:
         flow.advance()
         if flow.step % 20 == 0:
-            said = bubble(flow)
+            said = inclusion_row(flow)
             swiftest = max(swiftest, said["bubble rise (m/s)"])
             flattest = min(flattest, said["bubble circularity ()"])
-    return swiftest, flattest, bubble(flow)["bubble centre (m)"]
+    return swiftest, flattest, inclusion_row(flow)["bubble centre (m)"]
 
 
 @VALIDATIONS.row(

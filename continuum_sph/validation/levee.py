@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.build.soil import SoilPart
 from continuum_sph.scene.sections import Scene
 from porescale.common.evidence.validations import Measured, Validations
 
@@ -152,18 +153,18 @@ class Levee:
         height = surface / self.height
         return {name: shallow & (height > low) & (height <= high) for name, (low, high) in PARTS.items()}
 
-    def course(self, every: float = 0.02) -> Iterator[tuple[Floats, SeepageSimulation]]:
+    def course(self, every: float = 0.02) -> Iterator[tuple[Floats, Simulation]]:
         """((time s since the river began to rise, mean displacement m of each of the PARTS, water m² of the river
         beyond the crest), the model), ``every`` so many seconds."""
-        model, due = SeepageSimulation(Scene.model_validate(self.table())), self.settle
-        flow, n = model.both.water, model.both.water.layer.fluid
+        model, due = Simulation(Scene.model_validate(self.table())), self.settle
+        flow, n = model.flow.water, model.flow.water.layer.fluid
         river = (flow.porosity == 1.0) | (flow.layer.mass[:n] == 0.0)
-        parts, edge = self.watched(model.soil.first.copy()), self.corners[2]
+        parts, edge = self.watched(model.part(SoilPart).first.copy()), self.corners[2]
         while model.time < self.end:
             model.advance(1)
-            if model.soil.counted and model.time >= due:
+            if model.part(SoilPart).counted and model.time >= due:
                 due += every
-                moved = model.soil.displacement()
+                moved = model.part(SoilPart).displacement()
                 over = flow.layer.mass[:n][river & (flow.layer.x[:n, 0] > edge)].sum() / WATER
                 row = [model.time - self.settle, *(moved[part].mean() for part in parts.values()), over]
                 yield np.array(row), model

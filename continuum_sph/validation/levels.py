@@ -22,7 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from continuum_sph.build.instruments import Cloud, Level, surface
+from continuum_sph.build.instruments import MeasuredWater, surface_height
+from continuum_sph.scene.instruments import LevelSection
 from continuum_sph.seepage import Frame, PoreFlow, Reservoir, Resistance, Seepage, Supply
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.seepage.reservoir import BERTH, berths
@@ -153,7 +154,7 @@ class Dam:
         """Heights (m) of the free surface at `STATIONS`, each over a tenth of the length."""
         cloud = water_there(both, self.upstream / self.rows, 2.0 * self.basin + self.length)
         places = [self.basin + part * self.length for part in STATIONS]
-        return np.array([surface(Level(name="", x=x, breadth=0.1 * self.length), cloud) for x in places])
+        return np.array([surface_height(LevelSection(name="", x=x, breadth=0.1 * self.length), cloud) for x in places])
 
     def course(self, both: Seepage, end: float, every: float) -> Floats:
         """Rows (k, 6) at multiples of ``every`` (s) up to ``end`` (s): time s, water let in upstream and out downstream
@@ -169,12 +170,12 @@ class Dam:
         return np.array(rows)
 
 
-def water_there(both: Seepage, spacing: float, width: float) -> Cloud:
+def water_there(both: Seepage, spacing: float, width: float) -> MeasuredWater:
     """Particles of water that there are, in a tank of ``width`` (m), each with the volume of ground that it fills."""
     layer, n = both.water.layer, both.water.layer.fluid
     there = layer.mass[:n] > 0.0
     volume = (layer.mass[:n] / (both.water.porosity * layer.density))[there]
-    return Cloud(
+    return MeasuredWater(
         layer.x[:n][there], volume, layer.pressure[:n][there], layer.v[:n][there],
         both.water.law.smoothing.length, spacing, width,
     )  # fmt: skip

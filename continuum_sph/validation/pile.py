@@ -13,10 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.build.exit_gradient import NAME, reach, steepness
-from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.build.sheet_pile import NAME, reach, sheet_pile, steepness
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.build.soil import SoilPart
+from continuum_sph.scene.pile import SheetPileSection
 from continuum_sph.scene.sections import Scene
-from continuum_sph.seepage.sheet_pile import Pile
 from continuum_sph.validation.seepage_steady_trials import Face, SheetPile, flux, held_ground
 from porescale.common.core.constants import GRAVITY
 from porescale.common.evidence.validations import Measured, Validations
@@ -148,24 +149,24 @@ class Heave:
         }  # fmt: skip
         return Scene.model_validate(table)
 
-    def prism(self, model: SeepageSimulation) -> NDArray[np.bool_]:
+    def prism(self, model: Simulation) -> NDArray[np.bool_]:
         """Which soil particles, (soil,), were at the surface of Terzaghi's prism, s/2 wide by the pile, at first."""
-        x, edge = model.soil.first, (round(self.reach * self.rows) + 1) * self.spacing
+        x, edge = model.part(SoilPart).first, (round(self.reach * self.rows) + 1) * self.spacing
         chosen: NDArray[np.bool_] = (
             (x[:, 1] > self.depth - self.spacing) & (x[:, 0] > edge) & (x[:, 0] < edge + 0.5 * self.buried)
         )
         return chosen
 
-    def course(self, every: float = 0.01) -> Iterator[tuple[float, float, float, SeepageSimulation]]:
+    def course(self, every: float = 0.01) -> Iterator[tuple[float, float, float, Simulation]]:
         """(time s, head over i_c s, mean rise of the prism's surface over s since it stood calm, the model), ``every``
         so many seconds until the head is its last."""
-        model, due = SeepageSimulation(self.scene), self.calm
+        model, due = Simulation(self.scene), self.calm
         while model.time < self.end:
             model.advance(1)
-            if model.soil.counted and model.time >= due:
+            if model.part(SoilPart).counted and model.time >= due:
                 due += every
-                x = model.both.water.skeleton.x
-                rise = float((x - model.soil.first)[self.prism(model), 1].mean()) / self.buried
+                x = model.flow.water.skeleton.x
+                rise = float((x - model.part(SoilPart).first)[self.prism(model), 1].mean()) / self.buried
                 yield model.time, self.head(model.time), rise, model
 
     def onset(self, times: float = FREELY) -> float:
@@ -199,7 +200,7 @@ class Around:
         spacing, k = 1.0 / self.rows, self.permeability
         width = (2 * round(self.reach * self.rows) + 1) * spacing
         left, right = 0.5 * (width - spacing), 0.5 * (width + spacing)
-        pile = Pile.instead_of(0.5 * width, 1.0 - self.share, spacing, rough=False)
+        pile = sheet_pile(SheetPileSection(x=0.5 * width, tip=1.0 - self.share), spacing)
         faces = [Face("lid", 1.0, end=left), Face("lid", 0.0, start=right)]
         both = held_ground((width, 1.0), spacing, faces, k, pile=pile)
         for _ in range(steps):

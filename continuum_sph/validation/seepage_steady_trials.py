@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ellipk
 
-from continuum_sph.build.exit_gradient import reach, steepness
+from continuum_sph.build.sheet_pile import reach, steepness
 from continuum_sph.seepage import Drain, Frame, PoreFlow, Resistance, Seepage
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.seepage.sheet_pile import PartedList, Pile

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from continuum_sph.build.soil_build import geostatic
+from continuum_sph.build.soil import geostatic
 from continuum_sph.soil import Material, SoilFlow
 from continuum_sph.soil.state import GROWN, XX, YY
 from continuum_sph.validation.soil_element_trials import biaxial, confined, squeezed
@@ -29,7 +29,7 @@ AREA = STIFFNESS / (2.0 * (1.0 + POISSON) * (1.0 - 2.0 * POISSON))  # Pa, area m
 
 def failure_ratio(friction: float, dilatancy: float = 0.0) -> float:
     """σ1/σ3 of an element pressed to failure under 100 kPa; sines of the angles."""
-    element, _ = biaxial(Material(1e7, DENSITY, friction=friction, dilatancy=dilatancy), 1e5, 0.05)
+    element, _ = biaxial(Material(1e7, DENSITY, sin_friction=friction, sin_dilatancy=dilatancy), 1e5, 0.05)
     return element.stress[YY] / element.stress[XX]
 
 
@@ -48,7 +48,7 @@ def biaxial_row() -> Measured:
 
 def dilation(dilatancy: float) -> float:
     """-dε_v/dγ of an element that fails in a biaxial test with ψ of that sine."""
-    _, rows = biaxial(Material(1e7, DENSITY, friction=PAPER, dilatancy=dilatancy), 1e5)
+    _, rows = biaxial(Material(1e7, DENSITY, sin_friction=PAPER, sin_dilatancy=dilatancy), 1e5)
     upright, across = rows[-1, :2] - rows[-11, :2]
     return float(-(upright + across) / (upright - across))
 
@@ -69,7 +69,7 @@ def dilation_row() -> Measured:
 
 def rest_ratio(modulus: str, yields: bool = True) -> float:
     """K0 of an element that is pressed and cannot widen."""
-    element = confined(Material(1e7, DENSITY, friction=PAPER, modulus=modulus, yields=yields))
+    element = confined(Material(1e7, DENSITY, sin_friction=PAPER, modulus=modulus, yields=yields))
     return element.stress[XX] / element.stress[YY]
 
 
@@ -149,10 +149,10 @@ def modulus_row() -> Measured:
 @functools.cache
 def rest(seconds: float, restless: float = 0.0) -> tuple[float, float]:
     """(largest displacement, m, fastest, m/s) of level ground 1 m deep, 20 particles, after ``seconds``."""
-    flow = column(1.0, 20, Material(STIFFNESS, DENSITY, POISSON, friction=PAPER), restless=restless)
+    flow = column(1.0, 20, Material(STIFFNESS, DENSITY, POISSON, sin_friction=PAPER), sound_diffusion=restless)
     first = flow.soil.x[: flow.soil.soil].copy()
     run_until(flow, seconds)
-    return float(np.hypot(*(flow.soil.x[: flow.soil.soil] - first).T).max()), flow.swiftest
+    return float(np.hypot(*(flow.soil.x[: flow.soil.soil] - first).T).max()), flow.max_speed
 
 
 HALF_ROW = DENSITY * GRAVITY * 0.025 / COLUMN  # m: weight of half a row of 0.05 m that 1 m of soil carries wrongly
@@ -180,12 +180,12 @@ def slope(degrees: float, seconds: float = 10.0, restless: float = 0.0) -> float
     lattice = square_lattice((0.0, 0.0), (width, base + height), spacing)
     top = base + np.clip((foot - lattice[:, 0]) * math.tan(math.radians(degrees)), 0.0, height)
     inside = lattice[:, 1] < top
-    material = Material(STIFFNESS, DENSITY, POISSON, friction=PAPER)
+    material = Material(STIFFNESS, DENSITY, POISSON, sin_friction=PAPER)
     stress = geostatic((top - lattice[:, 1])[inside], material, GRAVITY)
     braked = 0.5 * math.pi * math.sqrt(COLUMN / DENSITY) / height
     flow = in_tank(
         lattice[inside], stress, (width, 1.5), spacing, material,
-        gravity=GRAVITY, drag=braked, settle=1.0, restless=restless,
+        gravity=GRAVITY, drag=braked, settle=1.0, sound_diffusion=restless,
     )  # fmt: skip
     run_until(flow, 1.0)
     first = flow.soil.x[: flow.soil.soil].copy()
@@ -209,7 +209,7 @@ def slope_row() -> Measured:
 def layer(degrees: float, rows: int = 20, friction: float = PAPER) -> SoilFlow:
     """An endless layer 1 m deep on a slope, with the stress of rest."""
     tilt, spacing = math.radians(degrees), 1.0 / rows
-    material = Material(STIFFNESS, DENSITY, POISSON, friction=friction)
+    material = Material(STIFFNESS, DENSITY, POISSON, sin_friction=friction)
     x = square_lattice((0.0, 0.0), (8 * spacing, 1.0), spacing)
     stress = geostatic(1.0 - x[:, 1], material, GRAVITY * math.cos(tilt))
     return in_tank(x, stress, (8 * spacing, 2.0), spacing, material, gravity=GRAVITY, tilt=tilt, sides="none")
@@ -280,7 +280,14 @@ def kept(corrected: bool = True, seconds: float = 0.1, one_sided: bool = False) 
     """
     spacing = 0.1
     x = square_lattice((-0.5, -0.3), (0.5, 0.3), spacing)
-    flow = body(x, spacing, Material(1e7, DENSITY, yields=False), (3e3, 1e4, 2e3, 4e3), corrected=corrected, apart=0.0)
+    flow = body(
+        x,
+        spacing,
+        Material(1e7, DENSITY, yields=False),
+        (3e3, 1e4, 2e3, 4e3),
+        corrected=corrected,
+        spacing_recovery=0.0,
+    )
     soil = flow.soil
     soil.v[:, 0], soil.v[:, 1] = -20.0 * x[:, 1], 20.0 * x[:, 0]
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.build.soil_build import geostatic
+from continuum_sph.build.soil import geostatic
 from continuum_sph.soil import Material, SoilFlow
 from continuum_sph.soil.momentum import accelerate
 from continuum_sph.soil.state import GXX, GXY, GYX, GYY, VOLUME, XX, XY, YY
@@ -66,8 +66,8 @@ class Book:
         undamped = self.bare[0]
         accelerate(
             n, pairs.start, flow.split, pairs.partner, soil.record, soil.facing, soil.force, soil.stress, *self.bare,
-            law.smoothing.kind, law.smoothing.length, *law.gravity, 0.0, False, law.diffusion, 0.0, law.apart,
-            law.spacing, *pairs.period,
+            law.smoothing.kind, law.smoothing.length, *law.gravity, 0.0, False, law.diffusion, 0.0,
+            law.spacing_recovery, law.spacing, *pairs.period,
         )  # fmt: skip
         turned["stress"] += step * self.taken(0.5 * (before + soil.stress[:n]))
         pushed = float((mass * (soil.v[:n] * (undamped - lean)).sum(axis=1)).sum())
@@ -89,7 +89,7 @@ def column(rows: int = 10, stiffness: float = 1e6, viscosity: float | None = Non
     """A column of soil, 0.2 m by 0.1 m, that is let go;  viscosity : α c h of its damping, m²/s, or α as usual."""
     spacing = 0.1 / rows
     x = square_lattice((0.0, 0.0), (0.2, 0.1), spacing)
-    material = Material(stiffness, 2040.0, friction=math.sin(math.radians(21.9)))
+    material = Material(stiffness, 2040.0, sin_friction=math.sin(math.radians(21.9)))
     sound = math.sqrt(material.column_modulus / material.density)
     law: dict[str, Any] = {} if viscosity is None else {"damping": viscosity / (sound * RATIO * spacing)}
     return in_tank(x, geostatic(0.1 - x[:, 1], material), (0.5, 0.15), spacing, material, **law)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.build.soil_build import placed
+from continuum_sph.build.soil import placed
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
 from continuum_sph.water.smoothing import Smoothing
 from porescale.common.core.constants import GRAVITY
@@ -108,7 +108,7 @@ def bar_that_spins(pull: float, *, rows: int = 20, **law: Any) -> SoilFlow:
     """
     spacing = 1.0 / rows
     x = square_lattice((-0.5, -0.2), (0.5, 0.2), spacing)
-    material = Material(1e6, 1600.0, friction=0.0, cohesion=1e5, tension=1e5)
+    material = Material(1e6, 1600.0, sin_friction=0.0, cohesion_intercept=1e5, tension=1e5)
     stiff = material.stiffness / (1.0 - material.poisson**2)
     omega = math.sqrt(8.0 * pull * stiff / material.density)
     flow = body(x, spacing, material, (0.0, 0.0, 0.0, 0.0), **law)

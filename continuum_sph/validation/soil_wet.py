@@ -17,7 +17,7 @@ import functools
 import math
 from dataclasses import dataclass, replace
 
-from continuum_sph.build.soil_build import geostatic
+from continuum_sph.build.soil import geostatic
 from continuum_sph.seepage import Resistance, Seepage
 from continuum_sph.soil import Material, SoilFlow
 from continuum_sph.validation.seepage_trials import COLUMNS, GRAINS, WATER, discharge, permeated, water_in
@@ -71,7 +71,7 @@ class WetSlope:
         """Both layers, and the soil of them, at rest with the stress of the weight across."""
         spacing, tilt, n = 1.0 / self.rows, math.radians(self.degrees), self.porosity
         size = (COLUMNS * spacing, 2.0)
-        material = Material(self.stiffness, (1.0 - n) * GRAINS, friction=self.friction, porosity=n)
+        material = Material(self.stiffness, (1.0 - n) * GRAINS, sin_friction=self.friction, porosity=n)
         x = square_lattice((0.0, 0.0), (size[0], 1.0), spacing)
         across = GRAVITY * math.cos(tilt)
         # σ_xx = σ_yy is what shearing along the slope leads to: soil that is not there yet contracts and presses water.

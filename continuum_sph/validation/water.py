@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.build.build import flow_of
+from continuum_sph.build.water import water_flow
 from continuum_sph.validation import trials
 from continuum_sph.validation.exact import couette, poiseuille
 from continuum_sph.water.eos import Tait
@@ -79,7 +79,7 @@ def hydrostatic(seconds: float, gravity_assumed: float = GRAVITY, rows: int = 20
     scene = trials.column_scene(
         1.0 / rows, tank=(0.5, 1.2), column=(0.5, 1.0), artificial_viscosity=0.1, gradient="corrected"
     )
-    flow = trials.run_until(flow_of(scene), seconds)
+    flow = trials.run_until(water_flow(scene), seconds)
     layer, tait = flow.layer, flow.law.state
     assert isinstance(tait, Tait)
     exact = tait.pressure(tait.settled_density(1.0 - layer.x[: layer.fluid, 1], gravity_assumed))
@@ -283,7 +283,7 @@ def published_fronts() -> dict[str, Floats]:
 def computed_front(across: int) -> Floats:
     """Front of a column 1 m wide and 2 m high let go at once: (k, 2) of t √(2g/a) and front/a."""
     scene = trials.column_scene(1.0 / across, tank=(5.0, 3.0), column=(1.0, 2.0), pressure="released")
-    flow = flow_of(scene)
+    flow = water_flow(scene)
     scale, n, half = (2.0 * GRAVITY) ** 0.5, flow.layer.fluid, 0.5 / across
     found = [(0.0, 1.0)]
     while flow.time * scale < LATEST:

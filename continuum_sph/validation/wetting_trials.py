@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.build.instruments import Level, surface
+from continuum_sph.build.instruments import surface_height
+from continuum_sph.scene.instruments import LevelSection
 from continuum_sph.seepage import Reservoir, Seepage
 from continuum_sph.validation.levels import WATER, held_between, water_there
 from porescale.common.core.constants import GRAVITY
@@ -79,7 +80,9 @@ class Levee:
         """(places x, heights) of the wetting line, m, at every spacing from the water's edge on the slope on."""
         cloud = water_there(both, self.spacing, self.size[0])
         x = np.arange(self.basin + self.slope * self.level, self.basin + self.base, self.spacing)
-        return x, np.array([surface(Level(name="", x=place, breadth=4.0 * self.spacing), cloud) for place in x])
+        return x, np.array(
+            [surface_height(LevelSection(name="", x=place, breadth=4.0 * self.spacing), cloud) for place in x]
+        )
 
 
 def sag(x: Floats, heights: Floats, level: float) -> tuple[float, float]:

@@ -26,7 +26,7 @@ class Law:
 
     smoothing : kernel and h;  spacing : of the particles, m;  fluids : by the numbers that particles carry;
     gravity : (x, y) m/s²;  alpha, beta, softening : artificial viscosity;  diffusion : δ, and noise, what it takes for
-    noise (`density.NAMES`), calm, the speed (m/s) at which pairs close in noise that counts, 0: all does (`density`);
+    noise (`density.NAMES`), noise_speed (m/s) at which pairs close in noise that counts, 0: all does (`density`);
     xsph : ε;  shifting : s;  corrected : gradients of `correction`;  varied : h follows density (eq. 52);
     filter_every : steps between filters of density (eq. 27), 0 never;  sticky : no-slip walls;  images : walls of the
     paper (eqs 50, 51), else walls that take the pressure from the fluid;  tension : σ between two fluids, N/m;
@@ -42,7 +42,7 @@ class Law:
     softening: float = 0.01
     diffusion: float = 0.1
     noise: int = 1
-    calm: float = 0.0
+    noise_speed: float = 0.0
     xsph: float = 0.0
     shifting: float = 0.0
     corrected: bool = False

@@ -24,13 +24,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.errors import no_step
 from continuum_sph.water.density import LINEAR
 from continuum_sph.water.density_filter import filtered
 from continuum_sph.water.fluids import table
 from continuum_sph.water.image_walls import facing, show_walls, wall_rates
 from continuum_sph.water.kernel_correction import surroundings
 from continuum_sph.water.leapfrog import kick, kick_drift, pressurise
+from continuum_sph.water.no_step import no_step
 from continuum_sph.water.parameters import RULES, Law
 from continuum_sph.water.pressure_walls import load_walls
 from continuum_sph.water.rates import rates, split_rows
@@ -49,8 +49,8 @@ class Flow:
 
     step : steps done;  time, next_step : s;  last_steps : lengths (s) of the last step and the one before;
     limited : steps that each of `law.RULES` limited, rule : the one that limits the next;  stopped : times a particle
-    was stopped at a wall's surface, ``lower`` and ``upper`` (2,) m, infinite unless set;  pace : largest c/h, 1/s;
-    swiftest : largest speed, m/s.
+    was stopped at a wall's surface, ``lower`` and ``upper`` (2,) m, infinite unless set;  sound_rate : largest c/h,
+    1/s;  max_speed : m/s.
     """
 
     layer: Layer
@@ -63,8 +63,8 @@ class Flow:
     limited: list[int] = field(default_factory=lambda: [0, 0, 0, 0])
     rule: int = 0
     stopped: int = 0
-    pace: float = 0.0
-    swiftest: float = 0.0
+    sound_rate: float = 0.0
+    max_speed: float = 0.0
 
     def __post_init__(self) -> None:
         layer, count = self.layer, self.layer.count
@@ -121,7 +121,7 @@ class Flow:
         kind = None if law.xsph > 0.0 and law.smoothing.kind == WENDLAND else law.smoothing.kind
         self.numbers = (
             kind, h, law.gravity[0] or None, law.gravity[1], law.alpha, law.beta or None, law.softening,
-            2.0 * law.diffusion * h, law.calm, law.noise, cohesive, law.xsph or None, *self.period,
+            2.0 * law.diffusion * h, law.noise_speed, law.noise, cohesive, law.xsph or None, *self.period,
         )  # fmt: skip
 
     @property
@@ -139,7 +139,7 @@ class Flow:
             layer.facing[layer.fluid :] = facing(walls, tuple(self.lower), tuple(self.upper))
             self.wet_walls()
         speeds = np.hypot(layer.v[: layer.fluid, 0], layer.v[: layer.fluid, 1])
-        self.swiftest = float(speeds.max(initial=0.0))
+        self.max_speed = float(speeds.max(initial=0.0))
         layer.predicted[:] = layer.density
         self.evaluate(0.0, 0.0)
         layer.rate_before[:] = layer.rate
@@ -167,7 +167,7 @@ class Flow:
         )  # fmt: skip
         self.stopped += stopped
         if self.together:
-            self.pace = float(pace) ** 0.5
+            self.sound_rate = float(pace) ** 0.5
         layer.rate, layer.rate_before = layer.rate_before, layer.rate
         return ratio
 
@@ -204,7 +204,7 @@ class Flow:
             )  # fmt: skip
         if law.shifting > 0.0:
             quiet = QUIET * law.state.sound_speed if len(law.fluids) == 1 else 0.0
-            urge = max(0.0, self.swiftest - quiet)
+            urge = max(0.0, self.max_speed - quiet)
             shift(
                 *where, layer.material, self.table, layer.matrix, self.crowd, layer.drift, kind, h,
                 2.0 * h * law.shifting * urge, MOST * urge, *self.period,
@@ -229,7 +229,7 @@ class Flow:
             layer.x, layer.v, layer.mass, density, *self.of_fluids, self.law.cut, layer.pressure, layer.record,
             *self.of_pairs,
         )  # fmt: skip
-        self.pace = float(pace) ** 0.5
+        self.sound_rate = float(pace) ** 0.5
 
     def list_pairs(self) -> None:
         """Bring the list of pairs to where particles are."""
@@ -290,8 +290,8 @@ class Flow:
             layer.v, layer.acceleration, layer.density, layer.rate, *self.of_fluids[:2], self.of_pairs[1], self.table,
             *self.book, 0.5 * step, step,
         )  # fmt: skip
-        self.swiftest = float(swiftest) ** 0.5
-        limits = law.limits(float(hardest) ** 0.5, self.pace)
+        self.max_speed = float(swiftest) ** 0.5
+        limits = law.limits(float(hardest) ** 0.5, self.sound_rate)
         self.next_step = min(limits)
         self.rule = limits.index(self.next_step)
         if not 0.0 < self.next_step < np.inf:
@@ -323,7 +323,7 @@ class Flow:
             "limited": list(self.limited),
             "rule": self.rule,
             "stopped": self.stopped,
-            "swiftest": self.swiftest,
+            "swiftest": self.max_speed,
         }  # fmt: skip
 
     def restore(self, state: dict[str, Any]) -> None:
@@ -339,4 +339,4 @@ class Flow:
         first, second = state["last_steps"]
         self.last_steps = (first, second)
         self.limited, self.rule = list(state["limited"]), state["rule"]
-        self.stopped, self.swiftest = state["stopped"], state["swiftest"]
+        self.stopped, self.max_speed = state["stopped"], state["swiftest"]

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from porescale.benchmarks import dem_polygons as bench_segments
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.evidence.benchmarks import Benchmarks, Dtype, Work
@@ -17,7 +16,6 @@ from porescale.dem.grains import Grains
 from porescale.dem.prepare.settle import Pile, come_to_rest, prepare, weights_of
 
 BENCHMARKS = Benchmarks()
-BENCHMARKS.include(bench_segments.BENCHMARKS)
 
 SIZE = 10_000  # discs
 TILE = 1000  # most discs that are settled; larger piles are rows of copies, which must settle at their ends only

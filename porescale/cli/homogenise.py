@@ -80,7 +80,8 @@ def homogenise(
 
 def _specimen_file(folder: Path, text: str) -> Path:
     """The scene of the specimens in ``folder``; InputError where another one was begun there."""
-    from porescale.common.cli.folders import unusable, write_whole
+    from porescale.common.cli.folders import unusable
+    from porescale.common.core.atomic import write_text
 
     file = folder / SPECIMEN
     try:
@@ -89,7 +90,7 @@ def _specimen_file(folder: Path, text: str) -> Path:
             raise InputError(Fault("--out", str(folder), "holds specimens of another scene", repair=repair))
         folder.mkdir(parents=True, exist_ok=True)
         if not file.exists():
-            write_whole(file, text.encode())
+            write_text(file, text)
     except OSError as error:
         raise unusable(folder, "--out", error) from None
     return file
@@ -110,7 +111,7 @@ def _numbers(scene: Tables, ends: Sequence[Ended], cells: int) -> list[dict[str,
 def _pores(folder: Path, ratio: float, cells: int) -> dict[str, float]:
     """Numbers of the flow through the packing that a specimen starts with; kept beside it once they are measured."""
     from porescale.analysis.soil_pores import flow_numbers
-    from porescale.common.cli.folders import write_whole
+    from porescale.common.core.atomic import write_text
     from porescale.common.record.open_run import open_run
 
     kept, of = folder / PORES, {"lambda": ratio, "cells": cells}
@@ -124,7 +125,7 @@ def _pores(folder: Path, ratio: float, cells: int) -> dict[str, float]:
     side = float(run.card["scene"]["domain"]["width"])
     grains = run.snapshot(0).clouds["grains"]
     made = flow_numbers(grains.position, ratio * grains.data["radius"], side, cells)
-    write_whole(kept, json.dumps({"of": of, "numbers": made}, indent=1).encode())
+    write_text(kept, json.dumps({"of": of, "numbers": made}, indent=1))
     say(f"{folder.name}: K = {made['permeability']:.3g} m^2 at {made['cells']:.3g} cells")
     return made
 
@@ -143,7 +144,7 @@ def write(
     from porescale.analysis.material import NAME, UNITS, known, tables, text
     from porescale.build.initial.contact_laws import density_of
     from porescale.cli.homogenise_picture import picture
-    from porescale.common.cli.folders import write_whole
+    from porescale.common.evidence.files import write_files
     from porescale.common.record.series import read_series
     from porescale.common.studies.sweep_files import csv_text
     from porescale.demseg.convert import toml
@@ -154,12 +155,11 @@ def write(
     lines = [
         {"seed": seed, **{titles[name]: row[name] for name in titles}} for seed, row in zip(seeds, rows, strict=True)
     ]
-    write_whole(folder / "homogenise.csv", csv_text(lines).encode())
     tests = [curves(read_series(ended.folder / "series.csv")) for ended in ends]
-    write_whole(folder / "homogenise.png", picture(tests, found))
     made = about(scene, command, ends, rows, seeds)
     whole = tables(found, density_of(scene, packing_of(scene).material), pressure_of(scene), made)
-    write_whole(folder / NAME, (HEAD + toml(whole)).encode())
+    material = HEAD + toml(whole)
+    write_files(folder, {"homogenise.csv": csv_text(lines), "homogenise.png": picture(tests, found), NAME: material})
     warned = [f"warning: {problem}" for problem in made["doubts"]]
     return "\n".join([text(found), *warned, f"{folder / NAME}, homogenise.csv, homogenise.png"])
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from porescale.analysis.biaxial import running
 from porescale.analysis.material import Known
+from porescale.common.evidence.files import new_figure, png
 from porescale.dem.prepare.compaction import Array
 
 EVERY = 5
@@ -19,11 +19,7 @@ BARS = ("peak friction angle", "peak dilatancy angle", "critical friction angle"
 
 def picture(tests: Sequence[Mapping[str, Array]], found: Mapping[str, Known]) -> bytes:
     """Friction angle and volume over strain of every packing, and numbers over their means, as a PNG."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(12.0, 3.6), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(12.0, 3.6)
     left, middle, right = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 1.2))
     for test in tests:
         angle = np.degrees(np.arcsin(running(test["strain"], test["sine"])[0]))
@@ -45,9 +41,7 @@ def picture(tests: Sequence[Mapping[str, Array]], found: Mapping[str, Known]) ->
     right.set_yticks(range(len(names)), [f"{name}\n{_shown(found[name])}" for name in names], fontsize=7)
     right.invert_yaxis()
     right.set_xlabel("of the mean; dots: packings, bars: standard error")
-    out = io.BytesIO()
-    figure.savefig(out, dpi=100, metadata={"Software": None})
-    return out.getvalue()
+    return png(figure, 100)
 
 
 def _shown(it: Known) -> str:

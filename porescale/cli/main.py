@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from cyclopts import App
 
-from porescale.cli import bench, check, demseg, homogenise, new, piv, run, show, study, verify
+from porescale.cli import check, demseg, homogenise, new, piv, run, show
 from porescale.common.cli import application
 from porescale.common.cli.package import Package
 from porescale.common.core.version import VERSION
+from porescale.common.evidence.register import discovered
+
+BENCHMARKS = "porescale.benchmarks"
 
 PACKAGE = Package(
     name="porescale",
@@ -20,14 +25,15 @@ PACKAGE = Package(
     report=check.report,
     show=show.show,
     table=run.table,
-    validations=verify.validations,
-    benchmarks=bench.benchmarks,
-    stability=study.stability,
-    endurance=study.endurance,
-    parts=study.parts,
+    validations=discovered("porescale.validation", "VALIDATIONS"),
+    benchmarks=discovered(BENCHMARKS, "BENCHMARKS"),
+    case=Path(__file__).resolve().parents[2] / "cases" / "column_collapse",
+    stability=discovered(BENCHMARKS, "STABILITY"),
+    endurance=discovered(BENCHMARKS, "ENDURANCES"),
+    parts=discovered(BENCHMARKS, "KINDS"),
     judge=run.judge,
     also={demseg.PACKAGE: demseg.show},
-    features=study.features,
+    features=run.features,
 )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -81,3 +82,10 @@ def table(folder: Path, name: str) -> dict[str, Array]:
     from porescale.common.record.series import read_series
 
     return read_series(folder / f"{name}.csv")
+
+
+def features() -> Mapping[str, Callable[[Path, float | None], Array]]:
+    """What a trade study may read of a run besides its tables."""
+    from porescale.analysis.features import FEATURES
+
+    return FEATURES

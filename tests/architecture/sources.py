@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+from tests.reference.folders import ROOT
+
 PACKAGES = ("porescale", "continuum_sph")
 KERNELS = {"kernel", "parallel_kernel", "inline", "by_law"}
 

@@ -1,7 +1,12 @@
-"""The README keeps up: it has every validation, command and case that there is, none that is not, and no dead link."""
+"""The pages keep up: every validation, command and case stands in them, none that is not there, and no dead link.
+
+The README is short: what leaves it goes to docs.
+"""
 
 from __future__ import annotations
 
+import ast
+import importlib
 import re
 import runpy
 import subprocess
@@ -16,17 +21,27 @@ from porescale.cli.main import PACKAGE as PORESCALE
 from porescale.cli.main import commands
 from porescale.common.cli.application import application
 from porescale.common.evidence.validations import Validation, Validations
+from porescale.common.schema.sections import load
 from tests.architecture.sources import ROOT
 
-README = (ROOT / "README.md").read_text(encoding="utf-8")
-WRITER = runpy.run_path(str(ROOT / ".ci" / "readme"))
+
+def page(name: str) -> str:
+    """The text of a page."""
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+README, COMMANDS, VALIDATIONS = page("README.md"), page("docs/commands.md"), page("docs/validations.md")
+PAGES = ("README.md", "CONTRIBUTING.md", *(f"docs/{path.name}" for path in sorted((ROOT / "docs").glob("*.md"))))
+MOST_BYTES, MOST_LINES = 8192, 150
+"""What a README may have at most: one that is read in a few minutes."""
+WRITER = runpy.run_path(str(ROOT / ".ci" / "tables"))
 PACKAGES = {"porescale": PORESCALE, "continuum_sph": CONTINUUM}
 LINK = re.compile(r"!?\[[^\]]*\]\(([^()\s]+)\)")
 FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
 
 
 def behind(text: str, package: str, known: Iterable[Validation]) -> list[str]:
-    """What a README's table of validations lacks, has too much or states otherwise: names, sources, tolerances."""
+    """What a page's table of validations lacks, has too much or states otherwise: names, sources, tolerances."""
     lines = WRITER["block"](text, f"{package} verify")
     stands = {name for name in lines if name != "validation"}
     known = list(known)
@@ -41,7 +56,7 @@ def behind(text: str, package: str, known: Iterable[Validation]) -> list[str]:
 
 @pytest.mark.parametrize("package", PACKAGES)
 def test_every_validation_stands_in_the_table(package: str) -> None:
-    assert behind(README, package, PACKAGES[package].validations()) == []  # else: .ci/readme verify new
+    assert behind(VALIDATIONS, package, PACKAGES[package].validations()) == []  # else: .ci/tables verify new
 
 
 def validation(name: str, tolerance: float = 0.5) -> Validation:
@@ -90,12 +105,23 @@ def unknown_commands(text: str) -> list[str]:
     return found
 
 
-def test_every_command_is_named_and_every_one_named_is_there() -> None:
-    assert unknown_commands(README) == []
+def unnamed_commands(text: str) -> list[str]:
+    """Commands of porescale that a text does not name."""
     ours = {name for name in KNOWN if name.startswith("porescale ")}
     outer = {name for name in ours if any(other.startswith(f"{name} ") for other in ours)}
     last = {name: f"`… {name.rpartition(' ')[2]}" for name in ours - outer}
-    assert [name for name in sorted(last) if f"`{name}" not in README and last[name] not in README] == []
+    return [name for name in sorted(last) if f"`{name}" not in text and last[name] not in text]
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_every_command_that_is_named_is_there(name: str) -> None:
+    assert unknown_commands(page(name)) == []
+
+
+def test_every_command_is_named() -> None:
+    assert unnamed_commands(COMMANDS) == []
+    # The check that must fail: a page that lost a command.
+    assert unnamed_commands(COMMANDS.replace("`porescale sweep ", "`porescale weep ")) == ["porescale sweep"]
 
 
 def test_a_command_that_is_not_there_is_found() -> None:
@@ -142,16 +168,86 @@ def test_links_lead_somewhere() -> None:
     assert {page: links for page, links in dead.items() if links} == {}
 
 
+PATH = re.compile(r"(?<![\w/.-])(?:porescale|continuum_sph|cases|docs|tests|\.ci)/[\w./-]*\w")
+MODULE = re.compile(r"`((?:porescale|continuum_sph|tests)(?:\.[a-z_0-9]+)+)")
+PLACEHOLDER = re.compile(r"[A-Z]{3,}")
+
+
+def missing_files(text: str) -> list[str]:
+    """Files and modules that a text names and the project does not have, but for links; NAME stands for any."""
+    paths = [path for path in PATH.findall(LINK.sub("", text)) if not PLACEHOLDER.search(path)]
+    found = [path for path in paths if not (ROOT / path).exists()]
+    for name in MODULE.findall(text):
+        module = ROOT / name.replace(".", "/")
+        places = (module, module.with_suffix(".py"), module.parent.with_suffix(".py"))  # the last: a name in a module
+        if not any(place.exists() for place in places):
+            found.append(name)
+    return found
+
+
+def test_files_that_are_named_are_there() -> None:
+    pages = [path for path in texts() if path.name != "CHANGELOG.md"]  # which names what was
+    lost = {str(path.relative_to(ROOT)): missing_files(path.read_text(encoding="utf-8")) for path in pages}
+    assert {path: names for path, names in lost.items() if names} == {}
+
+
+def test_a_file_that_is_gone_is_found() -> None:
+    assert missing_files("`porescale/lbm/fluid.py`, cases/rock, cases/NAME/NAME.py, `tests.reference.dem`") == []
+    assert missing_files("see porescale/gone.py and `porescale.lbm.gone`") == [
+        "porescale/gone.py",
+        "porescale.lbm.gone",
+    ]
+    assert missing_files("`porescale.lbm.fluid.Fluid`") == []
+
+
 @pytest.mark.parametrize("link", ["cases/none", "cases#none", "#none", "../elsewhere"])
 def test_a_dead_link_is_found(link: str) -> None:
     assert dead_links(ROOT / "README.md", f"# Some words, `x`\n[a]({link}) [b](#some-words-x) [c](cases)") == [link]
 
 
-def test_every_case_is_linked_and_maps_are_shown() -> None:
-    linked = LINK.findall(README)
+def too_long(text: str) -> bool:
+    """Whether a README has more bytes or lines than are read."""
+    return len(text.encode()) > MOST_BYTES or len(text.splitlines()) > MOST_LINES
+
+
+def test_the_readme_is_short() -> None:
+    assert not too_long(README)
+    # The checks that must fail: a byte and a line too many.
+    assert too_long("ü" * (MOST_BYTES // 2) + "x")
+    assert too_long("x\n" * (MOST_LINES + 1))
+    assert not too_long("x\n" * MOST_LINES)
+
+
+def targets(name: str) -> set[str]:
+    """What a page links to, as paths from the root."""
+    found = (target.partition("#")[0] for target in LINK.findall(FENCE.sub("", page(name))))
+    inside = [((ROOT / name).parent / path).resolve() for path in found if path and ":" not in path]
+    return {path.relative_to(ROOT).as_posix() for path in inside if path.is_relative_to(ROOT)}
+
+
+def test_every_page_case_and_study_is_linked() -> None:
     cases = {path.parent.relative_to(ROOT).as_posix() for path in (ROOT / "cases").glob("*/README.md")}
-    assert cases - set(linked) == set()
-    shown = set(re.findall(r"!\[[^\]]+\]\(([^()\s]+)\)", README))
-    assert {"docs/stability/stability.png", "docs/extremes/extremes.png"} <= shown
-    studies = {path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").iterdir()}
-    assert {study for study in studies if not any(link.startswith(study) for link in linked)} == set()
+    assert cases - targets("docs/cases.md") == set()
+    pages = {path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").glob("*.md")} - {"docs/README.md"}
+    assert pages - targets("README.md") == set()
+    assert pages - targets("docs/README.md") == set()
+    linked = set().union(*map(targets, PAGES))
+    assert {"docs/stability/stability.png", "docs/extremes/extremes.png"} <= linked
+    studies = {path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").iterdir() if path.is_dir()}
+    assert {study for study in studies if not any(link.startswith(f"{study}/") for link in linked)} == set()
+
+
+FENCED = re.compile(r"^```(python|toml)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_what_pages_quote_is_right(name: str, tmp_path: Path) -> None:
+    for kind, text in FENCED.findall(page(name)):
+        if kind == "python":
+            tree = ast.parse(text)
+            for node in (node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)):
+                public = importlib.import_module(node.module or "")
+                assert [alias.name for alias in node.names if not hasattr(public, alias.name)] == []
+        else:
+            (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
+            assert load(tmp_path, PORESCALE.scene())

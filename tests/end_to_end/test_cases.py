@@ -16,8 +16,8 @@ from porescale.cli.main import PACKAGE as PORESCALE
 from porescale.common.cli.application import application, main
 from porescale.common.cli.package import Package
 from porescale.common.studies.quantities import Columns, measured
+from tests.reference.folders import CASES
 
-CASES = Path(__file__).resolve().parents[2] / "cases"
 FILES = sorted(path for path in CASES.glob("*/expected.toml") if (path.parent / "scene.toml").exists())
 """Of cases that are scenes; those that are scripts have test_dem_cases.py."""
 KEYS = {"name", "column", "at", "value", "tolerance", "unit", "because"}

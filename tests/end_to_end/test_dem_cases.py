@@ -7,15 +7,14 @@ import math
 import re
 import sys
 from dataclasses import replace
-from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
 
 from porescale.output.case import conclude, expected, missed, stage
+from tests.reference.folders import CASES
 
-CASES = Path(__file__).resolve().parents[2] / "cases"
 SCRIPTS = sorted(path.stem for path in CASES.glob("*/*.py") if path.stem == path.parent.name)
 KEYS = {"name", "value", "tolerance", "unit", "because"}
 

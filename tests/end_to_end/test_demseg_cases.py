@@ -6,7 +6,6 @@ import importlib.util
 import math
 import sys
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -14,8 +13,8 @@ from porescale.demseg.build import Options
 from porescale.demseg.deck import GM, NEW, read_deck
 from porescale.demseg.trace import finer, first_touch, trace, unbalanced
 from porescale.output.case import expected, missed
+from tests.reference.folders import CASES
 
-CASES = Path(__file__).resolve().parents[2] / "cases"
 DECKS = sorted(path.parent for path in CASES.glob(f"demseg_*/**/{GM}"))
 FAST = ("disc", "clump", "segment", "triangle", "control", "chain")
 

@@ -16,11 +16,11 @@ from porescale.build.simulation import Simulation
 from porescale.common.core.errors import Unstable
 from porescale.common.record.checkpoint import read_checkpoint
 from porescale.lbm.sanity import SOUND, WORST_MACH
+from tests.reference.folders import ROOT
 from tests.reference.same_run import differences
 from tests.reference.scenes import COLUMN, grain, table, write
 from tests.reference.waiting import done
 
-ROOT = Path(__file__).resolve().parents[2]
 TABLE1 = ROOT / "cases" / "column_collapse_table1"
 
 

@@ -34,8 +34,8 @@ FAULTS = {
     "tank": [("flow.layer.v", (AT, 0), NAN, "velocity"), ("flow.layer.density", AT, -1.0, "density")],
     "soil": [("flow.soil.stress", (AT, 1), INF, "stress"), ("flow.soil.x", (AT, 1), 3.0, "way since the last look")],
     "bubble": [("flow.layer.v", (AT, 0), INF, "velocity"), ("flow.layer.density", AT, 0.0, "density")],
-    "air": [("both.water.layer.density", -1, -1.0, "density"), ("both.water.layer.density", -1, NAN, "density"),
-            ("soil.flow.soil.stress", (AT, 2), NAN, "stress")],
+    "air": [("flow.water.layer.density", -1, -1.0, "density"), ("flow.water.layer.density", -1, NAN, "density"),
+            ("flow.ground.soil.stress", (AT, 2), NAN, "stress")],
 }  # fmt: skip
 """By scene: array, index, value, and the quantity that is named."""
 CASES = [

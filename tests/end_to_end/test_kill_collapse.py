@@ -14,11 +14,11 @@ import numpy as np
 
 from porescale import build, load, open_run
 from porescale.common.record.checkpoint import read_checkpoint
+from tests.reference.folders import ROOT
 from tests.reference.same_run import contents, differences, state_of
 from tests.reference.scenes import STEPS
 from tests.reference.waiting import done, kill, running, talked, until
 
-ROOT = Path(__file__).resolve().parents[2]
 KILLED = """
 import os, signal, sys
 from porescale.cli.main import main

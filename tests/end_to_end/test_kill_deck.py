@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import signal
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from tests.reference import decks
+from tests.reference.folders import ROOT
 from tests.reference.same_run import differences
 from tests.reference.waiting import done
 
-ROOT = Path(__file__).resolve().parents[2]
 CHILD = """
 import os, signal, sys
 from porescale.cli import demseg

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import signal
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from porescale.common.record.open_run import open_run
 from porescale.common.record.series import read_series
+from tests.reference.folders import ROOT
 from tests.reference.same_run import differences
 from tests.reference.scenes import write
 from tests.reference.waiting import done
 
-ROOT = Path(__file__).resolve().parents[2]
 CHILD = """
 import os, signal, sys
 from porescale.cli.main import main

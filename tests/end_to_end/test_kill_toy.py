@@ -14,11 +14,10 @@ import pytest
 
 from porescale.common.record.checkpoint import read_checkpoint
 from porescale.common.record.open_run import open_run
+from tests.reference.folders import ROOT
 from tests.reference.same_run import contents
 from tests.reference.toy_model import run_toy
 from tests.reference.waiting import done, kill, running, talked, until
-
-ROOT = Path(__file__).resolve().parents[2]
 
 
 def words(folder: Path, *options: str) -> list[str]:

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.reference.folders import ROOT
 from tests.reference.killing import COLD_PATIENCE, SCENES
 from tests.reference.waiting import done
 
-ROOT = Path(__file__).resolve().parents[2]
 SEED = int(os.environ.get("PORESCALE_SEED", datetime.date.today().toordinal()))
 """Of the dice; it also chooses the scene."""
 

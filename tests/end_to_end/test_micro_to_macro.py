@@ -6,7 +6,6 @@ import importlib.util
 import math
 import sys
 import tomllib
-from pathlib import Path
 from types import ModuleType
 
 import pytest
@@ -14,8 +13,9 @@ import pytest
 from porescale import load
 from porescale.analysis.homogenise import asked_of, packing_of, pressure_of, stiffness_over_pressure
 from porescale.output.case import expected
+from tests.reference.folders import ROOT
 
-CASE = Path(__file__).resolve().parents[2] / "cases" / "micro_to_macro"
+CASE = ROOT / "cases" / "micro_to_macro"
 
 
 @pytest.fixture(scope="module")

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import importlib.util
-from pathlib import Path
 
 import pytest
 
 from porescale.output.case import expected
+from tests.reference.folders import ROOT
 
-CASE = Path(__file__).resolve().parents[2] / "cases" / "piv_synthetic"
+CASE = ROOT / "cases" / "piv_synthetic"
 
 
 @pytest.fixture(scope="module")

@@ -15,8 +15,7 @@ from porescale.common.schema.sections import open_scene
 from porescale.output.case import expected, missed
 from porescale.piv.fields.field import Field
 from porescale.piv.images.synth import Camera
-
-CASES = Path(__file__).resolve().parents[2] / "cases"
+from tests.reference.folders import CASES
 
 
 def script(case, name=None):

@@ -6,7 +6,6 @@ import csv
 import json
 import os
 import subprocess
-from pathlib import Path
 
 import av
 import cv2
@@ -17,6 +16,7 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 
 from porescale import build, load, open_run
 from porescale.common.record.checkpoint import read_checkpoint
+from tests.reference.folders import ROOT
 from tests.reference.same_run import differences, leaves
 from tests.reference.scenes import COLUMN, STEPS
 
@@ -45,7 +45,7 @@ def test_the_card_says_what_was_run_with_what_and_how_it_ended(folder, scene):
     assert card["scene_file"] == str(scene.resolve())
     assert {"python", "porescale", "numpy", "numba", "h5py"} <= card["versions"].keys()
     assert card["machine"]["cores"] >= 1
-    root = Path(__file__).resolve().parents[2]
+    root = ROOT
     if (root / ".git").exists():
         said = subprocess.run(["git", "-C", root, "rev-parse", "HEAD"], capture_output=True, text=True, check=True)
         assert len(card["commit"]["hash"]) == len(said.stdout.strip())

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from continuum_sph.build.model import Simulation as Continuum
+from continuum_sph.build.simulation import Simulation as Continuum
 from continuum_sph.scene.sections import Scene as Tank
 from porescale import build
 from porescale.build.simulation import Simulation

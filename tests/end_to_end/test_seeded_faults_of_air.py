@@ -3,51 +3,51 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 
-from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.build.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import POROSITY
 from porescale.common.schema.sections import load
+from tests.reference.folders import ROOT
 from tests.reference.seeded import INF, NAN, Running, crowd, put, running, step, times
 
 pytestmark = pytest.mark.slow
-CASE = Path(__file__).resolve().parents[2] / "cases" / "trapped_air"
-SAND, WATER = "soil.flow.soil.", "both.water.layer."
+CASE = ROOT / "cases" / "trapped_air"
+SAND, WATER = "flow.ground.soil.", "flow.water.layer."
 BOOKED = ("output.energy=true",)
 
 
 @pytest.fixture(scope="module")
 def sinking() -> Running:
     """Water that sinks into soil full of air."""
-    return running(SeepageSimulation(load(CASE, Scene, overrides=BOOKED)), 100)
+    return running(Simulation(load(CASE, Scene, overrides=BOOKED)), 100)
 
 
-def air(simulation: SeepageSimulation) -> list[int]:
+def air(simulation: Simulation) -> list[int]:
     """Particles of air."""
-    layer = simulation.both.water.layer
+    layer = simulation.flow.water.layer
     return [int(k) for k in (layer.material[: layer.fluid] == 1).nonzero()[0]]
 
 
-def at(name: str, index: tuple[int, ...], value: float) -> Callable[[SeepageSimulation], None]:
+def at(name: str, index: tuple[int, ...], value: float) -> Callable[[Simulation], None]:
     """Writes ``value`` into an array of the layer, of one particle of air."""
     return put(f"{WATER}{name}", lambda simulation: (one(simulation), *index), value)
 
 
-def one(simulation: SeepageSimulation) -> int:
+def one(simulation: Simulation) -> int:
     """The particle of air in the middle of the list."""
     own = air(simulation)
     return own[len(own) // 2]
 
 
-def lost(simulation: SeepageSimulation) -> None:
+def lost(simulation: Simulation) -> None:
     """Nobody knows how much room there is about a particle of air."""
-    simulation.both.water.pores[POROSITY, air(simulation)[0]] = NAN
+    simulation.flow.water.pores[POROSITY, air(simulation)[0]] = NAN
 
 
-FAULTS: dict[str, Callable[[SeepageSimulation], None]] = {
+FAULTS: dict[str, Callable[[Simulation], None]] = {
     **{f"air {name} {value:g}": at(name, index, value) for name, index, value in (
         ("x", (0,), NAN), ("x", (1,), INF), ("v", (0,), NAN), ("v", (1,), INF), ("v", (0,), 1e3), ("v", (1,), -1e4),
         ("density", (), NAN), ("density", (), INF), ("density", (), 0.0), ("density", (), -1.0), ("density", (), 5e3),

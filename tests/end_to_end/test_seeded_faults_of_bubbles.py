@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from continuum_sph.build.model import Simulation
+from continuum_sph.build.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from porescale.common.schema.sections import load
+from tests.reference.folders import CASES
 from tests.reference.seeded import INF, NAN, Running, crowd, put, running, step, times
 
 pytestmark = pytest.mark.slow
-CASES = Path(__file__).resolve().parents[2] / "cases"
 COARSE = {
     "bubble_in_water": ("numerics.spacing=0.02", "output.energy=true"),
     "rising_bubble": ("numerics.spacing=0.0625", "output.energy=true"),

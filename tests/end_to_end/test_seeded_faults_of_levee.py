@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from continuum_sph.build.seepage_model import SeepageSimulation
+from continuum_sph.build.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import POROSITY
 from continuum_sph.validation.levee import Levee
@@ -21,36 +21,36 @@ def levee() -> Running:
     """A saturated levee between a river and land that drains."""
     table = Levee(rows=8).table()
     table["output"]["energy"] = True
-    return running(SeepageSimulation(Scene.model_validate(table)), 60)
+    return running(Simulation(Scene.model_validate(table)), 60)
 
 
-def level(value: float) -> Callable[[SeepageSimulation], None]:
+def level(value: float) -> Callable[[Simulation], None]:
     """The river stands at ``value``, m, it says."""
 
-    def fault(simulation: SeepageSimulation) -> None:
-        assert simulation.both.supply
-        simulation.both.supply.reservoirs[0].level = value
+    def fault(simulation: Simulation) -> None:
+        assert simulation.flow.supply
+        simulation.flow.supply.reservoirs[0].level = value
 
     return fault
 
 
-def flood(simulation: SeepageSimulation) -> None:
+def flood(simulation: Simulation) -> None:
     """The river is to rise over the tank."""
-    assert simulation.both.supply
-    simulation.both.supply.reservoirs[0].levels[:] = 5.0
+    assert simulation.flow.supply
+    simulation.flow.supply.reservoirs[0].levels[:] = 5.0
 
 
-def crowd(simulation: SeepageSimulation) -> None:
+def crowd(simulation: Simulation) -> None:
     """Twenty particles of soil in one place."""
-    soil = simulation.soil.flow.soil
+    soil = simulation.flow.ground.soil
     soil.x[40:60] = soil.x[40]
 
 
-def inside(count: int) -> Callable[[SeepageSimulation], None]:
+def inside(count: int) -> Callable[[Simulation], None]:
     """So many particles of water in the soil are thrown out over the levee, the tank, or beneath its floor."""
 
-    def fault(simulation: SeepageSimulation) -> None:
-        flow = simulation.both.water
+    def fault(simulation: Simulation) -> None:
+        flow = simulation.flow.water
         wet = np.flatnonzero((flow.porosity < 1.0) & (flow.layer.mass[: flow.layer.fluid] > 0.0))
         flow.layer.x[wet[:count]] += (0.0, 1.2)
 
@@ -59,8 +59,8 @@ def inside(count: int) -> Callable[[SeepageSimulation], None]:
 
 LEVELS = np.array([row[1] for row in Levee(rows=8).table()["reservoir"][0]["rise"]])
 """Of the river."""
-SOIL, WATER = "soil.flow.soil.", "both.water.layer."
-FAULTS: dict[str, Callable[[SeepageSimulation], None]] = {
+SOIL, WATER = "flow.ground.soil.", "flow.water.layer."
+FAULTS: dict[str, Callable[[Simulation], None]] = {
     **{f"soil stress {k} nan": put(f"{SOIL}stress", (50, k), NAN) for k in range(4)},
     "soil stress inf": put(f"{SOIL}stress", (50, 1), INF),
     **{f"soil {name} {value:g}": put(f"{SOIL}{name}", at, value) for name, at, value in (
@@ -79,21 +79,21 @@ FAULTS: dict[str, Callable[[SeepageSimulation], None]] = {
     **{f"water {name} {value:g}": put(f"{WATER}{name}", at, value) for name, at, value in (
         ("x", (20, 0), NAN), ("v", (20, 0), 1e3), ("density", 20, NAN), ("density", 20, 5e3), ("mass", 20, NAN),
         ("pressure", 20, NAN), ("energy", (20, 0), NAN))},
-    "porosity about water nan": put("both.water.pores", (POROSITY, 20), NAN),
-    "porosity about water gone": put("both.water.pores", (POROSITY, 20), -0.2),
-    "heat of drag nan": put("both.water.heat", 20, NAN),
-    "slip nan": put("both.water.slip", (20, 0), NAN),
+    "porosity about water nan": put("flow.water.pores", (POROSITY, 20), NAN),
+    "porosity about water gone": put("flow.water.pores", (POROSITY, 20), -0.2),
+    "heat of drag nan": put("flow.water.heat", 20, NAN),
+    "slip nan": put("flow.water.slip", (20, 0), NAN),
     "river beyond the tank": level(5.0),
     "river nowhere": level(NAN),
     "river that rises over the tank": flood,
 }  # fmt: skip
 
 
-def heal(simulation: SeepageSimulation) -> None:
+def heal(simulation: Simulation) -> None:
     """Put right what no state holds."""
-    assert simulation.both.supply
-    simulation.both.supply.reservoirs[0].levels[:] = LEVELS
-    simulation.both.water.slip[:] = 0.0
+    assert simulation.flow.supply
+    simulation.flow.supply.reservoirs[0].levels[:] = LEVELS
+    simulation.flow.water.slip[:] = 0.0
 
 
 @pytest.mark.parametrize("name", FAULTS)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from continuum_sph.build.soil_model import SoilSimulation
+from continuum_sph.build.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from tests.reference.programs import SOIL
 from tests.reference.seeded import INF, NAN, Running, crowd, put, running, step, times
@@ -19,17 +19,17 @@ AT = 50
 @pytest.fixture(scope="module")
 def sliding() -> Running:
     """A pile of sand that runs out."""
-    return running(SoilSimulation(Scene.model_validate(SOIL)), 100)
+    return running(Simulation(Scene.model_validate(SOIL)), 100)
 
 
-def near(simulation: SoilSimulation) -> None:
+def near(simulation: Simulation) -> None:
     """Particles of soil are drawn to a tenth of the distance that they have from one of them."""
     x = simulation.flow.soil.x
     x[40:60] = x[AT] + 0.1 * (x[40:60] - x[AT])
 
 
 SAND = "flow.soil."
-FAULTS: dict[str, Callable[[SoilSimulation], None]] = {
+FAULTS: dict[str, Callable[[Simulation], None]] = {
     **{f"{name} {value:g}": put(f"{SAND}{name}", at, value) for name, at, value in (
         ("x", (AT, 0), NAN), ("x", (AT, 1), INF), ("v", (AT, 0), NAN), ("v", (AT, 1), INF), ("v", (AT, 0), 1e3),
         ("v", (AT, 1), -1e4), ("density", AT, NAN), ("density", AT, INF), ("density", AT, 0.0), ("density", AT, -1.0),

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from porescale.common.record.checkpoint import read_checkpoint, read_header, write_checkpoint
+from tests.reference.folders import ROOT
 from tests.reference.programs import KINDS, Program, program
 from tests.reference.same_run import differences
 from tests.reference.spoiled import renumbered
@@ -21,7 +22,7 @@ from tests.reference.spoiled import renumbered
 OTHERS = {"column": "tank", "asleep": "column", "framed": "tank", "tank": None, "seeping": "tank", "soil": "tank",
           "bubble": "tank", "air": "seeping"}  # fmt: skip
 """Whose checkpoint each is given: another program's, or another model's of the same one; None: that of the kept run."""
-KEPT = Path(__file__).resolve().parents[1] / "samples" / "run_format_1.tar.xz"
+KEPT = ROOT / "tests" / "samples" / "run_format_1.tar.xz"
 NAMES = ["tank", *(pytest.param(name, marks=pytest.mark.slow) for name in KINDS if name != "tank")]
 """Quick is what has few kernels, which other tests compile anyway."""
 

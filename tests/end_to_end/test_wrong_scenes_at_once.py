@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import shutil
 import sys
-from pathlib import Path
 
 import pytest
 
+from tests.reference.folders import ROOT
 from tests.reference.waiting import done
 
-ROOT = Path(__file__).resolve().parents[2]
 FIRST = {
     "porescale": "from porescale.cli.main import commands as app",
     "continuum_sph": "from continuum_sph.cli import PACKAGE\n"

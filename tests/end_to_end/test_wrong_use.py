@@ -10,10 +10,11 @@ import pytest
 from continuum_sph.cli import PACKAGE as CONTINUUM
 from porescale.cli.main import commands
 from porescale.common.cli.application import application, main
+from tests.reference.folders import ROOT
 from tests.reference.programs import SOIL
 from tests.reference.scenes import COLUMN, write
 
-CASE = str(Path(__file__).resolve().parents[2] / "cases" / "column_collapse")
+CASE = str(ROOT / "cases" / "column_collapse")
 WRONG: dict[tuple[str, ...], str] = {
     # the other program's scenes and commands
     ("porescale", "check", "soil.toml"): "tank: is a section of scenes of continuum-sph; continuum-sph check soil.toml",

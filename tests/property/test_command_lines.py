@@ -16,9 +16,9 @@ from porescale.cli.main import commands
 from porescale.common.cli.application import application, main
 from porescale.common.compiled import jit
 from tests.reference.command_lines import Line, made
+from tests.reference.folders import ROOT
 from tests.reference.waiting import done
 
-ROOT = Path(__file__).resolve().parents[2]
 LINES = int(os.environ.get("PORESCALE_LINES", "40"))
 """How many lines the quick test tries; ten times as many in the slow one, and a share of them as processes."""
 PATIENCE = 120

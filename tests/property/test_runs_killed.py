@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.reference.folders import ROOT
 from tests.reference.same_run import differences
 from tests.reference.waiting import done
 
-ROOT = Path(__file__).resolve().parents[2]
 KILLS = int(os.environ.get("PORESCALE_KILLS", "100"))
 """At moments of the clock; those at calls to the disk come on top, two for each of some two hundred."""
 

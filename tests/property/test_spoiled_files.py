@@ -29,11 +29,11 @@ from porescale.piv.fields.field import read as read_field
 from porescale.piv.images.film import open_film, picture
 from porescale.scene.circles import Circles
 from tests.reference import grounds
+from tests.reference.folders import CASES
 from tests.reference.pictures import photograph
 from tests.reference.spoiled import spoiled
 from tests.reference.toy_model import run_toy
 
-CASES = Path(__file__).resolve().parents[2] / "cases"
 TIMES = int(os.environ.get("PORESCALE_SPOILED", "25"))
 """How often each file is spoilt in the quick test; forty times as often in the slow one."""
 

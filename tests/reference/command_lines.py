@@ -16,11 +16,10 @@ import numpy as np
 
 from porescale.common.pictures.film import write_film
 from tests.reference import grounds
+from tests.reference.folders import CASES, ROOT
 from tests.reference.pictures import photograph
 from tests.reference.spoiled import spoiled
 
-ROOT = Path(__file__).resolve().parents[2]
-CASES = ROOT / "cases"
 SAMPLES = {"porescale": "run_format_1", "continuum_sph": "continuum_run_format_1"}
 """Finished runs that are kept, by package."""
 

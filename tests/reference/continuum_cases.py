@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,8 +11,7 @@ import numpy as np
 from continuum_sph.scene.sections import Scene
 from porescale.common.schema.sections import load
 from porescale.common.studies.quantities import Columns, measured
-
-CASES = Path(__file__).resolve().parents[2] / "cases"
+from tests.reference.folders import CASES
 
 
 def series(build: Callable[[Scene], Any], every: int, case: str, *settings: str) -> Columns:

@@ -37,6 +37,7 @@ os.environ.setdefault("NUMBA_THREADING_LAYER", "workqueue")
 from porescale.common.record.checkpoint import read_header
 from porescale.common.schema.sections import load
 from tests.reference.failing_disk import whole
+from tests.reference.folders import ROOT
 from tests.reference.same_run import differences
 from tests.reference.scenes import COLUMN, grain, table, write
 from tests.reference.waiting import ended, given_up
@@ -45,7 +46,6 @@ PHASES = ("starting", "building", "first steps", "stepping", "row", "snapshot", 
           "ending", "compiling", "keeping a kernel")  # fmt: skip
 COLD = ("starting", "compiling", "compiling", "compiling", "keeping a kernel", "keeping a kernel")
 """What is killed of a process without kernels: the more often, the longer it takes or the more it can spoil."""
-ROOT = Path(__file__).resolve().parents[2]
 PATIENCE, COLD_PATIENCE = 240.0, 1800.0
 """Seconds after which a child that neither ends nor begins what is waited for counts as hanging: one that has the
 kernels, and one that has not."""

@@ -64,7 +64,11 @@ def pair_sums(flow, half):
             wanted = -0.5 * (record[i, STIFF] + record[j, STIFF]) * (dx @ g)
         elif law.noise == LINEAR:
             wanted = -0.5 * ((flow.slant[i] + flow.slant[j]) * dx).sum(axis=1)
-        brisk = np.minimum(1.0, np.abs(approach) / (law.smoothing.length * law.calm)) if law.calm > 0.0 else 1.0
+        brisk = (
+            np.minimum(1.0, np.abs(approach) / (law.smoothing.length * law.noise_speed))
+            if law.noise_speed > 0.0
+            else 1.0
+        )
         strength = 2.0 * law.diffusion * law.smoothing.length * fluid.state.sound_speed
         spread = (same * strength * brisk * (rho - record[j, RHO] + wanted) * volume * slope).sum()
         both = 0.5 * (rho + record[j, RHO])

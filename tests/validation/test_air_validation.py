@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import pytest
 
-from continuum_sph.cli import validations
+from continuum_sph.cli import PACKAGE
 from continuum_sph.validation import air as verify_air
 from continuum_sph.validation.air import CLOSED, OPEN
 
-VALIDATIONS = validations()
+VALIDATIONS = PACKAGE.validations()
 
 
 def tolerance(name):

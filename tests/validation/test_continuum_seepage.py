@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.cli import validations
+from continuum_sph.cli import PACKAGE
 from continuum_sph.seepage import Resistance, exchange, pores
 from continuum_sph.validation import seepage as verify_seepage
 from continuum_sph.validation.seepage import LAYER
 from continuum_sph.validation.seepage_trials import realised_modulus
 
-VALIDATIONS = validations()
+VALIDATIONS = PACKAGE.validations()
 
 
 def tolerance(name):

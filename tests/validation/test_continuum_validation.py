@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.cli import validations
+from continuum_sph.cli import PACKAGE
 from continuum_sph.validation import flows as verify_flows
 from continuum_sph.validation import fluids as verify_fluids
 from continuum_sph.validation import water as verify
@@ -13,7 +13,7 @@ from continuum_sph.water import step
 from continuum_sph.water.smoothing import WENDLAND, kernel_slope, kernel_value
 from continuum_sph.water.state import VISCOUS, P
 
-VALIDATIONS = validations()
+VALIDATIONS = PACKAGE.validations()
 
 QUICK = [row.name for row in VALIDATIONS if not row.slow]
 SLOW = [row.name for row in VALIDATIONS if row.slow]

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from porescale.cli.verify import validations
+from porescale.cli.main import PACKAGE
 from porescale.coupling import psm as saturated
 from porescale.validation.coupling import arrays as lab
 from porescale.validation.coupling import arrays as verify_arrays
@@ -15,7 +15,7 @@ from porescale.validation.coupling.grains_trials import Method
 from porescale.validation.coupling.towed import square_array_drag
 from tests.reference.stokes_array import Array, square
 
-VALIDATIONS = validations()
+VALIDATIONS = PACKAGE.validations()
 
 PRINTED = Method("odd-SC1")
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from porescale.benchmarks import endurance
-from porescale.cli.verify import validations
+from porescale.cli.main import PACKAGE
 from porescale.common.core.errors import Unstable
 from porescale.common.evidence.endurance import (
     ASK_EVERY,
@@ -26,7 +26,7 @@ from porescale.validation.coupling import endurance as verify_endurance
 from porescale.validation.coupling.endurance import VALIDATIONS
 from porescale.validation.coupling.grains_trials import handful
 
-ALL = validations()
+ALL = PACKAGE.validations()
 
 
 @pytest.mark.slow

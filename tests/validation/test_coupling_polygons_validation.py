@@ -10,7 +10,7 @@ import math
 import numpy as np
 import pytest
 
-from porescale.cli.verify import validations
+from porescale.cli.main import PACKAGE
 from porescale.coupling import psm as saturated
 from porescale.validation.coupling import arrays as verify_arrays
 from porescale.validation.coupling import polygons as verify_polygons
@@ -18,7 +18,7 @@ from porescale.validation.coupling import polygons_trials as lab
 from tests.reference.shapes import fractions
 from tests.reference.stokes_polygons import Turning, regular
 
-VALIDATIONS = validations()
+VALIDATIONS = PACKAGE.validations()
 
 
 def tolerance(name):

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from porescale.cli.verify import validations
+from porescale.cli.main import PACKAGE
 from porescale.validation.coupling import rings as verify_rings
 from porescale.validation.coupling.rings import RADII, VALIDATIONS, couette_error, piston_flux, torques
 
-ALL = validations()
+ALL = PACKAGE.validations()
 
 
 def tolerance(name: str) -> float:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from porescale.cli.verify import validations
+from porescale.cli.main import PACKAGE
 from porescale.validation.coupling import sleep as lab
 from porescale.validation.coupling import sleep as verify_sleep
 from porescale.validation.coupling.sleep import VALIDATIONS
 
-ALL = validations()
+ALL = PACKAGE.validations()
 
 pytestmark = pytest.mark.slow
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.cli.verify import validations
+from porescale.cli.main import PACKAGE
 from porescale.validation.coupling import moving as falls
 from porescale.validation.coupling import moving as moving
 from porescale.validation.coupling import moving as verify_moving
@@ -14,7 +14,7 @@ from porescale.validation.coupling import towed as verify_towed
 from porescale.validation.coupling.grains_trials import faxen, weighing
 from tests.reference.stokes_box import Box, Enclosed, point_forces
 
-VALIDATIONS = validations()
+VALIDATIONS = PACKAGE.validations()
 
 
 def tolerance(name):

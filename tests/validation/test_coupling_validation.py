@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.cli.verify import validations
+from porescale.cli.main import PACKAGE
 from porescale.validation.coupling import exact
 from porescale.validation.coupling import grains_trials as lab
 from porescale.validation.coupling.grains import FALL, RATIOS, TIMES
 from tests.reference import psm as twin
 
-VALIDATIONS = validations()
+VALIDATIONS = PACKAGE.validations()
 
 # Laplace transform inverted by an independent code: v/((s - 1) g a²/nu) at nu t/a² = 0.05, 0.1, 0.2, 0.5
 TABLE = {

@@ -7,12 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from porescale.cli.verify import validations
+from porescale.cli.main import PACKAGE
 from porescale.common.core.constants import GRAVITY
 from porescale.validation.dem import discs_trials as lab
 from tests.reference.dem import Body, World
 
-VALIDATIONS = validations()
+VALIDATIONS = PACKAGE.validations()
 
 ROWS = [pytest.param(row, id=row.name, marks=[pytest.mark.slow] if row.slow else []) for row in VALIDATIONS]
 

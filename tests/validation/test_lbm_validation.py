@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.cli.verify import validations
+from porescale.cli.main import PACKAGE
 from porescale.validation.lbm import cavity as cavities
 from porescale.validation.lbm import channels as lab
 from porescale.validation.lbm import open_sides as opened
@@ -13,7 +13,7 @@ from porescale.validation.lbm import operators as operators
 from porescale.validation.lbm import operators as verify_operators
 from porescale.validation.lbm.channels import HEIGHT, OTHER_MAGIC, VISCOSITIES
 
-VALIDATIONS = validations()
+VALIDATIONS = PACKAGE.validations()
 
 EPS = np.finfo(float).eps
 

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.cli import validations
+from continuum_sph.cli import PACKAGE
 from continuum_sph.soil import SoilFlow
 from continuum_sph.soil.state import GROWN
 from continuum_sph.validation.levee import FAR, GRAINS, PARTS, QUICK, STIFFER, Levee, gone
 
-VALIDATIONS = validations()
+VALIDATIONS = PACKAGE.validations()
 
 SLID = Levee(rows=8, end=3.2)
 """Until its soil has slid to the end of the land."""
@@ -53,7 +53,7 @@ def test_a_saturated_slope_flatter_than_its_limit_stays():  # the twin that must
 
 def densities(given):
     """(least, largest) density of a particle over its first, of the whole course."""
-    found = [(rho.min(), rho.max()) for _, model in given.course(0.1) for rho in [model.both.ground.soil.density]]
+    found = [(rho.min(), rho.max()) for _, model in given.course(0.1) for rho in [model.flow.ground.soil.density]]
     least, most = np.array(found).T
     return least.min() / (GRAINS * (1.0 - given.porosity)), most.max() / (GRAINS * (1.0 - given.porosity))
 

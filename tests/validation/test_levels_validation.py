@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.cli import validations
+from continuum_sph.cli import PACKAGE
 from continuum_sph.seepage import Resistance, Supply
 from continuum_sph.validation import levels as verify_levels
 from continuum_sph.validation.levels import DAM, DRAWN, STATIONS, SURFACE, Dam
 from tests.reference.dam import surface
 
-VALIDATIONS = validations()
+VALIDATIONS = PACKAGE.validations()
 
 PRINTED = DRAWN.porosity / (1.0 - DRAWN.porosity)
 """Factor of the drag n ρ_f g/k of eq. 46 per volume of water: n² ρ_f g/k of the whole, and 1/n of that."""

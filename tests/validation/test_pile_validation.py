@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.cli import validations
+from continuum_sph.cli import PACKAGE
 from continuum_sph.validation.pile import (
     APART,
     AROUND,
@@ -26,7 +26,7 @@ from continuum_sph.validation.pile import (
 from continuum_sph.validation.seepage_steady_trials import SheetPile
 from tests.reference.sheet_pile import around, bounds, seen, weakest_prism
 
-VALIDATIONS = validations()
+VALIDATIONS = PACKAGE.validations()
 
 ROW = VALIDATIONS["continuum.heave_behind_pile"]
 MIDDLE = 0.5 * sum(BOUNDS[QUICK.share])

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import importlib.util
 from functools import partial
-from pathlib import Path
 
 import pytest
 
-from continuum_sph.build.soil_model import SoilSimulation
-from continuum_sph.cli import validations
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.cli import PACKAGE
 from continuum_sph.validation import soil as verify_soil
 from tests.reference import continuum_cases
 from tests.reference.continuum_cases import missed
+from tests.reference.folders import CASES
 
-VALIDATIONS = validations()
+VALIDATIONS = PACKAGE.validations()
 
-CASES = Path(__file__).resolve().parents[2] / "cases"
-series = partial(continuum_cases.series, SoilSimulation, 200)
+series = partial(continuum_cases.series, Simulation, 200)
 STEEP = "soil.body=[{outline=[[0,0],[3.6,0],[3.6,0.2],[2.04,0.2],[0.5,1.2],[0,1.2]]}]"  # 33 degrees
 
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from continuum_sph.build.seepage_model import SeepageSimulation
-from continuum_sph.cli import validations
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.cli import PACKAGE
 from continuum_sph.validation import soil_wet as verify_soil_wet
 from continuum_sph.validation.soil_wet import SEEPING, STILL, WetSlope
 from tests.reference import continuum_cases
 from tests.reference.continuum_cases import missed
 
-VALIDATIONS = validations()
+VALIDATIONS = PACKAGE.validations()
 
 STEEP = "soil.body=[{outline=[[0,0],[2.2,0],[2.2,0.2],[1.224,0.2],[0.3,0.8],[0,0.8]]}]"  # 33 degrees
 
@@ -56,7 +56,7 @@ def test_permeability_that_does_not_follow_porosity_is_told_apart():
 
 def series(*settings):
     """Columns of the case's series, two seconds after it settled."""
-    return continuum_cases.series(SeepageSimulation, 200, "submerged_slope", "time.end=5", *settings)
+    return continuum_cases.series(Simulation, 200, "submerged_slope", "time.end=5", *settings)
 
 
 @pytest.mark.slow

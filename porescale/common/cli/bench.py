@@ -25,9 +25,12 @@ def command(package: Package) -> Callable[..., int]:
         json: Json = False,
     ) -> int:
         """Measure rates, in updates per second, and their share of the memory bandwidth measured beside them."""
+        from porescale.common.studies.budget_check import benchmark
+
         register = package.benchmarks()
+        register.include(benchmark(package, package.case) if package.case else ())
         if list_:
-            print("\n".join(register))
+            print("\n".join(row.name for row in register))
             return 0
         rows = []
         for row in register.run(names, size=size, threads=threads, dtype=dtype):

@@ -6,12 +6,11 @@ import json as json_text
 import sys
 from collections.abc import Callable
 from dataclasses import asdict
-from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
-from porescale.common.cli.folders import refuse_unwritable
+from porescale.common.cli.folders import study_folder
 from porescale.common.cli.options import Json, Threads, use_threads
 from porescale.common.cli.package import Package
 from porescale.common.cli.trade import circumstances
@@ -40,11 +39,9 @@ def command(package: Package) -> Callable[..., int]:
             return 0
         if steps < made.MARKS:
             raise InputError(Fault("--steps", steps, "is too few to look at", "", f">= {made.MARKS}"))
-        if out == "":
-            raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
-        refuse_unwritable(Path(out), "--out")
+        folder = study_folder(out)
         use_threads(threads)
-        kept = made.finished(Path(out)) if resume else {}
+        kept = made.finished(folder) if resume else {}
         asked = " ".join([package.name, "study endurance", *map(json_text.dumps, names), f"--steps {steps}"])
         for it in chosen:
             if it.name in kept and kept[it.name][0].steps == it.steps(steps):
@@ -52,7 +49,7 @@ def command(package: Package) -> Callable[..., int]:
                 continue
             kept[it.name] = made.endure(it, steps, lambda text: print(text, file=sys.stderr, flush=True))
             ordered = [line for flow in package.endurance().chosen() for line in kept.get(flow.name, [])]
-            made.write(Path(out), circumstances(package, asked, threads or 1), ordered)
+            made.write(folder, circumstances(package, asked, threads or 1), ordered)
         lines = [line for it in chosen for line in kept[it.name]]
         if json:
             print(json_text.dumps([asdict(line) for line in lines], indent=1, allow_nan=False))

@@ -9,6 +9,14 @@ from pathlib import Path
 from porescale.common.core.errors import Fault, InputError
 
 
+def study_folder(out: str) -> Path:
+    """The folder that ``--out`` names; InputError where it names none or cannot be written."""
+    if out == "":
+        raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
+    refuse_unwritable(Path(out), "--out")
+    return Path(out)
+
+
 def refuse_unwritable(folder: Path, key: str) -> None:
     """InputError naming ``key`` unless ``folder`` can be made and written; leaves nothing behind."""
     made: list[Path] = []
@@ -27,16 +35,6 @@ def refuse_unwritable(folder: Path, key: str) -> None:
         with suppress(OSError):
             for part in reversed(made):
                 part.rmdir()
-
-
-def write_whole(path: Path, content: bytes) -> None:
-    """Write a small file, whole or not at all."""
-    beside = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        beside.write_bytes(content)
-        os.replace(beside, path)
-    finally:
-        beside.unlink(missing_ok=True)
 
 
 def unusable(folder: Path, key: str, error: OSError) -> InputError:

@@ -82,7 +82,8 @@ class Package:
     show : makes pictures and a film in a run folder and gives their paths;
     table : columns of a table of a run folder by its name, "series" for series.csv;
     also : the same as show for runs of other commands, by what their cards call them;
-    validations, benchmarks : give the registers;  stability : that of the flows of a stability map, extremes : what
+    validations, benchmarks : give the registers;  case : folder of a case whose front `bench` measures again, None
+    if there is none;  stability : that of the flows of a stability map, extremes : what
     `study extremes` tries, endurance : what `study endurance` runs, parts : what `study parts` measures, None if there
     is none;  judge : InputError where the run in a folder cannot be gone on with as a card asks, None if only a model
     can say;  features : what trade studies make of a run folder at a time (None: its last snapshot), by name, None if
@@ -101,6 +102,7 @@ class Package:
     table: Callable[[Path, str], Mapping[str, NDArray[Any]]]
     validations: Callable[[], Validations]
     benchmarks: Callable[[], Benchmarks]
+    case: Path | None = None
     stability: Callable[[], Stability] | None = None
     extremes: Callable[[], Extremes] | None = None
     endurance: Callable[[], Endurances] | None = None

@@ -7,16 +7,14 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import asdict
-from pathlib import Path
 from typing import Annotated
 
 from cyclopts import App, Parameter
 
 from porescale.common.cli import endurance, levels, parts, trade
-from porescale.common.cli.folders import refuse_unwritable
+from porescale.common.cli.folders import study_folder
 from porescale.common.cli.options import Json, Threads, use_threads
 from porescale.common.cli.package import Package
-from porescale.common.core.errors import Fault, InputError
 
 
 def command(package: Package) -> App:
@@ -53,20 +51,18 @@ def _extremes(package: Package) -> Callable[..., int]:
         if list_:
             print("\n".join(dict.fromkeys(it.axis for it in tries)))
             return 0
-        if out == "":
-            raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
-        refuse_unwritable(Path(out), "--out")
+        folder = study_folder(out)
         use_threads(threads)
         rows = []
         for it in tries:
             rows.append(it.tried())
             print(f"{it.axis} {it.value}: {rows[-1].end} ({len(rows)} of {len(tries)})", file=sys.stderr, flush=True)
         asked = " ".join(["study extremes", *(json_text.dumps(name) for name in names)])
-        made.write(Path(out), f"{package.name} {asked}", rows)
+        made.write(folder, f"{package.name} {asked}", rows)
         if json:
             print(json_text.dumps([asdict(row) for row in rows], indent=1, allow_nan=False))
         else:
-            print(f"{len(rows)} tries; {Path(out) / made.NAME}.md, .png")
+            print(f"{len(rows)} tries; {folder / made.NAME}.md, .png")
         return 0
 
     return extremes
@@ -91,9 +87,7 @@ def _stability(package: Package) -> Callable[..., int]:
         if list_:
             print("\n".join(f"{flow.name}: {flow.title}" for flow in flows))
             return 0
-        if out == "":
-            raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
-        refuse_unwritable(Path(out), "--out")
+        folder = study_folder(out)
         use_threads(threads)
         rows, start, done = [], time.perf_counter(), 0
         total = sum(flow.count(quick) for flow in flows)
@@ -106,11 +100,11 @@ def _stability(package: Package) -> Callable[..., int]:
                 left = f"{done} of {total}, about {spent / done * (total - done):.0f} s left"
                 print(f"{flow.name}: {law} ({left})", file=sys.stderr, flush=True)
         asked = " ".join(["study stability", *names, *(["--quick"] if quick else [])])
-        study_files.write(Path(out), f"{package.name} {asked}", package.version, flows, rows, quick)
+        study_files.write(folder, f"{package.name} {asked}", package.version, flows, rows, quick)
         if json:
             print(json_text.dumps([row.as_dict() for row in rows], indent=1, allow_nan=False))
         else:
-            print(f"{len(rows)} tries in {time.perf_counter() - start:.0f} s; {Path(out) / study_files.NAME}.md, .png")
+            print(f"{len(rows)} tries in {time.perf_counter() - start:.0f} s; {folder / study_files.NAME}.md, .png")
         return 0
 
     return stability

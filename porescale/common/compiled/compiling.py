@@ -88,6 +88,8 @@ def _described(kind: Any) -> Any:
         return (str(kind), _described(kind.dtype))
     if isinstance(kind, types.Number | types.Boolean | types.NoneType | types.UnicodeType | types.Record):
         return repr(kind)
+    if type(kind).__module__ == f"{__package__}.simd_code":  # its sources are in every key
+        return str(kind)
     raise Unknown(f"an argument of type {kind}")
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import statistics
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from porescale.common.cli.report import shown
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.evidence.select import choose
+from porescale.common.evidence.register import Register
 from porescale.common.evidence.timing import Comparison, Timing, interleaved, rate, seconds_of
 
 if TYPE_CHECKING:
@@ -58,6 +58,14 @@ Prepare = Callable[[int | None, int, Dtype], Work | Sequence[Work]]
 
 
 @dataclass(frozen=True)
+class Benchmark:
+    """A registered benchmark.  prepare : ``(size | None, threads, dtype) -> Work``, one or several."""
+
+    name: str
+    prepare: Prepare
+
+
+@dataclass(frozen=True)
 class Row:
     """A measured rate; the fields are the JSON keys.
 
@@ -80,14 +88,16 @@ class Row:
         return asdict(self)
 
 
-class Benchmarks:
-    """A register of benchmarks, in the order of registration.
+class Benchmarks(Register[Benchmark]):
+    """A register of benchmarks.
 
     remarks : of the last ``run``: what part of the rate of its ``PLAIN`` work a benchmark has, measured in turns.
     """
 
-    def __init__(self) -> None:
-        self._known: dict[str, Prepare] = {}
+    what = "benchmark"
+
+    def __init__(self, rows: Iterable[Benchmark] = ()) -> None:
+        super().__init__(rows)
         self.remarks: list[str] = []
 
     def row(self, name: str) -> Callable[[Prepare], Prepare]:
@@ -95,22 +105,13 @@ class Benchmarks:
 
         ``size`` None means the benchmark's own size; the number of threads is already set for kernels.
         """
-        assert name not in self._known, f"two benchmarks named {name}"
 
         def register(prepare: Prepare) -> Prepare:
             """Keep ``prepare`` under the name; returns it."""
-            self._known[name] = prepare
+            self.add(Benchmark(name, prepare))
             return prepare
 
         return register
-
-    def include(self, other: Benchmarks) -> None:
-        """Add all of another register."""
-        assert not self._known.keys() & other._known.keys()
-        self._known |= other._known
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._known)
 
     def run(
         self,
@@ -128,18 +129,18 @@ class Benchmarks:
         """
         from porescale.common.compiled.jit import set_threads
 
-        chosen = choose(names, self._known, "benchmark")
+        chosen = self.chosen(names)
         if size is not None and not 1 <= size <= LARGEST:
             raise InputError(Fault("--size", size, "is out of range", "", f"1 to {LARGEST}"))
         self.remarks = []
-        return self._rows(chosen, size, set_threads(threads), dtype, min_seconds)
+        return self._timed(chosen, size, set_threads(threads), dtype, min_seconds)
 
-    def _rows(
-        self, names: Sequence[str], size: int | None, count: int, dtype: Dtype, min_seconds: float
+    def _timed(
+        self, chosen: Sequence[Benchmark], size: int | None, count: int, dtype: Dtype, min_seconds: float
     ) -> Iterator[Row]:
         """Prepare and time each benchmark."""
-        for name in names:
-            made = self._known[name](size, count, dtype)
+        for name, prepare in ((it.name, it.prepare) for it in chosen):
+            made = prepare(size, count, dtype)
             works = [made] if isinstance(made, Work) else list(made)
             titles = [f"{name}.{work.variant}" if work.variant else name for work in works]
             for title, work in zip(titles, works, strict=True):

@@ -8,7 +8,6 @@ and nothing must be found wrong: that is asked as often as a run asks.
 
 from __future__ import annotations
 
-import io
 import json
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -16,10 +15,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
-from porescale.common.cli.folders import write_whole
 from porescale.common.core.errors import Unstable
 from porescale.common.core.machine import peak_bytes
-from porescale.common.evidence.select import choose
+from porescale.common.evidence import files
+from porescale.common.evidence.register import Register
 
 NAME = "endurance"
 MARKS = 20
@@ -135,27 +134,21 @@ def _advance(run: Lasting, steps: int, say: Say) -> int:
     return wrong
 
 
-class Endurances:
-    """A register, in the order of registration."""
+class Endurances(Register[Endurance]):
+    """What a package keeps running."""
 
-    def __init__(self, known: Sequence[Endurance]) -> None:
-        self._known = {it.name: it for it in known}
-
-    def __getitem__(self, name: str) -> Endurance:
-        return self._known[name]
-
-    def chosen(self, names: Sequence[str] = ()) -> list[Endurance]:
-        """By name, all without names; InputError on unknown ones."""
-        return [self._known[name] for name in choose(names, self._known, "flow")]
+    what = "flow"
 
 
 def write(folder: Path, about: Mapping[str, Any], lines: Sequence[Line]) -> None:
     """endurance.json, .md and .png into ``folder``, each whole or not at all.  about : command, machine, date."""
-    folder.mkdir(parents=True, exist_ok=True)
-    made = {**about, "lines": [asdict(line) for line in lines]}
-    write_whole(folder / f"{NAME}.json", (json.dumps(made, indent=1, allow_nan=False) + "\n").encode())
-    write_whole(folder / f"{NAME}.md", markdown(str(about.get("command", "")), lines).encode())
-    write_whole(folder / f"{NAME}.png", picture(lines))
+    files.write_study(
+        folder,
+        NAME,
+        json=files.json_text([asdict(line) for line in lines], about, "lines"),
+        md=markdown(str(about.get("command", "")), lines),
+        png=picture(lines),
+    )
 
 
 def finished(folder: Path) -> dict[str, list[Line]]:
@@ -169,27 +162,23 @@ def finished(folder: Path) -> dict[str, list[Line]]:
 
 
 def markdown(command: str, lines: Sequence[Line]) -> str:
-    """The table."""
-    rows = [f"Written by `{command}`.", "", f"![marks]({NAME}.png)", "",
-            "| flow | steps | quantity | first, last | largest change | allowed | because | seconds |",
-            "|---|---|---|---|---|---|---|---|"]  # fmt: skip
+    """The table of quantities, in bold where one does not hold."""
+    header = ("flow", "steps", "quantity", "first, last", "largest change", "allowed", "because", "seconds")
+    rows = []
     for line in lines:
         verdict = f"{line.off:.3g}" if line.holds else f"**{line.off:.3g}**"
         ends = f"{line.values[1]:.6g}, {line.values[-1]:.6g}"
-        cells = (line.flow, line.steps, line.quantity, ends, verdict, f"{line.allowed:.3g}", line.because)
-        rows.append(f"| {' | '.join(map(str, cells))} | {line.seconds:.0f} |")
-    return "\n".join(rows) + "\n"
+        allowed, seconds = f"{line.allowed:.3g}", f"{line.seconds:.0f}"
+        rows.append((line.flow, line.steps, line.quantity, ends, verdict, allowed, line.because, seconds))
+    top = [f"Written by `{command}`.", "", f"![marks]({NAME}.png)", ""]
+    return "\n".join([*top, *files.markdown_table(header, rows)]) + "\n"
 
 
 def picture(lines: Sequence[Line]) -> bytes:
     """A small plot for each quantity of each flow, its values over steps: a PNG."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     flows = list(dict.fromkeys(line.flow for line in lines))
     widest = max(sum(line.flow == flow for line in lines) for flow in flows)
-    figure = Figure(figsize=(3.0 * widest, 2.2 * len(flows)), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = files.new_figure(3.0 * widest, 2.2 * len(flows))
     grid = figure.subplots(len(flows), widest, squeeze=False)
     for row, flow in zip(grid, flows, strict=True):
         mine = [line for line in lines if line.flow == flow]
@@ -201,6 +190,4 @@ def picture(lines: Sequence[Line]) -> bytes:
             axes.yaxis.get_offset_text().set_fontsize(6)
         for axes in row[len(mine) :]:
             axes.set_axis_off()
-    written = io.BytesIO()
-    figure.savefig(written, format="png", dpi=110)
-    return written.getvalue()
+    return files.png(figure, 110)

@@ -7,26 +7,22 @@ is judged as well, and right when that holds.  Any other end is a fault of ours 
 
 from __future__ import annotations
 
-import io
-import json
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from porescale.common.cli.folders import write_whole
 from porescale.common.core.errors import InputError, Unstable
-from porescale.common.evidence import stability as study
-from porescale.common.evidence import stability_files as study_files
-from porescale.common.evidence.select import choose
+from porescale.common.evidence import files, stability, stability_files
+from porescale.common.evidence.register import Register
 
 NAME = "extremes"
 RIGHT, STABLE, REFUSED, STOPPED = "right", "stable", "refused", "stopped"
 COLOURS = {
-    RIGHT: study_files.COLOURS[study.RIGHT],
-    STABLE: study_files.COLOURS[study.STABLE],
+    RIGHT: stability_files.COLOURS[stability.RIGHT],
+    STABLE: stability_files.COLOURS[stability.STABLE],
     REFUSED: "#bdbdbd",
-    STOPPED: study_files.COLOURS[study.UNSTABLE],
+    STOPPED: stability_files.COLOURS[stability.UNSTABLE],
 }
 """Those of the map of stability, and one for what never starts."""
 
@@ -48,8 +44,13 @@ class Extreme:
     value: str
     run: Callable[[], str | Judged]
 
+    @property
+    def name(self) -> str:
+        """What it is chosen by: the axis stands for all of its tries."""
+        return f"{self.axis}.{self.value}"
+
     def tried(self) -> Row:
-        """How it ended."""
+        """Run it, and say how it ended."""
         start = time.perf_counter()
         try:
             came = self.run()
@@ -72,29 +73,20 @@ class Row:
     seconds: float
 
 
-class Extremes:
+class Extremes(Register[Extreme]):
     """What a package tries, axis after axis."""
 
-    def __init__(self, tries: Sequence[Extreme]) -> None:
-        self._tries = tuple(tries)
+    what = "axis"
 
     def axes(self) -> list[str]:
         """Names of what is varied, in order."""
-        return list(dict.fromkeys(it.axis for it in self._tries))
-
-    def chosen(self, names: Sequence[str]) -> list[Extreme]:
-        """Tries of the axes of these names, all if none is given; InputError for a name that there is not."""
-        axes = choose(names, self.axes(), "axis")
-        return [it for it in self._tries if it.axis in axes]
+        return list(dict.fromkeys(it.axis for it in self))
 
 
 def write(folder: Path, command: str, rows: Sequence[Row]) -> None:
     """extremes.json, .md and .png into ``folder``, which is made if it is not there; each whole or not at all."""
-    folder.mkdir(parents=True, exist_ok=True)
-    made = [{**asdict(row), "seconds": round(row.seconds, 3)} for row in rows]
-    write_whole(folder / f"{NAME}.json", (json.dumps(made, indent=1, allow_nan=False) + "\n").encode())
-    write_whole(folder / f"{NAME}.md", markdown(command, rows).encode())
-    write_whole(folder / f"{NAME}.png", picture(rows))
+    lines = files.json_text({**asdict(row), "seconds": round(row.seconds, 3)} for row in rows)
+    files.write_study(folder, NAME, json=lines, md=markdown(command, rows), png=picture(rows))
 
 
 def markdown(command: str, rows: Sequence[Row]) -> str:
@@ -102,23 +94,19 @@ def markdown(command: str, rows: Sequence[Row]) -> str:
     lines = [
         f"Written by `{command}`.  *Stable*: it came to its end in sense;  *right*: and a known number holds.",
         "",
-        "| what | how far | end | said |",
-        "|---|---|---|---|",
     ]
-    lines += [f"| {row.axis} | {row.value} | **{row.end}** | {row.said} |" for row in rows]
+    cells = [(row.axis, row.value, f"**{row.end}**", row.said) for row in rows]
+    lines += files.markdown_table(("what", "how far", "end", "said"), cells)
     return "\n".join(lines) + "\n"
 
 
 def picture(rows: Sequence[Row]) -> bytes:
     """A line of squares for each axis, coloured by how the try ended: a PNG."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
     axes = list(dict.fromkeys(row.axis for row in rows))
     widest = max(sum(row.axis == axis for row in rows) for axis in axes)
-    figure = Figure(figsize=(2.4 + 1.15 * widest, 0.9 + 0.55 * len(axes)), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = files.new_figure(2.4 + 1.15 * widest, 0.9 + 0.55 * len(axes))
     plot = figure.add_subplot()
     for line, axis in enumerate(axes):
         for place, row in enumerate(row for row in rows if row.axis == axis):
@@ -131,6 +119,4 @@ def picture(rows: Sequence[Row]) -> bytes:
     plot.spines[:].set_visible(False)
     marks = [Patch(color=colour, label=end) for end, colour in COLOURS.items()]
     figure.legend(handles=marks, ncols=len(marks), loc="outside upper center", frameon=False)
-    written = io.BytesIO()
-    figure.savefig(written, format="png", dpi=130)
-    return written.getvalue()
+    return files.png(figure, 130)

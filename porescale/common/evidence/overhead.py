@@ -1,13 +1,12 @@
 """What each kind of scene builds and costs: parts, bytes, and its time beside the smallest thing that does the same.
 
-Rooms keep those smallest kernels (bench_plain.py) and register kinds; `study parts` times each kind and what it is held
+Rooms keep those smallest kernels (minimal_*.py) and register kinds; `study parts` times each kind and what it is held
 against in turns, so that a busy machine slows both alike, and writes a table.  Times are those of the one thread, which
 stand still while others have the core.
 """
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -15,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from porescale.common.cli.folders import write_whole
-from porescale.common.evidence.select import choose
+from porescale.common.evidence import files
+from porescale.common.evidence.register import Register
 from porescale.common.evidence.timing import core_seconds_of
 
 NAME = "parts"
@@ -118,28 +117,16 @@ def bytes_of(model: Any) -> int:
     return sum(arrays.values())
 
 
-class Kinds:
-    """A register, in the order of registration."""
+class Kinds(Register[Kind]):
+    """The kinds of scenes that a package measures."""
 
-    def __init__(self, kinds: Sequence[Kind]) -> None:
-        self._known = {kind.name: kind for kind in kinds}
-
-    def include(self, other: Kinds) -> None:
-        """Add all of another register."""
-        assert not self._known.keys() & other._known.keys()
-        self._known |= other._known
-
-    def chosen(self, names: Sequence[str] = ()) -> list[Kind]:
-        """By name, all without names; InputError on unknown ones."""
-        return [self._known[name] for name in choose(names, self._known, "kind")]
+    what = "kind"
 
 
 def write(folder: Path, about: Mapping[str, Any], rows: Sequence[Row]) -> None:
     """parts.json and parts.md into ``folder``, each whole or not at all.  about : command, machine, date."""
-    folder.mkdir(parents=True, exist_ok=True)
-    made = {**about, "rows": [asdict(row) for row in rows]}
-    write_whole(folder / f"{NAME}.json", (json.dumps(made, indent=1, allow_nan=False) + "\n").encode())
-    write_whole(folder / f"{NAME}.md", markdown(about, rows).encode())
+    lines = files.json_text([asdict(row) for row in rows], about)
+    files.write_study(folder, NAME, json=lines, md=markdown(about, rows))
 
 
 def markdown(about: Mapping[str, Any], rows: Sequence[Row]) -> str:
@@ -155,13 +142,14 @@ def markdown(about: Mapping[str, Any], rows: Sequence[Row]) -> str:
         ("What a part adds to a scene that asks for it", "beside"): [r for r in rows if r.beside != SMALLEST],
     }
     for (title, other), mine in tables.items():
-        if mine:
-            lines += ["", f"## {title}", "", f"| scene | built | bytes | ns a step | {other} | ratio | |",
-                      "|---|---|---|---|---|---|---|"]  # fmt: skip
+        cells = []
         for row in mine:
             ratio = f"{row.ratio:.3f}" if row.lean else f"**{row.ratio:.3f}**"
             what = _each(row, row.other_seconds) if other == "smallest" else row.beside
-            lines.append(f"| {' | '.join([*_head(row), what, ratio, row.because])} |")
+            cells.append([*_head(row), what, ratio, row.because])
+        if mine:
+            header = ("scene", "built", "bytes", "ns a step", other, "ratio", "")
+            lines += ["", f"## {title}", "", *files.markdown_table(header, cells)]
     return "\n".join(lines) + "\n"
 
 

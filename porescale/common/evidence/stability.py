@@ -1,6 +1,6 @@
-"""Studies: flows tried over ranges of two numbers, once for each law, and what became of them.
+"""Stability maps: flows tried over ranges of two numbers, once for each law, and what became of them.
 
-Rooms register their flows; `study stability` runs them and writes the map (study_files.py).  A flow that stayed
+Rooms register their flows; `study stability` runs them and writes the map (stability_files.py).  A flow that stayed
 within sense is stable; it is also right if its error is known and at most what the flow tolerates.
 """
 
@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from porescale.common.evidence.select import choose
+from porescale.common.evidence.files import finite
+from porescale.common.evidence.register import Register
 
 RIGHT, STABLE, UNSTABLE = "right", "stable", "unstable"
 """The verdicts."""
@@ -62,10 +63,7 @@ class Row:
 
     def as_dict(self) -> dict[str, Any]:
         """JSON-able; numbers that are not finite become null."""
-        made = asdict(self)
-        made["error"] = _finite(self.error)
-        made["seconds"] = round(self.seconds, 3)
-        made["numbers"] = {name: _finite(value) for name, value in self.numbers.items()}
+        made: dict[str, Any] = finite(asdict(self) | {"seconds": round(self.seconds, 3)})
         return made
 
 
@@ -130,37 +128,23 @@ class Flow:
         return Row(self.name, law, float(x), float(y), verdict, error, dict(found.numbers or {}), True, seconds)
 
 
-class Stability:
-    """A register of flows, in the order of registration.  Names are ``room.what``."""
+class Stability(Register[Flow]):
+    """A register of flows; names are ``topic.what``."""
 
-    def __init__(self) -> None:
-        self._known: dict[str, Flow] = {}
+    what = "flow"
 
     def flow(self, name: str, **parts: Any) -> Callable[[Measure], Measure]:
         """Register the decorated ``(law, x, y) -> Tried`` as a flow made of ``parts``, see :class:`Flow`."""
-        assert name not in self._known, f"two flows named {name}"
 
         def register(measure: Measure) -> Measure:
             """Keep it; returns it as it is."""
             made = Flow(name=name, measure=measure, **parts)
             assert made.right >= 0
             assert made.because, "a tolerance has a reason"
-            self._known[name] = made
+            self.add(made)
             return measure
 
         return register
-
-    def include(self, other: Stability) -> None:
-        """Add all of another register."""
-        assert not self._known.keys() & other._known.keys()
-        self._known |= other._known
-
-    def __iter__(self) -> Iterator[Flow]:
-        return iter(self._known.values())
-
-    def chosen(self, names: Sequence[str] = ()) -> list[Flow]:
-        """Flows by name (a room stands for all its own), without names all; InputError on unknown names."""
-        return [self._known[name] for name in choose(names, self._known, "flow")]
 
 
 def holds_up_to(rows: Iterable[Row], number: str) -> tuple[float, float]:
@@ -171,7 +155,3 @@ def holds_up_to(rows: Iterable[Row], number: str) -> tuple[float, float]:
     pairs = [(row.numbers[number], row.verdict == UNSTABLE) for row in rows if number in row.numbers]
     worst = min((value for value, bad in pairs if bad), default=math.inf)
     return max((value for value, bad in pairs if not bad and value < worst), default=0.0), worst
-
-
-def _finite(value: float | None) -> float | None:
-    return value if value is not None and math.isfinite(value) else None

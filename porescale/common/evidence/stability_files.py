@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import json
 import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from porescale.common.cli.folders import write_whole
 from porescale.common.cli.report import shown
+from porescale.common.evidence import files
 from porescale.common.evidence.stability import RIGHT, STABLE, UNSTABLE, Axis, Flow, Row, holds_up_to
 
 if TYPE_CHECKING:
@@ -26,11 +23,15 @@ COLOURS = {RIGHT: "#2c7fb8", STABLE: "#fec44f", UNSTABLE: "#a50f15"}
 
 def write(folder: Path, command: str, version: str, flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> None:
     """Write the four files into ``folder``, which is made if it is not there."""
-    folder.mkdir(parents=True, exist_ok=True)
-    write_whole(folder / f"{NAME}.json", json_text(command, version, flows, rows, quick).encode())
-    write_whole(folder / f"{NAME}.csv", csv_text(rows).encode())
-    write_whole(folder / f"{NAME}.md", markdown(command, flows, rows, quick).encode())
-    write_whole(folder / f"{NAME}.png", picture(flows, rows, quick))
+    about = {"command": command, "version": version, "quick": quick, "flows": [as_dict(it, quick) for it in flows]}
+    files.write_study(
+        folder,
+        NAME,
+        json=files.json_text([row.as_dict() for row in rows], about),
+        csv=csv_text(rows),
+        md=markdown(command, flows, rows, quick),
+        png=picture(flows, rows, quick),
+    )
 
 
 def as_dict(flow: Flow, quick: bool) -> dict[str, Any]:
@@ -46,27 +47,15 @@ def _axes(flow: Flow) -> tuple[tuple[str, Axis], tuple[str, Axis]]:
     return ("x", flow.x), ("y", flow.y)
 
 
-def json_text(command: str, version: str, flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> str:
-    """Flows and rows, from which checks are derived; a row a line, so that two maps can be compared."""
-    made = {
-        "command": command, "version": version, "quick": quick, "flows": [as_dict(flow, quick) for flow in flows],
-    }  # fmt: skip
-    head = json.dumps(made, indent=1, allow_nan=False).removesuffix("\n}")
-    lines = (json.dumps(row.as_dict(), allow_nan=False) for row in rows)
-    return head + ',\n "rows": [\n  ' + ",\n  ".join(lines) + "\n ]\n}\n"
-
-
 def csv_text(rows: Sequence[Row]) -> str:
     """One line for each try."""
-    out = io.StringIO()
-    lines = csv.writer(out, lineterminator="\n")
     names = sorted({name for row in rows for name in row.numbers})
-    lines.writerow(["flow", "law", "x", "y", "verdict", "error", "ran", *names])
+    lines = []
     for row in rows:
         error = "" if row.error is None else f"{row.error:.4g}"
         more = [f"{row.numbers[name]:.4g}" if name in row.numbers else "" for name in names]
-        lines.writerow([row.flow, row.law, f"{row.x:g}", f"{row.y:g}", row.verdict, error, int(row.ran), *more])
-    return out.getvalue()
+        lines.append([row.flow, row.law, f"{row.x:g}", f"{row.y:g}", row.verdict, error, int(row.ran), *more])
+    return files.csv_text(["flow", "law", "x", "y", "verdict", "error", "ran", *names], lines)
 
 
 def markdown(command: str, flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> str:
@@ -82,13 +71,13 @@ def markdown(command: str, flows: Sequence[Flow], rows: Sequence[Row], quick: bo
         inside = f"in each place {flow.y.name} {_several(ys)} from left to right" if len(ys) > 1 else _single(flow, ys)
         parts.append(f"Across {flow.x.name}; {inside}.\n")
         more = [f"{flow.limit}: holds up to", "fails from"] if flow.limit else []
-        parts.append("| law | " + " | ".join([*map(shown, xs), *more]) + " |")
-        parts.append("|---|" + "---|" * (len(xs) + len(more)))
+        table = []
         for law in flow.laws(quick):
             cells = ["".join(SIGNS[verdict[flow.name, law, x, y]] for y in ys) for x in xs]
             mine = [row for row in rows if (row.flow, row.law) == (flow.name, law)]
             cells += [_edge(value) for value in holds_up_to(mine, flow.limit)] if flow.limit else []
-            parts.append(f"| {law} | " + " | ".join(cells) + " |")
+            table.append([law, *cells])
+        parts += files.markdown_table(["law", *map(shown, xs), *more], table)
     return "\n".join(parts) + "\n"
 
 
@@ -109,14 +98,11 @@ def _single(flow: Flow, values: Sequence[float]) -> str:
 
 def picture(flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> bytes:
     """A panel for each flow, as a PNG: laws down, each with a strip for each y, x across; many in two columns."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
     columns = _columns(flows, quick)
     tallest = max(sum(_height(flow, quick) for flow in column) for column in columns)
-    figure = Figure(figsize=(9.5 * len(columns), 1.0 + tallest), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = files.new_figure(9.5 * len(columns), 1.0 + tallest)
     parts = figure.subfigures(1, len(columns), squeeze=False)[0]
     for part, column in zip(parts, columns, strict=True):
         ratios = [_height(flow, quick) for flow in column]
@@ -126,9 +112,7 @@ def picture(flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> bytes:
             _panel(axes, flow, rows, quick)
     patches = [Patch(color=COLOURS[name], label=text) for name, text in _LEGEND.items()]
     figure.legend(handles=patches, loc="outside upper center", ncols=len(patches), frameon=False)
-    out = io.BytesIO()
-    figure.savefig(out, dpi=100, metadata={"Software": None})
-    return out.getvalue()
+    return files.png(figure, 100)
 
 
 def _height(flow: Flow, quick: bool) -> float:

@@ -8,12 +8,13 @@ from __future__ import annotations
 import math
 import time
 import traceback
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from porescale.common.cli.report import shown
-from porescale.common.evidence.select import choose
+from porescale.common.evidence.files import finite
+from porescale.common.evidence.register import Register
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -50,7 +51,7 @@ class Row:
 
     def as_dict(self) -> dict[str, Any]:
         """JSON-able; numbers that are not finite become null."""
-        return {key: _finite(value) for key, value in asdict(self).items()}
+        return {key: finite(value) for key, value in asdict(self).items()}
 
 
 @dataclass(frozen=True)
@@ -89,49 +90,33 @@ class Validation:
         return Row(self.name, self.source, reference, measured, row_error, self.tolerance, because, seconds, passed)
 
 
-class Validations:
-    """A register of validations, in the order of registration.  Names are ``room.what``."""
+class Validations(Register[Validation]):
+    """A register of validations; names are ``topic.what``."""
 
-    def __init__(self, others: Iterable[Validations] = ()) -> None:
-        """Empty, or with all of the ``others``."""
-        self._known: dict[str, Validation] = {}
-        for other in others:
-            self.include(other)
+    what = "validation"
 
     def row(
         self, name: str, *, source: str, because: str, tolerance: float, slow: bool = False
     ) -> Callable[[Callable[[], Measured]], Callable[[], Measured]]:
         """Register the decorated function, which measures and returns a `Measured`."""
-        assert name not in self._known, f"two validations named {name}"
+        assert name not in self._rows, f"two validations named {name}"
         assert tolerance >= 0
         assert source, "a validation names its source"
         assert because, "a tolerance has a reason"
 
         def register(measure: Callable[[], Measured]) -> Callable[[], Measured]:
             """Keep ``measure`` as the validation; returns it."""
-            self._known[name] = Validation(name, source, because, tolerance, slow, measure)
+            self.add(Validation(name, source, because, tolerance, slow, measure))
             return measure
 
         return register
 
-    def include(self, other: Validations) -> None:
-        """Add all of another register."""
-        assert not self._known.keys() & other._known.keys()
-        self._known |= other._known
-
-    def __iter__(self) -> Iterator[Validation]:
-        return iter(self._known.values())
-
-    def __getitem__(self, name: str) -> Validation:
-        return self._known[choose([name], self._known, "validation")[0]]
-
     def chosen(self, names: Sequence[str] = (), *, slow: bool = False) -> list[Validation]:
-        """Validations by name (a room stands for all its own), without names all; slow ones by name or ``slow``.
+        """Validations by name (a topic stands for all its own), without names all; slow ones by name or ``slow``.
 
         Raises InputError on unknown names, suggesting the nearest.
         """
-        found = [self._known[name] for name in choose(names, self._known, "validation")]
-        return [item for item in found if slow or not item.slow or item.name in names]
+        return [item for item in super().chosen(names) if slow or not item.slow or item.name in names]
 
     def run(self, names: Sequence[str] = (), *, slow: bool = False) -> list[Row]:
         """Run those `chosen`."""
@@ -157,12 +142,3 @@ def table(rows: Sequence[Row]) -> Table:
         text.append(f"\n{row.source}; {row.because}", style="not bold dim")
         made.add_row(verdict, text)
     return made
-
-
-def _finite(value: Any) -> Any:
-    """``value`` with numpy numbers and arrays as plain ones, and nan and infinities as None."""
-    if hasattr(value, "tolist"):
-        value = value.tolist()
-    if isinstance(value, list | tuple):
-        return [_finite(part) for part in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -11,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from porescale.common.cli.folders import write_whole
+from porescale.common.evidence import files
 from porescale.common.studies.quantities import TIME, Columns, measured
 from porescale.common.studies.runner import FINISHED, Ended
 
@@ -56,30 +54,22 @@ def write(
     folder: Path, command: str, ends: Sequence[Ended], rows: Sequence[Mapping[str, Any]], tables: Tables
 ) -> list[dict[str, Any]]:
     """Write the files into ``folder``; gives the lines of the table."""
-    folder.mkdir(parents=True, exist_ok=True)
     lines = [line(ended, keys_of(ends), rows, tables) for ended in ends]
-    write_whole(folder / f"{NAME}.csv", csv_text(lines).encode())
-    write_whole(folder / f"{NAME}.md", markdown(command, lines).encode())
-    write_whole(folder / f"{NAME}.png", picture(ends, rows, tables))
+    files.write_study(folder, NAME, csv=csv_text(lines), md=markdown(command, lines), png=picture(ends, rows, tables))
     return lines
 
 
 def csv_text(lines: Sequence[Mapping[str, Any]]) -> str:
     """One line for each point, every number with all its digits."""
-    out = io.StringIO()
-    made = csv.writer(out, lineterminator="\n")
-    made.writerow(lines[0])
-    made.writerows([["" if value is None else value for value in each.values()] for each in lines])
-    return out.getvalue()
+    return files.csv_text(lines[0], [each.values() for each in lines])
 
 
 def markdown(command: str, lines: Sequence[Mapping[str, Any]]) -> str:
     """The same as a table to read: four digits, empty columns left out."""
     shown = [name for name in lines[0] if any(each[name] not in ("", None) for each in lines)]
     parts = [f"# Sweep\n\nMade by `{command}`; the table with all digits is {NAME}.csv.\n\n![curves]({NAME}.png)\n"]
-    parts += ["| " + " | ".join(shown) + " |", "|" + "---|" * len(shown)]
-    parts += ["| " + " | ".join(_short(each[name]) for name in shown) + " |" for each in lines]
-    return "\n".join(parts) + "\n"
+    table = files.markdown_table(shown, [[_short(each[name]) for name in shown] for each in lines])
+    return "\n".join([*parts, *table]) + "\n"
 
 
 def _short(value: Any) -> str:
@@ -90,14 +80,10 @@ def _short(value: Any) -> str:
 
 def picture(ends: Sequence[Ended], rows: Sequence[Mapping[str, Any]], tables: Tables) -> bytes:
     """The columns that the rows speak of over time, a panel each, a curve for each finished point, as a PNG."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     columns = list(dict.fromkeys((str(row.get("file", "series")), str(row["column"])) for row in rows))[:12]
     across = min(3, max(1, len(columns)))
     down = max(1, -(-len(columns) // across))
-    figure = Figure(figsize=(4.2 * across, 2.9 * down + 0.6), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = files.new_figure(4.2 * across, 2.9 * down + 0.6)
     panels = figure.subplots(down, across, squeeze=False).ravel()
     for axes, (file, column) in zip(panels, columns, strict=False):
         for at, ended in enumerate(ends):
@@ -110,9 +96,7 @@ def picture(ends: Sequence[Ended], rows: Sequence[Mapping[str, Any]], tables: Ta
     if handles:
         names = list(handles)[:20]
         figure.legend([handles[name] for name in names], names, loc="outside lower center", ncols=4, fontsize=7)
-    out = io.BytesIO()
-    figure.savefig(out, dpi=100, metadata={"Software": None})
-    return out.getvalue()
+    return files.png(figure, 100)
 
 
 def _curve(axes: Any, ended: Ended, file: str, column: str, tables: Tables, colour: str) -> None:

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import json
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from porescale.common.cli.folders import write_whole
+from porescale.common.evidence import files
 from porescale.common.studies.trade import Traded
 
 FRONT = "front.json"
@@ -25,19 +22,15 @@ def as_dict(one: Traded, but: str = "") -> dict[str, Any]:
     made = {key: value for key, value in vars(one).items() if key not in ("point", "error", "errors", "scatter")}
     return made | {
         "name": one.point.name, "quality": one.point.quality, "settings": list(one.point.settings),
-        "error": _finite(one.error), "scatter": one.scatter, "but": but,
-        "errors": {name: _finite(value) for name, value in one.errors.items()},
+        "error": files.finite(one.error), "scatter": one.scatter, "but": but,
+        "errors": files.finite(one.errors),
     }  # fmt: skip
 
 
 def front_json(about: Mapping[str, Any], points: Sequence[Traded], caveats: Caveats) -> str:
     """``about`` (command, version, machine, date, …) and the points, a line each, so that two can be compared."""
-    head = json.dumps({"format": FORMAT, **about}, indent=1, allow_nan=False).removesuffix("\n}")
-    lines = (
-        json.dumps(as_dict(one, caveats.get((one.point.quality, one.point.settings), "")), allow_nan=False)
-        for one in points
-    )
-    return head + ',\n "points": [\n  ' + ",\n  ".join(lines) + "\n ]\n}\n"
+    lines = (as_dict(one, caveats.get((one.point.quality, one.point.settings), "")) for one in points)
+    return files.json_text(lines, {"format": FORMAT, **about}, "points")
 
 
 def write(
@@ -51,26 +44,28 @@ def write(
 
     packings : how far references of different repeats are off their mean;  caveats : what errors of points do not show.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    write_whole(folder / FRONT, front_json(about | {"packings": dict(packings)}, points, caveats or {}).encode())
-    write_whole(folder / f"{NAME}.csv", csv_text(points).encode())
-    write_whole(folder / f"{NAME}.md", markdown(about, points, packings).encode())
     dear = about.get("reference", {}).get("core_seconds", 0.0)
-    write_whole(folder / f"{NAME}.png", picture(points, packings, dear))
+    files.write_files(folder, {FRONT: front_json(about | {"packings": dict(packings)}, points, caveats or {})})
+    files.write_study(
+        folder,
+        NAME,
+        csv=csv_text(points),
+        md=markdown(about, points, packings),
+        png=picture(points, packings, dear),
+    )
 
 
 def csv_text(points: Sequence[Traded]) -> str:
     """One line for each point, all digits."""
-    out = io.StringIO()
-    lines = csv.writer(out, lineterminator="\n")
     names = list(points[0].errors) if points else []
-    lines.writerow(["knob", "label", "outcome", "on front", "error", "scatter", "core-seconds (s)", "seconds (s)",
-                    "memory (B)", "steps", *names, "quality", "settings"])  # fmt: skip
-    for one in points:
-        lines.writerow([one.knob, one.label, one.outcome, int(one.on_front), one.error, one.scatter, one.core_seconds,
-                        one.seconds, one.peak_bytes, one.steps, *one.errors.values(), one.point.quality or "",
-                        " ".join(one.point.settings)])  # fmt: skip
-    return out.getvalue()
+    header = ["knob", "label", "outcome", "on front", "error", "scatter", "core-seconds (s)", "seconds (s)",
+              "memory (B)", "steps", *names, "quality", "settings"]  # fmt: skip
+    rows = [
+        [one.knob, one.label, one.outcome, int(one.on_front), one.error, one.scatter, one.core_seconds, one.seconds,
+         one.peak_bytes, one.steps, *one.errors.values(), one.point.quality or "", " ".join(one.point.settings)]
+        for one in points
+    ]  # fmt: skip
+    return files.csv_text(header, rows)
 
 
 def markdown(about: dict[str, Any], points: Sequence[Traded], packings: Mapping[str, float]) -> str:
@@ -79,35 +74,27 @@ def markdown(about: dict[str, Any], points: Sequence[Traded], packings: Mapping[
     parts = [f"# Speed against accuracy\n\nMade by `{about.get('command', '')}`, {about.get('date', '')}, "
              f"{about.get('machine', {}).get('processor', '')}. Bold: no other point is both cheaper and better.\n\n"
              f"![front]({NAME}.png)\n"]  # fmt: skip
-    parts.append("| point | core-seconds | memory, MiB | error ± scatter | " + " | ".join(names) + " |")
-    parts.append("|---|" + "---|" * (3 + len(names)))
+    rows = []
     for one in sorted(points, key=lambda each: each.core_seconds):
         label = f"**{one.label}**" if one.on_front else one.label
         total = f"{_percent(one.error)} ± {_percent(one.scatter)}" if math.isfinite(one.error) else one.outcome
         cells = [label, f"{one.core_seconds:.3g}", f"{one.peak_bytes / 2**20:.0f}", total]
-        parts.append("| " + " | ".join([*cells, *(_percent(one.errors[name]) for name in names)]) + " |")
+        rows.append([*cells, *(_percent(one.errors[name]) for name in names)])
     if packings:
         cells = ["another packing, finest", "", "", ""]
-        parts.append("| " + " | ".join([*cells, *(_percent(packings.get(name, math.nan)) for name in names)]) + " |")
-    return "\n".join(parts) + "\n"
+        rows.append([*cells, *(_percent(packings.get(name, math.nan)) for name in names)])
+    header = ["point", "core-seconds", "memory, MiB", "error ± scatter", *names]
+    return "\n".join([*parts, *files.markdown_table(header, rows)]) + "\n"
 
 
 def _percent(share: float) -> str:
     return f"{100 * share:.2g} %" if math.isfinite(share) else "–"
 
 
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
-
-
 def picture(points: Sequence[Traded], packings: Mapping[str, float], dear: float = 0.0) -> bytes:
     """Error over core-seconds, a colour for each knob, the front as a line, as a PNG.  dear : core-seconds of the
     reference, which has no error to show; 0 where there is none."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(8, 5), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = files.new_figure(8, 5)
     axes = figure.subplots()
     shown = [one for one in points if math.isfinite(one.error) and one.core_seconds > 0 and one.error > 0]
     for at, knob in enumerate(dict.fromkeys(one.knob for one in shown)):
@@ -135,6 +122,4 @@ def picture(points: Sequence[Traded], packings: Mapping[str, float], dear: float
     axes.set_ylabel("error, %")
     if shown:
         axes.legend(fontsize=7, frameon=False)
-    out = io.BytesIO()
-    figure.savefig(out, dpi=110, metadata={"Software": None})
-    return out.getvalue()
+    return files.png(figure, 110)

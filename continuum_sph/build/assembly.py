@@ -1,0 +1,37 @@
+"""What a scene is made into: something that moves, and the parts that say what it does."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from porescale.common.record.part import Part
+
+
+class System(Protocol):
+    """What moves in steps of its own choice: `water.step.Flow`, `soil.SoilFlow` or `seepage.Seepage`."""
+
+    @property
+    def step(self) -> int:
+        """Steps done."""
+
+    @property
+    def time(self) -> float:
+        """Time reached, s."""
+
+    @property
+    def next_step(self) -> float:
+        """Length of the next step, s."""
+
+    def advance(self) -> None:
+        """Do a step."""
+
+
+@dataclass
+class Assembly:
+    """flow : what moves (`System`);  parts : what it consists of, in the order of their columns;  repair : what helps
+    when it is unstable."""
+
+    flow: Any
+    parts: list[Part]
+    repair: str

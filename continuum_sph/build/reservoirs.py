@@ -1,0 +1,76 @@
+"""Water kept at levels: the reservoirs of a scene, and what they say of themselves."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from continuum_sph.scene.reservoir import ReservoirSection
+from continuum_sph.scene.sections import Scene
+from continuum_sph.seepage import Reservoir, Seepage, Supply
+from porescale.common.core.errors import Unstable
+from porescale.common.record.part import Part
+
+Floats = NDArray[np.float64]
+
+HIGHER = 0.1
+"""Share of the tank's height by which the water of a reservoir may stand over it: splashes."""
+
+
+class ReservoirPart(Part):
+    """The reservoirs of a flow.
+
+    supply : of ``flow``;  height : of the tank, m.
+    """
+
+    key = "supply"
+
+    def __init__(self, supply: Supply, flow: Seepage, height: float) -> None:
+        self.supply, self.flow, self.height = supply, flow, height
+
+    def check(self) -> None:
+        """Raise Unstable when a level lies below its bottom or over the tank."""
+        for it in self.supply.reservoirs:
+            if not it.bottom - HIGHER <= it.level <= self.height * (1.0 + HIGHER):
+                raise Unstable(
+                    f"reservoir {it.name}", "level", it.level, "m", self.flow.step, self.flow.time,
+                    "its strip is too narrow, or water comes in faster than it leaves: widen it",
+                )  # fmt: skip
+
+    def row(self) -> dict[str, float]:
+        """Level, and mass let in and out, of each."""
+        row = {}
+        for it in self.supply.reservoirs:
+            row[f"{it.name} level (m)"] = it.level
+            row[f"{it.name} let in (kg/m)"] = it.let_in
+            row[f"{it.name} let out (kg/m)"] = it.let_out
+        return row
+
+    def state(self) -> dict[str, Any]:
+        """What was let in and out."""
+        return self.supply.state()
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go on from a state of the same reservoirs."""
+        self.supply.restore(state)
+
+
+def spare(scene: Scene, x: Floats) -> int:
+    """Particles of water that wait: what the tank holds up to its highest level, less those at ``x`` (n, 2) m there."""
+    if not scene.reservoir:
+        return 0
+    rows = math.ceil(scene.head / scene.numerics.spacing) + 1
+    present = int((x[:, 1] < scene.head).sum())
+    return max(round(scene.inner[0] / scene.numerics.spacing) * rows - present, 0) + 1
+
+
+def reservoir(section: ReservoirSection, number: str, width: float) -> Reservoir:
+    """The reservoir of a section in a tank of a ``width``, m;  number: its name if it has none."""
+    times, levels = (np.array(column, np.float64) for column in zip(*section.table, strict=True))
+    walls = section.left <= 0.0, section.right >= width * (1.0 - 1e-9)
+    return Reservoir(
+        section.name or f"reservoir {number}", section.left, section.right, section.bottom, times, levels, walls
+    )

@@ -1,0 +1,131 @@
+"""Whether particles still make sense: finite numbers, one particle in a place, no jumps, a step within its rules."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from continuum_sph.water.no_step import no_step
+from porescale.common.core.errors import Unstable
+
+Floats = NDArray[np.float64]
+
+FARTHER = 2.0
+"""Ways of the fastest particle that another may have come: shifting and smoothed velocities add to its own."""
+
+LONGER = 2.0
+"""Times what its rules allow, how long the next step may be: twice 0.25 h/c is the last that sound is stable at, ω Δt
+about 0.7 (`continuum_sph.water.step`); exact limits are of densities at mid-step, which a check does not have."""
+
+
+class Now(NamedTuple):
+    """Steps done, time reached (s), and what helps against instability."""
+
+    step: int
+    time: float
+    repair: str
+
+
+def advance_one(advance: Callable[[], object], now: Now) -> None:
+    """Do a step; Unstable when a position is no number any more, which the search for neighbours says."""
+    try:
+        advance()
+    except ValueError as error:
+        raise Unstable(str(error), "position", float("nan"), "m", *now) from error
+
+
+def require_finite(arrays: Mapping[str, tuple[str, NDArray[Any]]], now: Now, of: str = "particle") -> None:
+    """Unstable at the first entry that is no number of ``arrays``: (unit, (n,) or (n, k) of particles) by name."""
+    for name, (unit, values) in arrays.items():
+        if np.isfinite(values.sum()):  # a sum that is a number has none among it that is not
+            continue
+        lost = ~np.isfinite(values.reshape(len(values), -1)).all(axis=1)
+        if lost.any():
+            raise Unstable(f"{of} {int(lost.argmax())}", name, float("nan"), unit, *now)
+
+
+def require_distinct(x: Floats, there: NDArray[np.int64], now: Now) -> None:
+    """Unstable when two of the particles ``there`` of ``x`` (n, 2) m are in one place: nothing pushes them apart.
+
+    Only those whose x + √2 y is the same are looked at: one sort.
+    """
+    mixed = x[there, 0] + 2.0**0.5 * x[there, 1]
+    order = np.argsort(mixed, kind="stable")
+    a, b = there[order[:-1]], there[order[1:]]
+    same = (np.diff(mixed[order]) == 0.0) & (x[a] == x[b]).all(axis=1)
+    if same.any():
+        at, other = int(a[same.argmax()]), int(b[same.argmax()])
+        raise Unstable(f"{place(x, at)}, and {other} there, too", "distance", 0.0, "m", *now)
+
+
+class Range(NamedTuple):
+    """A quantity and the values that it may have, of all particles or (m,) of each."""
+
+    name: str
+    unit: str
+    least: Floats | float
+    most: Floats | float
+
+
+def require_within(values: Floats, allowed: Range, of: NDArray[np.int64], x: Floats, now: Now) -> None:
+    """Unstable at the first of ``values`` (m,) that is not ``allowed``; they are those of the particles ``of`` (m,) of
+    ``x`` (n, 2) m."""
+    wrong = ~((values >= allowed.least) & (values <= allowed.most))
+    if wrong.any():
+        at = int(of[wrong.argmax()])
+        raise Unstable(place(x, at), allowed.name, float(values[wrong.argmax()]), allowed.unit, *now)
+
+
+def require_step(
+    seconds: float, limits: Sequence[float], rules: Sequence[str], x: Floats, acceleration: Floats, density: Floats,
+    now: Now,
+) -> None:  # fmt: skip
+    """Unstable when a next step of ``seconds`` is none, or longer than the ``rules`` allow by their ``limits``, s."""
+    if not 0.0 < seconds <= LONGER * min(limits):
+        raise no_step(seconds, rules[int(np.argmin(limits))], x, acceleration, density, *now)
+
+
+def place(x: Floats, at: int) -> str:
+    """A particle and its place, for messages."""
+    return f"particle {at} at ({x[at, 0]:.4g}, {x[at, 1]:.4g}) m"
+
+
+class JumpCheck:
+    """Where particles were at the last check, and the way of the fastest since.
+
+    A particle that came farther than `FARTHER` such ways and a spacing did not go there.  strips : (left, right) m of
+    reservoirs, whose particles come and go.
+    """
+
+    def __init__(self, spacing: float) -> None:
+        self.spacing = spacing
+        self.strips: Sequence[tuple[float, float]] = ()
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget where they were."""
+        self._seen: Floats | None = None
+        self._there: NDArray[np.bool_] | None = None
+        self._way, self._time, self._max_speed = 0.0, -1.0, 0.0
+
+    def add_time(self, time: float, max_speed: float) -> None:
+        """It is ``time`` (s) now, and the fastest goes at ``max_speed``, m/s."""
+        if self._time >= 0.0:
+            self._way += (time - self._time) * max(max_speed, self._max_speed)
+        self._time, self._max_speed = time, max_speed
+
+    def check(self, x: Floats, mass: Floats, now: Now) -> None:
+        """Unstable when a particle of ``mass`` (n,) kg/m, 0: not there, has jumped to its place ``x`` (n, 2) m."""
+        there = mass > 0.0
+        for left, right in self.strips:
+            there &= (x[:, 0] < left) | (x[:, 0] > right)
+        if self._seen is not None and self._there is not None:
+            gone = np.hypot(x[:, 0] - self._seen[:, 0], x[:, 1] - self._seen[:, 1])
+            jumped = there & self._there & ~(gone <= FARTHER * self._way + self.spacing)
+            if jumped.any():
+                at = int(jumped.argmax())
+                raise Unstable(place(x, at), "way since the last look", float(gone[at]), "m", *now)
+        self._seen, self._there, self._way = x.copy(), there, 0.0

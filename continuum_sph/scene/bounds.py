@@ -1,0 +1,17 @@
+"""Bounds of the sections: no flow of water that anyone computes lies outside, and inside every product is a number."""
+
+from __future__ import annotations
+
+SMALLEST, LARGEST = 1e-6, 1e5
+"""Lengths, m."""
+WEAKEST = 1e-6
+"""Gravity other than none, m/s²."""
+MOST = 100_000_000
+"""Particles: 60 GB."""
+WHOLE = 1e-6
+"""Share of a spacing by which a length may miss a whole number of them."""
+
+
+def spacings(length: float, spacing: float) -> int:
+    """The whole number (1 at least) of spacings nearest to a length, both in m."""
+    return max(1, round(length / spacing))

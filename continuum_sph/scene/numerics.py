@@ -1,0 +1,39 @@
+"""The section of the particles and of what corrects them."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import pydantic
+
+from porescale.common.schema.sections import Section, quantity
+
+
+class NumericsSection(Section):
+    """Particles and what corrects them.  The paper: kernel cubic, smoothing_ratio 1, smoothing_length evolved (eq. 52),
+    density_filter (eq. 27), xsph, and neither density diffusion nor shifting nor corrected gradients.
+
+    diffusion_of : what the density diffusion takes for noise, the departure from "hydrostatic" density, from a "linear"
+    field, or every difference ("plain");  noise_floor : over the pressure under the deepest water; noise below it
+    diffuses the more slowly the weaker it is, with 0 all of it at the pace of sound, and water at rest creeps;
+    density_filter : steps between filters, 0 never.
+    xsph moves particles with the smoothed velocity but continuity with their own: volume is lost where they differ.
+    """
+
+    spacing: float = quantity("m", ge=1e-6, le=1e3, help="spacing of the particles at the start")
+    kernel: Literal["wendland", "cubic"] = "wendland"
+    smoothing_ratio: float = quantity("", 1.3, ge=1, le=3, help="smoothing length over spacing")
+    artificial_viscosity: float = quantity("", 0.05, ge=0, le=10, help="alpha of eq. 36")
+    artificial_viscosity_2: float = quantity("", 0.0, ge=0, le=10, help="beta of eq. 36")
+    softening: float = quantity("", 0.1, ge=1e-6, le=10, help="epsilon of eq. 36")
+    density_diffusion: float = quantity("", 0.1, ge=0, le=0.2, help="delta of the density diffusion")
+    diffusion_of: Literal["hydrostatic", "linear", "plain"] = "hydrostatic"
+    noise_floor: float = quantity("", 1e-3, ge=0, le=1, help="noise over the water's weight; below it diffuses slowly")
+    density_filter: int = pydantic.Field(0, ge=0, le=1_000_000, description="steps between density filters (eq. 27)")
+    gradient: Literal["plain", "corrected"] = "plain"
+    shifting: float = quantity("", 0.0, ge=0, le=4, help="strength of particle shifting, about 1")
+    smoothing_length: Literal["fixed", "evolved"] = "fixed"
+    xsph: float = quantity("", 0.0, ge=0, le=1, help="epsilon of eq. 53")
+    tension: Literal["cut", "kept"] = "kept"
+    courant: float = quantity("", 0.25, ge=1e-3, le=0.5, help="share of the acoustic step of eq. 49")
+    skin: float = quantity("", 0.25, ge=1e-3, le=2, help="largest skin of the pair lists over h; less where it pays")

@@ -1,0 +1,40 @@
+"""The section of a sheet pile."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+from porescale.common.core.errors import Fault
+from porescale.common.schema.sections import Section, quantity
+
+
+class SheetPileSection(Section):
+    """A rigid, impermeable sheet that stands in soil and water, from its tip to the top of the tank.
+
+    faces : whether they "hold" the soil or let it "slip".  One column of particles stands for it, which ends a spacing
+    above the tip: in flow around it, its thickness makes up for that (`continuum_sph.seepage.sheet_pile`).
+    """
+
+    x: float = quantity("m", ge=0, le=1e5, help="where it stands; its column is the one that holds x")
+    tip: float = quantity("m", ge=0, le=1e5, help="height of its lower end, to the nearest row")
+    faces: Literal["slip", "hold"] = "slip"
+
+    def column(self, spacing: float) -> float:
+        """Middle (m) of the column of particles of a ``spacing`` (m) that stands for it."""
+        return (math.floor(self.x / spacing + 1e-9) + 0.5) * spacing
+
+    def lower_end(self, spacing: float) -> float:
+        """Height (m) at which that column ends, a spacing above the tip."""
+        return (round(self.tip / spacing) + 1) * spacing
+
+    def faults(self, width: float, height: float, spacing: float) -> list[Fault]:
+        """What is wrong with it in a tank of ``width`` by ``height``, m, with particles of a ``spacing``, m."""
+        found = []
+        if not 4.0 * spacing < self.column(spacing) < width - 4.0 * spacing:
+            found.append(Fault("pile.x", self.x, "leaves fewer than 4 particles beside it", "m",
+                               f"{4.5 * spacing:g} to {width - 4.5 * spacing:g}"))  # fmt: skip
+        if self.lower_end(spacing) > height - 4.0 * spacing:
+            found.append(Fault("pile.tip", self.tip, "leaves nothing of it in the tank", "m",
+                               f"<= {height - 5.0 * spacing:g}"))  # fmt: skip
+        return found

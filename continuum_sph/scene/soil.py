@@ -1,0 +1,125 @@
+"""The section of the soil."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+import pydantic
+from numpy.typing import NDArray
+
+from continuum_sph.scene.material_file import Origin
+from porescale.common.core.errors import Fault
+from porescale.common.schema.sections import Section, quantity
+
+Floats = NDArray[np.float64]
+
+
+class Body(Section):
+    """A piece of ground, given by its outline: corners (x, y), m, in order."""
+
+    outline: tuple[tuple[float, float], ...] = quantity("m", ge=0, le=1e5, help="corners (x, y) of the outline")
+
+    def top(self, x: Floats) -> Floats:
+        """Height (m) of its highest point above each ``x`` (n,) m; below all numbers where there is none."""
+        highest = np.full(x.shape, -np.inf)
+        for (ax, ay), (bx, by) in zip(self.outline, (*self.outline[1:], self.outline[0]), strict=True):
+            left, right = min(ax, bx), max(ax, bx)
+            over = (x >= left) & (x <= right)
+            y = np.full(x.shape, max(ay, by)) if ax == bx else ay + (x - ax) * ((by - ay) / (bx - ax))
+            highest = np.where(over, np.maximum(highest, y), highest)
+        return highest
+
+    def holds(self, points: Floats) -> NDArray[np.bool_]:
+        """Which of ``points`` (n, 2) m lie inside: an odd number of sides to their right."""
+        x, y = points[:, 0], points[:, 1]
+        inside = np.zeros(len(points), np.bool_)
+        for (ax, ay), (bx, by) in zip(self.outline, (*self.outline[1:], self.outline[0]), strict=True):
+            if ay != by:
+                inside ^= ((ay > y) != (by > y)) & (x < ax + (y - ay) * ((bx - ax) / (by - ay)))
+        return inside
+
+
+class SoilNumerics(Section):
+    """What keeps particles of soil calm and evenly spread; see `continuum_sph.soil.momentum`.
+
+    The paper: gradient "plain", damping_of "approach" with 0.001, neither diffusion nor parting.
+    damping_viscosity : what damping takes goes as alpha, the speed of sound c and h; told as their product it stays
+    the same whatever the stiffness and the spacing are, and with it how far a tongue of soil slides.
+    """
+
+    gradient: Literal["corrected", "plain"] = "corrected"
+    damping: float = quantity("", 0.2, ge=0, le=4, help="alpha of the damping")
+    damping_of: Literal["zig-zags", "approach"] = "zig-zags"
+    damping_viscosity: float | None = quantity("m^2/s", None, ge=0, le=1e6, help="alpha c h, in place of damping")
+    stress_diffusion: float = quantity("", 100.0, ge=0, le=1000, help="diffusion of stress and volume per shear strain")
+    restless_diffusion: float = quantity("", 0.0, ge=0, le=1, help="the same by sound: soil creeps")
+    parting: float = quantity("", 4.0, ge=0, le=20, help="how fast particles too near part, per shear strain")
+    repulsion: float = quantity("", 10.0, ge=0, le=100, help="what keeps soil that bears tension from clumping")
+    settle: float = quantity("s", 0.0, ge=0, le=1e6, help="time at the start while motion is braked")
+
+
+class SoilSection(Section):
+    """Soil: hypo-elastic, E = stiffness (p/reference)^exponent, with Mohr-Coulomb strength in plane strain.
+
+    A key material names a file of `porescale homogenise`, see material_file.py, whose numbers hold where the scene has
+    none of its own;  strength : which of its angles;  origin : where they come from, for the card of a run.
+
+    friction_angle : φ; the paper's tan φ = 0.5 is sin φ = 0.5, 30 degrees;  modulus : "printed" is eq. 43, of plane
+    stress;  stress : at the start, "geostatic" below its surface with K0 = rest (left out: as it would settle), or
+    "none";  permeability_law : how k follows the porosity;  floor, sides : of the tank, "hold" the soil or let it
+    "slip".
+    """
+
+    strength: Literal["critical", "peak"] = "critical"
+    origin: Origin | None = None
+    density: float = quantity("kg/m^3", 1590.0, ge=1, le=1e5, help="of grains per whole volume: (1 - n) times theirs")
+    porosity: float = quantity("", 0.4, ge=0, le=0.99, help="porosity at the start")
+    stiffness: float = quantity("Pa", 2e6, ge=1, le=1e12, help="Young's modulus at the reference stress")
+    reference: float = quantity("Pa", 1e5, ge=1e-3, le=1e12, help="mean stress at which it is given")
+    exponent: float = quantity("", 0.0, ge=0, le=1, help="m: how stiffness grows with mean stress")
+    least: float = quantity("Pa", 100.0, ge=1e-6, le=1e12, help="mean stress below which soil gets no softer")
+    poisson: float = quantity("", 0.3, ge=0, le=0.49, help="Poisson's ratio")
+    modulus: Literal["plane strain", "printed"] = "plane strain"
+    friction_angle: float = quantity("rad", "30 degree", ge=0, le=1.4, help="angle of friction")
+    dilatancy_angle: float = quantity("rad", 0.0, ge=0, le=1.4, help="angle of dilatancy")
+    cohesion: float = quantity("Pa", 0.0, ge=0, le=1e9, help="cohesion")
+    tension: float = quantity("Pa", 0.0, ge=0, le=1e9, help="largest tension")
+    elastic: bool = pydantic.Field(False, description="never yields")
+    permeability: float = quantity("m/s", 1e-3, ge=1e-12, le=10, help="k at the porosity of the start")
+    permeability_law: Literal["constant", "kozeny-carman"] = "constant"
+    saturated: bool = pydantic.Field(False, description="pores are full at the start, up to the surface of the ground")
+    stress: Literal["geostatic", "none"] = "geostatic"
+    rest: float | None = quantity("", None, ge=0, le=5, help="K0 at the start")
+    floor: Literal["hold", "slip"] = "hold"
+    sides: Literal["hold", "slip"] = "slip"
+    body: tuple[Body, ...] = pydantic.Field(min_length=1, description="pieces of ground")
+    numerics: SoilNumerics = SoilNumerics()
+
+    @property
+    def height(self) -> float:
+        """Height of the highest soil above the floor, m."""
+        return max(y for body in self.body for _, y in body.outline)
+
+    def faults(self, width: float, height: float, slack: float) -> list[Fault]:
+        """What is wrong with the ground in a tank of ``width`` by ``height``, m."""
+        found = []
+        for index, body in enumerate(self.body):
+            if len(body.outline) < 3:
+                found.append(
+                    Fault(f"soil.body[{index}].outline", len(body.outline), "corners hold nothing", "", ">= 3")
+                )
+            for x, y in body.outline:
+                if not (-slack <= x <= width + slack and -slack <= y <= height + slack):
+                    found.append(Fault(f"soil.body[{index}].outline", (x, y), "lies outside of the tank", "m"))
+        if self.dilatancy_angle > self.friction_angle:
+            found.append(
+                Fault("soil.dilatancy_angle", self.dilatancy_angle, "makes soil that gives energy as it shears",
+                      "rad", f"<= {self.friction_angle:g}")
+            )  # fmt: skip
+        if self.tension > 0.0 and self.friction_angle > 0.0:
+            most = self.cohesion / math.tan(self.friction_angle)
+            if self.tension > most:
+                found.append(Fault("soil.tension", self.tension, "exceeds c cot φ", "Pa", f"<= {most:g}"))
+        return found

@@ -1,0 +1,25 @@
+"""The section of the tank that holds everything."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import pydantic
+
+from continuum_sph.scene.bounds import LARGEST, SMALLEST
+from porescale.common.schema.sections import Section, quantity
+
+
+class TankSection(Section):
+    """A rectangular tank, lower left inner corner at the origin.
+
+    "slip" walls carry pressure only, "stick" walls hold the water as well, or floor and lid alone do.  wall_particles:
+    "pressure" take the pressure of the water before them (Adami, Hu & Adams 2012), "images" are those of the paper
+    (eqs 50, 51).
+    """
+
+    width: float = quantity("m", ge=SMALLEST, le=LARGEST, help="inner width of the tank")
+    height: float = quantity("m", ge=SMALLEST, le=LARGEST, help="inner height of the tank")
+    walls: Literal["slip", "stick", "floor and lid stick"] = "slip"
+    wall_particles: Literal["pressure", "images"] = "pressure"
+    lid: bool = pydantic.Field(True, description="close the tank, so that no splash is lost")

@@ -1,0 +1,36 @@
+"""The section of the water."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import pydantic
+
+from continuum_sph.scene.bounds import LARGEST, SMALLEST
+from porescale.common.schema.sections import Section, quantity
+
+
+class Column(Section):
+    """A rectangle of water at the start."""
+
+    left: float = quantity("m", 0.0, ge=0, le=LARGEST, help="left edge of the water")
+    bottom: float = quantity("m", 0.0, ge=0, le=LARGEST, help="lower edge of the water")
+    width: float = quantity("m", ge=SMALLEST, le=LARGEST, help="width of the water")
+    height: float = quantity("m", ge=SMALLEST, le=LARGEST, help="height of the water")
+
+
+class WaterSection(Section):
+    """A weakly compressible liquid.
+
+    pressure : at the start, "hydrostatic", that of fluids just let go ("released"), or "none"
+    (density ρ0 everywhere, as in the paper);  push : "face" gives the particles of the right face √(2g(H-y)) to
+    the right, as in figs 6 and 7 of the paper.
+    """
+
+    density: float = quantity("kg/m^3", 1000.0, ge=1e-2, le=1e5, help="density under the pressure of the air")
+    viscosity: float = quantity("Pa s", 1.002e-3, ge=0, le=1e9, help="viscosity")
+    sound_speed: float | None = quantity("m/s", None, ge=1e-3, le=1e6, help="speed of sound, at least 10 sqrt(2 g H)")
+    exponent: float = quantity("", 7.0, ge=1.5, le=20, help="exponent of the equation of state")
+    pressure: Literal["hydrostatic", "released", "none"] = "hydrostatic"
+    push: Literal["none", "face"] = "none"
+    column: tuple[Column, ...] = pydantic.Field(default=(), description="rectangles of water")

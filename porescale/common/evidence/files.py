@@ -1,0 +1,80 @@
+"""The files of a study: JSON, CSV, Markdown and PNG from rows, each file whole or not at all."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from porescale.common.core.atomic import write_bytes
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def write_files(folder: Path, files: Mapping[str, str | bytes]) -> None:
+    """Write texts and pictures by file name into ``folder``, which is made if it is not there."""
+    for name, content in files.items():
+        write_bytes(folder / name, content.encode() if isinstance(content, str) else content)
+
+
+def write_study(folder: Path, name: str, **contents: str | bytes) -> None:
+    """Write the files of a study into ``folder``: ``name`` with each kind of file as its ending, json, csv, md, png."""
+    write_files(folder, {f"{name}.{kind}": content for kind, content in contents.items()})
+
+
+def finite(value: Any) -> Any:
+    """``value`` JSON-able: numpy numbers and arrays as plain ones, nan and infinities as None, at any depth."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        return {key: finite(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [finite(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def json_text(rows: Iterable[Mapping[str, Any]], about: Mapping[str, Any] | None = None, key: str = "rows") -> str:
+    """Rows a line each, so that two files can be compared: under ``key`` after ``about``, or alone without it."""
+    lines = ",\n  ".join(json.dumps(finite(row), allow_nan=False) for row in rows)
+    if about is None:
+        return f"[\n  {lines}\n]\n"
+    head = json.dumps(about, indent=1, allow_nan=False).removesuffix("\n}")
+    return f'{head},\n "{key}": [\n  {lines}\n ]\n}}\n'
+
+
+def csv_text(header: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
+    """A table as CSV; None is an empty cell."""
+    out = io.StringIO()
+    lines = csv.writer(out, lineterminator="\n")
+    lines.writerow(header)
+    lines.writerows(rows)
+    return out.getvalue()
+
+
+def markdown_table(header: Sequence[str], rows: Iterable[Iterable[object]]) -> list[str]:
+    """The lines of a Markdown table."""
+    lines = [" | ".join(header), "|".join("---" for _ in header)]
+    body = [" | ".join(map(str, row)) for row in rows]
+    return [f"| {lines[0]} |", f"|{lines[1]}|", *(f"| {line} |" for line in body)]
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure of this size in inches, drawn without a window."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def png(figure: Figure, dpi: int) -> bytes:
+    """The figure as a PNG file that does not name the version of the library."""
+    out = io.BytesIO()
+    figure.savefig(out, format="png", dpi=dpi, metadata={"Software": None})
+    return out.getvalue()

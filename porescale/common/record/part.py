@@ -1,0 +1,78 @@
+"""A part of a simulation: one thing of a scene, with all that it adds to a run.
+
+A simulation is a list of parts.  What a scene does not ask for is no part of its list, and costs neither memory nor
+time.  The order of the list is the order of the columns of series.csv and of the order in which parts act; states are
+restored from the last part to the first, so that a part may rely on what those after it have restored.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from porescale.common.record.model import Snapshot
+
+
+class Part:
+    """What a part can do; what it does not override does nothing.
+
+    key : name of its entry in the state of the simulation; "" for entries that stand beside those of other parts.
+    """
+
+    key = ""
+
+    def before(self) -> None:
+        """Act just before a step."""
+
+    def after(self) -> None:
+        """Act just after a step."""
+
+    def check(self) -> None:
+        """Raise Unstable when the state of the part is beyond sense."""
+
+    def row(self) -> dict[str, float]:
+        """Columns of series.csv, with units in their names; the same every time."""
+        return {}
+
+    def tables(self) -> dict[str, dict[str, float]]:
+        """Rows of further tables by file name without suffix."""
+        return {}
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Add grids and clouds to a ``snapshot``."""
+
+    def state(self) -> dict[str, Any]:
+        """All it takes to go on bit for bit, as of `porescale.common.record.model.Model`."""
+        return {}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take over what `state` of a part of the same scene gave."""
+
+
+def state_of(parts: Iterable[Part]) -> dict[str, Any]:
+    """The state of a simulation of ``parts``: each under its key, or beside the others."""
+    whole: dict[str, Any] = {}
+    for part in parts:
+        own = part.state()
+        whole |= {part.key: own} if part.key else own
+    return whole
+
+
+def restore(parts: list[Part], state: dict[str, Any]) -> None:
+    """Give every one of ``parts`` its share of a ``state`` of `state_of`, the last part first."""
+    for part in reversed(parts):
+        part.restore(state[part.key] if part.key else state)
+
+
+def row_of(parts: Iterable[Part]) -> dict[str, float]:
+    """The columns of all ``parts``."""
+    return {name: value for part in parts for name, value in part.row().items()}
+
+
+def tables_of(parts: Iterable[Part]) -> dict[str, dict[str, float]]:
+    """The tables of all ``parts``; columns of parts that share a table stand side by side."""
+    found: dict[str, dict[str, float]] = {}
+    for part in parts:
+        for name, row in part.tables().items():
+            found.setdefault(name, {}).update(row)
+    return found

@@ -1,0 +1,106 @@
+"""Probes and levels read what is there."""
+
+from __future__ import annotations
+
+import csv
+
+import numpy as np
+import pytest
+
+from continuum_sph.build.instruments import MeasuredWater, interpolate, level_row, surface_height
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.scene.instruments import LevelSection
+from continuum_sph.scene.sections import Scene
+from porescale.common.neighbors import square_lattice
+from porescale.common.record.drive import drive
+from porescale.common.schema.sections import validate
+
+eps = np.finfo(float).eps
+SPACING = 0.05
+
+
+def cloud(height=0.5, width=1.0):
+    x = square_lattice((0.0, 0.0), (width, height), SPACING)
+    x += np.random.default_rng(2).uniform(-0.2, 0.2, x.shape) * SPACING
+    p = 100.0 + 40.0 * x[:, 0] - 70.0 * x[:, 1]
+    v = np.column_stack((x[:, 1], -2.0 * x[:, 0]))
+    return MeasuredWater(x, np.full(len(x), SPACING**2), p, v, 1.3 * SPACING, SPACING, width)
+
+
+@pytest.mark.parametrize("at", [(0.5, 0.25), (0.0, 0.0), (0.97, 0.5)])
+def test_probes_are_exact_in_linear_fields(at):
+    exact = 100.0 + 40.0 * at[0] - 70.0 * at[1], at[1], -2.0 * at[0]
+    # three moments of some 10 particles; one-sided places have moments of condition 1e3
+    np.testing.assert_allclose(interpolate(at, cloud()), exact, rtol=1e5 * eps, atol=1e5 * eps)
+
+
+def test_a_probe_without_water_has_no_value_and_one_by_a_drop_has_the_drops():
+    water = cloud()
+    assert np.isnan(interpolate((0.5, 2.0), water)).all()
+    drop = MeasuredWater(
+        np.array([[0.5, 0.9]]), np.array([SPACING**2]), np.array([7.0]), np.array([[1.0, 2.0]]), 0.065, SPACING, 1.0
+    )
+    np.testing.assert_allclose(interpolate((0.52, 0.9), drop), [7.0, 1.0, 2.0], rtol=4 * eps)
+
+
+@pytest.mark.parametrize("x", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("height", [0.3, 0.5])
+def test_levels_are_heights_of_the_surface(x, height):
+    # particles are off their places by up to 0.2 spacings, and so are those that are in the strip by chance
+    assert surface_height(LevelSection(x=x, breadth=0.4), cloud(height)) == pytest.approx(height, abs=0.2 * SPACING)
+
+
+def test_a_drop_is_no_surface():
+    water = cloud()
+    x = np.vstack((water.x, [[0.5, 1.5]]))
+    one = np.ones(len(x))
+    more = MeasuredWater(x, SPACING**2 * one, one, np.zeros_like(x), water.length, SPACING, 1.0)
+    assert surface_height(LevelSection(x=0.5), more) == pytest.approx(0.5, abs=0.3 * SPACING)
+    assert (
+        surface_height(
+            LevelSection(x=0.5), MeasuredWater(x[-1:], one[-1:] * SPACING**2, one[-1:], x[-1:], 0.065, SPACING, 1.0)
+        )
+        == 0.0
+    )
+
+
+def test_levels_do_not_see_water_beside_their_strip():  # the twin that must fail
+    assert surface_height(LevelSection(x=2.0, breadth=0.2), cloud(width=1.0)) == 0.0
+
+
+SCENE = {
+    "tank": {"width": 1.0, "height": 0.8},
+    "water": {"column": [{"width": 1.0, "height": 0.5}]},
+    "probe": [{"name": "deep", "x": 0.5, "y": 0.05}, {"x": 0.5, "y": 0.7}],
+    "level": [{"x": 0.3}],
+    "numerics": {"spacing": 0.05},
+    "time": {"end": 0.02},
+    "output": {"snapshot_interval": 0.02, "series_interval": 0.005},
+}
+
+
+def test_a_run_leaves_probes_and_levels_and_cuts_them_back_on_resume(tmp_path):
+    def run(folder, end, resume=False):
+        drive(
+            Simulation(validate(Scene, SCENE)), folder, end, snapshot_interval=0.02, series_interval=0.005,
+            checkpoint_seconds=1e9, card={"scene": SCENE}, resume=resume, quiet=True,
+        )  # fmt: skip
+        return (folder / "probes.csv").read_text(), (folder / "levels.csv").read_text()
+
+    whole = run(tmp_path / "whole", 0.02)
+    run(tmp_path / "parts", 0.01)
+    with (tmp_path / "parts" / "probes.csv").open("a") as file:  # rows beyond the checkpoint
+        file.write("9,9,9,9,9,9,9\n")
+    assert run(tmp_path / "parts", 0.02, resume=True) == whole
+    rows = list(csv.DictReader(whole[0].splitlines()))
+    # ρ g depth of 0.45 m, to the half spacing of the surface row
+    assert float(rows[0]["deep pressure (Pa)"]) == pytest.approx(9810.0 * 0.45, rel=0.06)
+    assert np.isnan(float(rows[0]["probe 1 pressure (Pa)"]))
+    level = next(csv.DictReader(whole[1].splitlines()))["level 0 (m)"]
+    assert float(level) == pytest.approx(0.5, abs=0.01)
+
+
+def test_a_scene_without_instruments_has_no_tables():
+    scene = validate(Scene, {**SCENE, "probe": [], "level": []})
+    assert Simulation(scene).tables() == {}
+    assert set(level_row((LevelSection(x=0.5),), cloud())) == {"level 0 (m)"}

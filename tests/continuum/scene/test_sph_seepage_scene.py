@@ -1,0 +1,110 @@
+"""Scenes of soil and water: refused, built, at rest, resumed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from continuum_sph.build import pore_water
+from continuum_sph.build.mixture import DRY, WET
+from continuum_sph.build.seepage_report import seepage_report
+from continuum_sph.build.sheet_pile import NAME
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.cli import PACKAGE
+from continuum_sph.scene.sections import Scene
+from continuum_sph.seepage import Seepage
+from continuum_sph.soil.state import YY
+from continuum_sph.validation.seepage_trials import saturated_box
+from porescale.common.compiled.jit import set_threads
+from porescale.common.core.constants import GRAVITY
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import validate
+from tests.reference.same_run import leaves
+
+OUTLINE = [[0, 0], [0.3, 0], [0.3, 0.2], [0, 0.2]]
+
+
+def scene(**changes):
+    given = {
+        "tank": {"width": 0.3, "height": 0.5},
+        "water": {"column": [{"width": 0.3, "height": 0.4}], "sound_speed": 80.0},
+        "soil": {"stiffness": 1e6, "permeability": 1e-3, "body": [{"outline": OUTLINE}]},
+        "numerics": {"spacing": 0.02, "artificial_viscosity": 0.1},
+        "probe": [{"x": 0.15, "y": 0.1}],
+        "level": [{"x": 0.15}],
+        "time": {"end": 1.0},
+        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
+    }
+    return validate(Scene, given | changes)
+
+
+def test_soft_water_is_warned_of_and_second_fluids_are_refused():
+    soft = scene(water={"column": [{"width": 0.3, "height": 0.4}]})
+    assert any("n M" in warning for warning in seepage_report(soft).warnings)
+    assert not seepage_report(scene()).warnings
+    bubble = {"disc": [{"x": 0.15, "y": 0.3, "radius": 0.08}]}
+    with pytest.raises(InputError, match="inclusion"):
+        seepage_report(scene(inclusion=bubble))
+
+
+@pytest.mark.slow
+def test_soil_under_water_bears_its_weight_less_buoyancy_and_stays_at_rest():
+    model = Simulation(scene())
+    soil, n = model.flow.ground.soil, model.flow.ground.soil.soil
+    depth = 0.2 - soil.x[:n, 1]
+    buoyant = 0.6 * 1650.0 * GRAVITY
+    np.testing.assert_allclose(soil.stress[:n, YY], buoyant * depth, rtol=1e-12)
+    model.advance(600)
+    model.check()
+    row = model.series()
+    assert NAME not in row  # without a pile
+    # Gradients are exact but at the surface of the soil, where the weight of half a row, 1/20, is borne as it may be:
+    # the layer settles by that share of its elastic settlement, buoyant H²/2M
+    assert row["soil: largest displacement (m)"] < 0.05 * buoyant * 0.2**2 / (2.0 * 1.35e6) * 10.0
+    assert row["soil: stress upright over weight ()"] == pytest.approx(1650.0 / 2650.0, rel=0.05)
+    tables = model.tables()
+    assert tables["levels"]["level 0 (m)"] == pytest.approx(0.4, abs=0.01)
+    assert tables["probes"]["probe 0 pressure (Pa)"] == pytest.approx(0.3 * 1000.0 * GRAVITY, rel=0.03)
+    cloud = model.snapshot().clouds["particles"]
+    assert np.isin(cloud.data["layer"], (0, DRY, WET)).all()
+    assert (cloud.data["layer"] == WET).sum() == n
+
+
+@pytest.mark.slow
+def test_a_resumed_run_goes_on_bit_for_bit():
+    whole, part, resumed = (Simulation(scene()) for _ in range(3))
+    whole.advance(30)
+    part.advance(13)
+    resumed.restore(part.state())
+    # All of it, how long lists have lasted too: by that they are made anew, and sums go in another order.
+    assert dict(leaves(resumed.state())) == dict(leaves(part.state()))
+    resumed.advance(17)
+    assert dict(leaves(resumed.state())) == dict(leaves(whole.state()))
+    assert np.array_equal(whole.flow.water.layer.x, resumed.flow.water.layer.x)
+    assert np.array_equal(whole.flow.ground.soil.stress, resumed.flow.ground.soil.stress)
+    assert whole.series() == resumed.series()
+
+
+@pytest.mark.slow
+def test_one_thread_and_many_give_the_same_bits():
+    ends = []
+    for threads in (1, 2):
+        set_threads(threads)
+        both = saturated_box(16, 3, speed=0.1)
+        for _ in range(20):
+            both.advance()
+        ends.append((both.water.layer.x.copy(), both.water.skeleton.v.copy(), both.water.heat.copy()))
+    assert all(np.array_equal(one, many) for one, many in zip(*ends, strict=True))
+
+
+@pytest.mark.slow
+def test_soil_that_forgets_its_buoyancy_swells(monkeypatch):  # the twin that must fail
+    monkeypatch.setattr(pore_water, "submerge", lambda *_: None)
+    model = Simulation(scene())
+    model.advance(300)
+    assert model.series()["soil: stress upright over weight ()"] > 0.8
+
+
+@pytest.mark.slow
+def test_the_command_builds_what_the_scene_holds():
+    assert isinstance(PACKAGE.build(scene()).flow, Seepage)

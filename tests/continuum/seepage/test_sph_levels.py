@@ -1,0 +1,233 @@
+"""Water kept at a level: measured by weight, booked to the last particle, resumed bit for bit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from continuum_sph.build.instruments import MeasuredWater, discharge
+from continuum_sph.build.seepage_report import seepage_report
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.scene.instruments import LevelSection
+from continuum_sph.scene.sections import Scene
+from continuum_sph.seepage import Reservoir, Supply
+from continuum_sph.seepage.reservoir import berths, moor, sound_out
+from continuum_sph.water.state import Layer
+from porescale.common.compiled.jit import set_threads
+from porescale.common.core.errors import InputError
+from porescale.common.neighbors import square_lattice
+from porescale.common.schema.sections import validate
+
+SPACING, ROUND = 0.1, 2.3e-16
+
+
+def pool(level, *, left=0.0, right=1.0, walls=(True, False), times=(0.0,)):
+    levels = np.atleast_1d(np.array(level, np.float64))
+    return Reservoir("pool", left, right, 0.0, np.array(times, np.float64), levels, walls)
+
+
+def supply(*pools, rows=4, spare=200):
+    """A basin 2 m wide, ``rows`` deep."""
+    x = square_lattice((0.0, 0.0), (2.0, rows * SPACING), SPACING)
+    berth = berths(len(x) + spare, 2.0, 5.0, 0.8)
+    n = len(berth)
+    mass = np.where(np.arange(n) < len(x), 1000.0 * SPACING**2, 0.0)
+    layer = Layer(n, np.concatenate((x, berth[len(x) :])), np.zeros((n, 2)), mass, np.full(n, 1000.0))
+    return Supply(layer, pools, berth, SPACING, 1000.0, 1e6, 9.81)
+
+
+def test_a_lattice_in_a_strip_weighs_what_stands_there_wherever_its_columns_are():
+    for shift in np.linspace(0.0, 1.0, 5):
+        given = supply(pool(0.4, left=0.5, right=1.6, walls=(False, False)))
+        strip, layer = given.reservoirs[0], given.layer
+        layer.x[:, 0] += shift * SPACING
+        where = (
+            layer.fluid,
+            layer.x,
+            layer.mass,
+            layer.material,
+            strip.left,
+            strip.right,
+            *strip.ramps,
+            0.0,
+            SPACING,
+            0.5,
+        )
+        held, highest = sound_out(*where, strip.tops)
+        # the trapezoidal rule over cosine ramps of 3 spacings: its first harmonic, 1/{π (2·3)² - …} of a spacing a ramp
+        assert held / (1000.0 * strip.width) == pytest.approx(0.4, abs=0.4 * 2 * 0.02 / (strip.width / SPACING))
+        assert layer.x[highest, 1] == pytest.approx(0.35)
+        np.testing.assert_allclose(strip.tops, 0.35)
+        slow = np.zeros_like(strip.tops)
+        assert sound_out.py_func(*where, slow) == (pytest.approx(held, rel=1e-14), highest)
+        assert np.array_equal(slow, strip.tops)
+
+
+def test_air_in_a_strip_is_no_water():
+    given = supply(pool(0.4))
+    layer, strip = given.layer, given.reservoirs[0]
+    air = np.flatnonzero((layer.mass > 0.0) & (layer.x[:, 1] > 0.3))
+    layer.material[air] = 1
+    layer.x[air, 1] += 0.2
+    given.keep(0.0)
+    assert strip.let_in > 0.08 * 1000.0 * strip.width
+    assert strip.let_out == 0.0
+    assert (layer.mass[air] > 0.0).all()
+
+
+def test_what_comes_and_goes_is_booked_to_round_off():
+    given = supply(pool([0.7, 0.2], times=(1.0, 2.0)), pool(0.0, left=1.7, right=2.0, walls=(False, True)))
+    layer, before = given.layer, given.layer.mass.sum()
+    for time in np.linspace(0.0, 3.0, 31):
+        given.keep(time)
+        booked = sum(one.let_in - one.let_out for one in given.reservoirs)
+        assert abs(layer.mass.sum() - before - booked) < ROUND * layer.fluid * before
+        first, drained = given.reservoirs
+        # within half a particle of 1 m or, beside the ramp of 3 spacings, 0.85 m
+        assert abs(first.level - first.wanted(time)) <= 0.5 * SPACING**2 / first.width + 1e-12
+        assert drained.level == 0.0
+    assert first.let_in > 0.0
+    assert first.let_out > 0.0
+    away = layer.mass == 0.0
+    assert np.array_equal(layer.x[away], given.berth[away])
+
+
+def test_new_water_lies_on_the_lowest_place_under_its_depth():
+    given = supply(pool(0.8))
+    layer, before = given.layer, given.layer.mass > 0.0
+    given.keep(0.0)
+    new = (layer.mass > 0.0) & ~before
+    assert new.sum() >= 32
+    x = layer.x[layer.mass > 0.0]
+    apart = np.hypot(*(x[:, None] - x[None]).transpose(2, 0, 1)) + np.eye(len(x))
+    assert apart.min() > 0.99 * SPACING
+    depth = np.maximum(0.0, 0.8 - layer.x[new, 1])
+    np.testing.assert_allclose(layer.density[new], 1000.0 * (1.0 + 1000.0 * 9.81 * depth / 1e6), rtol=1e-12)
+
+
+def test_a_surface_that_stands_over_its_level_is_not_heaped_up():
+    given = supply(pool(0.4))
+    layer = given.layer
+    there = layer.mass > 0.0
+    lowest = np.flatnonzero(there & (layer.x[:, 1] < SPACING))
+    layer.x[there, 1] += 0.5 * SPACING
+    layer.mass[lowest[::2]] = 0.0
+    given.keep(0.0)
+    assert given.reservoirs[0].let_in == 0.0
+    assert given.reservoirs[0].level < 0.36
+
+
+def test_water_that_waits_stays_where_it_is():
+    given = supply(pool(0.4))
+    layer = given.layer
+    layer.x[-3:], layer.v[-3:] = 0.5, 1.0
+    moor.py_func(
+        layer.fluid, layer.x, layer.v, layer.mass, layer.density, layer.predicted, given.berth, 1000.0
+    )  # fmt: skip
+    assert np.array_equal(layer.x[-3:], given.berth[-3:])
+    assert not layer.v[-3:].any()
+
+
+def test_a_reservoir_without_particles_left_says_so():
+    with pytest.raises(ValueError, match="pool"):
+        supply(pool(0.8), spare=10).keep(0.0)
+
+
+def test_berths_are_a_pitch_apart_and_over_the_floor():
+    places = berths(50, 2.0, 1.0, 0.3)
+    apart = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1)) + np.eye(50)
+    assert apart.min() == pytest.approx(0.3)
+    assert places[:, 1].min() == pytest.approx(1.3)
+
+
+def scene(**changes):
+    given = {
+        "tank": {"width": 0.8, "height": 0.3, "lid": False},
+        "water": {"column": [{"width": 0.3, "height": 0.1}], "sound_speed": 30.0},
+        "soil": {"stiffness": 2e5, "elastic": True, "permeability": 0.05,
+                 "body": [{"outline": [[0.3, 0], [0.5, 0], [0.5, 0.25], [0.3, 0.25]]}]},
+        "reservoir": [{"name": "upstream", "left": 0.0, "right": 0.2, "rise": [[0, 0.1], [0.02, 0.2]]},
+                      {"name": "downstream", "left": 0.6, "right": 0.8, "level": 0.0}],
+        "numerics": {"spacing": 0.02, "artificial_viscosity": 0.1, "shifting": 1.0, "tension": "cut"},
+        "time": {"end": 1.0},
+        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
+    }  # fmt: skip
+    return validate(Scene, given | changes)
+
+
+def test_the_discharge_through_a_section_is_what_flows_in_pores():
+    x = square_lattice((0.0, 0.0), (1.0, 0.5), SPACING)
+    v = np.tile([0.3, 0.1], (len(x), 1))
+    cloud = MeasuredWater(x, np.full(len(x), SPACING**2), np.zeros(len(x)), v, 1.3 * SPACING, SPACING, 1.0)
+    through = discharge(LevelSection(x=0.5), cloud, np.full(len(x), 0.4))
+    assert through == pytest.approx(0.4 * 0.3 * 0.5, rel=1e-12)  # n v H; a sum of 20 equal parts
+
+
+def test_reservoirs_that_cannot_be_are_refused():
+    good = {"left": 0.0, "right": 0.2, "level": 0.1}
+    for wrong, named in (
+        ({"level": None}, "level or a rise"),
+        ({"right": 0.9}, "outside"),
+        ({"right": 0.01}, "fewer than 2"),
+        ({"level": 0.4}, "tank"),
+        ({"level": None, "rise": [[0, 0.1], [0, 0.2]]}, "rise"),
+    ):
+        with pytest.raises(InputError, match=named):
+            scene(reservoir=[good | wrong])
+    with pytest.raises(InputError, match="soil"):
+        scene(reservoir=[good], soil=None)
+
+
+def test_kernels_too_short_for_pores_and_shifting_are_warned_of():
+    def said(numerics):
+        warnings = seepage_report(scene(numerics={"spacing": 0.02} | numerics)).warnings
+        return [any(word in text for text in warnings) for word in ("kernels reach", "fastest water")]
+
+    assert said({"shifting": 1.0}) == [True, True]
+    assert said({"smoothing_ratio": 2.0}) == [False, False]
+
+
+@pytest.mark.slow
+def test_a_dam_between_levels_is_resumed_bit_for_bit_and_books_its_water():
+    whole, part, resumed = (Simulation(scene()) for _ in range(3))
+    before = whole.series()["mass (kg/m)"]
+    whole.advance(300)
+    part.advance(130)
+    resumed.restore(part.state())
+    resumed.advance(170)
+    assert np.array_equal(whole.flow.water.layer.x, resumed.flow.water.layer.x)
+    row = whole.series()
+    assert row == resumed.series()
+    assert row["upstream let in (kg/m)"] > 0.09 * 0.2 * 1000.0
+    booked = sum(row[f"{name} let in (kg/m)"] - row[f"{name} let out (kg/m)"] for name in ("upstream", "downstream"))
+    # sums of up to 600 particles' masses in two orders
+    assert abs(row["mass (kg/m)"] - before - booked) < ROUND * 600 * row["mass (kg/m)"]
+    cloud = whole.snapshot().clouds["water"]
+    layer = whole.flow.water.layer
+    assert len(cloud.position) == (layer.mass[: layer.fluid] > 0.0).sum()
+
+
+@pytest.mark.slow
+def test_water_of_a_reservoir_beside_a_dam_full_of_air_is_booked_and_air_keeps_its_mass():
+    model = Simulation(scene(air={"density": 20.0}))
+    before = model.series()
+    model.advance(400)
+    model.check()
+    row = model.series()
+    assert row["air: mass (kg/m)"] == before["air: mass (kg/m)"]
+    booked = sum(row[f"{name} let in (kg/m)"] - row[f"{name} let out (kg/m)"] for name in ("upstream", "downstream"))
+    gained = row["water: mass (kg/m)"] - before["water: mass (kg/m)"]
+    assert abs(gained - booked + before["upstream let in (kg/m)"]) < ROUND * 600 * row["water: mass (kg/m)"]
+    assert booked > 10.0  # half of 0.1 m of water in a strip of 0.2 m, and the basin beside it
+
+
+@pytest.mark.slow
+def test_one_thread_and_many_keep_the_same_levels_in_the_same_bits():
+    ends = []
+    for threads in (1, 2):
+        set_threads(threads)
+        model = Simulation(scene())
+        model.advance(60)
+        ends.append((model.flow.water.layer.x.copy(), model.series()))
+    assert np.array_equal(ends[0][0], ends[1][0])
+    assert ends[0][1] == ends[1][1]

@@ -1,0 +1,330 @@
+"""Soil: gradients, turning, yielding, walls and the model of a scene."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from continuum_sph.build.simulation import Simulation
+from continuum_sph.build.soil import geostatic, soil_law
+from continuum_sph.build.soil_report import soil_report
+from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.soil import Body
+from continuum_sph.soil import Material, gradient, porosity
+from continuum_sph.soil import momentum as divergence
+from continuum_sph.soil.gradient import inverse, velocity_gradients
+from continuum_sph.soil.momentum import accelerate
+from continuum_sph.soil.plasticity import returned
+from continuum_sph.soil.state import MASS, VOLUME, XX, YY, X
+from continuum_sph.soil.stress import deform
+from continuum_sph.soil.tension import hold_apart
+from continuum_sph.validation.soil_element_trials import Element
+from continuum_sph.validation.soil_trials import body, in_tank
+from continuum_sph.water.smoothing import slope_shape
+from porescale.common.compiled.jit import set_threads
+from porescale.common.core.errors import InputError, Unstable
+from porescale.common.neighbors import square_lattice
+from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
+from porescale.common.record.model import Model
+from porescale.common.schema.sections import validate
+from tests.reference.memory import growth
+
+ELASTIC = Material(1e7, 1600.0, yields=False)
+SAND = Material(1e6, 1600.0)
+
+
+def scene(**soil):
+    ground = {"stiffness": 1e6, "body": [{"outline": [[0, 0], [0.4, 0], [0.4, 0.4], [0, 0.4]]}]}
+    return validate(
+        Scene,
+        {
+            "tank": {"width": 1.0, "height": 0.6, "lid": False},
+            "soil": ground | soil,
+            "numerics": {"spacing": 0.05},
+            "time": {"end": 0.2},
+            "output": {"snapshot_interval": 0.1, "series_interval": 0.1},
+        },
+    )
+
+
+def block():
+    return body(square_lattice((-0.5, -0.3), (0.5, 0.3), 0.1), 0.1, ELASTIC, (3e3, 1e4, 2e3, 4e3))
+
+
+def bits(model):
+    soil = model.flow.soil
+    return [soil.x.tobytes(), soil.v.tobytes(), soil.stress.tobytes(), soil.density.tobytes(), model.time]
+
+
+def test_gradients_of_linear_fields_are_exact_where_neighbours_are_enough():
+    flow = block()
+    soil = flow.soil
+    wanted = np.array([0.1, 0.4, -0.3, 0.2])
+    soil.v[:] = soil.x @ wanted.reshape(2, 2).T
+    soil.acceleration[:] = 0.0
+    flow.begin(0.0)
+    flow.strain(0.0)
+    inside = np.abs(soil.x).max(axis=1) < 0.44
+    # 60 particles, sums of 20 terms of order 1/spacing
+    assert np.abs(soil.gradient[inside] - wanted).max() < 20 * 10 * np.finfo(float).eps
+
+
+def test_plain_gradients_miss_linear_fields_at_surfaces():  # the twin that must fail
+    flow = body(square_lattice((-0.5, -0.3), (0.5, 0.3), 0.1), 0.1, ELASTIC, (0.0, 0.0, 0.0, 0.0), corrected=False)
+    soil = flow.soil
+    soil.v[:, 0] = soil.x[:, 0]
+    flow.begin(0.0)
+    flow.strain(0.0)
+    assert np.abs(soil.gradient[:, 0] - 1.0).max() > 0.3
+
+
+def test_kernels_run_as_plain_python(monkeypatch):
+    for module in (gradient, divergence):  # compiled functions take vectors only from kernels
+        monkeypatch.setattr(module, "slope_shape", slope_shape.py_func)
+    flow, law = block(), None
+    soil, pairs, law = flow.soil, flow.pairs, flow.law
+    soil.v[:] = 0.01 * np.sin(soil.x)
+    flow.begin(1e-4)
+    where = (soil.soil, pairs.start, flow.split, pairs.partner, soil.record, soil.facing)
+    how = (law.smoothing.kind, law.smoothing.length)
+    first = soil.record.copy()
+    velocity_gradients.py_func(*where, soil.matrix, True, 1e-4, *how, 0.0, 0.0)
+    slow = soil.record.copy()
+    soil.record[:] = first
+    velocity_gradients(*where, soil.matrix, True, 1e-4, *how, 0.0, 0.0)
+    # Rates of 0.1 1/s; the compiler may add in another order
+    np.testing.assert_allclose(soil.record, slow, rtol=0, atol=1e-12)
+    deform.py_func(
+        soil.density, soil.stress, soil.material, flow.table, soil.matrix, soil.spread,
+        soil.separation_strain, soil.plastic_shear, soil.record, 1e-4, 1e-4, 1.0, law.most,
+    )  # fmt: skip
+    rest = (*how, 0.0, -9.8, 1.0, False, 100.0, 0.0, 4.0, law.spacing, 0.0, 0.0)
+    accelerate.py_func(*where, soil.force, soil.stress, soil.acceleration, soil.spread, soil.drift, *rest)
+    pushed = soil.acceleration.copy()
+    accelerate(*where, soil.force, soil.stress, soil.acceleration, soil.spread, soil.drift, *rest)
+    np.testing.assert_allclose(soil.acceleration, pushed, rtol=1e-12, atol=1e-9)
+
+
+def test_the_correction_is_the_inverse_where_moments_are_good_and_none_where_they_are_not():
+    xx, xy, yy, rest = inverse.py_func(0.9, 0.1, 0.8)
+    np.testing.assert_allclose(np.array([[xx, xy], [xy, yy]]) @ [[0.9, 0.1], [0.1, 0.8]], np.eye(2), atol=1e-14)
+    assert rest == 0.0
+    assert inverse.py_func(0.2, 0.0, 0.9) == (1.0, 0.0, 1.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("p", "r"), [(1e4, 9e3), (1e4, 3e4), (-1e3, 2e3), (-5e3, 100.0), (-1e3, 0.0), (500.0, 900.0), (1e4, 1e3)]
+)
+@pytest.mark.parametrize(
+    "soil", [{}, {"cohesion_intercept": 1e3}, {"cohesion_intercept": 1e3, "tension": 800.0}, {"sin_dilatancy": 0.5}]
+)
+def test_stress_brought_back_lies_on_yield_or_where_it_was(p, r, soil):
+    material = Material(1e6, 1600.0, **soil)
+    row = material.row()
+    area, shear = material.area_modulus * 1e6, material.shear_modulus * 1e6
+    q, s, flow, opened = returned.py_func(p, r, area, shear, row)
+    slack = 1e-9 * (abs(p) + r)
+    assert s <= material.sin_friction * q + material.cohesion_intercept + slack
+    assert q - s >= -material.tension - slack
+    assert flow >= 0.0
+    assert opened >= 0.0
+    if r <= material.sin_friction * p + material.cohesion_intercept and p - r >= -material.tension:
+        assert (q, s, flow, opened) == (p, r, 0.0, 0.0)
+
+
+def test_soil_that_came_apart_bears_nothing_until_it_has_closed():
+    element = Element(SAND, (1e3, 1e3, 0.0, 600.0))
+    element.take(-0.01, -0.01)
+    assert element.stress[:3] == pytest.approx((0.0, 0.0, 0.0))
+    opened = element.opening
+    element.take(0.4 * opened, 0.4 * opened)
+    assert element.stress[:3] == pytest.approx((0.0, 0.0, 0.0))
+    element.take(0.2 * opened, 0.2 * opened)
+    assert element.opening == 0.0
+    # What is left of closing is strain: (0.8 + 0.4 - 1) of the opening
+    assert element.stress[XX] == pytest.approx(SAND.area_modulus * 1e6 * 0.2 * opened, rel=1e-9)
+
+
+def test_stiffness_grows_with_the_power_of_pressure():
+    material = Material(1e7, 1600.0, exponent=0.5, yields=False)
+    element = Element(material, (1e5, 1e5, 0.0, 6e4))
+    steps, strain = 2000, 0.004
+    for _ in range(steps):
+        element.take(strain / steps, strain / steps)
+    # dp = B0 (p/p0)^0.5 2 dε: √p grows evenly; midpoints miss the third order of a step
+    exact = (math.sqrt(1e5) + 0.5 * material.area_modulus * 1e7 / math.sqrt(1e5) * 2.0 * strain) ** 2
+    assert element.stress[XX] == pytest.approx(exact, rel=1.0 / steps**2)
+    even = 1e5 + material.area_modulus * 1e7 * 2.0 * strain
+    assert abs(even / exact - 1.0) > 10.0 / steps  # the twin that must fail: constant stiffness
+
+
+def test_out_of_plane_stress_is_that_of_plane_strain():
+    element = Element(SAND, (1e3, 2e3, 0.0, 900.0))
+    element.take(1e-4, 3e-4, 2e-4)
+    assert element.stress[3] == pytest.approx(0.6 * 0.5 * (element.stress[XX] + element.stress[YY]))
+
+
+def test_grains_keep_their_volume():
+    rows = np.array([Material(1e6, 1590.0, porosity=0.4).row()])
+    denser = np.array([1590.0, 1590.0 * 1.1])
+    assert porosity(denser, np.zeros(2, np.int64), rows) == pytest.approx([0.4, 1.0 - 0.66])
+
+
+def test_walls_bear_the_weight_of_the_soil():
+    x = square_lattice((0.0, 0.0), (0.5, 0.5), 0.05)
+    flow = in_tank(x, geostatic(0.5 - x[:, 1], SAND), (0.5, 0.6), 0.05, SAND)
+    soil, n = flow.soil, flow.soil.soil
+    below = (soil.x[n:, 1] < 0.0) & (soil.x[n:, 1] > -0.05) & (np.abs(soil.x[n:, 0] - 0.25) < 0.2)
+    exact = geostatic(0.5 - soil.x[n:, 1][below], SAND)
+    # σ_yy by a kernel average of a linear field taken on by its weight: exact; σ_xx with the K0 of elastic soil
+    np.testing.assert_allclose(soil.stress[n:][below][:, :2], exact[:, :2], rtol=1e-9)
+
+
+def test_forces_of_other_layers_move_the_soil():
+    flow = block()
+
+    def lift(moving):
+        moving.soil.force[:] = [0.0, 9.8] * moving.soil.mass[:, None]
+
+    still = flow.soil.acceleration.copy()
+    flow.before_force = lift
+    flow.push()
+    np.testing.assert_allclose(flow.soil.acceleration - still, np.tile([0.0, 9.8], (60, 1)), atol=1e-10)
+
+
+def test_is_a_model():
+    model = Simulation(scene())
+    assert isinstance(model, Model)
+    row, shot = model.series(), model.snapshot()
+    assert row["mass (kg/m)"] == pytest.approx(0.16 * 1590.0)
+    assert row["stress upright over weight ()"] == pytest.approx(1.0, abs=1.0 / 8**2)  # midpoints of 8 rows
+    assert {"mean_stress", "plastic_strain", "displacement"} <= shot.clouds["particles"].data.keys()
+
+
+@pytest.mark.parametrize("choice", [{}, {"gradient": "plain", "damping_of": "approach", "settle": 0.02}])
+def test_restored_soil_goes_on_bit_for_bit(tmp_path, choice):
+    straight = Simulation(scene(numerics=choice))
+    straight.advance(150)
+    write_checkpoint(tmp_path / "c.h5", straight.state())
+    straight.advance(150)
+    resumed = Simulation(scene(numerics=choice))
+    resumed.restore(read_checkpoint(tmp_path / "c.h5"))
+    resumed.advance(150)
+    assert bits(straight) == bits(resumed)
+    assert straight.flow.pairs.builds > 1
+
+
+def test_one_thread_and_many_give_the_same_bits():
+    found = []
+    for count in (1, 2):
+        set_threads(count)
+        model = Simulation(scene())
+        model.advance(120)
+        found.append(bits(model))
+    assert found[0] == found[1]
+
+
+def crowd():
+    """1600 particles of soil: the smallest array, one number each, is 13 kB."""
+    x = square_lattice((0.0, 0.0), (0.4, 0.4), 0.01)
+    return in_tank(x, geostatic(0.4 - x[:, 1], SAND), (0.5, 0.5), 0.01, SAND)
+
+
+def test_no_array_is_made_in_a_step():
+    flow = crowd()
+    builds = flow.pairs.builds
+    # What Python itself needs for its calls stays below 4 kB.
+    assert growth(flow.advance, steps=10) < 4096
+    assert flow.pairs.builds == builds  # a rebuild may make room for more pairs
+
+
+def test_an_array_in_a_step_would_be_noticed():  # the twin that must fail
+    flow = crowd()
+
+    def step_and_copy():
+        flow.advance()
+        flow.soil.density.copy()
+
+    assert growth(step_and_copy, steps=10) > 8192
+
+
+def test_soil_beyond_sense_is_said_to_be_unstable():
+    model = Simulation(scene())
+    model.check()
+    model.flow.soil.v[3] = 1e3, 0.0
+    with pytest.raises(Unstable, match="speed"):
+        model.check()
+
+
+def test_a_report_says_what_the_soil_can_bear():
+    text = str(soil_report(scene()))
+    assert "soil particles" in text
+    soft = soil_report(scene(stiffness=1e4))
+    assert any("soil.stiffness" in warning for warning in soft.warnings)
+
+
+@pytest.mark.parametrize(
+    ("soil", "key"),
+    [
+        ({"body": [{"outline": [[0, 0], [2, 0], [2, 0.4]]}]}, "soil.body[0].outline"),
+        ({"body": [{"outline": [[0, 0], [0.4, 0.4]]}]}, "soil.body[0].outline"),
+        ({"dilatancy_angle": "31 degree"}, "soil.dilatancy_angle"),
+        ({"cohesion": 100.0, "tension": 200.0}, "soil.tension"),
+    ],
+)
+def test_ground_that_cannot_be_is_refused(soil, key):
+    with pytest.raises(InputError) as refused:
+        scene(**soil)
+    assert key in {fault.key for fault in refused.value.faults}
+
+
+def test_a_tank_with_nothing_in_it_is_refused():
+    table = scene().model_dump()
+    table["soil"] = None
+    with pytest.raises(InputError) as refused:
+        validate(Scene, table)
+    assert [fault.key for fault in refused.value.faults] == ["water.column"]
+
+
+def test_outlines_hold_what_is_inside_and_know_their_top():
+    slope = Body(outline=((0.0, 0.0), (2.0, 0.0), (1.0, 1.0), (0.0, 1.0)))
+    points = np.array([[0.5, 0.5], [1.5, 0.4], [1.5, 0.6], [-0.1, 0.5], [0.5, 1.1]])
+    assert slope.holds(points).tolist() == [True, True, False, False, False]
+    assert slope.top(np.array([0.5, 1.5, 3.0])).tolist() == [1.0, 0.5, -np.inf]
+
+
+def pair(apart, pull):
+    """Acceleration of two particles, ``apart`` of a spacing from each other, of soil under a tension ``pull``, Pa."""
+    record = np.zeros((2, 16))
+    record[:, X], record[:, VOLUME], record[:, MASS] = [0.0, 0.1 * apart], 0.01, 16.0
+    stress = np.tile([0.0, -pull, 0.0, 0.0], (2, 1))
+    acceleration = np.zeros((2, 2))
+    start, split, partner = np.array([0, 1, 2]), np.array([1, 2]), np.array([1, 0])
+    hold_apart.py_func(2, start, split, partner, record, stress, acceleration, 1, 0.13, 0.1, 10.0, 0.0, 0.0)
+    return acceleration
+
+
+def test_soil_under_tension_pushes_apart_what_comes_near_and_nothing_else():
+    near = pair(0.9, 100.0)
+    assert near[0, 0] < 0.0
+    assert near[0].tolist() == (-near[1]).tolist()
+    assert not pair(1.0, 100.0).any()
+    assert not pair(0.9, -100.0).any()
+    assert pair(0.8, 100.0)[0, 0] < near[0, 0]
+
+
+def test_soil_without_cohesion_has_no_tension_to_hold():
+    assert not in_tank(np.array([[0.05, 0.05]]), np.zeros((1, 4)), (0.2, 0.2), 0.1, SAND).pulling
+    clay = Material(1e6, 1600.0, cohesion_intercept=1e3, tension=500.0)
+    assert in_tank(np.array([[0.05, 0.05]]), np.zeros((1, 4)), (0.2, 0.2), 0.1, clay).pulling
+
+
+def test_damping_told_as_a_viscosity_is_the_same_at_any_stiffness_and_spacing():
+    told = {"damping_viscosity": 0.05}
+    for stiffness in (1e6, 4e6):
+        law = soil_law(scene(stiffness=stiffness, numerics=told))
+        sound = math.sqrt(law.materials[0].column_modulus / law.materials[0].density)
+        assert law.damping * sound * law.smoothing.length == pytest.approx(0.05, rel=1e-14)
+    assert soil_law(scene()).damping == 0.2

@@ -1,0 +1,88 @@
+"""Fingerprints of what lies under cases/: every scene, every script, decks by their scripts."""
+
+from __future__ import annotations
+
+from tests.fingerprints.subjects import Scene, Script, Subject
+
+GRAINS, CONTINUUM = "porescale", "continuum-sph"
+
+SCENES: dict[str, tuple[str, int, str | None, tuple[str, ...]]] = {
+    "bubble_in_water/scene.toml": (CONTINUUM, 150, "draft", ()),
+    "clump/clump.toml": (GRAINS, 4000, None, ()),
+    "collapsing_water_column/scene.toml": (CONTINUUM, 200, "draft", ()),
+    "column_collapse/scene.toml": (
+        GRAINS, 40, "draft", ("grains.packing.height=3 cm", "domain.height=4.8 cm", "gate.lift_speed=0.5"),
+    ),
+    "column_collapse_tank/scene.toml": (
+        GRAINS, 60, "draft", ("domain.height=8 cm", "grains.packing.height=6 cm", "rectangle.0.starts_at=0"),
+    ),
+    "cylinder_in_channel/scene.toml": (GRAINS, 200, "draft", ()),
+    "dry_slope/scene.toml": (CONTINUUM, 200, "draft", ()),
+    "geostatic_column/scene.toml": (CONTINUUM, 200, "draft", ()),
+    "hydrostatic_column/scene.toml": (CONTINUUM, 200, "draft", ()),
+    "lid_driven_cavity/scene.toml": (GRAINS, 400, "draft", ()),
+    "lifting_gate/scene.toml": (GRAINS, 200, "draft", ()),
+    "permeameter/scene.toml": (GRAINS, 80, "draft", ()),
+    "piston/scene.toml": (GRAINS, 200, "draft", ()),
+    "rising_bubble/scene.toml": (CONTINUUM, 100, "draft", ()),
+    "settling_disc/scene.toml": (GRAINS, 200, "draft", ()),
+    "settling_square/scene.toml": (GRAINS, 200, "draft", ()),
+    "soil_column_collapse/scene.toml": (CONTINUUM, 200, "draft", ()),
+    "submerged_slope/scene.toml": (CONTINUUM, 150, "draft", ()),
+    "tipping_tray/scene.toml": (GRAINS, 2000, "draft", ()),
+    "towed_cylinder/scene.toml": (GRAINS, 200, "draft", ()),
+    "trapped_air/scene.toml": (CONTINUUM, 150, "draft", ()),
+    "vortex_street/scene.toml": (GRAINS, 200, "draft", ()),
+    "tumbling_plate/plate.toml": (GRAINS, 200, "draft", ()),
+    "simple_shear/cell.toml": (GRAINS, 1000, None, ("grains.packing.height=10 cm", "domain.height=10 cm")),
+    "biaxial_compression/specimen.toml": (
+        GRAINS, 1000, None, ("grains.packing.height=20 cm", "domain.height=20 cm"),
+    ),
+    "micro_to_macro/bed.toml": (GRAINS, 60, "draft", ()),
+    "micro_to_macro/column.toml": (GRAINS, 400, None, ()),
+    "micro_to_macro/ground.toml": (CONTINUUM, 200, None, ()),
+    "rectangular_dam/dam.toml": (CONTINUUM, 150, None, ()),
+}  # fmt: skip
+"""Scene: package, steps, quality, settings that make it smaller."""
+
+SCRIPTS: dict[str, Script] = {
+    name: Script(f"{name}/{name}.py", steps)
+    for name, steps in {
+        "angle_of_repose": 15_000, "biaxial_compression": 15_000, "biaxial_element": 100,
+        "block_pushed_by_soil": 15_000, "bouncing_disc": 2000, "chain_pulse": 1000, "clay_bar": 100,
+        "clump": 3000, "consolidation": 100, "demseg_chain": 2000, "demseg_clump": 2000, "demseg_control": 2000,
+        "demseg_disc": 2000, "demseg_repose": 10_000, "demseg_segment": 2000, "demseg_triangle": 2000,
+        "dry_column_collapse": 10_000, "dry_levee": 60, "grain_size": 10_000, "hanging_chain": 2000, "imbibition": 60,
+        "liquid_columns": 200, "micro_to_macro": 50, "oscillating_drop": 60, "rectangular_dam": 60, "rock": 15_000,
+        "rolling_on_a_slope": 2000, "saturated_levee": 40, "sheet_pile": 40, "sheet_pile_failure": 40,
+        "simple_shear": 15_000, "soil_stress_noise": 150, "sph_corrections": 100, "step_stability": 300,
+        "tumbling_plate": 60, "turned_stressed_block": 150, "upward_flow": 60,
+    }.items()
+} | {
+    "column_collapse_piv": Script("column_collapse_piv/column_collapse_piv.py", 4),
+    "column_collapse_piv sweep": Script("column_collapse_piv/sweep.py", 4),
+    "collapsing_water_column release": Script("collapsing_water_column/release.py", 150),
+    "piv_cavity": Script("piv_cavity/piv_cavity.py", 150),
+    "piv_synthetic": Script("piv_synthetic/piv_synthetic.py", pairs=6, arguments=("--seeds", "1")),
+}  # fmt: skip
+
+NO_SUBJECT = {
+    "column_collapse_piv/filmed.py": "imported by the script beside it",
+    "column_collapse_piv/variants.py": "imported by the script beside it",
+    "column_collapse_table1/implied.py": "draws the numbers of a refusal",
+    "column_collapse_table1/scene.toml": "is there to be refused",
+    "collapsing_water_column/trade.toml": "of a study, not a scene",
+    "column_collapse/trade.toml": "of a study, not a scene",
+    "micro_to_macro/material.toml": "read by ground.toml",
+}
+"""Files of cases that have no fingerprint of their own."""
+
+
+def subjects() -> dict[str, Subject]:
+    """All of cases by name."""
+    found: dict[str, Subject] = {}
+    for file, (package, steps, quality, settings) in SCENES.items():
+        found[f"scene/{file.removesuffix('.toml').removesuffix('/scene')}"] = Scene(
+            package, steps, file, quality=quality, settings=settings
+        )
+    return found | {f"script/{name}": it for name, it in SCRIPTS.items()}

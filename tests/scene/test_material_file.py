@@ -1,0 +1,146 @@
+"""What grains say of their soil reaches a scene of the continuum below its own numbers, or clear words do."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from continuum_sph.build.soil_report import soil_report
+from continuum_sph.scene.material_file import DENSITY, VISCOSITY
+from continuum_sph.scene.sections import Scene
+from continuum_sph.scene.water import WaterSection
+from porescale.analysis.material import Known, known, tables
+from porescale.common.core.constants import GRAVITY
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import open_scene, scene_as_dict, validate
+from porescale.demseg.convert import toml
+
+ROWS = [
+    {"porosity": 0.18, "peak friction angle": 0.40, "peak dilatancy angle": 0.10, "critical friction angle": 0.30,
+     "critical porosity": 0.20, "stiffness": 2e5, "Poisson's ratio": 0.3, "permeability": 3e-9, "cells": 12.0},
+    {"porosity": 0.20, "peak friction angle": 0.44, "peak dilatancy angle": 0.14, "critical friction angle": 0.32,
+     "critical porosity": 0.20, "stiffness": 3e5, "Poisson's ratio": 0.4, "permeability": 5e-9, "cells": 12.0},
+]  # fmt: skip
+BODY = "[[soil.body]]\noutline = [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]\n"
+REST = (
+    '[tank]\nwidth = 1\nheight = 1\n[numerics]\nspacing = 0.05\n[time]\nend = 0.1\n'
+    "[output]\nsnapshot_interval = 0.1\nseries_interval = 0.1\n"
+)  # fmt: skip
+
+
+def material(folder: Path, rows: list[dict[str, float]] = ROWS, **more: object) -> Path:
+    """A material file as `porescale homogenise` writes it; ``more`` replaces tables."""
+    whole = {**tables(known(rows), 2500.0, 300.0, {"command": "here", "lambda": 0.8, "seeds": [1, 2]}), **more}
+    path = folder / "material.toml"
+    path.write_text(toml(whole), encoding="utf-8")
+    return path
+
+
+def scene(folder: Path, soil: str = "", water: str = "") -> Scene:
+    file = folder / "scene.toml"
+    file.write_text(f'{REST}{water}[soil]\nmaterial = "material.toml"\n{soil}{BODY}', encoding="utf-8")
+    return open_scene(file, Scene).scene
+
+
+def test_mean_deviation_and_standard_error():
+    it = Known((1.0, 2.0, 3.0, 6.0))  # mean 3, squares 4 + 1 + 0 + 9 over n - 1 = 3
+    assert it.mean == 3.0
+    assert it.deviation == pytest.approx(math.sqrt(14.0 / 3.0), rel=1e-15)
+    assert it.error == pytest.approx(math.sqrt(14.0 / 12.0), rel=1e-15)
+
+
+def test_a_number_that_one_packing_lacks_is_left_out():
+    found = known([ROWS[0], {**ROWS[1], "stiffness": math.nan}])
+    assert "stiffness" not in found
+    assert "stiffness" not in tables(found, 2500.0, 300.0, {})["soil"]
+    assert "porosity" in found
+
+
+def test_a_scene_takes_over_every_number(tmp_path):
+    material(tmp_path)
+    soil = scene(tmp_path).soil
+    assert soil is not None
+    assert soil.density == pytest.approx(0.81 * 2500.0, rel=1e-14)
+    assert (soil.porosity, soil.stiffness, soil.reference) == pytest.approx((0.19, 2.5e5, 300.0), rel=1e-14)
+    assert (soil.friction_angle, soil.dilatancy_angle, soil.poisson) == pytest.approx((0.31, 0.0, 0.35), rel=1e-14)
+    assert soil.permeability == pytest.approx(4e-9 * DENSITY * GRAVITY / VISCOSITY, rel=1e-14)
+    peak = scene(tmp_path, 'strength = "peak"\n').soil
+    assert peak is not None
+    assert (peak.friction_angle, peak.dilatancy_angle) == pytest.approx((0.42, 0.12), rel=1e-14)
+
+
+def test_the_water_of_the_file_reader_is_that_of_a_scene_without_any():
+    water = WaterSection()
+    assert (water.density, water.viscosity) == (DENSITY, VISCOSITY)
+
+
+def test_what_the_scene_says_wins(tmp_path):
+    material(tmp_path)
+    soil = scene(tmp_path, 'friction_angle = "25 degree"\npermeability = "1 cm/s"\n').soil
+    assert soil is not None
+    assert soil.friction_angle == pytest.approx(math.radians(25.0))
+    assert soil.permeability == pytest.approx(0.01)
+    assert soil.porosity == pytest.approx(0.19)
+
+
+def test_permeability_is_that_of_the_scenes_own_water(tmp_path):
+    material(tmp_path)
+    plain, thick = scene(tmp_path).soil, scene(tmp_path, water='[water]\nviscosity = "0.01 Pa s"\ndensity = 500\n').soil
+    assert plain is not None
+    assert thick is not None
+    assert thick.permeability == pytest.approx(plain.permeability * 0.5 * VISCOSITY / 0.01, rel=1e-12)
+
+
+def test_the_card_keeps_where_numbers_come_from(tmp_path):
+    material(tmp_path)
+    made = scene(tmp_path)
+    card = scene_as_dict(made)
+    assert "material" not in card["soil"]  # the numbers are there: the file may change or go
+    origin = card["soil"]["origin"]
+    assert origin["made"]["lambda"] == 0.8
+    assert origin["intrinsic_permeability"] == pytest.approx(4e-9)
+    mean, error = origin["measured"]["porosity"]
+    assert mean == pytest.approx(0.19)
+    assert error == pytest.approx(0.01)  # deviation 0.01 √2, over √2
+    assert validate(Scene, card) == made
+    said = soil_report(made).groups["measured on grains"]
+    assert any(row.name == "porosity" and "± 0.01" in row.note for row in said)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        ({"format": 2}, "newer version"),
+        ({"format": "x"}, "is not that of a material file"),
+        ({"soil": {"density": -1.0, "porosity": 0.2}}, "soil.density"),
+        ({"soil": {"density": 2000.0}}, "soil.porosity"),
+        ({"strength": {"critical": {"friction_angle": 0.3, "dilatancy_angle": 0.0}}}, "strength.peak"),
+        ({"pores": {"permeability": 0.0}}, "pores.permeability"),
+        ({"sole": {"density": 1.0}}, "sole"),
+    ],
+)
+def test_a_wrong_file_is_refused_by_name(tmp_path, spoil, said):
+    material(tmp_path, **spoil)
+    with pytest.raises(InputError) as caught:
+        scene(tmp_path)
+    lines = [fault.line() for fault in caught.value.faults]
+    assert all("material.toml" in line for line in lines)
+    assert any(said in line for line in lines)
+
+
+def test_a_file_that_is_not_there_is_refused(tmp_path):
+    with pytest.raises(InputError, match="is no file"):
+        scene(tmp_path)
+    (tmp_path / "material.toml").mkdir()
+    with pytest.raises(InputError, match="is no file"):
+        scene(tmp_path)
+
+
+def test_numbers_beyond_what_a_soil_can_be_are_refused_by_the_scene(tmp_path):
+    material(
+        tmp_path, strength={name: {"friction_angle": 0.2, "dilatancy_angle": 0.3} for name in ("critical", "peak")}
+    )
+    with pytest.raises(InputError, match=r"soil\.dilatancy_angle"):
+        scene(tmp_path)

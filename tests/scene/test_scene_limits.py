@@ -1,0 +1,131 @@
+"""``check`` warns where the map of stability ends: just inside it is silent, just outside it says so, with a repair."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from porescale import Scene
+from porescale.build.checks.limits import TAU_COARSE
+from porescale.build.derive import derive
+from porescale.common.evidence.stability import RIGHT, Row
+from porescale.coupling import limits
+from tests.reference.folders import ROOT
+from tests.reference.scenes import column, grain, table, water
+
+MAP = ROOT / "docs" / "stability" / "stability.json"
+SIDES = {"domain__left": {"kind": "velocity", "velocity": [0.1, 0.0]}, "domain__right": "pressure"}
+H = 0.0002
+
+
+def flow(viscosity: float, **changes: Any) -> Scene:
+    """Water at 0.1 m/s through 60 x 40 cells of 0.2 mm."""
+    return water(**{**SIDES, "fluid__body_force": None, "fluid__viscosity": viscosity, **changes})
+
+
+def alone(density: float, cells: float, **changes: Any) -> Scene:
+    """One grain of so many cells at rest in water."""
+    one = {"density": density, "hydraulic_radius_ratio": 1.0, "grain": [grain(0.004, 0.004, cells * H)]}
+    return column(**{"grains": one, "gate": None, "gravity": [0, 0], **changes})
+
+
+def said(scene: Scene, word: str) -> list[str]:
+    """The warnings with a word in them."""
+    return [it for it in derive(scene).warnings if word in it]
+
+
+@pytest.mark.parametrize("lid", [False, True])
+@pytest.mark.parametrize("smagorinsky", [None, 0.1])
+@pytest.mark.parametrize("operator", ["trt", "mrt", "bgk", "central"])
+def test_a_cell_reynolds_number_is_warned_of_where_the_operator_is_not_known_to_hold(operator, smagorinsky, lid):
+    holds = limits.cell_reynolds(operator, eddies=smagorinsky is not None, lid=lid)
+    more: dict[str, Any] = {"fluid__operator": operator, "fluid__smagorinsky": smagorinsky}
+    more |= {"domain__top": {"kind": "wall", "speed": 0.01}} if lid else {}
+    at = 0.1 * H / holds
+    assert not said(flow(1.001 * at, **more), "cell Reynolds")
+    (line,) = said(flow(0.99 * at, **more), "cell Reynolds")
+    assert f"{operator!r}" in line
+    assert f"is known to hold up to {holds:g}; a spacing of " in line
+
+
+@pytest.mark.parametrize(("smagorinsky", "repair"), [(None, "operator = 'central'"), (0.1, "")])
+def test_the_repairs_of_a_cell_reynolds_number_repair_it(smagorinsky, repair):
+    scene = flow(0.1 * H / 6000 if smagorinsky else 0.1 * H / 60, fluid__smagorinsky=smagorinsky)
+    (line,) = said(scene, "cell Reynolds")
+    assert line.endswith(f", or take {repair}" if repair else "keeps below it")
+    spacing = float(line.partition("a spacing of ")[2].partition(" m")[0])
+    finer = table(water_table(), fluid__spacing=spacing, fluid__viscosity=scene.fluid.viscosity)
+    assert 0.1 * finer["fluid"]["spacing"] / scene.fluid.viscosity < limits.cell_reynolds(
+        "trt", eddies=bool(smagorinsky)
+    )
+    if repair:
+        assert not said(flow(0.1 * H / 60, fluid__operator="central"), "cell Reynolds")
+
+
+def water_table() -> dict[str, Any]:
+    return table(grains=None, contact=None, gate=None)
+
+
+@pytest.mark.parametrize("law", [("exact-wall", "wall"), ("odd-SC1", "B2"), ("odd-SC1", "B1")])
+@pytest.mark.parametrize("cells", [3.0, 5.0, 10.0, 16.0])
+def test_light_grains_are_warned_of_below_what_their_size_bears(law, cells):
+    least = limits.lightest(cells, *law)
+    laws = {"fluid__solid_operator": law[0], "fluid__weighting": law[1]}
+    assert not said(alone(1000 * least * 1.001, cells, **laws), "density ratio")
+    (line,) = said(alone(1000 * least * 0.999, cells, **laws), "density ratio")
+    if min(limits.lightest(size, *law) for size in (5.0, 10.0, 16.0)) < least:
+        finer = float(line.partition("a spacing of ")[2].partition(" m")[0])
+        assert limits.lightest(cells * H / finer * 1.05, *law) < least  # two digits of the spacing
+    else:
+        assert "gives them" in line or line.endswith("take heavier ones")
+
+
+@pytest.mark.parametrize(("law", "right"), [(("exact-wall", "wall"), 3.0), (("odd-SC1", "B2"), 10.0)])
+def test_grains_of_too_few_cells_are_warned_of(law, right):
+    laws = {"fluid__solid_operator": law[0], "fluid__weighting": law[1]}
+    assert not said(alone(2500, right * 1.001, **laws), "off by a tenth")
+    (line,) = said(alone(2500, right * 0.99, **laws), "off by a tenth")
+    assert f"below {right:g} the drag is off by a tenth; a spacing of " in line
+
+
+def test_a_bed_needs_more_cells_than_a_single_grain():
+    # Five cells for a solid fraction up to 0.4 as the fluid sees it, 15 up to 0.6; 0.7 λ² of it here.
+    loose = {"grains__packing__diameter": 0.0016, "grains__hydraulic_radius_ratio": 0.7}  # 5.6 cells, 0.34
+    assert not said(column(**loose), "off by a tenth")
+    (line,) = said(column(grains__packing__diameter=0.0016), "off by a tenth")  # 6.4 cells, 0.45
+    assert line.startswith(
+        "6.4 cells per diameter in a bed of solid fraction 0.45: below 15 the drag is off by a tenth"
+    )
+    (line,) = said(column(grains__hydraulic_radius_ratio=1.0), "off by a tenth")
+    assert "at any resolution tried" in line
+
+
+@pytest.mark.parametrize("law", list(limits.BED_RIGHT))
+def test_beds_are_right_where_the_map_says(law):
+    rows = [Row(**row) for row in json.loads(MAP.read_text())["rows"]]
+    bed = [row for row in rows if (row.flow, row.law) == ("coupling.bed", law) and row.x < 0.75]  # apart, not touching
+    sizes = sorted({row.y for row in bed})
+
+    def right_from(fraction: float) -> float:
+        """Fewest cells from which on the map is right at that solid fraction."""
+        wrong = [row.y for row in bed if row.x == fraction and row.verdict != RIGHT]
+        return next((size for size in sizes if size > max(wrong, default=0.0)), float("inf"))
+
+    assert sizes == [5.0, 10.0, 15.0]
+    for fraction in sorted({row.x for row in bed}):
+        assert limits.cells_in_bed(fraction, *law.split()) >= right_from(fraction)
+    for most, cells in limits.BED_RIGHT[law]:
+        assert right_from(most) == cells
+
+
+def test_relaxation_times_are_right_where_the_map_says():
+    rows = [Row(**row) for row in json.loads(MAP.read_text())["rows"] if row["flow"] == "lbm.shear"]
+    most = TAU_COARSE["exact-wall"]
+    assert all(row.verdict == RIGHT for row in rows if row.x == most - 0.5)
+    assert min(row.x for row in rows if row.x > most - 0.5 and row.verdict != RIGHT) + 0.5 == 5.0
+    # nu = (tau - 1/2)/3 h²/dt
+    at = (most - 0.5) / 3 * H**2 / 4e-5
+    assert not said(alone(2500, 10.0, fluid__viscosity=0.999 * at), "relaxation time")
+    assert "shorten the step" in said(alone(2500, 10.0, fluid__viscosity=1.01 * at), "relaxation time")[0]

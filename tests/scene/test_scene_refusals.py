@@ -1,0 +1,388 @@
+"""What a scene must not ask for is refused with one line that names key, value and repair; doubts are warnings."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import pytest
+
+from porescale import Scene
+from porescale.build import cost
+from porescale.build.build import build, load_scene
+from porescale.build.derive import derive
+from porescale.build.report import report
+from porescale.common.core.errors import InputError
+from porescale.common.schema.sections import validate
+from tests.reference.folders import ROOT
+from tests.reference.scenes import column, dry, grain, table, water
+
+TABLE1 = {"spacing": 1e-5, "relaxation_time": 0.8, "viscosity": 1e-4, "step": 1e-6}
+
+
+def lines(**changes: Any) -> list[str]:
+    """The refusals of the small column with changes."""
+    with pytest.raises(InputError) as caught:
+        derive(validate(Scene, table(**changes)))
+    return [fault.line() for fault in caught.value.faults]
+
+
+def test_the_small_column_itself_is_not_refused():
+    # The twin of every refusal below: the scene they change is accepted, and its parts are as stated.
+    derived = derive(column())
+    assert derived.cells == (60, 40)
+    assert derived.gate_column == 40
+    assert derived.grain_count == 31
+
+
+def test_table_1_implies_what_the_specification_prints():
+    said = lines(fluid=TABLE1)
+    assert len(said) == 4
+    # Kept three -> implied fourth, by nu = (tau - 1/2)/3 h²/dt.
+    for key, given, implied in (
+        ("spacing", "1e-05 m", "3.162e-05 m"),
+        ("step", "1e-06 s", "1e-07 s"),
+        ("relaxation_time", "0.8", "3.5"),
+        ("viscosity", "0.0001 m^2/s", "1e-05 m^2/s"),
+    ):
+        (line,) = [it for it in said if it.startswith(f"fluid.{key} = ")]
+        assert line.startswith(f"fluid.{key} = {given}: ")
+        assert f"imply {implied}" in line
+        assert f"leave {key} out, or give " in line
+
+
+@pytest.mark.parametrize("left_out", list(TABLE1))
+def test_each_repair_of_table_1_is_accepted(left_out):
+    # Three of the four determine the fourth; that the scene may then be too costly or too fast is another matter.
+    three = {name: value for name, value in TABLE1.items() if name != left_out}
+    scene = validate(Scene, table(water_table(), fluid=three))
+    assert getattr(scene.fluid, left_out) is None
+
+
+def water_table() -> dict[str, Any]:
+    return table(grains=None, contact=None, gate=None)
+
+
+def test_four_that_agree_are_accepted_and_four_that_miss_by_a_percent_are_not():
+    # tau = 0.5 + 3 * 2e-5 * 4e-5/(2e-4)^2 = 0.56
+    four = {"viscosity": 2e-5, "spacing": 2e-4, "step": 4e-5}
+    assert derive(column(fluid={**four, "relaxation_time": 0.56})).cells == (60, 40)
+    assert len(lines(fluid={**four, "relaxation_time": 0.57})) == 4
+
+
+@pytest.mark.parametrize(
+    ("given", "missing", "repair"),
+    [
+        ({"viscosity": 1e-5, "spacing": 2e-4}, "step, relaxation_time", "add one of them"),
+        ({"step": 1e-5}, "spacing, relaxation_time, viscosity", "add 2 of them"),
+        ({}, "spacing, step, relaxation_time, viscosity", "add 3 of them"),
+    ],
+)
+def test_fewer_than_three_are_refused_naming_what_is_missing(given, missing, repair):
+    (line,) = lines(fluid=given)
+    assert line.startswith(f"fluid.{missing}: three of spacing, step, relaxation_time, viscosity are needed")
+    assert line.endswith(repair)
+
+
+def test_a_relaxation_time_of_one_half_is_out_of_range():
+    (line,) = lines(fluid={"relaxation_time": 0.5, "spacing": 2e-4, "step": 4e-5})
+    assert "fluid.relaxation_time = 0.5" in line
+    assert "> 0.5" in line
+
+
+def test_the_hydraulic_radius_must_be_stated_by_grains_in_fluid():
+    (line,) = lines(grains__hydraulic_radius_ratio=None)
+    assert line.startswith("grains.hydraulic_radius_ratio: every scene with grains in fluid states it")
+    assert "allowed: >= 0.01 and <= 1" in line
+    assert "0.8 opens the pores" in line
+    assert derive(dry()).grain_count == 31  # without fluid there is nothing to state
+
+
+def test_a_hydraulic_radius_ratio_of_one_warns_that_it_seals_a_bed():
+    (warning,) = [it for it in derive(column(grains__hydraulic_radius_ratio=1.0)).warnings if "seals" in it]
+    assert warning.startswith("hydraulic_radius_ratio = 1 seals a two-dimensional bed at rest")
+    assert warning in report(column(grains__hydraulic_radius_ratio=1.0)).warnings
+    assert not [it for it in derive(column()).warnings if "seals" in it]
+
+
+@pytest.mark.parametrize("both", [True, False])
+def test_exactly_one_of_damping_and_restitution_is_taken(both):
+    changes = {"contact__damping": 1.0} if both else {"contact__restitution": None}
+    (line,) = lines(**changes)
+    assert line == "contact.damping, restitution: exactly one of the two is needed; give one, leave the other out"
+
+
+def test_a_gate_outside_the_box_is_refused():
+    (line,) = lines(gate__x=0.013)
+    assert line.startswith("gate.x = 0.013 m: is outside the box (allowed: < 0.012 m)")
+
+
+def test_a_gate_between_cells_is_refused_with_a_spacing_that_fits():
+    line, _ = lines(gate__x=0.0081)  # and it stands in the packing
+    assert line.startswith("gate.x = 0.0081 m: is 40.5 cells of 0.0002 m, not a whole number")
+    # The repair is a spacing that divides it: 0.0081/40.
+    assert "0.0002025 m" in line
+
+
+def test_a_gate_in_a_periodic_box_is_refused():
+    sides = {"domain__left": "periodic", "domain__right": "periodic", "grains__packing__settle": False}
+    (line,) = lines(**sides)
+    assert line == "gate: stands in a periodic box; give the box walls"
+    assert lines(fluid=None, grains__hydraulic_radius_ratio=None, **sides) == [line]
+    derive(column(gate=None, **sides))  # the box itself is fine
+
+
+@pytest.mark.parametrize(("side", "ends", "word"), [("width", "left right", "wide"), ("height", "bottom top", "high")])
+@pytest.mark.parametrize("wet", [True, False], ids=["wet", "dry"])
+def test_a_periodic_box_in_which_a_grain_meets_another_twice_is_refused(side, ends, word, wet):
+    # Twice the cutoff d + skin, with a skin of half the radius: 2.5 d = 4 mm for equal grains of 1.6 mm.
+    grains = {"density": 2500, "hydraulic_radius_ratio": 0.8, "grain": [grain(0.0019, 0.0019, 0.0016)]}
+    narrow = {"grains": grains, "gate": None} | {f"domain__{end}": "periodic" for end in ends.split()}
+    if not wet:
+        narrow |= {"fluid": None, "grains__hydraulic_radius_ratio": None}
+    line = f"domain.{side} = 0.0038 m: is periodic and so short that a grain would meet another twice "
+    line += f"(allowed: >= 0.004 m); make the box 0.004 m {word}, or the grains smaller"
+    assert lines(**narrow, **{f"domain__{side}": 0.0038}) == [line]
+    assert build(validate(Scene, table(**narrow, **{f"domain__{side}": 0.004}))).grains.discs.count == 1
+    for width in (0.001, 0.002):  # narrower than a disc, and than two
+        assert lines(**narrow, **{f"domain__{side}": width}) == [line.replace("0.0038", str(width))]
+
+
+@pytest.mark.parametrize("side", ["width", "height"])
+def test_a_box_of_broken_cells_is_refused(side):
+    changed = {"width": 0.0121, "height": 0.0081}[side]
+    (line,) = lines(**{f"domain__{side}": changed})
+    cells = {"width": "60.5", "height": "40.5"}[side]
+    assert line.startswith(
+        f"domain.{side} = {changed} m: is {cells} cells of 0.0002 m, not a whole number; a spacing of"
+    )
+
+
+def test_a_side_is_periodic_only_with_its_opposite():
+    (line,) = lines(domain__left="periodic", gate=None)
+    assert line == "domain.left = 'periodic': but right is wall; make both sides periodic, or none"
+
+
+def test_neither_fluid_nor_grains_is_nothing():
+    said = lines(fluid=None, grains=None, contact=None, gate=None)
+    assert said == ["fluid, grains: nothing to simulate; add [fluid], [grains] or both"]
+
+
+def test_grains_need_a_contact_law_and_a_contact_law_needs_grains():
+    (line,) = lines(contact=None)
+    assert line.startswith("contact: grains need a contact law")
+    (line,) = lines(grains=None)
+    assert line.startswith("contact: there are no grains to touch")
+
+
+def test_grains_without_any_grain_are_refused():
+    (line,) = lines(grains={"density": 2500, "hydraulic_radius_ratio": 0.8})
+    assert "holds no grain; add [grains.packing] or [[grains.grain]]" in line
+    assert line.startswith("grains")
+
+
+def test_all_faults_of_a_scene_are_said_at_once():
+    said = lines(domain__width=0.0121, gate__x=0.0081, grains__packing__height=0.0085)
+    assert [line.partition(" ")[0] for line in said] == ["domain.width", "gate.x", "grains.packing.height", "gate.x"]
+
+
+def test_a_contact_step_beyond_stability_is_refused_without_fluid():
+    scene = dry()
+    limit = derive(scene).contact_limit
+    assert limit is not None
+    with pytest.raises(InputError) as caught:
+        derive(dry(contact__step=1.01 * limit))
+    (fault,) = caught.value.faults
+    assert fault.key == "contact.step"
+    assert f"< {limit:.3g} s" in fault.line()
+    assert "leave it out (it would be" in fault.line()
+    assert derive(dry(contact__step=0.99 * limit)).contact_step == 0.99 * limit
+
+
+def test_a_contact_step_divides_the_fluid_step():
+    # A wish of 1.9e-5 s in a fluid step of 4e-5 s: three steps of 1.33e-5 s, never longer than asked.
+    derived = derive(column(contact__step=1.9e-5))
+    assert derived.contact_steps == 3
+    assert derived.contact_step == pytest.approx(4e-5 / 3, rel=1e-15)
+    assert derive(column(contact__step=2e-5)).contact_steps == 2
+
+
+def test_a_mach_number_above_a_tenth_warns_and_above_three_tenths_is_refused():
+    # The speed to expect is given: a grain that starts with it.  The sound speed is 5/sqrt(3) m/s.
+    def moving(speed: float) -> dict[str, Any]:
+        grains = {"density": 2500, "hydraulic_radius_ratio": 1.0, "grain": [grain(0.006, 0.004, velocity=[speed, 0])]}
+        return {"grains": grains, "gate": None}
+
+    sound = 5 / 3**0.5
+    assert not derive(column(**moving(0.099 * sound))).warnings
+    (warning,) = derive(column(**moving(0.2 * sound))).warnings
+    assert "Mach 0.2" in warning
+    # A tenth of the speed of sound, less a margin of a tenth: step * 0.9 * 0.1/0.2.
+    assert "a step of 1.8e-05 s keeps it below 0.1" in warning
+    (line,) = lines(**moving(0.31 * sound))
+    assert line.startswith("fluid.step = 4e-05 s: a speed of")
+    assert "Mach 0.31" in line
+
+
+def test_the_weight_of_a_column_warns_and_then_refuses_through_the_pore_pressure():
+    # 3 (rho_s - rho) g phi H/(rho c^2) = 3 * 1500 * 9.81 * 0.7 * 0.0055/(1000 * 25) = 0.0068 as it stands; the
+    # density of the grains sets it, in a fluid viscous enough that the speed stays out of the matter.
+    viscous = {"fluid__viscosity": 1e-4}
+    still = derive(column(**viscous))
+    assert still.density_variation == pytest.approx(3 * 1500 * 9.81 * 0.7 * 0.0055 / 25e3, rel=1e-4)
+    heavy = {"grains__density": 1000 + 1500 * 0.1 / still.density_variation, **viscous}
+    warnings = [it for it in derive(column(**heavy)).warnings if "pore pressure" in it]
+    assert warnings
+    assert "density by 0.1;" in warnings[0]
+    heavier = {"grains__density": 1000 + 1500 * 0.31 / still.density_variation, **viscous}
+    assert any(
+        "pore pressure under the packing can change the fluid's density by 0.31" in it for it in lines(**heavier)
+    )
+
+
+def test_the_repair_of_the_pore_pressure_removes_the_warning():
+    viscous = {"fluid__viscosity": 1e-4, "grains__density": 15000.0}
+    (warning,) = [it for it in derive(column(**viscous)).warnings if "pore pressure" in it]
+    step = float(warning.partition("a step of ")[2].partition(" s")[0])
+    assert not [it for it in derive(column(fluid__step=step, **viscous)).warnings if "pore pressure" in it]
+
+
+def test_doubts_about_resolution_and_relaxation_time_are_warnings():
+    assert any("3.2 cells per diameter" in it for it in derive(column()).warnings)
+    low = derive(column(fluid__viscosity=1e-6)).warnings  # tau = 0.503
+    assert any(it.startswith("relaxation time 0.5030") for it in low)
+    high = derive(column(fluid__viscosity=6e-4)).warnings  # tau = 2.3
+    assert any(it.startswith("relaxation time 2.3: above 2") for it in high)
+
+
+def hand(*grains: dict[str, Any], **changes: Any) -> Scene:
+    """A dry box with grains placed by hand."""
+    return dry(grains={"density": 2500, "grain": list(grains)}, **changes)
+
+
+@pytest.mark.parametrize("command", [build, report], ids=["run", "check"])
+def test_grains_outside_or_in_each_other_are_named(command):
+    with pytest.raises(InputError) as caught:
+        command(hand(grain(0.003, 0.004), grain(0.0036, 0.004), grain(0.0118, 0.004)))
+    out, overlap = [fault.line() for fault in caught.value.faults]
+    assert out.startswith("grains.grain[2] = '(0.0118, 0.004)': reaches out of the box")
+    assert overlap.startswith("grains.grain[1]: overlaps grain 0 by 0.0004 m")
+
+
+def test_grains_that_touch_are_accepted():
+    assert build(hand(grain(0.003, 0.0005), grain(0.004, 0.0005))).grains.discs.count == 2
+
+
+def test_grains_across_a_periodic_side_are_inside_and_overlap_through_it():
+    sides = {"domain__left": "periodic", "domain__right": "periodic"}
+    assert build(hand(grain(0.0118, 0.004), **sides)).grains.discs.count == 1
+    with pytest.raises(InputError, match="overlaps grain 0"):
+        build(hand(grain(0.0118, 0.004), grain(0.0002, 0.004), **sides))
+
+
+def test_a_grain_placed_into_a_packing_is_named_by_its_own_number():
+    packing = table()["grains"]["packing"] | {"settle": False, "packing_fraction": 0.6}
+    both = {"density": 2500, "packing": packing, "grain": [grain(0.003, 0.004), grain(0.01, 0.0025, 0.003)]}
+    with pytest.raises(InputError) as caught:
+        build(dry(grains=both))
+    (fault,) = caught.value.faults
+    assert fault.line().startswith("grains.grain[1]: overlaps a grain of the packing by ")
+
+
+def test_a_packing_outside_the_box_or_across_the_gate_is_refused():
+    line, *_ = lines(grains__packing__left=0.009)
+    assert line.startswith("grains.packing.left = 0.009 m: ")
+    assert "0.012" in line
+    line, *_ = lines(grains__packing__height=0.0085)
+    assert line.startswith("grains.packing.height = 0.0085 m: ")
+    line, *_ = lines(gate__x=0.009)
+    assert line.startswith("gate.x = 0.009 m: stands in the packing, which reaches from 0.008 to 0.012 m")
+
+
+def test_a_packing_needs_head_room_to_settle_from():
+    # Placed at an area fraction of 0.75: 0.8 * 0.0075/0.75 + 0.0008 m high.
+    (line,) = lines(grains__packing__height=0.0075, grains__packing__packing_fraction=0.8)
+    assert line.startswith("grains.packing.height = 0.0075 m: is placed up to 0.0088 m before it settles")
+    derive(dry(grains__packing__height=0.0075, grains__packing__packing_fraction=0.8))  # left in place, it needs none
+
+
+def test_discs_are_not_placed_denser_than_they_can_be():
+    assert derive(column(grains__packing__packing_fraction=0.81)).grain_count > 31  # settled: its mean, not its start
+    with pytest.raises(InputError) as caught:
+        derive(dry(grains__packing__packing_fraction=0.81))
+    (fault,) = caught.value.faults
+    assert fault.line().startswith("grains.packing.packing_fraction = 0.81: ")
+    assert "(allowed: <= 0.8)" in fault.line()
+
+
+def test_a_placement_that_jams_is_named_by_its_key():
+    with pytest.raises(InputError) as caught:
+        build(dry(grains__packing__packing_fraction=0.8, grains__packing__height=0.005, grains__packing__size_spread=0))
+    assert caught.value.faults[0].key == "grains.packing.packing_fraction"
+
+
+def test_a_grain_across_the_gate_is_named():
+    with pytest.raises(InputError) as caught:
+        derive(hand(grain(0.003, 0.004), grain(0.0076, 0.004), gate={"x": 0.008}))
+    assert [fault.line() for fault in caught.value.faults] == [
+        "grains.grain[1] = '(0.0076, 0.004)': stands across the gate; move one of them"
+    ]
+
+
+def test_a_packing_settles_straight_down_and_only_if_it_sinks():
+    (line,) = lines(gravity=[9.81, 0.0])
+    assert line.startswith(
+        "gravity = '[9.81, 0]': a packing settles straight down (allowed: [0, -1e-06 or below] m/s^2)"
+    )
+    assert line.endswith("or set grains.packing.settle = false")
+    (line,) = lines(grains__density=1000.0)
+    assert line.startswith("grains.density = 1000.0 kg/m^3: the grains do not sink")
+    assert "(allowed: > 1000 kg/m^3)" in line
+    derive(column(grains__density=1000.0, gravity=[0.0, 0.0], grains__packing__settle=False))
+
+
+def test_a_packing_is_held_while_it_settles():
+    (line,) = lines(gate=None)
+    assert line.startswith("grains.packing.left = 0.008 m: nothing holds the packing on its left while it settles")
+    (line,) = lines(domain__width=0.02, gate=None)
+    assert "on its left and right while" in line
+    _, line = lines(domain__bottom="periodic", domain__top="periodic", domain__left="wall", fluid=None)  # and the gate
+    assert line.startswith("domain.bottom = 'periodic': there is no floor to settle on")
+    alone = {"gate": None, "grains__packing__settle": False}
+    derive(column(domain__width=0.02, **alone))  # left where it is placed, it needs no hold
+    derive(column(gate=None, domain__width=0.004, grains__packing__left=0.0))  # between two walls
+    sides = {"domain__left": "periodic", "domain__right": "periodic"}
+    derive(column(gate=None, domain__width=0.004, grains__packing__left=0.0, **sides))  # a full period
+    (line,) = lines(gate=None, **sides)
+    assert "on its left and right" in line
+
+
+def test_a_lattice_beyond_the_memory_is_refused_with_a_spacing_that_fits(monkeypatch):
+    derived = derive(column())
+    cost.require_memory(derived)
+    monkeypatch.setattr(cost.os, "sysconf", lambda name: 64)  # a machine of 4 KiB
+    with pytest.raises(InputError) as caught:
+        cost.require_memory(derived)
+    assert caught.value.faults[0].key == "fluid.spacing"
+    assert "takes half of the memory" in caught.value.faults[0].line()
+
+
+def test_a_channel_is_judged_by_the_speed_that_its_force_drives():
+    # Plane Poiseuille: G H^2/(8 rho nu) = 10 * 0.008^2/(8 * 1000 * 2e-5) m/s.
+    assert derive(water()).speed == pytest.approx(10 * 0.008**2 / 0.16, rel=1e-12)
+    with pytest.raises(InputError, match="Mach"):
+        derive(water(fluid__body_force=[3000.0, 0.0]))
+
+
+def test_derived_numbers_are_absent_where_parts_are():
+    without = dataclasses.asdict(derive(water()))
+    for name in ("law", "wall_law", "contact_limit", "contact_step", "contact_steps", "diameters", "gate_column"):
+        assert without[name] is None
+    assert derive(dry()).scales is None
+    assert derive(dry()).cells is None
+
+
+def test_table_1_as_a_file_is_refused_by_load():
+    with pytest.raises(InputError) as caught:
+        load_scene(ROOT / "cases" / "column_collapse_table1")
+    assert len(caught.value.faults) == 4
