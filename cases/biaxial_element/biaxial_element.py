@@ -9,7 +9,7 @@ import numpy as np
 
 from continuum_sph.soil import Material
 from continuum_sph.soil.state import XX, YY
-from continuum_sph.validation.soil_element_trials import biaxial, confined
+from continuum_sph.validation.soil.element import biaxial, confined
 from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent

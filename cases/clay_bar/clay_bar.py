@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from continuum_sph.validation.soil_trials import bar_that_spins, elongation
+from continuum_sph.validation.soil.bodies import bar_that_spins, elongation
 from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent

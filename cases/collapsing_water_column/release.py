@@ -7,8 +7,8 @@ import argparse
 import numpy as np
 
 from continuum_sph.build.water import wall_layers, water_flow
-from continuum_sph.validation import trials
-from continuum_sph.validation import water as verify
+from continuum_sph.validation.water import dam_break as verify
+from continuum_sph.validation.water import setups as trials
 from continuum_sph.water.state import Layer
 from continuum_sph.water.step import Flow
 from porescale.common.core.constants import GRAVITY

@@ -7,8 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.validation.seepage import FACTORS, consolidation
-from continuum_sph.validation.seepage_trials import Consolidation, isochrones, realised_modulus
+from continuum_sph.validation.seepage.consolidation import (
+    FACTORS,
+    Consolidation,
+    consolidation,
+    isochrones,
+    realised_modulus,
+)
 from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent

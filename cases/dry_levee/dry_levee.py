@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from continuum_sph.seepage import Seepage
-from continuum_sph.validation.levels import POROSITY
-from continuum_sph.validation.wetting_trials import BOUSSINESQ, Levee, sag
+from continuum_sph.validation.seepage.dam import POROSITY
+from continuum_sph.validation.seepage.wetting import BOUSSINESQ, Levee, sag
 from porescale.common.pictures.film import write_film
 from porescale.output.case import conclude, options, stage
 from porescale.output.case_bodies import pixels

@@ -17,8 +17,8 @@ from porescale.dem.motion.control import Moved
 from porescale.dem.motion.time_function import Table
 from porescale.output.case import conclude, options, stage
 from porescale.output.case_bodies import Shot, by_piece, draw_bodies, frame, shot
-from porescale.validation.dem.discs_trials import MASS, RADIUS
 from porescale.validation.dem.segments import catenary, hung, weights
+from porescale.validation.dem.setups import MASS, RADIUS
 
 Array = NDArray[np.float64]
 

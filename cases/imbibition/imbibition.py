@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from continuum_sph.seepage import Seepage
-from continuum_sph.validation.levels import Imbibition
+from continuum_sph.validation.seepage.infiltration import Imbibition
 from porescale.common.pictures.film import write_film
 from porescale.output.case import conclude, options, stage
 from porescale.output.case_bodies import pixels

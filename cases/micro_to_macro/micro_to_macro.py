@@ -16,8 +16,8 @@ from continuum_sph.build.soil import soil_section
 from continuum_sph.scene.material_file import speed
 from continuum_sph.scene.sections import Scene as SoilScene
 from continuum_sph.scene.soil import SoilSection
-from continuum_sph.validation.seepage_trials import Permeameter, upward
-from continuum_sph.validation.soil_element_trials import biaxial
+from continuum_sph.validation.seepage.permeameter import Permeameter, upward
+from continuum_sph.validation.soil.element import biaxial
 from porescale import build, load
 from porescale.common.core.constants import GRAVITY
 from porescale.common.record.model import Model

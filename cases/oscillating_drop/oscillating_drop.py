@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.validation import fluids as trials_fluids
-from continuum_sph.validation.exact_drop import drop_swing, swing_period
-from continuum_sph.validation.fluids import OUTER, SWINGING, TENSION
-from continuum_sph.validation.trials import run_until
+from continuum_sph.validation.water import fluids as trials_fluids
+from continuum_sph.validation.water.drop_swing import drop_swing, swing_period
+from continuum_sph.validation.water.fluids import OUTER, SWINGING, TENSION
+from continuum_sph.validation.water.setups import run_until
 from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent

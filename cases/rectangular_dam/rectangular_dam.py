@@ -12,7 +12,8 @@ from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
 from continuum_sph.seepage import Seepage
-from continuum_sph.validation.levels import STATIONS, WATER, Dam, steady
+from continuum_sph.validation.seepage.dam import STATIONS, Dam, steady
+from continuum_sph.validation.seepage.setups import WATER
 from porescale.common.core.constants import GRAVITY
 from porescale.common.pictures.film import write_film
 from porescale.output.case import conclude, options, stage

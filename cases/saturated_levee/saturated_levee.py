@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from continuum_sph.build.simulation import Simulation
 from continuum_sph.build.soil import SoilPart
-from continuum_sph.validation.levee import FAR, OVER, PARTS, Levee
+from continuum_sph.validation.seepage.levee import FAR, OVER, PARTS, Levee
 from porescale.common.pictures.film import write_film
 from porescale.output.case import conclude, draw, options
 from porescale.output.case_bodies import pixels

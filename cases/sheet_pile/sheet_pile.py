@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.validation.seepage_steady_trials import WATER, SheetPile, flux
+from continuum_sph.validation.seepage.setups import WATER
+from continuum_sph.validation.seepage.sheet_pile import SheetPile, flux
 from porescale.common.core.constants import GRAVITY
 from porescale.output.case import conclude, options, stage
 

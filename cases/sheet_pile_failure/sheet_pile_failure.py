@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from continuum_sph.build.simulation import Simulation
 from continuum_sph.build.soil import SoilPart
-from continuum_sph.validation.pile import BOUNDS, FREELY, WATER, Heave
+from continuum_sph.validation.seepage.heave import BOUNDS, FREELY, Heave
+from continuum_sph.validation.seepage.setups import WATER
 from porescale.common.core.constants import GRAVITY
 from porescale.common.pictures.film import write_film
 from porescale.output.case import conclude, options

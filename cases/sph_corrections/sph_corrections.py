@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from continuum_sph.build.water import water_flow
-from continuum_sph.validation import trials
-from continuum_sph.validation.exact import poiseuille
+from continuum_sph.validation.water import channels, flows, setups
+from continuum_sph.validation.water.channels import poiseuille
 from continuum_sph.water.eos import Tait
 from continuum_sph.water.smoothing import Smoothing
 from continuum_sph.water.state import Layer
@@ -36,7 +36,7 @@ METHODS: dict[str, dict[str, float | str | int]] = {
 
 def chosen(flow: Flow, name: str, alpha: float = 0.0) -> Flow:
     """``flow`` with the choices of a method, ready for its first step; walls and viscosity are those it has."""
-    scene = trials.column_scene(0.05, tank=(1.0, 1.0), column=(0.5, 0.5), **METHODS[name])  # type: ignore[arg-type]
+    scene = setups.column_scene(0.05, tank=(1.0, 1.0), column=(0.5, 0.5), **METHODS[name])  # type: ignore[arg-type]
     law, layer, pairs = water_flow(scene).law, flow.layer, flow.pairs
     law = replace(
         law, spacing=flow.law.spacing,
@@ -52,27 +52,27 @@ def chosen(flow: Flow, name: str, alpha: float = 0.0) -> Flow:
 
 def vortices(name: str, across: int, end: float) -> float:
     """Relative error of the speed of Taylor's and Green's vortices at ``end`` (s), Reynolds number 100."""
-    flow = chosen(trials.taylor_green(across, 100.0), name)
-    start = trials.kinetic_energy(flow)
-    trials.run_until(flow, end)
-    return abs(float((trials.kinetic_energy(flow) / start) ** 0.5 / np.exp(-0.08 * np.pi**2 * flow.time)) - 1.0)
+    flow = chosen(flows.taylor_green(across, 100.0), name)
+    start = setups.kinetic_energy(flow)
+    setups.run_until(flow, end)
+    return abs(float((setups.kinetic_energy(flow) / start) ** 0.5 / np.exp(-0.08 * np.pi**2 * flow.time)) - 1.0)
 
 
 def plates(name: str, across: int) -> float:
     """Largest error of a flow between plates after a second, over its speed."""
-    flow = trials.run_until(chosen(trials.channel(1e-3, across, 1e-6, 1e-3, force=1e-4), name), 1.0)
-    y, u = trials.speed_profile(flow)
+    flow = setups.run_until(chosen(channels.channel(1e-3, across, 1e-6, 1e-3, force=1e-4), name), 1.0)
+    y, u = channels.speed_profile(flow)
     return float(np.abs(u - poiseuille(y, flow.time, 1e-3, 1e-4, 1e-6)).max()) / 1.25e-5
 
 
 def rest(name: str, rows: int, seconds: float) -> tuple[float, float]:
     """(error of pressure over that at the floor, root mean square; fastest particle over the speed of sound) of a
     column of water at rest after ``seconds``."""
-    scene = trials.column_scene(1.0 / rows, tank=(0.5, 1.2), column=(0.5, 1.0), **METHODS[name])  # type: ignore[arg-type]
+    scene = setups.column_scene(1.0 / rows, tank=(0.5, 1.2), column=(0.5, 1.0), **METHODS[name])  # type: ignore[arg-type]
     table = scene.model_dump()
     if name == "as printed":
         table["tank"]["wall_particles"] = "images"
-    flow = trials.run_until(water_flow(validate(type(scene), table)), seconds)
+    flow = setups.run_until(water_flow(validate(type(scene), table)), seconds)
     layer, state = flow.layer, flow.law.state
     assert isinstance(state, Tait)
     n = layer.fluid

@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from porescale.output.case import conclude, options, stage
-from porescale.validation.dem.discs_trials import MASS, RADIUS, STIFFNESS, critical_step, law_at, row_on_floor
+from porescale.validation.dem.critical_step import critical_step
+from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, law_at, row_on_floor
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from continuum_sph.soil import Material
-from continuum_sph.validation.soil_trials import body, turn
+from continuum_sph.validation.soil.bodies import turn
+from continuum_sph.validation.soil.setups import body
 from porescale.common.neighbors import square_lattice
 from porescale.output.case import conclude, options, stage
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from continuum_sph.validation.seepage import BOILING, PERMEABILITIES, boiling, darcy, ramp
+from continuum_sph.validation.seepage.permeameter import BOILING, PERMEABILITIES, boiling, darcy, ramp
 from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent

@@ -9,7 +9,7 @@ import numpy as np
 
 from continuum_sph.build.simulation import Simulation
 from continuum_sph.scene.sections import Scene
-from continuum_sph.validation.trials import open_box
+from continuum_sph.validation.water.setups import open_box
 from continuum_sph.water.step import Flow
 from porescale.common.evidence.endurance import Endurance, Endurances, Held
 from porescale.common.schema.sections import validate

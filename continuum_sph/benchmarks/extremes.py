@@ -12,7 +12,7 @@ from continuum_sph.build.report import report
 from continuum_sph.build.simulation import Simulation
 from continuum_sph.build.water import WaterPart
 from continuum_sph.scene.sections import Scene
-from continuum_sph.validation import trials
+from continuum_sph.validation.water import flows, setups
 from continuum_sph.water.energy_budget import book
 from porescale.common.core.constants import GRAVITY
 from porescale.common.evidence.extremes import Extreme, Extremes, Judged
@@ -67,7 +67,7 @@ def front(model: Simulation) -> float:
 @cache
 def mild_front() -> float:
     """The same of the mildest that is tried: sound twice as fast as it comes."""
-    scene = trials.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released")
+    scene = setups.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released")
     water = scene.water.model_copy(update={"sound_speed": FALL / 0.05})
     model = Simulation(scene.model_copy(update={"water": water}))
     while model.time < JUDGED:
@@ -123,7 +123,7 @@ def spun(tension: str, shifting: float) -> Callable[[], str]:
 
     def run() -> str:
         """A quarter turn: least pressure, how far it reaches, energies."""
-        flow = trials.spinning_square(24, cut=tension == "cut", shifting=shifting)
+        flow = flows.spinning_square(24, cut=tension == "cut", shifting=shifting)
         flow.layer.keep_book()
         layer, start, pull = flow.layer, book(flow)["energy balance"], 0.0
         while flow.time < 0.5 * np.pi:  # a quarter turn
@@ -141,7 +141,7 @@ def thrown(speed: float) -> Callable[[], str | Judged]:
 
     def run() -> str | Judged:
         """How it ends after half a second."""
-        model = Simulation(trials.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released"))
+        model = Simulation(setups.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released"))
         scene = model.scene.model_copy(update={"tank": model.scene.tank.model_copy(update={"lid": False})})
         model = Simulation(scene)
         layer = model.flow.layer
@@ -154,7 +154,7 @@ def thrown(speed: float) -> Callable[[], str | Judged]:
 
 def broken() -> str | Judged:
     """The collapse with a particle whose velocity is no number after 10 steps."""
-    model = Simulation(trials.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released"))
+    model = Simulation(setups.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released"))
     model.advance(10)
     model.flow.layer.v[7] = np.nan
     return driven(model, 0.5)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from continuum_sph.build.sanity import Now, advance_one
 from continuum_sph.soil import SoilFlow
-from continuum_sph.validation.seepage_trials import energies, saturated_box
+from continuum_sph.validation.seepage.saturated_box import energies, saturated_box
 from porescale.common.evidence.extremes import Extreme, Extremes
 
 CHECKED = 20  # steps between two looks at the energies

@@ -7,9 +7,9 @@ from typing import Any
 from continuum_sph.build.soil import geostatic
 from continuum_sph.build.water import water_flow
 from continuum_sph.soil import Material
-from continuum_sph.validation.seepage_trials import saturated_box
-from continuum_sph.validation.soil_trials import in_tank
-from continuum_sph.validation.trials import column_scene
+from continuum_sph.validation.seepage.saturated_box import saturated_box
+from continuum_sph.validation.soil.setups import in_tank
+from continuum_sph.validation.water.setups import column_scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.evidence.benchmarks import Benchmarks, Dtype, Work
 from porescale.common.neighbors import square_lattice

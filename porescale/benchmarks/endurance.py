@@ -10,7 +10,7 @@ import numpy as np
 from porescale.common.evidence.endurance import Endurance, Endurances, Held
 from porescale.coupling.divergence_check import Sense
 from porescale.coupling.step import Coupled
-from porescale.validation.coupling.grains_trials import handful, immersed
+from porescale.validation.coupling.setups import handful, immersed
 from porescale.validation.coupling.sleep import let_sleep
 
 EPS = float(np.finfo(float).eps)

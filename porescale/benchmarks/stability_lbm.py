@@ -6,7 +6,7 @@ Every flow starts as hard as it can: shear layers thinner than a cell, a lid tha
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -49,7 +49,7 @@ CAVITY_LEAST = {100: -0.21090, 400: -0.32726, 1000: -0.38857}
 
 def variants(quick: bool) -> dict[str, dict[str, Any]]:
     """Keyword arguments of ``Fluid`` by name: every operator, with eddies and without, and without in float32."""
-    operators: Mapping[str, str] = {"trt": "", "central": ""} if quick else OPERATORS
+    operators: Collection[str] = {"trt": "", "central": ""} if quick else OPERATORS
     plain: dict[str, dict[str, Any]] = {}
     for name in operators:
         for label, magic in MAGICS.get(name, {name: None}).items():

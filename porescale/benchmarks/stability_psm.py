@@ -17,7 +17,7 @@ from porescale.common.evidence.stability import Axis, Stability, Tried
 from porescale.coupling.psm import Saturated
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.step import Coupled
-from porescale.coupling.weighting import WEIGHTINGS, fitting_weight
+from porescale.coupling.weighting.choose import WEIGHTINGS, fitting_weight
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
@@ -26,7 +26,8 @@ from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
 from porescale.lbm.sanity import SOUND, WORST_MACH, sane
 from porescale.lbm.scales import Scales
-from porescale.validation.coupling.grains_trials import LAW, faxen
+from porescale.validation.coupling.setups import LAW
+from porescale.validation.coupling.towed import faxen
 from porescale.validation.lbm.channels import one_thread
 
 STABILITY = Stability()

@@ -13,7 +13,7 @@ from porescale.build.initial.random_polygons import copies_of
 from porescale.build.kinds import SECTIONS
 from porescale.common.cli.report import Report
 from porescale.coupling.solid.choose import SOLID_OPERATORS
-from porescale.coupling.weighting import WEIGHTINGS
+from porescale.coupling.weighting.choose import WEIGHTINGS
 from porescale.dem.contact.linear import Linear
 from porescale.lbm.collision.choose import OPERATORS
 from porescale.scene.bodies.segments import PolygonBody, SegmentBody
@@ -75,13 +75,13 @@ def _operators(scene: Scene, out: Report) -> None:
     fluid = scene.fluid
     assert fluid is not None
     out.heading("Operators")
-    out.row("collision", fluid.operator, "", OPERATORS[fluid.operator])
+    out.row("collision", fluid.operator, "", OPERATORS[fluid.operator].purpose)
     out.row("magic parameter", fluid.magic, "", "3/16: walls half-way between nodes")
     out.row("Smagorinsky constant", fluid.smagorinsky or "none")
     if scene.grains or scene.disc or scene.rectangle:
-        out.row("solid", fluid.solid_operator, "", SOLID_OPERATORS[fluid.solid_operator])
+        out.row("solid", fluid.solid_operator, "", SOLID_OPERATORS[fluid.solid_operator].purpose)
         out.row("rim", "soft" if has_soft_rim(fluid) else "sharp", "", "soft: for grains that the fluid passes fast")
-        out.row("weight", weight_of(fluid), "", WEIGHTINGS[weight_of(fluid)])
+        out.row("weight", weight_of(fluid), "", WEIGHTINGS[weight_of(fluid)].purpose)
     out.row("precision", fluid.precision)
 
 

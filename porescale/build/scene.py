@@ -10,7 +10,7 @@ from porescale.build.checks.needed import check_needed, check_places
 from porescale.build.initial.circles import grains_of
 from porescale.build.initial.random_polygons import check_random_places
 from porescale.coupling.solid.choose import SOLID_OPERATORS
-from porescale.coupling.weighting import WEIGHTINGS
+from porescale.coupling.weighting.choose import WEIGHTINGS
 from porescale.lbm.collision.choose import OPERATORS
 from porescale.scene.bodies.segments import PolygonBody
 from porescale.scene.circles import Circles

@@ -38,7 +38,7 @@ def likely_cause(now: Circumstances) -> str:
     What is wrong from the start comes first: grains with an operator, or of a weight, that cannot last.  Speed and
     pressure may be the first signs of these.
     """
-    beyond = _free_sc3(now) or _light(now) or max(filter(None, (_thin(now), _fast(now), _pressed(now))), default=None)
+    beyond = _held_only(now) or _light(now) or max(filter(None, (_thin(now), _fast(now), _pressed(now))), default=None)
     if beyond is None:
         return "likely cause: none that is known of; a shorter fluid.step or a finer spacing often helps"
     return f"likely cause: {beyond[1]}"
@@ -47,12 +47,13 @@ def likely_cause(now: Circumstances) -> str:
 Found = tuple[float, str] | None
 
 
-def _free_sc3(now: Circumstances) -> Found:
+def _held_only(now: Circumstances) -> Found:
     """Free grains with an operator that is for held ones: in the map they run away at any density ratio."""
     if now.density_ratio is None or now.solid_operator not in limits.HELD_ONLY:
         return None
     return float("inf"), (
-        f"fluid.solid_operator = '{now.solid_operator}' with free grains, which run away with it; take 'exact-wall'"
+        f"fluid.solid_operator = '{now.solid_operator}' with free grains, which run away with it;"
+        f" take {limits.RECOMMENDED!r}"
     )
 
 
@@ -76,7 +77,8 @@ def _thin(now: Circumstances) -> Found:
     if reynolds <= holds:
         return None
     name = f"'{now.operator}'{' with eddies' if now.eddies else ''}{' under a lid' if now.lid else ''}"
-    better = "" if now.operator == "central" and now.eddies else ", or take operator = 'central' with smagorinsky = 0.1"
+    steadiest = now.operator == limits.STEADIEST and now.eddies
+    better = "" if steadiest else f", or take operator = {limits.STEADIEST!r} with smagorinsky = 0.1"
     return reynolds / holds, (
         f"relaxation time {now.relaxation_time:.6g}, near 1/2, at a speed of Mach {now.speed * 3**0.5:.2g}: cell"
         f" Reynolds number {reynolds:.3g}, and {name} is known to hold up to {holds:g};"

@@ -12,7 +12,7 @@ from porescale.coupling.coverage.interpenetration import refuse_crossing
 from porescale.coupling.displaced import displaced
 from porescale.coupling.divergence_cause import Circumstances, likely_cause
 from porescale.coupling.step import Coupled
-from porescale.coupling.weighting import fitting_weight
+from porescale.coupling.weighting.choose import fitting_weight
 from porescale.dem.grains import Grains
 from porescale.lbm.boundary.sides import NAMES, Sides
 from porescale.lbm.fluid import Fluid
@@ -99,7 +99,7 @@ def _sides_speed(sides: Sides) -> float:
     """The fastest that a side moves or lets in, cells per step."""
     speeds = [abs(sides.speed(name)) for name in NAMES]
     for name in NAMES:
-        if sides.kind(name) == "velocity":
+        if sides.boundary(name).prescribes_velocity:
             given = np.atleast_2d(np.asarray(getattr(sides, f"{name}_velocity"), float))
             speeds.append(float(np.hypot(given[:, 0], given[:, 1]).max()))
     return max(speeds)

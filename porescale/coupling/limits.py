@@ -1,44 +1,42 @@
 """What the map of stability says holds: thresholds for warnings and for naming causes.
 
 Each is a row or a column of the tables in docs/stability/stability.md, from which a test derives it again;
-`porescale study stability --out docs/stability` makes the map anew.
+`porescale study stability --out docs/stability` makes the map anew.  What depends on a law stands in the law's own
+file: ``Operator.holds``, ``SolidOperator.holds``.
 """
 
 from __future__ import annotations
 
-IN_THE_OPEN = {"trt": 51.0, "mrt": 10.0, "central": 5100.0, "bgk": 100.0}
-"""Cell Reynolds number |u|/nu up to which the thin double shear layer holds, by collision operator (lbm.shear, rounded
-down; "trt" with magic 3/16).  Central moments held in all of the map."""
-IN_THE_OPEN_WITH_EDDIES = {"trt": 5100.0, "mrt": 17.0, "central": 5100.0, "bgk": 5100.0}
-"""The same with Smagorinsky's constant 0.1.  They hold but are right only where the molecular viscosity leads."""
-UNDER_A_LID = {"trt": 20.0, "mrt": 31.0, "central": 62.0, "bgk": 8.0}
-"""The same in a cavity whose lid starts at once (lbm.cavity, lid's speed/nu)."""
-UNDER_A_LID_WITH_EDDIES = {"trt": 41.0, "mrt": 200000.0, "central": 200000.0, "bgk": 8.0}
-"""The same with Smagorinsky's constant 0.1."""
+from porescale.coupling.solid.choose import SOLID_OPERATORS
+from porescale.lbm.collision.choose import OPERATORS
+
 MACH = 0.3
 """Largest Mach number of the map: at relaxation times of 0.52 to 5 every operator but "mrt" holds there (lbm.shear)."""
 DENSITY = 0.3
 """Relative change of density beyond which the linear equation of state misleads: 0.5 is taken for beyond sense."""
-HELD_ONLY = ("SC3",)
-"""Solid operators with which free discs run away: in the map at nearly every density ratio (coupling.fall,
-coupling.fly) and in beds of every solid fraction (coupling.bed)."""
-LIGHTEST = {
-    "exact-wall wall": ((5.0, 0.1), (3.0, 0.2)),
-    "odd-SC1 B2": ((16.0, 0.1), (10.0, 0.2), (5.0, 0.3), (3.0, 0.5)),
-    "odd-SC1 B1": ((10.0, 0.1), (5.0, 0.2), (3.0, 0.5)),
-}
-"""Cells per diameter, and the density ratio from which on a free disc of that size holds, by solid operator and weight
-(coupling.fall; at 10 cells also shot at Mach 0.1, coupling.fly).  Lighter ones than 0.1 were not tried."""
-CELLS_RIGHT = {"exact-wall wall": 3.0, "odd-SC1 B2": 10.0, "odd-SC1 B1": 10.0}
-"""Cells per diameter from which on the drag of a free disc is within a tenth, wherever it holds (coupling.fall)."""
+_MEASURED = {name: operator.holds for name, operator in OPERATORS.items() if operator.holds}
+IN_THE_OPEN = {name: holds.in_the_open for name, holds in _MEASURED.items()}
+"""Cell Reynolds number |u|/nu up to which each collision operator holds in the open, see lbm/collision/law.py."""
+IN_THE_OPEN_WITH_EDDIES = {name: holds.in_the_open_with_eddies for name, holds in _MEASURED.items()}
+"""The same with an eddy viscosity."""
+UNDER_A_LID = {name: holds.under_a_lid for name, holds in _MEASURED.items()}
+"""The same under a lid that starts at once."""
+UNDER_A_LID_WITH_EDDIES = {name: holds.under_a_lid_with_eddies for name, holds in _MEASURED.items()}
+"""The same under a lid with an eddy viscosity."""
+STEADIEST = max(_MEASURED, key=lambda name: min(_MEASURED[name]))
+"""The operator that holds furthest where it holds least."""
 
-BED_RIGHT = {
-    "exact-wall wall": ((0.4, 5.0), (0.6, 15.0)),
-    "odd-SC1 B2": ((0.2, 10.0), (0.4, 15.0)),
-    "odd-SC1 B1": ((0.1, 10.0),),
-}
-"""Solid fraction of a square bed, and the cells per diameter from which on its drag is within a tenth up to there; with
-none of the map's beyond the last one (coupling.bed)."""
+HELD_ONLY = tuple(name for name, operator in SOLID_OPERATORS.items() if operator.held_only)
+"""Solid operators with which free discs run away."""
+RECOMMENDED = next(iter(SOLID_OPERATORS))
+"""The solid operator to take instead."""
+_ON_THE_MAP = {f"{name} {weight}": holds for name, it in SOLID_OPERATORS.items() for weight, holds in it.holds.items()}
+LIGHTEST = {pair: holds.lightest for pair, holds in _ON_THE_MAP.items()}
+"""By solid operator and weight: cells per diameter, and the density ratio from which on free discs hold."""
+CELLS_RIGHT = {pair: holds.cells for pair, holds in _ON_THE_MAP.items()}
+"""The same: cells per diameter from which on the drag of a free disc is within a tenth."""
+BED_RIGHT = {pair: holds.bed for pair, holds in _ON_THE_MAP.items()}
+"""The same: solid fraction of a bed, and the cells per diameter from which on its drag is within a tenth."""
 
 
 def cell_reynolds(operator: str, *, eddies: bool, lid: bool = False) -> float:

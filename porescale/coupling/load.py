@@ -14,18 +14,19 @@ total = sum_by_halves(BLOCK)
 
 
 @inline
-def take_row(begin, end, rows, patches, centre, velocity, spin, shift, periodic_x, ramp, scratch, partial, row_load):
+def accumulate_load_row(y, rows, patches, motion, periodic_x, ramp, scratch, partial, row_load):
     """Load of one collided row on the bodies in it.
 
     scratch (3, BLOCK + nx + BLOCK): rho, then j along x and y, times B/sum e, as collide_saturated_row leaves them,
-    and zero beyond the box;  the rest as in ``lay_row``.  Overwrites partial (5 * BLOCK,), and row_load (n, largest
-    height, 5) for these bodies and rows: force along x and y, torque, inside mass and its moment of inertia;
+    and zero beyond the box;  the rest as in ``rasterize_row``.  Overwrites partial (5 * BLOCK,), and row_load (n,
+    largest height, 5) for these bodies and rows: force along x and y, torque, inside mass and its moment of inertia;
     where rims are soft, with a fourth row of scratch, the slip |u - v|, also the sums of e (1 - e) times slip and of
     e (1 - e) (partial 7 * BLOCK, row_load 7).
     """
+    centre, velocity, spin, shift = motion.centre, motion.velocity, motion.spin, motion.shift
     nx = scratch.shape[1] - 2 * BLOCK
     density, jx, jy = scratch[0], scratch[1], scratch[2]
-    for k in range(begin, end):
+    for k in range(rows.start[y], rows.start[y + 1]):
         if k + AHEAD < rows.body.shape[0]:
             fetch(row_load, (rows.body[k + AHEAD] * row_load.shape[1] + rows.line[k + AHEAD]) * row_load.shape[2])
         n = rows.body[k]
@@ -128,7 +129,7 @@ def add_rows(corner, height, ny, periodic_y, row_load, load, inside):
 
 @kernel
 def add_rims(corner, height, ny, periodic_y, row_load, rim):
-    """Sum of the rows of the first bodies where rims are soft; overwrites rim (n, 2), see ``take_row``."""
+    """Sum of the rows of the first bodies where rims are soft; overwrites rim (n, 2), see ``accumulate_load_row``."""
     for n in range(rim.shape[0]):
         rim[n, 0] = 0.0
         rim[n, 1] = 0.0

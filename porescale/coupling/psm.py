@@ -14,23 +14,20 @@ from porescale.coupling.coverage.overlap import take_off
 from porescale.coupling.coverage.polygon import Polygons
 from porescale.coupling.coverage.rectangle import Rectangle
 from porescale.coupling.coverage.ring import Ring
-from porescale.coupling.coverage.rows import BLOCK, lay_out, list_rows, make_patches, make_rows
+from porescale.coupling.coverage.rows import BLOCK, Motion, list_rows, make_patches, make_rows, rasterize
 from porescale.coupling.coverage.shape import Shape
 from porescale.coupling.coverage.soft_rim import MARGIN, Rim
 from porescale.coupling.load import add_rows, half_step_correction
-from porescale.coupling.psm_kernels import AT_ONCE, sweep
-from porescale.coupling.solid.choose import choose_solid
-from porescale.coupling.weighting import choose_weight, fitting_weight, weights_of
+from porescale.coupling.psm_kernels import AT_ONCE, BAND_HEIGHT, RowWork, sweep
+from porescale.coupling.solid.choose import SOLID_OPERATORS, choose_solid
+from porescale.coupling.solid.choose import solid_operator as solid_operator_of
+from porescale.coupling.weighting.choose import choose_weight, fitting_weight
+from porescale.coupling.weighting.law import weights_of
 from porescale.lbm.collision.choose import third_order_rate
 from porescale.lbm.fluid import Fluid
 
-RADIUS_SHIFT = 1.5
-"""Times the magic parameter, cells², over the radius: what exact walls lack to be those of a disc (0.28 at 3/16;
-solid/exact_wall.py)."""
 LOW_PASS = 0.1
 """Share of a step's load in the one that the half-step correction is made from; 1 lets light discs run away."""
-BAND_HEIGHT = 8
-"""Rows that one thread does at a time; any value gives the same bits."""
 SPREAD = 0.6180339887498949
 """Golden section: bands in the order of the multiples of it, modulo 1, are spread evenly over any number of threads,
 though the grains lie at the bottom."""
@@ -64,18 +61,18 @@ class Saturated:
         ny, nx = fluid.ny, fluid.nx
         dtype = fluid.populations.dtype
         self.radius = np.ascontiguousarray(radius, float)
-        self.periodic_x = fluid.sides.left == "periodic"
-        self.periodic_y = fluid.sides.bottom == "periodic"
-        exact = solid_operator == "exact-wall"
+        self.periodic_x, self.periodic_y = fluid.sides.periodic
+        operator = solid_operator_of(solid_operator)
         third_order = third_order_rate(fluid.law)
-        shift = RADIUS_SHIFT * (fluid.relaxation_time - 0.5) * (1 / third_order - 0.5) * exact
+        shift = operator.radius_shift * (fluid.relaxation_time - 0.5) * (1 / third_order - 0.5)
         widest = 0.5 * min(nx if self.periodic_x else math.inf, ny if self.periodic_y else math.inf)
         if self.radius.max(initial=0) > widest * (1 + 1e-12):
             raise ValueError("a disc is wider than the periodic box")
         self.covering_radius = np.minimum(self.radius + shift / np.maximum(self.radius, 1.0), widest)
         width = (np.floor(2 * self.covering_radius) + 2).astype(np.int64)
-        if soft_rim and not exact:
-            raise ValueError("soft rims go with the solid operator exact-wall")
+        if soft_rim and operator.soft_law is None:
+            able = " or ".join(name for name, other in SOLID_OPERATORS.items() if other.soft_law)
+            raise ValueError(f"soft rims go with the solid operator {able}")
         width += MARGIN * soft_rim
         high, wide = width, width + 1
         self.polygons, discs = polygons, len(radius)
@@ -95,13 +92,14 @@ class Saturated:
         self._rows = make_rows(self._patches, ny)
         widest, highest = int(self._patches.stride[:discs].max(initial=BLOCK)), int(high.max(initial=0))
         self._lines = np.zeros((CHUNKS, SCRATCH, widest + BLOCK))
-        self._row_load = np.zeros((count, highest, 7 if soft_rim else 5))
+        row_load = np.zeros((count, highest, 7 if soft_rim else 5))
         bands = -(-ny // BAND_HEIGHT)
         self._band_order = np.argsort(np.arange(bands) * SPREAD % 1).astype(np.int64)
-        self._ramp = np.arange(BLOCK).astype(dtype)
+        ramp = np.arange(BLOCK).astype(dtype)
         threads = most_threads()
-        self._scratch = np.zeros((threads, 4 if soft_rim else 3, BLOCK + nx + BLOCK), dtype)
-        self._weights = np.zeros((threads, 5, max(min(nx, AT_ONCE), 7 * BLOCK)), dtype)
+        scratch = np.zeros((threads, 4 if soft_rim else 3, BLOCK + nx + BLOCK), dtype)
+        weights = np.zeros((threads, 5, max(min(nx, AT_ONCE), 7 * BLOCK)), dtype)
+        self._work = RowWork(ramp, row_load, scratch, weights)
         self._laws = (
             choose_weight(fitting_weight(solid_operator, weighting), fluid.relaxation_time, dtype, soft=soft_rim),
             choose_solid(solid_operator, fluid.relaxation_time, third_order, dtype, soft=soft_rim),
@@ -115,7 +113,8 @@ class Saturated:
         self.force, self.torque = self._load[:discs, :2], self._load[:discs, 2]
         self.inside = self._inside[:discs]
         self.polygon_load, self.polygon_inside = self._load[discs:movers], self._inside[discs:movers]
-        self._corrected, self._slow_load, self._shift = exact, np.zeros((count, 3)), np.zeros((count, 3))
+        self.operator = operator
+        self._slow_load, self._shift = np.zeros((count, 3)), np.zeros((count, 3))
         self._theta = np.zeros(count)
         self.rim = Rim(self.radius, shift, fluid.relaxation_time, self._theta[:discs]) if soft_rim else None
         self._direct = np.zeros((count, 2))
@@ -127,7 +126,7 @@ class Saturated:
     def covered(self) -> Array:
         """Sum of the solid fractions, and of fraction times velocity (x, y), (3, ny, nx); made when asked for."""
         if self._covered is None:
-            self._covered = np.zeros((3, *self._shape), self._scratch.dtype)
+            self._covered = np.zeros((3, *self._shape), self._work.scratch.dtype)
         return self._covered
 
     @property
@@ -173,14 +172,14 @@ class Saturated:
         """Take that mass out of all cells evenly and count anew; returns it.  Does nothing before an odd step."""
         return self.bodies.make_good(fluid, self._patches) if self.bodies else 0.0
 
-    def _place(self, centre: Array, velocity: Array, spin: Array) -> tuple[Array, Array, Array]:
+    def _place(self, centre: Array, velocity: Array, spin: Array) -> Motion:
         """Fill the bodies' patches, and list what lies in which row; centre, velocity and spin of them all.
 
         Where there are discs only and none has moved since, all of that is there already.
         """
         others = self.rim or self.polygons or self.bodies
         if not others and np.equal(centre, self._placed, out=self._stands).all():
-            return centre, velocity, spin
+            return Motion(centre, velocity, spin, self._shift, self._theta)
         self._placed[:] = centre
         if self.rim:
             self.rim.soften(self.covering_radius)
@@ -197,16 +196,15 @@ class Saturated:
             self.bodies.place(self._patches)
             motion = self.bodies.gather(*motion)
         list_rows(self._patches, self.periodic_y, self._rows)
-        return motion
+        return Motion(*motion, self._shift, self._theta)
 
     def cover(self, centre: Array, velocity: Array, spin: Array) -> None:
         """Fill the solid fields for discs at centre (n, 2), cells, with velocity and spin in lattice units."""
         self._placed[:] = np.nan  # the owner may have lent other radii
         motion = self._place(centre, velocity, spin)
         self._placed[:] = np.nan
-        lay_out(
-            self._rows, self._patches, *motion, self._shift, self._theta, self.periodic_x, self._ramp, self._scratch,
-            self.covered,
+        rasterize(
+            self._rows, self._patches, motion, self.periodic_x, self._work.ramp, self._work.scratch, self.covered
         )  # fmt: skip
 
     def weights(self) -> Array:
@@ -219,18 +217,15 @@ class Saturated:
         patches = self._patches
         if self.bodies:
             self.bodies.before(fluid, patches, self._shift, self._slow_load)
-        fluid.advance(
-            sweep, self._band_order, BAND_HEIGHT, self._rows, patches, *motion, self._shift,
-            self._theta, self.periodic_x, self._ramp, self._row_load, self._scratch, self._weights, *self._laws,
-        )  # fmt: skip
+        fluid.advance(sweep, self._band_order, self._rows, patches, motion, self.periodic_x, self._work, *self._laws)
         add_rows(
-            patches.corner, patches.height, fluid.ny, self.periodic_y, self._row_load, self._load, self._inside
+            patches.corner, patches.height, fluid.ny, self.periodic_y, self._work.row_load, self._load, self._inside
         )  # fmt: skip
         if self.rim:
-            self.rim.follow(patches, fluid.ny, self.periodic_y, self._row_load)
+            self.rim.follow(patches, fluid.ny, self.periodic_y, self._work.row_load)
         if self.bodies:
             self.bodies.after(fluid, patches, self._load, self._direct)
-        if self._corrected:
+        if self.operator.half_step_correction:
             half_step_correction(self._load, self._inside, self._direct, LOW_PASS, self._slow_load, self._shift)
 
     def state(self) -> dict[str, Any]:

@@ -136,7 +136,6 @@ class Coupled:
         covering = np.zeros(discs.count)
         covering[seen] = self.saturated.covering_radius * scales.spacing
         self.saturated.pairs = overlapping(grains, covering)
-        self._force_everywhere = solid_operator == "exact-wall"
         inside = displaced(grains, self.hydraulic_radius, scales.density)
         self.inner_mass, self.inner_inertia = inside.mass.copy(), inside.inertia.copy()
         self.inner_mass[seen.stop :] = self.inner_inertia[seen.stop :] = 0.0
@@ -232,7 +231,7 @@ class Coupled:
         if wet.polygons:
             wet.polygons.bare = False
         solid = np.minimum(wet.solid, 1)
-        rho, ux, uy = self.fluid.fields(None if self._force_everywhere else wet.weights())
+        rho, ux, uy = self.fluid.fields(None if wet.operator.force_everywhere else wet.weights())
         return (rho - 1) * s.density, ux * s.velocity, uy * s.velocity, solid
 
     def momentum(self) -> Array:

@@ -24,7 +24,7 @@ def face_velocities(fluid: Fluid, ux: Array, uy: Array) -> tuple[Array, Array]:
     Means of the two cells; at a side what the side is: none through a wall or a line of symmetry, what was given at a
     velocity side, that of the cell inside at a pressure side.
     """
-    sides, given = fluid.sides, fluid.rim.velocity
+    sides, given = fluid.sides, fluid.links.velocity
     left, right = (_normal(sides, given, side, ux[:, end], ux[:, 0], ux[:, -1], 0) for side, end in _ENDS[:2])
     bottom, top = (_normal(sides, given, side, uy[end], uy[0], uy[-1], 1) for side, end in _ENDS[2:])
     inner_u, inner_v = 0.5 * (ux[:, 1:] + ux[:, :-1]), 0.5 * (uy[1:] + uy[:-1])
@@ -35,12 +35,12 @@ _ENDS = (("left", 0), ("right", -1), ("bottom", 0), ("top", -1))
 
 
 def _normal(sides: Sides, given: Any, side: str, inside: Array, first: Array, last: Array, axis: int) -> Array:
-    kind = sides.kind(side)
-    if kind == "velocity":
+    kind = sides.boundary(side)
+    if kind.prescribes_velocity:
         return np.asarray(given.of(side)[:, axis], float)
-    if kind == "pressure":
+    if kind.passes:
         return inside
-    return 0.5 * (first + last) if kind == "periodic" else np.zeros_like(inside)
+    return 0.5 * (first + last) if kind.periodic else np.zeros_like(inside)
 
 
 def stream_function(fluid: Fluid, ux: Array, uy: Array) -> Array:

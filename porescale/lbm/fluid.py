@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from porescale.lbm.boundary.links import Rim
+from porescale.lbm.boundary.links import BoundaryLinks
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.boundary.thin_plate import Plate, exchange
-from porescale.lbm.collision.choose import choose, lean
-from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL
+from porescale.lbm.collision.choose import choose, without_force
+from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
 from porescale.lbm.equilibrium import equilibrium
 from porescale.lbm.moments import moment_fields
 from porescale.lbm.stream import sweep
@@ -52,7 +52,7 @@ class Fluid:
         self.force = force
         self.populations: NDArray[np.floating] = np.zeros((9, ny + 2, nx + 2), dtype)
         self._flat = self.populations.reshape(-1)
-        self.rim = Rim(nx, ny, self.sides, dtype)
+        self.links = BoundaryLinks(nx, ny, self.sides, dtype)
         self.plates: list[Plate] = []
         self.step = 0
 
@@ -77,10 +77,10 @@ class Fluid:
         parity = self.step % 2
         if parity:
             self._exchange(+1.0)
-        cells(self.populations, parity, *extra, lean(self.law))
+        cells(self.populations, parity, *extra, without_force(self.law))
         if parity:
             self._exchange(-1.0)
-        self.rim.close(self._flat, parity, (self.law.fx, self.law.fy))
+        self.links.close(self._flat, parity, (self.law.fx, self.law.fy))
         self.step += 1
 
     def _exchange(self, sign: float) -> None:
@@ -92,11 +92,11 @@ class Fluid:
 
         ValueError if the side is of another kind or the shape does not fit.
         """
-        self.rim.set_velocity(side, velocity)
+        self.links.set_velocity(side, velocity)
 
     def set_side_density(self, side: str, density: float) -> None:
         """Give a pressure side another density from the next step on; ValueError if the side is of another kind."""
-        self.rim.open.set(side, density)
+        self.links.set_density(side, density)
 
     @contextmanager
     def readable(self) -> Iterator[None]:
@@ -145,14 +145,14 @@ class Fluid:
             "populations": self.populations,
             "step": self.step,
             "plates": {str(k): {"edge": p.lower_edge, "speed": p.speed} for k, p in enumerate(self.plates)},
-            **({"rim": rim} if (rim := self.rim.state()) else {}),
+            **({"rim": rim} if (rim := self.links.state()) else {}),
         }
 
     def restore(self, state: dict[str, Any]) -> None:
         """Take up a state; the same number of plates must be in place."""
         self.populations[...] = state["populations"]
         self.step = int(state["step"])
-        self.rim.restore(state.get("rim", {}))
+        self.links.restore(state.get("rim", {}))
         for k, plate in enumerate(self.plates):
             plate.lower_edge = float(state["plates"][str(k)]["edge"])
             plate.speed = float(state["plates"][str(k)]["speed"])

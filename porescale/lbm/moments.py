@@ -9,26 +9,25 @@ from porescale.lbm.stream import even_slots, odd_slots
 
 
 @inline
-def _moment_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, d, jx, jy):
-    """Moments of one row into d, jx, jy (nx,)."""
+def _moment_row(planes, d, jx, jy):
+    """Moments of one row, the nine slots (nx,) of which are ``planes``, into d, jx, jy (nx,)."""
+    a0, a1, a2, a3, a4, a5, a6, a7, a8 = planes
     for x in range(d.shape[0]):
-        d[x], jx[x], jy[x] = moments(a0[x], a1[x], a2[x], a3[x], a4[x], a5[x], a6[x], a7[x], a8[x])
+        d[x], jx[x], jy[x] = moments((a0[x], a1[x], a2[x], a3[x], a4[x], a5[x], a6[x], a7[x], a8[x]))
 
 
 @parallel_kernel
 def _moments_even(f, d, jx, jy):
     """Density excess and first moments, each (ny, nx), of populations f before an even step."""
     for y in prange(d.shape[0]):
-        a0, a1, a2, a3, a4, a5, a6, a7, a8 = even_slots(f, y + 1)
-        _moment_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, d[y], jx[y], jy[y])
+        _moment_row(even_slots(f, y + 1), d[y], jx[y], jy[y])
 
 
 @parallel_kernel
 def _moments_odd(f, d, jx, jy):
     """The same before an odd step; the halo must have been filled."""
     for y in prange(d.shape[0]):
-        a0, a1, a2, a3, a4, a5, a6, a7, a8 = odd_slots(f, y + 1)
-        _moment_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, d[y], jx[y], jy[y])
+        _moment_row(odd_slots(f, y + 1), d[y], jx[y], jy[y])
 
 
 def moment_fields(

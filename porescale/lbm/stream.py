@@ -53,5 +53,4 @@ def sweep(f, parity, law):
     """
     n = f.shape[2] - 2
     for y in prange(1, f.shape[1] - 1):
-        a0, a1, a2, a3, a4, a5, a6, a7, a8 = slots(f, y, parity)
-        collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, 0, n, law)
+        collide_row(slots(f, y, parity), 0, n, law)

@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 import pydantic
 
 from porescale.common.core.errors import Fault
 from porescale.common.schema.messages import nearest
 from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.lbm.boundary.choose import boundaries, boundary
+from porescale.lbm.boundary.law import Boundary
 from porescale.scene.ranges import SPEED
 from porescale.scene.servo import SERVO, check_servo
 from porescale.scene.time_function import Course, with_courses
 
-Kind = Literal["wall", "slip", "periodic", "velocity", "pressure"]
-
-
-KINDS: tuple[str, ...] = get_args(Kind)
-
-
+KINDS: tuple[str, ...] = tuple(boundaries())
+Kind: Any = Literal[KINDS]
 SIDES = ("left", "right", "bottom", "top")
-
-
 PARABOLA_PEAK = 1.5
 """Largest over mean velocity of a parabola between two walls."""
 
@@ -61,17 +57,18 @@ class Side(Section):
     def _of_its_kind(self) -> Side:
         """Every number belongs to a kind of side."""
         faults = []
-        for key, owner, given in (
-            ("speed", "wall", self.speed != 0),
-            ("velocity", "velocity", self.velocity is not None and self.kind != "wall"),
-            ("stress", "wall", self.stress is not None), ("force", "wall", self.force is not None),
-            ("profile", "velocity", self.profile != "uniform"), ("pressure", "pressure", self.pressure is not None),
+        for key, given in (
+            ("speed", self.speed != 0), ("velocity", self.velocity is not None and self.kind != "wall"),
+            ("stress", self.stress is not None), ("force", self.force is not None),
+            ("profile", self.profile != "uniform"), ("pressure", self.pressure is not None),
         ):  # fmt: skip
-            if given and self.kind != owner:
+            takes = ("wall",) if key in SERVO else tuple(it.name for it in boundaries().values() if key in it.numbers)
+            if given and self.kind not in takes:
+                owner = takes[0]
                 repair = f'leave it out, or write kind = "{owner}"'
                 faults.append(Fault(key, None, f'belongs to a side of kind "{owner}", this is a {self.kind}',
                                     repair=repair))  # fmt: skip
-        if self.kind == "velocity" and self.velocity is None:
+        if "velocity" in self.boundary.required and self.velocity is None:
             repair = 'write { kind = "velocity", velocity = [0.01, 0] }'
             faults.append(Fault("velocity", None, "is missing", "m/s", repair=repair))
         if self.kind == "wall":
@@ -83,7 +80,12 @@ class Side(Section):
     @property
     def open(self) -> bool:
         """Whether fluid passes it."""
-        return self.kind in ("velocity", "pressure")
+        return self.boundary.passes
+
+    @property
+    def boundary(self) -> Boundary:
+        """Its kind, with all that follows from it."""
+        return boundary(self.kind)
 
     @property
     def peak(self) -> float:
@@ -95,14 +97,14 @@ class Side(Section):
 
     def text(self) -> str:
         """The side in words, for a report."""
-        if self.kind == "wall" and self.speed:
-            return f"wall moving at {self.speed:g} m/s"
+        if self.speed:
+            return f"{self.kind} moving at {self.speed:g} m/s"
         if self.stress or self.force:
             return "wall under stress" if self.stress else "wall under force"
         if self.velocity is not None:
             u, v = self.velocity
             return f"velocity ({u:g}, {v:g}) m/s, {self.profile}" if self.open else f"wall moving at ({u:g}, {v:g}) m/s"
-        return f"pressure {self.pressure or 0.0:g} Pa" if self.kind == "pressure" else self.kind
+        return f"{self.kind} {self.pressure or 0.0:g} Pa" if "pressure" in self.boundary.numbers else self.kind
 
 
 class Domain(Section):
@@ -118,11 +120,10 @@ class Domain(Section):
     @pydantic.model_validator(mode="after")
     def _joined(self) -> Domain:
         for name, other_name in (("left", "right"), ("bottom", "top")):
-            one, other = self.side(name).kind, self.side(other_name).kind
-            if (one == "periodic") != (other == "periodic"):
-                raise Refused(
-                    Fault(name, one, f"but {other_name} is {other}", repair="make both sides periodic, or none")
-                )
+            one, other = self.side(name).boundary, self.side(other_name).boundary
+            if one is not other and (one.periodic or other.periodic):
+                repair = f"make both sides {(one if one.periodic else other).name}, or none"
+                raise Refused(Fault(name, one.name, f"but {other_name} is {other.name}", repair=repair))
         return self
 
     def side(self, name: str) -> Side:
@@ -133,7 +134,7 @@ class Domain(Section):
     @property
     def periodic(self) -> tuple[bool, bool]:
         """Whether x and y are periodic."""
-        return self.left.kind == "periodic", self.bottom.kind == "periodic"
+        return self.left.boundary.periodic, self.bottom.boundary.periodic
 
     @property
     def sides(self) -> dict[str, Side]:

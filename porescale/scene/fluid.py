@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection
 from typing import Literal
 
 import pydantic
@@ -10,13 +10,11 @@ import pydantic
 from porescale.common.core.errors import Fault
 from porescale.common.schema.messages import nearest
 from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
 from porescale.lbm.scales import NAMES
 
-CHOICES: dict[str, Mapping[str, str]] = {}
-"""Keys of the section that name a law, and the names there are with what each is good for: the registers of the laws,
-put here by build/scene.py."""
-MAGIC_MIDWAY_WALL = 3 / 16
-"""Magic parameter at which walls lie half-way between nodes."""
+CHOICES: dict[str, Collection[str]] = {}
+"""Keys of the section that name a law, and the names there are: the registers, put here by build/scene.py."""
 
 
 class Fluid(Section):

@@ -10,7 +10,8 @@ import pytest
 from porescale.coupling.coverage import discs as coverage
 from porescale.coupling.coverage import rows as coverage_rows
 from porescale.coupling.coverage.rows import BLOCK
-from porescale.coupling.psm import BAND_HEIGHT, Saturated
+from porescale.coupling.psm import Saturated
+from porescale.coupling.psm_kernels import BAND_HEIGHT
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from tests.reference import psm as twin
@@ -108,7 +109,8 @@ def test_the_contact_of_two_discs_is_as_tight_as_one_solid():
     k = 0.1
     assert twin.weight(1.0, 0.6) == 1.0
     assert 2 * twin.weight(0.5, 0.6) == pytest.approx(2 * 0.5 * k / (0.5 + k))
-    from porescale.coupling.weighting import choose_weight, weight
+    from porescale.coupling.weighting.choose import choose_weight
+    from porescale.coupling.weighting.law import weight
 
     law = choose_weight("B2", 0.6, float)
     assert weight(0.5 + 0.5, 0.0, 0.0, 0.0, law) == 1.0
@@ -197,9 +199,9 @@ def test_coverage_kernels_are_the_same_uncompiled(monkeypatch):
     compiled = covered(discs, nx=6, ny=5, kinds=kinds, motion=(0.1, 0.2, 0.3))
     for name in ("small_angle", "quarter_area", "mark_lines", "corner_area", "cover_disc"):
         monkeypatch.setattr(coverage, name, getattr(coverage, name).py_func)
-    for name in ("list_part", "blocks_inside", "lay_row"):
+    for name in ("list_part", "blocks_inside", "rasterize_row"):
         monkeypatch.setattr(coverage_rows, name, getattr(coverage_rows, name).py_func)
-    for module, name in ((coverage, "cover"), (coverage_rows, "list_rows"), (coverage_rows, "lay_out")):
+    for module, name in ((coverage, "cover"), (coverage_rows, "list_rows"), (coverage_rows, "rasterize")):
         monkeypatch.setattr(f"porescale.coupling.psm.{name}", getattr(module, name).py_func)
     plain = covered(discs, nx=6, ny=5, kinds=kinds, motion=(0.1, 0.2, 0.3))
     for name in ("solid", "solid_x", "solid_y"):
@@ -213,19 +215,20 @@ def test_loads_are_the_same_uncompiled(monkeypatch):
     random = np.random.default_rng(0)
     scratch = np.zeros((5, 3, 6 + 2 * BLOCK))
     scratch[:, :, BLOCK:-BLOCK] = random.uniform(-1, 1, (5, 3, 6))
-    motion = np.array([[2.3, 3.1], [4.9, 0.2]]), random.uniform(-1, 1, (2, 2)), np.array([0.1, -0.2])
-    shift = random.uniform(-0.1, 0.1, (2, 3))
+    moved = np.array([[2.3, 3.1], [4.9, 0.2]]), random.uniform(-1, 1, (2, 2)), np.array([0.1, -0.2])
+    motion = coverage_rows.Motion(*moved, random.uniform(-0.1, 0.1, (2, 3)), np.zeros(2))
     rows, patches, partial = wet._rows, wet._patches, np.zeros(5 * BLOCK)
     made = []
     for plain in (False, True):
-        take, add = (load.take_row.py_func, load.add_rows.py_func) if plain else (load.take_row, load.add_rows)
+        take, add = load.accumulate_load_row, load.add_rows
+        if plain:
+            take, add = take.py_func, add.py_func
         if plain:
             monkeypatch.setattr(load, "total", load.total.py_func)
             monkeypatch.setattr(load, "blocks_inside", coverage_rows.blocks_inside.py_func)
-        row_load, loads, inside = np.full_like(wet._row_load, np.nan), np.zeros((2, 3)), np.zeros((2, 2))
+        row_load, loads, inside = np.full_like(wet._work.row_load, np.nan), np.zeros((2, 3)), np.zeros((2, 2))
         for y in range(5):
-            here = rows.start[y], rows.start[y + 1]
-            take(*here, rows, patches, *motion, shift, True, wet._ramp, scratch[y], partial, row_load)
+            take(y, rows, patches, motion, True, wet._work.ramp, scratch[y], partial, row_load)
         add(patches.corner, patches.height, 5, False, row_load, loads, inside)
         made.append(np.column_stack((loads, inside)))
     assert np.all(np.isfinite(made[0]))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from porescale.dem.motion.leapfrog import withhold
-from porescale.validation.coupling import grains_trials as lab
+from porescale.validation.coupling import setups as lab
 
 EPS = np.finfo(float).eps
 FALL = (1e-5, -5e-5)

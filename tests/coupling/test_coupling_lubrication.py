@@ -13,7 +13,7 @@ from porescale.coupling.step import Coupled
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
-from porescale.validation.coupling import grains_trials as lab
+from porescale.validation.coupling import setups as lab
 
 EPS = np.finfo(float).eps
 MU = 0.1

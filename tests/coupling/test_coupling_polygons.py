@@ -25,7 +25,8 @@ from porescale.dem.forces.walls import Box
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
-from porescale.validation.coupling import polygons_trials as lab
+from porescale.validation.coupling import polygons as outlines
+from porescale.validation.coupling import polygons_moving, setups
 from tests.reference.memory import peak
 from tests.reference.polygons import fractions_of
 
@@ -52,11 +53,11 @@ def patch_of(corners, centre=(0.0, 0.0), angle=0.0, shift=0.0, kernel=shapes.cov
 
 
 SHAPES = {
-    "square": lab.regular(4, 30.0, 45.0),
-    "triangle": lab.regular(3, 9.0),
-    "speck": lab.regular(5, 0.02),
-    "plate": lab.plate(9.0, 0.3),
-    "many": lab.regular(17, 12.0),
+    "square": outlines.regular(4, 30.0, 45.0),
+    "triangle": outlines.regular(3, 9.0),
+    "speck": outlines.regular(5, 0.02),
+    "plate": outlines.plate(9.0, 0.3),
+    "many": outlines.regular(17, 12.0),
 }
 
 
@@ -84,7 +85,7 @@ def test_the_plain_kernel_does_the_same():
     st.floats(-50.0, 90.0), st.floats(-50.0, 90.0),
 )  # fmt: skip
 def test_fractions_add_up_to_the_area_wherever_and_however_it_lies(count, size, flatness, angle, x, y):
-    corners = lab.regular(count, 1.0) * [size, size * flatness]
+    corners = outlines.regular(count, 1.0) * [size, size * flatness]
     _, fraction, body = patch_of(corners, (x, y), angle)
     assert 0.0 <= fraction.min() <= fraction.max() <= 1.0
     # What is left of two edges in each cell, 16 roundings of the extent (the kernel's own bound), all one way.
@@ -92,7 +93,7 @@ def test_fractions_add_up_to_the_area_wherever_and_however_it_lies(count, size, 
 
 
 def test_cells_within_are_full_to_the_bit_and_cells_beyond_empty():
-    corner, fraction, _ = patch_of(lab.regular(4, 900.0, 45.0), (40.3, 41.7), math.radians(33.0))
+    corner, fraction, _ = patch_of(outlines.regular(4, 900.0, 45.0), (40.3, 41.7), math.radians(33.0))
     y, x = np.mgrid[: fraction.shape[0], : fraction.shape[1]] + 0.5 + np.array(corner[::-1])[:, None, None]
     away = turned(np.stack((x - 40.3, y - 41.7), -1).reshape(-1, 2), -33.0).reshape(*x.shape, 2)
     far = np.abs(away).max(axis=-1)
@@ -123,7 +124,7 @@ def test_tips_add_what_a_whole_turn_lacks():
 
 def test_a_polygon_of_many_corners_is_the_disc_with_its_shift():
     radius, shift, count = 6.0, 0.28, 200
-    corner, fraction, _ = patch_of(lab.regular(count, math.pi * radius**2), (9.3, 9.6), 0.0, shift)
+    corner, fraction, _ = patch_of(outlines.regular(count, math.pi * radius**2), (9.3, 9.6), 0.0, shift)
     width = np.array([int(2 * (radius + shift / radius)) + 2])
     disc = make_patches(width + 1, width, np.dtype(float))
     cover(np.array([[9.3, 9.6]]), np.array([radius + shift / radius]), disc, np.zeros((64, 7, 64)))
@@ -144,7 +145,7 @@ def test_a_polygon_of_many_corners_is_the_disc_with_its_shift():
     [
         ([(0, 0), (4, 0), (1, 1), (0, 4)], "turns inwards"),
         ([(0, 0), (4, 4), (4, 0), (0, 4)], "turns inwards"),
-        (lab.regular(5, 20.0)[[0, 2, 4, 1, 3]], "crosses itself"),
+        (outlines.regular(5, 20.0)[[0, 2, 4, 1, 3]], "crosses itself"),
         ([(0, 0), (4, 0)], "no polygon"),
         ([(0, 0), (4, 0), (4, 0), (0, 4)], "one point"),
         ([(0, 0), (4, 0), (math.nan, 4)], "no polygon"),
@@ -160,21 +161,23 @@ def test_frames_that_are_no_convex_polygons_are_refused_in_fluid():
 
     def put(frame, **more):
         options = {"hydraulic_ratio": 1.0, "contact_steps": 4, "acceleration": (0.0, 0.0)} | more
-        return Coupled(fluid, framed(None, [frame], lab.LAW, box), scales, **options)
+        return Coupled(fluid, framed(None, [frame], setups.LAW, box), scales, **options)
 
     ell = np.array([(8, 8), (18, 8), (18, 12), (12, 12), (12, 20), (8, 20)], float)
     with pytest.raises(InputError, match="cut it into convex polygons"):
         put(polygon(ell, 0.2, 2.0))
     with pytest.raises(InputError, match="close it"):
         put(chain(ell[:3], 0.2, 2.0))
-    square = turned(lab.regular(4, 36.0), 0.0, 16.0, 16.0)
+    square = turned(outlines.regular(4, 36.0), 0.0, 16.0, 16.0)
     with pytest.raises(InputError, match="centre of mass"):
         put(polygon(square, 0.2, 2.0, body=Body(72.0, (15.0, 16.0), 500.0, True, 36.0)))
     with pytest.raises(InputError, match="no films between polygons"):
         put(polygon(square, 0.2, 2.0), lubrication=True)
     with pytest.raises(ValueError, match="longer than the periodic box"):
         Saturated(
-            Fluid(16, 32, 0.8, sides=Sides("periodic", "periodic")), np.zeros(0), polygons=Polygons([lab.plate(17, 3)])
+            Fluid(16, 32, 0.8, sides=Sides("periodic", "periodic")),
+            np.zeros(0),
+            polygons=Polygons([outlines.plate(17, 3)]),
         )
 
 
@@ -192,9 +195,12 @@ def test_scenes_without_polygons_never_touch_their_code(monkeypatch):
 
 def flight(discs=True, steps=0, polygons=True):
     """A square, a triangle and two discs that fly at each other in a periodic box, after some steps."""
-    bodies = [turned(lab.regular(4, 60.0), 20.0, 12.3, 15.2), turned(lab.regular(3, 50.0), 77.0, 28.0, 17.0)]
+    bodies = [
+        turned(outlines.regular(4, 60.0), 20.0, 12.3, 15.2),
+        turned(outlines.regular(3, 50.0), 77.0, 28.0, 17.0),
+    ]
     round_ones = make_discs([(8.0, 32.0), (32.0, 8.0)], [4.0, 4.0], 2.0, [(0.02, -0.02), (-0.02, 0.02)])
-    coupled = lab.immersed_polygons(
+    coupled = polygons_moving.immersed_polygons(
         (48, 48), bodies if polygons else [], 2.0, velocity=[(0.04, 0.01), (-0.04, 0.0)], spin=[0.002, -0.004],
         discs=round_ones if discs else None, sides=("periodic", "periodic"),
     )  # fmt: skip
@@ -251,8 +257,11 @@ def test_corners_share_force_torque_and_weight_of_their_polygon():
 
 def test_buoyancy_is_that_of_the_outline():
     for density, sign in ((2.0, -1), (1.0, 0), (0.5, 1)):
-        coupled = lab.immersed_polygons(
-            (40, 40), [turned(lab.regular(4, 60.0), 20.0, 20.0, 20.0)], density, acceleration=(0.0, -1e-5)
+        coupled = polygons_moving.immersed_polygons(
+            (40, 40),
+            [turned(outlines.regular(4, 60.0), 20.0, 20.0, 20.0)],
+            density,
+            acceleration=(0.0, -1e-5),
         )
         assert coupled.polygons.weight[0, 1] == pytest.approx((1.0 - density) * 60.0 * 1e-5, abs=1e-15)
         coupled.advance()
@@ -269,12 +278,12 @@ def test_fields_show_the_outline_without_its_tips():
 
 
 def test_the_least_width_of_polygons():
-    assert shapes.least_width(lab.plate(9.0, 0.3, 31.0)) == pytest.approx(0.3, rel=1e-12)
-    assert shapes.least_width(lab.regular(3, math.sqrt(3.0))) == pytest.approx(math.sqrt(3.0), rel=1e-12)  # side 2
+    assert shapes.least_width(outlines.plate(9.0, 0.3, 31.0)) == pytest.approx(0.3, rel=1e-12)
+    assert shapes.least_width(outlines.regular(3, math.sqrt(3.0))) == pytest.approx(math.sqrt(3.0), rel=1e-12)  # side 2
 
 
 def test_a_run_that_went_wrong_knows_how_light_and_thin_its_polygons_are():
-    plate = turned(lab.plate(12.0, 3.0), 20.0, 20.0, 20.0)
-    ratio, across = _lightest(lab.immersed_polygons((40, 40), [plate], 0.4))
+    plate = turned(outlines.plate(12.0, 3.0), 20.0, 20.0, 20.0)
+    ratio, across = _lightest(polygons_moving.immersed_polygons((40, 40), [plate], 0.4))
     assert ratio == pytest.approx(0.4, rel=1e-12)
     assert across == pytest.approx(3.0, rel=1e-12)

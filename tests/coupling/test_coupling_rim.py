@@ -12,9 +12,9 @@ from porescale.cli.main import PACKAGE
 from porescale.coupling.coverage import soft_rim as rim
 from porescale.coupling.coverage.rows import make_patches
 from porescale.coupling.psm import Saturated
-from porescale.coupling.psm_kernels import weigh_row
+from porescale.coupling.psm_kernels import weights_row
 from porescale.coupling.solid.choose import choose_solid
-from porescale.coupling.weighting import choose_weight
+from porescale.coupling.weighting.choose import choose_weight
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.validation.coupling.fast import STARTED, fast_starts, started
@@ -170,7 +170,7 @@ def test_a_rim_that_hardly_touches_a_cell_leaves_its_numbers_finite(least):
     sx *= np.float32(0.1)
     inverse, b, even, kept = np.zeros((4, 2), np.float32)
     law = choose_weight("wall", 0.501, np.float32, soft=True)
-    weigh_row.py_func(s, sx, sy, inverse, b, even, kept, law, solid)
+    weights_row.py_func(s, sx, sy, (inverse, b, even, kept), law, solid)
     for found in (inverse, sx, sy, b, even, kept):
         assert np.isfinite(found).all()
     assert (np.abs(sx) <= 0.1 * (1 + 4 * np.finfo(np.float32).eps)).all()

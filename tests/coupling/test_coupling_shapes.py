@@ -113,7 +113,7 @@ def test_kernels_are_right_as_plain_python():
     fluid, shape = Fluid(12, 10, 0.7), Rectangle((-2.0, -2.0), (5.5, 4.0), (0.01, 0.02))
     wet = Saturated(fluid, np.zeros(0), rectangles=[shape])
     wet.cover(*lab.NO_DISCS)
-    links, added = crossing.side_links(fluid), fluid.rim.added.copy()
+    links, added = crossing.side_links(fluid), fluid.links.added.copy()
     motion = np.array([[1.75, 1.0]]), np.array([[0.01, 0.02]]), np.zeros(1)
     for kernel in (crossing.move_sides, crossing.move_sides.py_func):
         touching = np.zeros(1, bool)

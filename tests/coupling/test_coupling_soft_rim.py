@@ -9,9 +9,11 @@ from hypothesis import strategies as st
 
 from porescale.coupling.psm import Saturated
 from porescale.coupling.solid.choose import choose_solid
-from porescale.coupling.solid.law import mix, taken
-from porescale.coupling.weighting import choose_weight, weight
+from porescale.coupling.solid.law import SolidCell, blend, momentum_to_solid
+from porescale.coupling.weighting.choose import choose_weight
+from porescale.coupling.weighting.law import weight
 from porescale.lbm.boundary.sides import Sides
+from porescale.lbm.collision.law import Macroscopic
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX, CY
 from tests.reference import lbm, psm, soft_rim
@@ -88,12 +90,13 @@ def test_a_soft_cell_is_that_of_its_formulas_and_its_load_what_it_loses(seed):
     assert own == pytest.approx(b, rel=20 * EPS)
     shifted, after = np.zeros(9), np.zeros(9)
     shifted[ORDER], after[ORDER] = f - solid.WEIGHTS, g - solid.WEIGHTS
-    found = np.array(mix.py_func(*shifted, *after, e, own, theta, rho, *(j / rho), *v, zero, zero, 1 / tau, law))
+    cell, m = SolidCell(e, own, theta, *v, zero, zero), Macroscopic(rho - 1, *j, *(j / rho))
+    found = np.array(blend.py_func(shifted, after, cell, m, 1 / tau, law))
     found = found[ORDER] + solid.WEIGHTS
     bound = 40 * EPS * max(1, 1 / (tau - 0.5))  # as for sharp cells
     np.testing.assert_allclose(found, expected, rtol=0, atol=bound)
     assert abs(found.sum() - rho) < bound
-    ta, tx, ty = taken.py_func(e, own, rho, *j, zero, zero, 1 / tau, law)
+    ta, tx, ty = momentum_to_solid.py_func(cell, rho, *j, 1 / tau, law)
     np.testing.assert_allclose(np.array([tx, ty]) - ta * v, j - found @ solid.DIRECTIONS, rtol=0, atol=bound)
 
 

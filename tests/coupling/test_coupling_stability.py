@@ -17,10 +17,10 @@ from porescale.coupling.divergence_cause import Circumstances, likely_cause
 from porescale.coupling.divergence_check import Sense, worst_cell
 from porescale.coupling.psm import Saturated
 from porescale.coupling.solid.choose import SOLID_OPERATORS
-from porescale.coupling.weighting import WEIGHTINGS
+from porescale.coupling.weighting.choose import WEIGHTINGS
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
-from porescale.validation.coupling.grains_trials import immersed
+from porescale.validation.coupling.setups import immersed
 from tests.reference.folders import ROOT
 
 MAP = ROOT / "docs" / "stability" / "stability.json"

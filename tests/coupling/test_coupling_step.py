@@ -12,11 +12,11 @@ from porescale.common.compiled.jit import set_threads
 from porescale.coupling import psm_kernels as solid_collision
 from porescale.coupling.psm import Saturated
 from porescale.coupling.solid.choose import choose_solid
-from porescale.coupling.weighting import choose_weight
+from porescale.coupling.weighting.choose import choose_weight
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.collision.choose import third_order_rate
 from porescale.lbm.fluid import Fluid
-from porescale.validation.coupling import grains_trials as lab
+from porescale.validation.coupling import setups as lab
 from tests.reference import lbm as plain
 from tests.reference import memory
 from tests.reference import psm as twin
@@ -152,7 +152,7 @@ def test_a_row_of_saturated_cells_is_the_same_uncompiled(operator, weighting):
     made = []
     for run in (solid_collision.collide_saturated_row, solid_collision.collide_saturated_row.py_func):
         copies = [row.copy() for row in rows], s.copy(), sx.copy(), sy.copy(), np.zeros(5)
-        run(*copies[0], *copies[1:], np.zeros((4, 5)), 0, 5, *laws)
+        run(tuple(copies[0]), *copies[1:], np.zeros((4, 5)), 0, 5, laws)
         made.append(np.array([*copies[0], *copies[1:]]))
     # the same operations but for fused multiply-adds: 30 roundings of numbers up to 1.4
     np.testing.assert_allclose(*made, rtol=0, atol=30 * 1.4 * EPS)
@@ -168,8 +168,8 @@ def test_an_empty_saturated_row_is_a_plain_one(operator, weighting):
     wet, dry, none = [row.copy() for row in rows], [row.copy() for row in rows], np.zeros(5)
     solid = none.copy(), none.copy(), none.copy(), none.copy()
     laws = laws_of(operator, weighting, fluid)
-    solid_collision.collide_saturated_row(*wet, *solid, np.zeros((4, 5)), 0, 5, *laws)
-    collide_row(*dry, 0, 5, fluid.law)
+    solid_collision.collide_saturated_row(tuple(wet), *solid, np.zeros((4, 5)), 0, 5, laws)
+    collide_row(tuple(dry), 0, 5, fluid.law)
     np.testing.assert_allclose(wet, dry, rtol=0, atol=30 * EPS)
 
 
@@ -290,7 +290,7 @@ def test_no_kernel_of_a_step_allocates():
     from porescale.coupling.coverage import rows as coverage_rows
     from porescale.dem import step as integrate
     from porescale.lbm import stream
-    from porescale.lbm.boundary import sides
+    from porescale.lbm.boundary import links
     from porescale.lbm.boundary import thin_plate as plate
 
     coupled = lab.handful(sides=("wall", "wall"), gate=True)
@@ -301,7 +301,7 @@ def test_no_kernel_of_a_step_allocates():
         coupled.advance()
     used = [
         coverage.cover, coverage_rows.list_rows, load.add_rows, load.half_step_correction, step.to_lattice,
-        step.total_load, sides.fill_halo, sides.empty_halo, solid_collision.sweep,
+        step.total_load, links.fill_halo, links.empty_halo, solid_collision.sweep,
         stream.sweep, plate.exchange, integrate.contact_steps,
     ]  # fmt: skip
     assert [kernel.__name__ for kernel in used if allocates(kernel)] == []

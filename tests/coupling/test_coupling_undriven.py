@@ -5,29 +5,30 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from porescale.coupling.step import Coupled
 from porescale.lbm import fluid
-from porescale.validation.coupling import grains_trials as lab
+from porescale.validation.coupling import setups as lab
 
 
 @pytest.mark.parametrize("operator", ["exact-wall", "SC2"])
 def test_cells_with_discs_in_undriven_fluid_have_the_same_bits(monkeypatch, operator):
     def run(law):
         coupled = lab.handful(acceleration=(1e-5, -5e-5))
-        coupled = lab.Coupled(
+        coupled = Coupled(
             coupled.fluid, coupled.grains, coupled.scales, hydraulic_ratio=0.8, contact_steps=4,
             acceleration=(1e-5, -5e-5), solid_operator=operator,
         )  # fmt: skip
         coupled.fluid.set_flow(0.03, -0.01)
         seen = []
-        monkeypatch.setattr(fluid, "lean", lambda own: seen.append(law(own)) or seen[-1])
+        monkeypatch.setattr(fluid, "without_force", lambda own: seen.append(law(own)) or seen[-1])
         for _ in range(30):
             coupled.advance()
         return type(seen[-1]).__name__, coupled
 
-    lean = fluid.lean
+    without_force = fluid.without_force
     plain, one = run(lambda own: own)
-    free, other = run(lean)
-    assert (plain, free) == ("Trt", "FreeTrt")
+    free, other = run(without_force)
+    assert (plain, free) == ("Trt", "TrtWithoutForce")
     for a, b in ((one.fluid.populations, other.fluid.populations), (one.force, other.force), (one.torque, other.torque),
                  (one.grains.discs.position, other.grains.discs.position)):  # fmt: skip
         np.testing.assert_array_equal(a, b)

@@ -10,7 +10,7 @@ import pytest
 from continuum_sph.build.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import POROSITY
-from continuum_sph.validation.levee import Levee
+from continuum_sph.validation.seepage.levee import Levee
 from tests.reference.seeded import INF, NAN, Running, put, running, times
 
 pytestmark = pytest.mark.slow

@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 
-from continuum_sph.validation import fluids as trials_fluids
-from continuum_sph.validation import seepage as verify_seepage
+from continuum_sph.validation.seepage import permeameter as verify_seepage
+from continuum_sph.validation.water import fluids as trials_fluids
 from porescale.output import case as cases
 from porescale.output.case import expected, missed
 from tests.end_to_end.test_dem_cases import CASES, script

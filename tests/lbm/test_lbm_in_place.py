@@ -261,9 +261,9 @@ def test_a_step_of_plain_python_is_the_compiled_one(monkeypatch):
         compiled.advance()
     for module, name in (
         (stream, "collide_row"), (stream, "even_slots"), (stream, "odd_slots"), (stream, "slots"),
-        (law, "moments"), (moments, "moments"),
+        (law, "cut"), (law, "moments"), (moments, "moments"),
         (law, "shear_rate"), (law, "collide"), (law, "half_force"), (trt, "relax_halves"),
-        (trt, "relax_to"), (trt, "relax_by"), (trt, "even_part"), (trt, "odd_rate_here"),
+        (trt, "relax_by"), (trt, "symmetric_equilibrium"), (trt, "symmetric_gain"), (trt, "magic_rate"),
         (rim, "fill_halo"), (rim, "empty_halo"),
         (room, "exchange"), (moments, "_moment_row"),
     ):  # fmt: skip

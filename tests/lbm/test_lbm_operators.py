@@ -65,17 +65,17 @@ def test_another_operator_rate_or_force_is_told_apart(operator, smagorinsky, wro
 
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
 def test_fluid_that_nothing_drives_computes_no_force_and_has_the_same_bits(dtype):
-    from porescale.lbm.collision.choose import lean
-    from porescale.lbm.collision.trt import FreeTrt, Trt
+    from porescale.lbm.collision.choose import without_force
+    from porescale.lbm.collision.trt import Trt, TrtWithoutForce
     from porescale.lbm.stream import sweep
 
     law = choose("trt", 0.7, (0.0, 0.0), dtype)
-    assert (type(law), type(lean(law))) == (Trt, FreeTrt)
+    assert (type(law), type(without_force(law))) == (Trt, TrtWithoutForce)
     driven = choose("trt", 0.7, (0.0, 1e-9), dtype)
-    assert lean(driven) is driven
+    assert without_force(driven) is driven
     start = (dense.random_populations(6, 37)[ORDER] - WEIGHTS).astype(dtype)
     found = []
-    for one in (law, lean(law)):
+    for one in (law, without_force(law)):
         f = np.zeros((9, 8, 39), dtype)
         f[:, 1:-1, 1:-1] = start
         sweep(f, 0, one)
@@ -89,12 +89,13 @@ def test_fluid_that_nothing_drives_as_plain_python(monkeypatch):
     from porescale.lbm.collision import law as shared
     from porescale.lbm.collision import trt
 
-    for module, name in ((trt, "even_part"), (trt, "relax_by"), (trt, "odd_rate_here"), (shared, "collide"),
-                         (shared, "half_force"), (shared, "shear_rate"), (shared, "moments")):  # fmt: skip
+    for module, name in ((trt, "symmetric_equilibrium"), (trt, "relax_by"), (trt, "magic_rate"),
+                         (shared, "cut"), (shared, "collide"), (shared, "half_force"), (shared, "shear_rate"),
+                         (shared, "moments")):  # fmt: skip
         monkeypatch.setattr(module, name, getattr(module, name).py_func)
     f = dense.random_populations(1, 5)
     rows = list((f[ORDER] - WEIGHTS)[:, 0])
-    shared.collide_row.py_func(*rows, 0, 5, trt.FreeTrt(1 / 0.7, 0.0, 0.0, 0.2))
+    shared.collide_row.py_func(rows, 0, 5, trt.TrtWithoutForce(1 / 0.7, 0.0, 0.0, 0.2))
     out = np.empty(f.shape)
     out[ORDER] = np.array(rows)[OPPOSITE][:, None] + WEIGHTS
     expected = dense.collided("trt", f, 0.7, (0.0, 0.0), 0.2, 0.0)
@@ -153,12 +154,15 @@ def test_an_operator_of_plain_python_is_the_compiled_one(operator, smagorinsky, 
         (stream, "collide_row"),
         (stream, "even_slots"),
         (stream, "slots"),
+        (law, "cut"),
         (law, "moments"),
         (law, "shear_rate"),
         (law, "collide"),
     ]
     patches += [
-        (body, name) for name in ("relax_halves", "relax_to", "odd_rate_here", "relax_moments") if hasattr(body, name)
+        (body, name)
+        for name in ("relax_halves", "relax_by", "symmetric_gain", "magic_rate", "relax_moments")
+        if hasattr(body, name)
     ]
     patches += [(importlib.import_module("porescale.lbm.collision.smagorinsky"), "stress")]
     for module, name in patches:

@@ -10,10 +10,13 @@ from hypothesis import strategies as st
 from porescale.coupling.psm import Saturated
 from porescale.coupling.solid import exact_wall
 from porescale.coupling.solid.choose import SOLID_OPERATORS, choose_solid
-from porescale.coupling.solid.law import force_share, mix, rates, taken
-from porescale.coupling.weighting import WEIGHTINGS, choose_weight, fitting_weight, weight
+from porescale.coupling.solid.law import SolidCell, blend, force_share, momentum_to_solid, rates
+from porescale.coupling.weighting.choose import WEIGHTINGS, choose_weight, fitting_weight
+from porescale.coupling.weighting.law import weight
 from porescale.lbm.boundary.sides import Sides
-from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL, odd_rate
+from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
+from porescale.lbm.collision.law import Macroscopic
+from porescale.lbm.collision.trt import antisymmetric_rate
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX, CY, WEIGHTS
 from tests.reference import solid_operators as twin
@@ -43,7 +46,7 @@ def cell(seed):
 
 def collided(f, u, force, tau, seed):
     """The fluid operator of any lattice: mass and momentum of a step, the rest relaxed, the even half disturbed."""
-    rho, third = f.sum(), odd_rate(tau, MAGIC_MIDWAY_WALL)
+    rho, third = f.sum(), antisymmetric_rate(tau, MAGIC_MIDWAY_WALL)
     noise = 0.01 * np.random.default_rng(seed).uniform(-1, 1, 9)
     noise = noise + noise[twin.BACK]
     noise[0] -= noise.sum()
@@ -57,7 +60,7 @@ def expected_cell(name, f, g, force, v, e, b, tau):
     """Populations after a step, by the reference; the body force that acts in the cell has been put into g."""
     rho, acting = f.sum(), force if name == "exact-wall" else (1 - b) * force
     if name == "exact-wall":
-        return twin.exact_wall(f, g, rho, force, v, e, tau, odd_rate(tau, MAGIC_MIDWAY_WALL))
+        return twin.exact_wall(f, g, rho, force, v, e, tau, antisymmetric_rate(tau, MAGIC_MIDWAY_WALL))
     u = (f @ twin.DIRECTIONS + acting / 2) / rho
     return (1 - b) * g + b * (f + twin.OPERATORS[name](f, rho, u, v, tau))
 
@@ -66,10 +69,11 @@ def mixed(name, f, g, force, v, e, b, tau, dtype=float):
     """The kernel's populations, and what it says the solid gains."""
     shifted, after = np.zeros(9), np.zeros(9)
     shifted[ORDER], after[ORDER] = f - twin.WEIGHTS, g - twin.WEIGHTS
-    law = choose_solid(name, tau, odd_rate(tau, MAGIC_MIDWAY_WALL), dtype)
+    law = choose_solid(name, tau, antisymmetric_rate(tau, MAGIC_MIDWAY_WALL), dtype)
     rho, j, h = f.sum(), f @ twin.DIRECTIONS, force_share.py_func(b, law) * force / 2
-    found = np.array(mix.py_func(*shifted, *after, e, b, 0.0, rho, *((j + h) / rho), *v, *h, 1 / tau, law)) + WEIGHTS
-    ta, tx, ty = taken.py_func(e, b, rho, *j, *h, 1 / tau, law)
+    at, m = SolidCell(e, b, 0.0, *v, *h), Macroscopic(rho - 1, *(j + h), *((j + h) / rho))
+    found = np.array(blend.py_func(shifted, after, at, m, 1 / tau, law)) + WEIGHTS
+    ta, tx, ty = momentum_to_solid.py_func(at, rho, *j, 1 / tau, law)
     return found[ORDER], np.array([tx, ty]) - ta * v
 
 
@@ -111,7 +115,7 @@ def test_no_operator_passes_for_another(name, other):
 def test_the_rates_of_an_exact_wall_fulfil_its_condition(e, tau):
     # 1/beta + 2 lambda = 3/4 t/(k - k0 t) is what puts a plane wall of linear flow at its place
     t, k = 1 - e, tau - 0.5
-    third, even = twin.wall_rates(e, tau, odd_rate(tau, MAGIC_MIDWAY_WALL))
+    third, even = twin.wall_rates(e, tau, antisymmetric_rate(tau, MAGIC_MIDWAY_WALL))
     left = 1 / twin.wall_weight(e, tau) - 0.5 + 2 * (1 / third - 0.5)
     k0 = 1 / even - 0.5
     # t k0 is k less 3/4 t/R: the difference loses as many digits as R k/t has before the point
@@ -120,7 +124,7 @@ def test_the_rates_of_an_exact_wall_fulfil_its_condition(e, tau):
 
 @pytest.mark.parametrize("tau", [0.51, 0.8, 2.0])
 def test_an_exact_wall_goes_over_into_fluid_and_into_a_rigid_cell(tau):
-    fluid = odd_rate(tau, MAGIC_MIDWAY_WALL)
+    fluid = antisymmetric_rate(tau, MAGIC_MIDWAY_WALL)
     tiny = 1e-9  # what remains is of first order in it, times 1/E = 20 and 1/k = 100
     assert twin.wall_rates(tiny, tau, fluid) == pytest.approx((fluid, 1 / tau), abs=1e4 * tiny)
     assert twin.wall_rates(1 - tiny, tau, fluid) == pytest.approx((2.0, 0.0), abs=1e4 * tiny)
@@ -160,7 +164,7 @@ def test_what_discs_gain_the_fluid_loses(solid, weight, seed):
             driven = np.sum(1 - np.minimum(wet.solid, 1)) * np.array(fluid.force)
         else:  # with u of half the force (1 - B) F/2, the odd half of a collision gives  F(1 - w-/2) + w-(1 - B) F/2
             b = wet.weights()
-            odd = odd_rate(fluid.relaxation_time, MAGIC_MIDWAY_WALL)
+            odd = antisymmetric_rate(fluid.relaxation_time, MAGIC_MIDWAY_WALL)
             driven = np.sum((1 - b) * (1 - odd * b / 2)) * np.array(fluid.force)
         # 400 cells with nine populations of 0.05, ten roundings each, all one way
         bound = N * N * 9 * 0.05 * 10 * EPS
@@ -203,13 +207,20 @@ def test_left_is_as_good_as_right(solid, weight, seed):
 
 @pytest.mark.parametrize("solid", SOLID_OPERATORS)
 def test_an_operator_stays_in_single_precision(solid, monkeypatch):
-    for name in ("rates", "_momentum", "add_shares"):  # compiled ones hand numbers to Python in double precision
+    for name in (
+        "rates",
+        "_rates",
+        "_missing_momentum",
+        "add_partial",
+    ):  # compiled ones hand numbers to Python in double precision
         monkeypatch.setattr(exact_wall, name, getattr(exact_wall, name).py_func)
     law = choose_solid(solid, 0.8, 1.0, np.float32)
     b = np.float32(0.3)
-    assert {type(v) for v in mix.py_func(*[b] * 29, law)} == {np.float32}
+    assert {type(v) for v in blend.py_func((b,) * 9, (b,) * 9, SolidCell(*[b] * 7), Macroscopic(*[b] * 5), b, law)} == {
+        np.float32
+    }
     assert {type(v) for v in rates.py_func(*[b] * 5, law)} == {np.float32}
-    assert {type(v) for v in taken.py_func(*[b] * 8, law)} == {np.float32}
+    assert {type(v) for v in momentum_to_solid.py_func(SolidCell(*[b] * 7), b, b, b, b, law)} == {np.float32}
     assert type(force_share.py_func(b, law)) is np.float32
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from porescale.coupling.psm import Saturated
 from porescale.coupling.solid.choose import SOLID_OPERATORS
-from porescale.coupling.weighting import WEIGHTINGS
+from porescale.coupling.weighting.choose import WEIGHTINGS
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 

@@ -11,7 +11,7 @@ from porescale.dem.bodies.union import outline
 from porescale.dem.discs import make_discs
 from porescale.dem.motion.affine_strain import STATE, room_square
 from porescale.validation.dem.bodies import clumped_cloud
-from porescale.validation.dem.discs_trials import momentum_drift
+from porescale.validation.dem.momentum import momentum_drift
 
 EPS = np.finfo(float).eps
 numbers = st.integers(0, 100_000)

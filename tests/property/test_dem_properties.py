@@ -11,7 +11,7 @@ from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
-from porescale.validation.dem.discs_trials import cloud, momentum_drift
+from porescale.validation.dem.momentum import cloud, momentum_drift
 
 
 def thrown(seed, mirrored=False):

@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from porescale import Scene
-from porescale.build.checks.limits import TAU_COARSE
 from porescale.build.derive import derive
 from porescale.common.evidence.stability import RIGHT, Row
 from porescale.coupling import limits
+from porescale.coupling.solid.choose import SOLID_OPERATORS
 from tests.reference.folders import ROOT
 from tests.reference.scenes import column, grain, table, water
 
@@ -122,7 +122,7 @@ def test_beds_are_right_where_the_map_says(law):
 
 def test_relaxation_times_are_right_where_the_map_says():
     rows = [Row(**row) for row in json.loads(MAP.read_text())["rows"] if row["flow"] == "lbm.shear"]
-    most = TAU_COARSE["exact-wall"]
+    most = SOLID_OPERATORS["exact-wall"].longest_relaxation_time
     assert all(row.verdict == RIGHT for row in rows if row.x == most - 0.5)
     assert min(row.x for row in rows if row.x > most - 0.5 and row.verdict != RIGHT) + 0.5 == 5.0
     # nu = (tau - 1/2)/3 h²/dt

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from continuum_sph.cli import PACKAGE
-from continuum_sph.validation import air as verify_air
-from continuum_sph.validation.air import CLOSED, OPEN
+from continuum_sph.validation.seepage import air as verify_air
+from continuum_sph.validation.seepage.air import CLOSED, OPEN
 
 VALIDATIONS = PACKAGE.validations()
 

@@ -9,9 +9,8 @@ import pytest
 
 from continuum_sph.cli import PACKAGE
 from continuum_sph.seepage import Resistance, exchange, pores
-from continuum_sph.validation import seepage as verify_seepage
-from continuum_sph.validation.seepage import LAYER
-from continuum_sph.validation.seepage_trials import realised_modulus
+from continuum_sph.validation.seepage import consolidation, infiltration, permeameter, saturated_box
+from continuum_sph.validation.seepage.consolidation import LAYER, realised_modulus
 
 VALIDATIONS = PACKAGE.validations()
 
@@ -27,7 +26,7 @@ def test_layers_of_full_density_consolidate_too_fast(monkeypatch):
     monkeypatch.setattr(pores, "blend", lambda *_: None)
     monkeypatch.setattr(pores, "part_forces", lambda *_: None)
     monkeypatch.setattr(Resistance, "factor", LAYER.porosity / (1.0 - LAYER.porosity))
-    middle, worst = verify_seepage.consolidation.__wrapped__(LAYER, (0.05,))
+    middle, worst = consolidation.consolidation.__wrapped__(LAYER, (0.05,))
     assert worst > 10.0 * tolerance("continuum.consolidation")
     assert middle[0] == pytest.approx(np.exp(-(np.pi**2) * 0.05 / LAYER.porosity), abs=0.1)
 
@@ -35,7 +34,7 @@ def test_layers_of_full_density_consolidate_too_fast(monkeypatch):
 @pytest.mark.slow
 def test_a_layer_does_not_consolidate_at_the_rate_of_the_printed_modulus():
     # B of eq. 43 over M in plane strain is 0.53: T_v counted with it runs at half the speed.
-    middle, _ = verify_seepage.consolidation.__wrapped__(LAYER, (0.05,))
+    middle, _ = consolidation.consolidation.__wrapped__(LAYER, (0.05,))
     assert abs(middle[0] - np.exp(-(np.pi**2) * 0.05 * 0.53)) > tolerance("continuum.consolidation")
 
 
@@ -48,7 +47,7 @@ def test_the_printed_area_modulus_is_not_the_stiffness_of_a_column():
 @pytest.mark.slow
 def test_soft_water_holds_its_pressure_longer():
     stiff = np.exp(-(np.pi**2) * 0.1)
-    assert verify_seepage.soft_decay(1.0) - stiff > tolerance("continuum.consolidation_with_compressible_water")
+    assert consolidation.soft_decay(1.0) - stiff > tolerance("continuum.consolidation_with_compressible_water")
 
 
 @pytest.mark.slow
@@ -56,7 +55,7 @@ def test_drag_on_the_water_alone_moves_the_box():
     def spoil(both):
         both.water.skeleton.v -= 0.25 * both.next_step * both.water.borne / both.water.skeleton.mass[:, None]
 
-    assert verify_seepage.momentum_drift(spoil) > tolerance("continuum.momentum_of_layers")
+    assert saturated_box.momentum_drift(spoil) > tolerance("continuum.momentum_of_layers")
 
 
 @pytest.mark.slow
@@ -70,20 +69,20 @@ def test_water_that_does_not_feel_the_grains_flows_too_fast(monkeypatch):
     # A layer of full density has the conductivity k/n and more: its drag is that of pores without grains.
     monkeypatch.setattr(pores, "blend", lambda *_: None)
     monkeypatch.setattr(pores, "part_forces", lambda *_: None)
-    found = verify_seepage.darcy.__wrapped__(1e-3, steps=400)
+    found = permeameter.darcy.__wrapped__(1e-3, steps=400)
     assert abs(found - 1.0) > tolerance("continuum.permeameter")
 
 
 @pytest.mark.slow
 def test_soil_starts_to_move_when_it_boils():
-    _, calm, boiling = verify_seepage.boiling()
+    _, calm, boiling = permeameter.boiling()
     assert boiling > 5.0 * calm
 
 
 @pytest.mark.slow
 def test_soil_that_feels_no_drag_does_not_boil_at_the_critical_gradient(monkeypatch):
     monkeypatch.setattr(pores, "take", lambda *_: None)
-    found, _, _ = verify_seepage.boiling(replace(verify_seepage.BOILING, cover=0.035))
+    found, _, _ = permeameter.boiling(replace(permeameter.BOILING, cover=0.035))
     assert abs(found - 1.0) > tolerance("continuum.boiling_gradient")
 
 
@@ -94,19 +93,19 @@ def test_drag_in_explicit_steps_makes_energy_out_of_nothing(monkeypatch):
     monkeypatch.setattr(exchange, "drag", exchange.drag.py_func)
     monkeypatch.setattr(pores, "brake", exchange.brake.py_func)
     with pytest.raises(ValueError, match="position"):
-        verify_seepage.growth_of_energy.__wrapped__(1e-7)
+        saturated_box.growth_of_energy.__wrapped__(1e-7)
 
 
 @pytest.mark.slow
 def test_water_sinks_faster_through_the_printed_drag(monkeypatch):
     # Drag n ρ_f g/k of eq. 46 per volume of water: n² ρ_f g/k of the whole, and 1/n of that per volume of pores.
     monkeypatch.setattr(Resistance, "factor", LAYER.porosity / (1.0 - LAYER.porosity))
-    found = verify_seepage.way_of_the_front()
+    found = infiltration.way_of_the_front()
     assert abs(found - 1.0) > 3.0 * tolerance("continuum.infiltration")
 
 
 def test_the_front_is_that_of_a_constant_head_at_first():
-    given = verify_seepage.SINKING
+    given = infiltration.SINKING
     # of first order in z/h0: (2/3) a z/h0 of the depth, z = 1e-4
     early = given.time(1e-4)
     assert (2.0 * given.permeability * given.standing * early / given.porosity) ** 0.5 == pytest.approx(1e-4, rel=1e-3)

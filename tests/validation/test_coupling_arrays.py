@@ -11,7 +11,7 @@ from porescale.cli.main import PACKAGE
 from porescale.coupling import psm as saturated
 from porescale.validation.coupling import arrays as lab
 from porescale.validation.coupling import arrays as verify_arrays
-from porescale.validation.coupling.grains_trials import Method
+from porescale.validation.coupling.setups import Method
 from porescale.validation.coupling.towed import square_array_drag
 from tests.reference.stokes_array import Array, square
 

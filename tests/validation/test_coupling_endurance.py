@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import pytest
-
 from porescale.benchmarks import endurance
-from porescale.cli.main import PACKAGE
 from porescale.common.core.errors import Unstable
 from porescale.common.evidence.endurance import (
     ASK_EVERY,
@@ -23,18 +20,7 @@ from porescale.common.evidence.endurance import (
 )
 from porescale.common.record.drive import CHECK_EVERY
 from porescale.validation.coupling import endurance as verify_endurance
-from porescale.validation.coupling.endurance import VALIDATIONS
-from porescale.validation.coupling.grains_trials import handful
-
-ALL = PACKAGE.validations()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("validation", list(VALIDATIONS), ids=lambda row: row.name)
-def test_the_validation_holds(validation):
-    row = validation.run()
-    assert row.passed, row
-    assert validation.name in [it.name for it in ALL]
+from porescale.validation.coupling.setups import handful
 
 
 def test_a_weight_of_a_millionth_of_what_makes_a_heap_is_found():

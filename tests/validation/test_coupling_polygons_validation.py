@@ -13,8 +13,8 @@ import pytest
 from porescale.cli.main import PACKAGE
 from porescale.coupling import psm as saturated
 from porescale.validation.coupling import arrays as verify_arrays
+from porescale.validation.coupling import polygons, polygons_moving
 from porescale.validation.coupling import polygons as verify_polygons
-from porescale.validation.coupling import polygons_trials as lab
 from tests.reference.shapes import fractions
 from tests.reference.stokes_polygons import Turning, regular
 
@@ -41,7 +41,7 @@ def test_drag_and_torque_of_squares_are_those_of_forces_along_their_sides(degree
 
 @pytest.mark.slow
 def test_drag_of_plates_is_that_of_forces_along_their_sides():
-    array = Turning(lab.plate(0.6, 0.075), levels=5, order=6)
+    array = Turning(polygons.plate(0.6, 0.075), levels=5, order=6)
     along, across = array.loads([1.0, 0.0])[0][0], array.loads([0.0, 1.0])[0][1]
     assert along == pytest.approx(verify_polygons.PLATES[0], rel=2e-4)
     assert across == pytest.approx(verify_polygons.PLATES[90], rel=2e-4)
@@ -55,7 +55,7 @@ def test_forces_along_many_sides_give_the_drag_of_discs():
 
 
 def test_fractions_by_points_do_not_add_up_to_the_area():
-    corners = lab.plate(20.0, 2.5, 30.0) + np.array((14.0, 14.0))
+    corners = polygons.plate(20.0, 2.5, 30.0) + np.array((14.0, 14.0))
 
     def inside(x, y):
         found = np.ones(np.broadcast_shapes(x.shape, y.shape), bool)
@@ -68,7 +68,7 @@ def test_fractions_by_points_do_not_add_up_to_the_area():
 
 def test_squares_without_tips_let_too_much_through(monkeypatch):
     monkeypatch.setattr(saturated, "RADIUS_SHIFT", 0.0)
-    found = lab.array_drag(verify_polygons.square(0.1, 20.0), 32, places=[(0.3, 0.1)])[0]
+    found = polygons.array_drag(verify_polygons.square(0.1, 20.0), 32, places=[(0.3, 0.1)])[0]
     assert found / verify_polygons.SQUARES[20] < 1 - 3 * tolerance("square_arrays_of_squares")
 
 
@@ -78,7 +78,7 @@ def test_a_plate_of_one_cell_is_no_plate():
 
 
 def test_squares_half_a_cell_larger_take_too_much_torque():
-    found = lab.array_torque(verify_polygons.square(0.2 * (10.34 / 9.84) ** 2, 0.0), 22)
+    found = polygons.array_torque(verify_polygons.square(0.2 * (10.34 / 9.84) ** 2, 0.0), 22)
     assert found / verify_polygons.TURNING[0] > 1 + 3 * tolerance("torque_of_turning_squares")
 
 
@@ -87,19 +87,19 @@ def test_six_corners_do_not_make_a_disc():
 
 
 def test_polygons_that_are_faster_than_the_flow_feel_it():
-    assert max(lab.loads_on_neutral(5, extra=1e-9)) > 1e3 * tolerance("neutral_polygons_feel_no_force")
+    assert max(polygons_moving.loads_on_neutral(5, extra=1e-9)) > 1e3 * tolerance("neutral_polygons_feel_no_force")
 
 
 def test_without_the_fluid_inside_momentum_is_lost():
-    assert lab.momentum_error(20, inside=False) > 1e6 * tolerance("momentum_of_polygons")
+    assert polygons_moving.momentum_error(20, inside=False) > 1e6 * tolerance("momentum_of_polygons")
 
 
 def test_a_plate_that_is_not_level_goes_aside():
-    aside, tip = lab.level_plate(0.01, steps=100)
+    aside, tip = polygons_moving.level_plate(0.01, steps=100)
     assert abs(aside) > 1e3 * tolerance("level_plate_sinks_straight")
     assert abs(tip) > tolerance("level_plate_sinks_straight")
 
 
 @pytest.mark.slow
 def test_a_thinner_ellipse_turns_slower_than_jeffery_says_of_this_one():
-    assert abs(lab.half_turn(64, 7.5, 3.0, 0.15) / (math.pi * 2.5) - 1) > tolerance("jeffery_period")
+    assert abs(polygons_moving.half_turn(64, 7.5, 3.0, 0.15) / (math.pi * 2.5) - 1) > tolerance("jeffery_period")

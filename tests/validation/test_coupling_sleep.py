@@ -4,21 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from porescale.cli.main import PACKAGE
 from porescale.validation.coupling import sleep as lab
 from porescale.validation.coupling import sleep as verify_sleep
 from porescale.validation.coupling.sleep import VALIDATIONS
 
-ALL = PACKAGE.validations()
-
 pytestmark = pytest.mark.slow
-
-
-@pytest.mark.parametrize("validation", list(VALIDATIONS), ids=lambda row: row.name)
-def test_the_validation_holds(validation):
-    row = validation.run()
-    assert row.passed, row
-    assert validation.name in [it.name for it in ALL]
 
 
 @pytest.mark.parametrize("sinks", [False, True])

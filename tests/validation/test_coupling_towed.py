@@ -9,9 +9,9 @@ from porescale.cli.main import PACKAGE
 from porescale.validation.coupling import moving as falls
 from porescale.validation.coupling import moving as moving
 from porescale.validation.coupling import moving as verify_moving
-from porescale.validation.coupling import towed as towed
+from porescale.validation.coupling import towed
 from porescale.validation.coupling import towed as verify_towed
-from porescale.validation.coupling.grains_trials import faxen, weighing
+from porescale.validation.coupling.towed import faxen, weighing
 from tests.reference.stokes_box import Box, Enclosed, point_forces
 
 VALIDATIONS = PACKAGE.validations()

@@ -10,8 +10,8 @@ import pytest
 from porescale.dem.measures.contacts import contacts
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress
-from porescale.validation.dem import discs_trials as lab
 from porescale.validation.dem import measures as measured
+from porescale.validation.dem import setups as lab
 from porescale.validation.dem.bodies import random_cell
 from porescale.validation.dem.measures import VALIDATIONS
 

@@ -4,23 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from porescale.cli.main import PACKAGE
 from porescale.validation.dem import sleep as lab
 from porescale.validation.dem import sleep as verify_sleep
 from porescale.validation.dem.sleep import VALIDATIONS
-
-ALL = PACKAGE.validations()
-
-
-@pytest.mark.parametrize(
-    "validation",
-    [pytest.param(row, marks=[pytest.mark.slow] if row.slow else []) for row in VALIDATIONS],
-    ids=lambda row: row.name,
-)
-def test_the_validation_holds(validation):
-    row = validation.run()
-    assert row.passed, row
-    assert validation.name in [it.name for it in ALL]
 
 
 def test_sleepers_that_do_not_wake_are_out_of_balance():

@@ -9,18 +9,11 @@ import pytest
 
 from porescale.cli.main import PACKAGE
 from porescale.common.core.constants import GRAVITY
-from porescale.validation.dem import discs_trials as lab
+from porescale.validation.dem import critical_step, restitution, rolling, stacks
+from porescale.validation.dem import setups as lab
 from tests.reference.dem import Body, World
 
 VALIDATIONS = PACKAGE.validations()
-
-ROWS = [pytest.param(row, id=row.name, marks=[pytest.mark.slow] if row.slow else []) for row in VALIDATIONS]
-
-
-@pytest.mark.parametrize("validation", ROWS)
-def test_the_validation_holds(validation):
-    row = validation.run()
-    assert row.passed, row
 
 
 def tolerance(name):
@@ -28,7 +21,7 @@ def tolerance(name):
 
 
 def test_the_other_end_of_contact_has_another_restitution():
-    bounced = lab.bounce(lab.law_at(0.2155, "force"), 1000.0)
+    bounced = restitution.bounce(lab.law_at(0.2155, "force"), 1000.0)
     other = lab.law_at(0.2155, "overlap").restitution(lab.MASS)
     assert np.abs(bounced - other).min() > 10 * tolerance("dem.restitution_release_at_zero_force")
 
@@ -37,7 +30,7 @@ def test_restitution_converges_at_first_order():
     # The start of the dashpot is missed by up to a step: error proportional to dt, tenfold for a tenth; the
     # second-order term is w0 dt = 3 % at T_c/100.
     law = lab.law_at(0.2155)
-    coarse, fine = (np.abs(lab.bounce(law, n) - law.restitution(lab.MASS)).max() for n in (100.0, 1000.0))
+    coarse, fine = (np.abs(restitution.bounce(law, n) - law.restitution(lab.MASS)).max() for n in (100.0, 1000.0))
     assert coarse / fine == pytest.approx(10.0, rel=0.05)
     assert coarse < 1e-2  # first order at contact switching: ten times the error at a tenth of the steps
     assert coarse > 1e-3  # so the resolution of the validation is needed
@@ -46,19 +39,19 @@ def test_restitution_converges_at_first_order():
 def test_a_pair_bounces_with_its_effective_mass():
     mass = lab.MASS * 4.0 / 5.0
     law = lab.law_at(0.2155, mass=mass)
-    assert abs(lab.bounce_pair(law, 2.0, 1000.0) - law.restitution(lab.MASS)) > 10 * tolerance(
+    assert abs(restitution.bounce_pair(law, 2.0, 1000.0) - law.restitution(lab.MASS)) > 10 * tolerance(
         "dem.restitution_of_pairs"
     )
 
 
 def test_a_sphere_would_roll_at_another_time():
-    stops, speed = lab.slide_to_roll(0.2)
+    stops, speed = rolling.slide_to_roll(0.2)
     assert abs(stops * 7.0 * 0.2 * GRAVITY / 2.0 - 1.0) > 10 * tolerance("dem.sliding_turns_into_rolling")
     assert abs(speed / (5.0 / 7.0) - 1.0) > 10 * tolerance("dem.sliding_turns_into_rolling")
 
 
 def test_too_steep_a_slope_does_not_roll():
-    a, _ = lab.incline(0.8, 0.1)
+    a, _ = rolling.incline(0.8, 0.1)
     assert abs(a / (2.0 / 3.0 * GRAVITY * math.sin(0.8)) - 1.0) > 0.1
 
 
@@ -67,7 +60,7 @@ def test_a_slow_tangential_approach_does_not_slide_through():
     damped = lab.law_at(0.1)
     law = lab.law_at(0.1, tangential_stiffness=0.25 * lab.STIFFNESS, friction=0.3, tangential_damping=damped.damping)
     unit = 0.3 * (1.0 + law.restitution(lab.MASS)) * 0.01
-    _, along, _ = lab.impact(law, 0.01, 0.005, 0.0)
+    _, along, _ = restitution.impact(law, 0.01, 0.005, 0.0)
     assert abs((0.005 - float(along[0])) / unit - 1.0) > 100 * tolerance("dem.oblique_impact_in_gross_sliding")
 
 
@@ -84,7 +77,7 @@ def test_drifting_with_the_old_velocity_gains_energy():
 
 
 def test_a_stack_not_yet_at_rest_misses_its_overlaps():
-    found = lab.stack(10, decays=10.0)
+    found = stacks.stack(10, decays=10.0)
     assert lab.relative(found.tolist(), range(1, 11)) > tolerance("dem.static_stack")
 
 
@@ -107,24 +100,26 @@ def test_radii_as_lever_arms_leak_angular_momentum(arms, leaks):
 
 
 def test_central_damping_would_allow_a_longer_step():
-    assert abs(lab.critical_step(0.5) / 2.0 - 1.0) > 10 * tolerance("dem.critical_step_of_a_contact")
+    assert abs(critical_step.critical_step(0.5) / 2.0 - 1.0) > 10 * tolerance("dem.critical_step_of_a_contact")
 
 
 @pytest.mark.parametrize("shear", [0.25, 0.8])
 def test_the_packing_limit_is_safe_in_a_lattice_and_the_pair_limit_is_not(shear):
-    exact = 2.0 / math.sqrt(lab.lattice_frequency(shear))
-    bound = lab.packing_step(shear)
+    exact = 2.0 / math.sqrt(critical_step.lattice_frequency(shear))
+    bound = critical_step.packing_step(shear)
     assert bound <= exact * (1 + 1e-12)  # rounding of an eigenvalue: the bound is reached at shear 0.8
     assert bound > 0.92 * exact  # sqrt(6.5/7.5) = 0.931 at shear 0.25
     assert math.sqrt(2.0) > 1.5 * exact  # two discs alone: 2 sqrt((m/2)/k)
 
 
 def test_the_radius_as_a_lever_arm_is_off_by_the_overlap():
-    found, rolls = lab.incline(0.3, 0.5, wait=0.06), 2.0 / 3.0 * GRAVITY * math.sin(0.3)
+    found, rolls = rolling.incline(0.3, 0.5, wait=0.06), 2.0 / 3.0 * GRAVITY * math.sin(0.3)
     assert abs(found[0] / rolls - 1.0) > 1e4 * tolerance("dem.rolling_with_its_own_lever_arm")
-    assert lab.incline_exact(0.8, 0.5)[0] < GRAVITY * (math.sin(0.8) - 0.1 * math.cos(0.8))  # it does not slip there
+    assert rolling.incline_exact(0.8, 0.5)[0] < GRAVITY * (
+        math.sin(0.8) - 0.1 * math.cos(0.8)
+    )  # it does not slip there
 
 
 def test_springs_that_still_swing_are_noticed():
-    found = lab.incline(0.3, 0.5, wait=0.005)
-    assert lab.relative(found, lab.incline_exact(0.3, 0.5)) > 10 * tolerance("dem.rolling_with_its_own_lever_arm")
+    found = rolling.incline(0.3, 0.5, wait=0.005)
+    assert lab.relative(found, rolling.incline_exact(0.3, 0.5)) > 10 * tolerance("dem.rolling_with_its_own_lever_arm")

@@ -18,17 +18,6 @@ VALIDATIONS = PACKAGE.validations()
 EPS = np.finfo(float).eps
 
 
-def rows():
-    for row in VALIDATIONS:
-        yield pytest.param(row, id=row.name, marks=[pytest.mark.slow] if row.slow else [])
-
-
-@pytest.mark.parametrize("validation", list(rows()))
-def test_the_validation_holds(validation):
-    row = validation.run()
-    assert row.passed, row
-
-
 @pytest.mark.parametrize("viscosity", [0.01, 1 / 6, 1.0])
 @pytest.mark.parametrize("height", [1, 2, 5])
 def test_walls_sit_midway_at_magic_3_16(height, viscosity):

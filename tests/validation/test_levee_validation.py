@@ -10,7 +10,7 @@ import pytest
 from continuum_sph.cli import PACKAGE
 from continuum_sph.soil import SoilFlow
 from continuum_sph.soil.state import GROWN
-from continuum_sph.validation.levee import FAR, GRAINS, PARTS, QUICK, STIFFER, Levee, gone
+from continuum_sph.validation.seepage.levee import FAR, GRAINS, PARTS, QUICK, STIFFER, Levee, gone
 
 VALIDATIONS = PACKAGE.validations()
 

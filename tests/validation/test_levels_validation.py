@@ -9,8 +9,9 @@ import pytest
 
 from continuum_sph.cli import PACKAGE
 from continuum_sph.seepage import Resistance, Supply
-from continuum_sph.validation import levels as verify_levels
-from continuum_sph.validation.levels import DAM, DRAWN, STATIONS, SURFACE, Dam
+from continuum_sph.validation.seepage import dam, infiltration
+from continuum_sph.validation.seepage.dam import DAM, STATIONS, SURFACE, Dam
+from continuum_sph.validation.seepage.infiltration import DRAWN
 from tests.reference.dam import surface
 
 VALIDATIONS = PACKAGE.validations()
@@ -42,21 +43,21 @@ def test_the_discharge_of_a_dam_is_that_of_its_pressures():
 @pytest.mark.slow
 def test_water_passes_a_dam_too_fast_under_the_printed_drag(monkeypatch):
     monkeypatch.setattr(Resistance, "factor", PRINTED)
-    into, out, _ = verify_levels.dam.__wrapped__(replace(DAM, rows=12), (0.5, 1.0))
+    into, out, _ = dam.dam.__wrapped__(replace(DAM, rows=12), (0.5, 1.0))
     assert abs(0.5 * (into + out) - 1.0) > tolerance("continuum.dam")
 
 
 @pytest.mark.slow
 def test_water_enters_soil_too_fast_under_the_printed_drag(monkeypatch):
     monkeypatch.setattr(Resistance, "factor", PRINTED)
-    (found,) = verify_levels.fronts(replace(DRAWN, rows=20), (0.3,))
+    (found,) = infiltration.fronts(replace(DRAWN, rows=20), (0.3,))
     assert abs(found - 1.0) > 3.0 * tolerance("continuum.imbibition")
 
 
 @pytest.mark.slow
 def test_kernels_that_miss_the_next_row_in_pores_hold_the_front_back():
     # Rows of water 1/n spacings apart and kernels that end at 2.6 spacings
-    (found,) = verify_levels.fronts(replace(DRAWN, rows=20, ratio=1.3), (0.3,))
+    (found,) = infiltration.fronts(replace(DRAWN, rows=20, ratio=1.3), (0.3,))
     assert abs(found - 1.0) > tolerance("continuum.imbibition")
 
 
@@ -71,4 +72,4 @@ def test_a_reservoir_that_books_half_of_what_it_lets_in_loses_mass(monkeypatch):
             pool.let_in = 0.5 * (was + pool.let_in)
 
     monkeypatch.setattr(Supply, "keep", careless)
-    assert verify_levels.unbooked(400) > 1e6 * tolerance("continuum.mass_between_levels")
+    assert dam.unbooked(400) > 1e6 * tolerance("continuum.mass_between_levels")

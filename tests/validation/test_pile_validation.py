@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from continuum_sph.cli import PACKAGE
-from continuum_sph.validation.pile import (
+from continuum_sph.validation.seepage.heave import (
     APART,
-    AROUND,
     BOUNDS,
     CALM,
     HEADS,
@@ -18,12 +17,10 @@ from continuum_sph.validation.pile import (
     NARROW,
     QUICK,
     RISING,
-    Around,
-    one_side,
     rests,
     rising,
 )
-from continuum_sph.validation.seepage_steady_trials import SheetPile
+from continuum_sph.validation.seepage.sheet_pile import AROUND, Around, SheetPile, one_side
 from tests.reference.sheet_pile import around, bounds, seen, weakest_prism
 
 VALIDATIONS = PACKAGE.validations()

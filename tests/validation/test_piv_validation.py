@@ -29,17 +29,6 @@ def one_thread():
     set_threads(before)
 
 
-def rows():
-    for row in VALIDATIONS:
-        yield pytest.param(row, id=row.name, marks=[pytest.mark.slow] if row.slow else [])
-
-
-@pytest.mark.parametrize("validation", list(rows()))
-def test_the_validation_holds(validation):
-    row = validation.run()
-    assert row.passed, row
-
-
 def tolerance(name: str) -> float:
     return VALIDATIONS[f"piv.{name}"].tolerance
 

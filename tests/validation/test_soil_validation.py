@@ -9,7 +9,8 @@ import pytest
 
 from continuum_sph.build.simulation import Simulation
 from continuum_sph.cli import PACKAGE
-from continuum_sph.validation import soil as verify_soil
+from continuum_sph.soil import Material
+from continuum_sph.validation.soil import bodies, element, energy, setups, slopes
 from tests.reference import continuum_cases
 from tests.reference.continuum_cases import missed
 from tests.reference.folders import CASES
@@ -26,64 +27,64 @@ def tolerance(name):
 
 def test_friction_taken_for_the_angle_of_its_tangent_fails_at_another_ratio():
     # tan 30° where the paper's tan φ is sin 30°
-    assert abs(verify_soil.failure_ratio(3.0**-0.5) - 3.0) > 0.7
+    assert abs(element.failure_ratio(3.0**-0.5) - 3.0) > 0.7
 
 
 def test_soil_of_another_dilatancy_is_told_apart():
-    assert abs(verify_soil.dilation(0.21) - 0.2) > 1e6 * tolerance("continuum.soil_dilates_as_told")
+    assert abs(element.dilation(0.21) - 0.2) > 1e6 * tolerance("continuum.soil_dilates_as_told")
 
 
 def test_the_printed_modulus_does_not_rest_as_plane_strain_does():
-    assert abs(verify_soil.rest_ratio("printed") - 3.0 / 7.0) > 0.09
+    assert abs(element.rest_ratio("printed") - 3.0 / 7.0) > 0.09
 
 
 def test_the_printed_sign_of_turning_loses_the_stress_on_the_way():
     # At 90° itself both signs meet again: turning a stress by 90° either way gives the same.
-    error = verify_soil.turned_error(90, printed_spin=True)
+    error = bodies.turned_error(90, printed_spin=True)
     assert error > 1e6 * tolerance("continuum.soil_turned_keeps_its_stress")
 
 
 def test_plain_gradients_strain_what_only_turns():
-    assert verify_soil.turned_error(4, corrected=False) > 1.0
+    assert bodies.turned_error(4, corrected=False) > 1.0
 
 
 def test_the_modulus_of_a_column_is_not_that_of_the_area():
     # B in place of B + G: the time is longer by √((B + G)/B) = 1.18
-    assert abs(verify_soil.crossing("plane strain", 20) * 1.4**0.5 - 1.0) > tolerance("continuum.soil_column_modulus")
+    assert abs(slopes.crossing("plane strain", 20) * 1.4**0.5 - 1.0) > tolerance("continuum.soil_column_modulus")
 
 
 def test_a_force_on_one_of_a_pair_alone_makes_momentum():
-    assert verify_soil.kept(one_sided=True)[0] > 1e6 * tolerance("continuum.soil_momentum")
+    assert bodies.kept(one_sided=True)[0] > 1e6 * tolerance("continuum.soil_momentum")
 
 
 def test_plain_gradients_make_angular_momentum():
-    assert verify_soil.kept(corrected=False)[1] > 1e6 * tolerance("continuum.soil_momentum")
+    assert bodies.kept(corrected=False)[1] > 1e6 * tolerance("continuum.soil_momentum")
 
 
 def test_friction_of_thirty_degrees_by_its_tangent_does_not_slide_at_28():
-    acceleration, exact = verify_soil.sliding(28.0, rows=10, friction=3.0**-0.5)
+    acceleration, exact = slopes.sliding(28.0, rows=10, friction=3.0**-0.5)
     assert abs(acceleration / exact - 1.0) > 0.9
 
 
 def test_stress_diffused_by_sound_lets_level_ground_creep():
-    assert verify_soil.rest(1.0, restless=0.1)[0] > 5.0 * tolerance("continuum.soil_at_rest_stays")
+    assert slopes.rest(1.0, restless=0.1)[0] > 5.0 * tolerance("continuum.soil_at_rest_stays")
 
 
 def test_soil_that_slides_without_exchanging_volume_is_squeezed_without_end():
     # 1.03, 1.18, 2.6 times the density after 0.4, 1.2, 2 s
-    assert verify_soil.departure(seconds=1.2, exchanged=False) > 10.0 * tolerance(
+    assert slopes.departure(seconds=1.2, exchanged=False) > 10.0 * tolerance(
         "continuum.soil_that_slides_keeps_its_density"
     )
 
 
 @pytest.mark.slow
 def test_a_slope_beyond_its_limit_fails():
-    assert verify_soil.slope(33.0, 2.0) > 100.0 * tolerance("continuum.soil_slope_below_its_limit_stays")
+    assert slopes.slope(33.0, 2.0) > 100.0 * tolerance("continuum.soil_slope_below_its_limit_stays")
 
 
 @pytest.mark.slow
 def test_stress_diffused_by_sound_lets_a_slope_creep():
-    assert verify_soil.slope(22.0, 1.0, 0.1) > 5.0 * tolerance("continuum.soil_slope_below_its_limit_stays")
+    assert slopes.slope(22.0, 1.0, 0.1) > 5.0 * tolerance("continuum.soil_slope_below_its_limit_stays")
 
 
 @pytest.mark.slow
@@ -131,22 +132,22 @@ def test_soil_of_little_friction_runs_too_far():  # the twin that must fail
 
 
 def test_soil_of_constant_stiffness_does_not_stiffen():
-    exact, even = verify_soil.stiffened(verify_soil.Material(1e7, verify_soil.DENSITY, yields=False))
+    exact, even = element.stiffened(Material(1e7, setups.DENSITY, yields=False))
     assert abs(even / exact - 1.0) > 1e3 * tolerance("continuum.soil_stiffens_with_pressure")
 
 
 @pytest.mark.slow
 def test_energy_without_what_parting_lifts_does_not_add_up():
-    assert abs(verify_soil.collapse(seconds=0.2).missing(without="parting")) > tolerance("continuum.soil_energy")
+    assert abs(energy.collapse(seconds=0.2).missing(without="parting")) > tolerance("continuum.soil_energy")
 
 
 @pytest.mark.slow
 def test_soil_under_tension_without_repulsion_flies_to_pieces():
-    found = verify_soil.spun(1.5, verify_soil.PULL, repulsion=0.0)
+    found = bodies.spun(1.5, bodies.PULL, repulsion=0.0)
     assert found > 3.0
 
 
 @pytest.mark.slow
 def test_damping_that_goes_with_sound_makes_run_out_depend_on_stiffness():
-    soft, stiff = verify_soil.run_outs(None)
+    soft, stiff = energy.run_outs(None)
     assert soft - stiff > 3.0 * tolerance("continuum.soil_runs_out_alike_at_any_stiffness")

@@ -6,8 +6,8 @@ import pytest
 
 from continuum_sph.build.simulation import Simulation
 from continuum_sph.cli import PACKAGE
-from continuum_sph.validation import soil_wet as verify_soil_wet
-from continuum_sph.validation.soil_wet import SEEPING, STILL, WetSlope
+from continuum_sph.validation.seepage import permeability, wet_slopes
+from continuum_sph.validation.seepage.wet_slopes import SEEPING, STILL, WetSlope
 from tests.reference import continuum_cases
 from tests.reference.continuum_cases import missed
 
@@ -31,26 +31,26 @@ def test_limits_of_wet_slopes_are_those_of_the_textbook():
 
 @pytest.mark.slow
 def test_a_slope_in_still_water_does_not_slide_as_with_seepage():
-    assert verify_soil_wet.off(STILL, True)[2] > 3.0 * tolerance("continuum.soil_slides_under_water")
+    assert wet_slopes.off(STILL, True)[2] > 3.0 * tolerance("continuum.soil_slides_under_water")
 
 
 @pytest.mark.slow
 def test_a_slope_with_seepage_does_not_rest_as_in_still_water():
-    exact, found, error = verify_soil_wet.off(SEEPING, False)
+    exact, found, error = wet_slopes.off(SEEPING, False)
     assert exact < 0.0 < found
     assert error > 3.0 * tolerance("continuum.soil_slides_with_seepage")
 
 
 @pytest.mark.slow
 def test_a_slope_beyond_its_wet_limit_does_not_rest():
-    assert verify_soil_wet.slides(SEEPING)[1] > 3.0 * tolerance("continuum.soil_rests_below_its_wet_limits")
+    assert wet_slopes.slides(SEEPING)[1] > 3.0 * tolerance("continuum.soil_rests_below_its_wet_limits")
 
 
 @pytest.mark.slow
 def test_permeability_that_does_not_follow_porosity_is_told_apart():
     exact = VALIDATIONS["continuum.permeability_follows_porosity"].run().reference
-    for porosity, wanted in zip(verify_soil_wet.CHANGED, exact, strict=True):
-        found = verify_soil_wet.passed("constant", porosity)
+    for porosity, wanted in zip(permeability.CHANGED, exact, strict=True):
+        found = permeability.passed("constant", porosity)
         assert abs(found / wanted - 1.0) > 10.0 * tolerance("continuum.permeability_follows_porosity")
 
 

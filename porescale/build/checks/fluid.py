@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from porescale.common.core.errors import Fault
-from porescale.coupling.weighting import fitting_weight
+from porescale.coupling.solid.choose import SOLID_OPERATORS
+from porescale.coupling.weighting.choose import fitting_weight, fitting_weights
 from porescale.scene.fluid import Fluid
 
 
@@ -13,8 +14,10 @@ def check_solid_options(fluid: Fluid) -> list[Fault]:
     try:
         fitting_weight(fluid.solid_operator, fluid.weighting)
     except ValueError:
-        fits = "'wall'" if fluid.solid_operator == "exact-wall" else "'B2' or 'B1'"
+        fits = " or ".join(map(repr, fitting_weights(fluid.solid_operator)))
         return [Fault("weighting", fluid.weighting, problem, "", fits, "leave it out")]
-    if fluid.rim == "soft" and fluid.solid_operator != "exact-wall":
-        return [Fault("rim", fluid.rim, problem, "", "'sharp'", "leave it out, or take 'exact-wall'")]
+    soft = [name for name, operator in SOLID_OPERATORS.items() if operator.soft_law]
+    if fluid.rim == "soft" and fluid.solid_operator not in soft:
+        repair = f"leave it out, or take {' or '.join(map(repr, soft))}"
+        return [Fault("rim", fluid.rim, problem, "", "'sharp'", repair)]
     return []

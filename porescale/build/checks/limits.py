@@ -8,17 +8,13 @@ its pressures, and the cells that its grains have.
 from __future__ import annotations
 
 from porescale.coupling import limits
+from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.lbm.scales import Scales
 
 DENSITY_WARN, DENSITY_REFUSE = 0.05, limits.DENSITY
 """Density variation by the weight of a column: measured runs varied by twice this estimate (0.05: 4-10 %)."""
 MACH_WARN, MACH_REFUSE = 0.1, limits.MACH
 """Errors of compressibility grow as the square of the Mach number: 1 % at the first."""
-TAU_COARSE = {"exact-wall": 2.0}
-"""Relaxation time up to which the lattice's own viscosity is right (lbm.shear), and with exact walls the drag: at
-10 cells per diameter within 1.5 % even at 3."""
-TAU_COARSE_OTHERS = 1.5
-"""With other solid operators the drag at 10 cells per diameter is more than a tenth too small from here on."""
 CELLS_THICK = 2.0
 """A rectangle thinner than this may fill no cell wholly, wherever it lies, and lets fluid through."""
 SINGLE_PRECISION = 1e-5
@@ -33,10 +29,10 @@ def thin(scales: Scales, speed: float, operator: str, *, eddies: bool, lid: bool
         return ""
     what = f"{operator!r}{' with eddies' if eddies else ''}{' under a moving lid' if lid else ''}"
     best = ""
-    if limits.cell_reynolds("central", eddies=eddies, lid=lid) >= reynolds:
-        best = ", or take operator = 'central'"
-    elif not eddies and limits.cell_reynolds("central", eddies=True, lid=lid) >= reynolds:
-        best = ", or take operator = 'central' with smagorinsky = 0.1"
+    if limits.cell_reynolds(limits.STEADIEST, eddies=eddies, lid=lid) >= reynolds:
+        best = f", or take operator = {limits.STEADIEST!r}"
+    elif not eddies and limits.cell_reynolds(limits.STEADIEST, eddies=True, lid=lid) >= reynolds:
+        best = f", or take operator = {limits.STEADIEST!r} with smagorinsky = 0.1"
     return (
         f"relaxation time {scales.relaxation_time:.4f} at a speed of {speed:.3g} m/s: cell Reynolds number"
         f" {reynolds:.3g}, and {what} is known to hold up to {holds:g};"
@@ -81,8 +77,11 @@ def coarse(cells: float, solid_operator: str, weighting: str, spacing: float, so
 
 
 def slow(relaxation_time: float, solid_operator: str) -> str:
-    """Where the relaxation time is too long for drag to be right."""
-    most = TAU_COARSE.get(solid_operator, TAU_COARSE_OTHERS)
+    """Where the relaxation time is too long for drag to be right.
+
+    Up to 2 the lattice's own viscosity is right (lbm.shear).
+    """
+    most = SOLID_OPERATORS[solid_operator].longest_relaxation_time
     if relaxation_time <= most:
         return ""
     return f"relaxation time {relaxation_time:.3g}: above {most:g} viscosity or drag is off; shorten the step"

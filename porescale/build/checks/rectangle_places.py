@@ -137,9 +137,9 @@ def _check_box(scene: Scene, faults: list[Fault]) -> None:
                 problem = f"fills the whole box{f' after {time:.4g} s' if time else ''}"
                 faults.append(Fault(key, None, problem, repair="leave room for the fluid"))
         for side, strip in _beyond(size).items():
-            kind = d.side(side).kind
+            kind = d.side(side).boundary
             moves = it.fastest > 0 and it.starts_at < end
-            if kind == "velocity" or (kind == "pressure" and moves):
+            if kind.prescribes_velocity or (kind.passes and moves):
                 time = first_meeting(it, strip, end, -2 * slack)  # touching it counts
                 if time < NEVER:
                     faults.append(_in_the_way(k, f"the {side} side, which is open", time))

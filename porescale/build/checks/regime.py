@@ -88,7 +88,8 @@ def given_speed(scene: Scene) -> float:
 
 def _pressed_speed(scene: Scene, scales: Scales) -> float:
     """Speed (m/s) that the largest difference of pressure between sides can drive."""
-    held = {name: side.pressure or 0.0 for name, side in scene.domain.sides.items() if side.kind == "pressure"}
+    sides = scene.domain.sides.items()
+    held = {name: side.pressure or 0.0 for name, side in sides if "pressure" in side.boundary.numbers}
     if len(held) < 2:
         return 0.0
     d, drop = scene.domain, max(held.values()) - min(held.values())

@@ -48,7 +48,7 @@ def lattice_sides(domain: Domain, scales: Scales, cells: tuple[int, int]) -> Sid
             along = np.arange(count) + 0.5  # halves: the parabola is symmetric to the last bit
             shape = 6 * along * (count - along) / count**2 if side.profile == "parabola" else np.ones(count)
             values[f"{name}_velocity"] = shape[:, None] * np.asarray(side.velocity) / scales.velocity
-        if side.kind == "pressure":
+        if "pressure" in side.boundary.numbers:
             values[f"{name}_density"] = 1 + (side.pressure or 0.0) / scales.pressure
     return Sides(**values)
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from porescale.coupling.weighting import fitting_weight
+from porescale.coupling.solid.choose import SOLID_OPERATORS
+from porescale.coupling.weighting.choose import fitting_weight
+from porescale.lbm.collision.choose import OPERATORS
 from porescale.scene.fluid import Fluid
 
 
@@ -20,7 +22,8 @@ def weight_of(fluid: Fluid) -> str:
 
 def has_soft_rim(fluid: Fluid) -> bool:
     """Whether grains have soft rims."""
-    return fluid.rim == "soft" or (fluid.rim is None and fluid.operator == "central" and weight_of(fluid) == "wall")
+    by_default = OPERATORS[fluid.operator].soft_rim and SOLID_OPERATORS[fluid.solid_operator].soft_law is not None
+    return fluid.rim == "soft" or (fluid.rim is None and by_default)
 
 
 def solid_options(fluid: Fluid) -> dict[str, Any]:

@@ -41,7 +41,7 @@ NO_DISCS = make_discs(np.zeros((0, 2)), np.zeros(0), np.zeros(0))
 
 
 def _box(domain: Domain) -> Box:
-    kinds = {name: "periodic" if side.kind == "periodic" else "solid" for name, side in domain.sides.items()}
+    kinds = {name: "periodic" if side.boundary.periodic else "solid" for name, side in domain.sides.items()}
     return Box((0.0, 0.0), (domain.width, domain.height), **kinds)
 
 

@@ -7,9 +7,26 @@ over a window of cells stays complete wherever points are.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from porescale.common.compiled.jit import inline, kernel
+
+
+class Grid(NamedTuple):
+    """A regular grid of cells: lower corner, m; cells per metre; number of columns and rows; periods, m, 0 where a side
+    is not periodic; and how far right (m) the image one period higher lies (see `tilted_image`)."""
+
+    lower_x: float
+    lower_y: float
+    inverse_x: float
+    inverse_y: float
+    columns: int
+    rows: int
+    period_x: float = 0.0
+    period_y: float = 0.0
+    tilt: float = 0.0
 
 
 @inline
@@ -78,29 +95,32 @@ def grid_shape(lower: tuple[float, float], upper: tuple[float, float], size: flo
     return max(1, int(width / size)), max(1, int(height / size))
 
 
+@inline
+def cell_at(x, y, grid):
+    """Number of the cell of ``grid`` that holds the image of (x, y), m, in the box."""
+    across = untilted(x, y, grid.lower_y, grid.period_y, grid.tilt)
+    column = cell_of(wrapped(across, grid.lower_x, grid.period_x), grid.lower_x, grid.inverse_x, grid.columns)
+    row = cell_of(wrapped(y, grid.lower_y, grid.period_y), grid.lower_y, grid.inverse_y, grid.rows)
+    return row * grid.columns + column
+
+
 @kernel
-def sort_into_cells(
-    x, lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y, tilt, cell, start, order
-):  # fmt: skip
-    """Counting sort of points ``x`` (n, 2) m into ``rows`` × ``columns`` cells, row after row.
+def sort_into_cells(x, grid, cell, start, order):
+    """Counting sort of points ``x`` (n, 2) m into the cells of ``grid``, row after row.
 
     Overwrites ``cell`` (n,) cell of each point, ``start`` (columns rows + 1,) first slot of each cell and
-    ``order`` (n,) points by cell, ascending inside a cell.  ``inverse_*``: cells per metre; ``period_*`` m or
-    0; ``tilt`` m: see tilted_image.  Not checked: positions must be finite.
+    ``order`` (n,) points by cell, ascending inside a cell.  Not checked: positions must be finite.
     """
     n = x.shape[0]
     start[:] = 0
     for i in range(n):
-        across = untilted(x[i, 0], x[i, 1], lower_y, period_y, tilt)
-        column = cell_of(wrapped(across, lower_x, period_x), lower_x, inverse_x, columns)
-        row = cell_of(wrapped(x[i, 1], lower_y, period_y), lower_y, inverse_y, rows)
-        cell[i] = row * columns + column
+        cell[i] = cell_at(x[i, 0], x[i, 1], grid)
         start[cell[i] + 1] += 1
-    for c in range(columns * rows):
+    for c in range(grid.columns * grid.rows):
         start[c + 1] += start[c]
     for i in range(n):  # start[c] now walks to the first slot of cell c + 1 …
         order[start[cell[i]]] = i
         start[cell[i]] += 1
-    for c in range(columns * rows, 0, -1):  # … and is shifted back
+    for c in range(grid.columns * grid.rows, 0, -1):  # … and is shifted back
         start[c] = start[c - 1]
     start[0] = 0

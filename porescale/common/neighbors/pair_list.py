@@ -7,7 +7,6 @@ Simulation Using Particles (1981), section 8.4.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +15,7 @@ from porescale.common.compiled.jit import most_threads, threads
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.neighbors import search
 from porescale.common.neighbors import skin as drift
-from porescale.common.neighbors.cells import grid_shape, sort_into_cells
+from porescale.common.neighbors.cells import Grid, grid_shape, sort_into_cells
 
 Floats = NDArray[np.float64]
 
@@ -172,9 +171,7 @@ class PairList:
             self._blocked = self.builds
             if self._bounds.shape[0] <= columns * rows:
                 self._bounds = np.empty((columns * rows + 1, drift.BOUNDS))
-            drift.into_blocks(
-                self.anchor, *self.lower, columns / width, rows / height, columns, rows, *self.period, self._block
-            )
+            drift.into_blocks(self.anchor, self._grid(columns, rows), self._block)
         gap = min(width / columns, height / rows) - largest
         since = (x, self.anchor, reach, self._anchor_reach)
         left = drift.spare(*since, self._block, self._bounds, columns, rows, self.skin, gap, *self.period)
@@ -201,15 +198,15 @@ class PairList:
             raise ValueError(f"point {bad}: position {x[bad].tolist()} m, reach {reach[bad]} m")
         cutoff = 2.0 * float(reach.max(initial=0.0)) + self.skin
         self._check_periods(cutoff)
-        shape = self._sort(x[self._first :], reach[self._first :], cutoff)
+        grid = self._sort(x[self._first :], reach[self._first :], cutoff)
         new = 1 - self._current
         old_start, old_partner, old_carried = self.start, self.partner, self.carried
         rows, ends = self.count, 1  # points with rows to search, ends of a pair that are listed for each found
         if self.between is not None:
             rows, ends = self.between, 2
-        where: tuple[Any, ...] = (x[:rows], reach[:rows], *self._sorted, self._order, self._cell_start)
-        where += (*self.lower, *shape)
-        where += (*self.period, self.tilt, float(reach.max(initial=0.0)), self.skin, self.full)
+        largest = float(reach.max(initial=0.0))
+        criterion = search.Criterion(largest, self.skin, self.full)
+        where = (x[:rows], reach[:rows], self._sorted, self._order, self._cell_start, grid, criterion)
         start = self._starts[new][: rows + 1]
         if self.count < SERIAL_BELOW or threads() == 1:
             total, longest = search.fill_serial(start, self._partners[new], self._row, *where)
@@ -218,7 +215,7 @@ class PairList:
                 self._lengthen(longest)
                 search.fill_serial(start, self._partners[new], self._row, *where)
         else:
-            total, longest = search.count_parallel(start, self._partners[new], self._row, *where)
+            total, longest = search.count_parallel(start, self._row, *where)
             self._reserve(new, ends * total)
             length = self._lengthen(longest)
             search.fill_parallel(start, self._partners[new], self._row, length, *where)
@@ -251,22 +248,23 @@ class PairList:
                     )
                 )
 
-    def _sort(self, x: Floats, reach: Floats, cutoff: float) -> tuple[float, float, int, int]:
-        """Sort points into cells; returns cells per metre along x and y, columns, rows."""
+    def _grid(self, columns: int, rows: int) -> Grid:
+        """The box cut into so many cells."""
+        width, height = self.upper[0] - self.lower[0], self.upper[1] - self.lower[1]
+        return Grid(*self.lower, columns / width, rows / height, columns, rows, *self.period, self.tilt)
+
+    def _sort(self, x: Floats, reach: Floats, cutoff: float) -> Grid:
+        """Sort points into cells of half a cutoff, and return these."""
         # Limit: a few cells per point keep the sort linear in points.
         columns, rows = grid_shape(self.lower, self.upper, cutoff / CELLS_PER_CUTOFF, limit=4 * self.count + 64)
         if self._cell_start.shape[0] < columns * rows + 1:
             self._cell_start = np.zeros((columns * rows + 1) * 3 // 2, np.int64)
-        inverse_x = columns / (self.upper[0] - self.lower[0])
-        inverse_y = rows / (self.upper[1] - self.lower[1])
-        sort_into_cells(
-            x, *self.lower, inverse_x, inverse_y, columns, rows, *self.period, self.tilt,
-            self._cell, self._cell_start[: columns * rows + 1], self._order,
-        )  # fmt: skip
+        grid = self._grid(columns, rows)
+        sort_into_cells(x, grid, self._cell, self._cell_start[: columns * rows + 1], self._order)
         search.gather_sorted(x, reach, self._order, self._sorted)
         if self._first:
             self._order += np.int32(self._first)
-        return inverse_x, inverse_y, columns, rows
+        return grid
 
     def state(self) -> dict[str, NDArray[np.generic]]:
         """Copies of everything that decides what the list says next."""

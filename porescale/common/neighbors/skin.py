@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from porescale.common.compiled.jit import inline, kernel
-from porescale.common.neighbors.cells import cell_of, minimum_image, wrapped
+from porescale.common.neighbors.cells import cell_at, minimum_image
 
 LEFT, RIGHT, DOWN, UP, GROWTH = range(5)
 """Columns of bounds, m: least and largest component of the ways of a block's points, largest growth of their reach."""
@@ -39,15 +39,10 @@ def strayed(x, anchor, reach, anchor_reach, half_skin, period_x, period_y):
 
 
 @kernel
-def into_blocks(anchor, lower_x, lower_y, inverse_x, inverse_y, columns, rows, period_x, period_y, block):
-    """Overwrites ``block`` (n,): which of ``rows`` × ``columns`` blocks each ``anchor`` (n, 2) m lies in or nearest to.
-
-    inverse_*: blocks per metre;  period_* m or 0.
-    """
-    for i in range(anchor.shape[0]):
-        column = cell_of(wrapped(anchor[i, 0], lower_x, period_x), lower_x, inverse_x, columns)
-        row = cell_of(wrapped(anchor[i, 1], lower_y, period_y), lower_y, inverse_y, rows)
-        block[i] = row * columns + column
+def into_blocks(position, grid, block):
+    """Overwrites ``block`` (n,): the cell of ``grid`` that each ``position`` (n, 2) m lies in or nearest to."""
+    for i in range(position.shape[0]):
+        block[i] = cell_at(position[i, 0], position[i, 1], grid)
 
 
 @inline

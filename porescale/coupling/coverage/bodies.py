@@ -73,7 +73,7 @@ class Bodies:
         """
         self.mass += move_sides(
             self.discs, *self._grid, patches, self.centre, self.velocity, self.spin, self._links,
-            fluid.rim.added, self.touching,
+            fluid.links.added, self.touching,
         )  # fmt: skip
         for k in range(len(self.shapes)):
             if self.touching[k]:
@@ -91,7 +91,7 @@ class Bodies:
         """The shapes' loads: ``load`` (n, 3) of all bodies' cells, less what sides bear, and the rate at which the
         velocity of the fluid inside changes, given back.  Overwrites the shapes' rows of direct (n, 2)."""
         take_sides(
-            self.discs, *self._grid, patches, self.centre, self.velocity, self.spin, self._links, fluid.rim.added,
+            self.discs, *self._grid, patches, self.centre, self.velocity, self.spin, self._links, fluid.links.added,
             fluid.populations.reshape(-1), self._borne,
         )  # fmt: skip
         shape_loads(load[self.discs :], self._borne, self._inside, self.velocity[self.discs :],

@@ -1,9 +1,9 @@
 """The rows of the lattice that bodies lie in, and what they cover of each.
 
 A body, whatever its shape, has filled a patch of solid fractions around itself.  A list of the bodies in every row, in
-index order so that sums do not depend on threads, lets a row be laid out (``lay_row``) when it is needed.  Patches and
-the scratch of a row are worked through in blocks of ``BLOCK`` cells, a number known when kernels are compiled: a loop
-of a dozen cells would run cell by cell otherwise.
+index order so that sums do not depend on threads, lets a row be rasterized (``rasterize_row``) when it is needed.
+Patches and the scratch of a row are worked through in blocks of ``BLOCK`` cells, a number fixed when kernels are
+compiled: a loop of a dozen cells would run cell by cell otherwise.
 """
 
 from typing import NamedTuple
@@ -34,6 +34,20 @@ class Patches(NamedTuple):
     stride: NDArray[np.int64]
     start: NDArray[np.int64]
     fraction: NDArray[np.floating]
+
+
+class Motion(NamedTuple):
+    """How bodies move, lattice units.
+
+    centre (n, 2) cells;  velocity (n, 2);  spin (n,);  shift (n, 3): half-step correction, along x and y and of the
+    spin (load.py);  theta (n,): softness of the rims (soft_rim.py).
+    """
+
+    centre: NDArray[np.floating]
+    velocity: NDArray[np.floating]
+    spin: NDArray[np.floating]
+    shift: NDArray[np.floating]
+    theta: NDArray[np.floating]
 
 
 class Rows(NamedTuple):
@@ -136,22 +150,21 @@ def blocks_inside(base, stride, nx):
 
 
 @inline
-def lay_row(begin, end, rows, patches, centre, velocity, spin, shift, theta, periodic_x, ramp, scratch):
+def rasterize_row(y, rows, patches, motion, periodic_x, ramp, scratch):
     """Add up the solid fractions of one row, and fractions times solid velocity at the cells' centres.
 
-    The velocity in a cell that a body covers by e is its own and e times the half-step correction ``shift`` (n, 3),
-    along x and y and of the spin.  Where rims are soft scratch has a fourth row:
-    fractions times theta (n,), rim.py.
+    The velocity in a cell that a body covers by e is its own and e times the half-step correction.
 
-    Entries ``begin`` to ``end`` - 1 of ``rows`` are the row's;  centre (n, 2) cells, velocity (n, 2), spin (n,):
-    lattice units;  ramp (BLOCK,): 0, 1, 2, ...  Adds to scratch (3 or 4, BLOCK + nx + BLOCK); returns the first column
-    that may be covered and one past the last.
+    y: row of the lattice;  motion: ``Motion``;  ramp (BLOCK,): 0, 1, 2, ...  Adds to scratch (3 or 4, BLOCK + nx +
+    BLOCK), whose fourth row, where rims are soft, gets fractions times theta; returns the first column that may be
+    covered and one past the last.
     """
+    centre, velocity, spin, shift = motion.centre, motion.velocity, motion.spin, motion.shift
     nx = scratch.shape[1] - 2 * BLOCK
     s, sx, sy = scratch[0], scratch[1], scratch[2]
     leftmost = nx
     rightmost = 0
-    for k in range(begin, end):
+    for k in range(rows.start[y], rows.start[y + 1]):
         if k + AHEAD < rows.body.shape[0]:
             m = rows.body[k + AHEAD]
             soon = patches.start[m] + rows.line[k + AHEAD] * patches.stride[m]
@@ -185,7 +198,7 @@ def lay_row(begin, end, rows, patches, centre, velocity, spin, shift, theta, per
                     tx[i] += e[i] * (vx + e[i] * cx)
                     ty[i] += e[i] * (vy + turning * ramp[i] + e[i] * (cy + twist * ramp[i]))
                 if scratch.shape[0] > 3:
-                    softness = ramp.dtype.type(theta[n])
+                    softness = ramp.dtype.type(motion.theta[n])
                     summed = part(scratch[3], x, BLOCK)
                     for i in range(BLOCK):
                         summed[i] += e[i] * softness
@@ -199,8 +212,8 @@ def lay_row(begin, end, rows, patches, centre, velocity, spin, shift, theta, per
 
 
 @parallel_kernel
-def lay_out(rows, patches, centre, velocity, spin, shift, theta, periodic_x, ramp, scratch, out):
-    """All rows at once, for output: overwrites out (3, ny, nx) with what ``lay_row`` gives.
+def rasterize(rows, patches, motion, periodic_x, ramp, scratch, out):
+    """All rows at once, for output: overwrites out (3, ny, nx) with what ``rasterize_row`` gives.
 
     scratch (bands, 3 or 4, BLOCK + nx + BLOCK): zero before and after.
     """
@@ -208,10 +221,7 @@ def lay_out(rows, patches, centre, velocity, spin, shift, theta, periodic_x, ram
     ny, nx = out.shape[1], out.shape[2]
     for band in prange(bands):
         for y in range(band * ny // bands, (band + 1) * ny // bands):
-            lay_row(
-                rows.start[y], rows.start[y + 1], rows, patches, centre, velocity, spin, shift, theta,
-                periodic_x, ramp, scratch[band],
-            )  # fmt: skip
+            rasterize_row(y, rows, patches, motion, periodic_x, ramp, scratch[band])
             for k in range(3):  # element by element: assigned as slices it takes ten times as long to compile
                 for x in range(nx):
                     out[k, y, x] = scratch[band, k, BLOCK + x]

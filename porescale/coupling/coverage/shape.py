@@ -54,4 +54,4 @@ class Shape(ABC):
 
 def periodic(fluid: Fluid) -> tuple[bool, bool]:
     """Whether the box is periodic along x and y."""
-    return fluid.sides.left == "periodic", fluid.sides.bottom == "periodic"
+    return fluid.sides.periodic

@@ -50,10 +50,11 @@ from porescale.lbm.lattice import CX, CY, OPPOSITE, WEIGHTS
 class SideLinks(NamedTuple):
     """Links out of the box through walls and free-slip sides.
 
-    link (k,): number among those of the rim;  cell, beside (k, 2): the cells (x, y), from 0, whose fractions count;
-    share (k,): of the second one's in the mean;  at (k, 2): where it crosses, from the first one's centre;
-    across, along (k, 2): c of the way back, its parts across and along the side, none along a free-slip side;
-    size (k,): 6 w;  own (k,): what the side itself adds;  halo, inner (k,): flat slots of what comes back and went out.
+    link (k,): number among those of the box (lbm/boundary/links.py);  cell, beside (k, 2): the cells (x, y), from 0,
+    whose fractions count;  share (k,): of the second one's in the mean;  at (k, 2): where it crosses, from the first
+    one's centre;  across, along (k, 2): c of the way back, its parts across and along the side, none along a free-slip
+    side;  size (k,): 6 w;  own (k,): what the side itself adds;  halo, inner (k,): flat slots of what comes back and
+    went out.
     """
 
     link: NDArray[np.int64]
@@ -70,20 +71,19 @@ class SideLinks(NamedTuple):
 
 
 def side_links(fluid: Fluid) -> SideLinks:
-    """Those of a fluid's box, as its rim holds them."""
+    """Those of a fluid's box."""
     bounds = Bounds(fluid.nx, fluid.ny, fluid.sides)
     number, cell, beside, share, at, across, along, size = [], [], [], [], [], [], [], []
-    links = [link for link in bounds.links() if bounds.owner(link) != "pressure"]
-    for k, link in enumerate(links):
+    for k, link in enumerate(bounds.partners()):
         kind, owners = bounds.owner(link), bounds.owners(link)
-        if kind not in ("wall", "slip"):
+        if not kind.closed:
             continue
-        mirrored = kind == "slip" and len(owners) == 1
+        mirrored = kind.mirrors and len(owners) == 1
         cx, cy = float(CX[link.out]), float(CY[link.out])
         number.append(k)
         cell.append((link.x - 1, link.y - 1))
-        lean = (0 if link.across else int(cx)), (0 if link.along else int(cy))
-        beside.append(((link.x - 1 + lean[0]) % fluid.nx, (link.y - 1 + lean[1]) % fluid.ny))
+        ahead = (0 if link.across else int(cx)), (0 if link.along else int(cy))
+        beside.append(((link.x - 1 + ahead[0]) % fluid.nx, (link.y - 1 + ahead[1]) % fluid.ny))
         share.append(0.5 if mirrored else 0.0)
         at.append((0.5 * cx, 0.5 * cy))
         across.append((-cx if link.across else 0.0, -cy if link.along else 0.0))
@@ -95,7 +95,7 @@ def side_links(fluid: Fluid) -> SideLinks:
         return np.array(values, dtype).reshape(-1, 2)
 
     which = np.array(number, np.int64)
-    rim = fluid.rim
+    rim = fluid.links
     return SideLinks(
         which, pairs(cell, np.int64), pairs(beside, np.int64), np.array(share, float), pairs(at, float),
         pairs(across, float), pairs(along, float), np.array(size, float), rim.added[which].astype(float),
@@ -129,7 +129,7 @@ def fraction_of(n, x, y, nx, ny, periodic_x, periodic_y, patches):
 def move_sides(first, nx, ny, periodic_x, periodic_y, patches, centre, velocity, spin, links, added, touching):
     """Let the sides move with the bodies from ``first`` on that reach through them; returns the mass that comes in.
 
-    centre, velocity (n, 2), spin (n,): of all bodies, lattice units.  Overwrites added, of the rim's links, and
+    centre, velocity (n, 2), spin (n,): of all bodies, lattice units.  Overwrites added, of the box's links, and
     touching (bodies from ``first`` on,): whether they reach a side.
     """
     touching[:] = False

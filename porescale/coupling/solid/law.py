@@ -1,53 +1,98 @@
-"""What every solid operator of a partially saturated cell provides, chosen by the type of its law.
+"""What every solid operator of a partially saturated cell provides, and what they share.
+
+A solid operator is one file of this folder.  It holds its law, a flat NamedTuple of numbers in the dtype of the
+populations; bodies for that law of the functions of ``SolidLaw``, ``@blend.of(MyLaw)``; and its row in the register,
+``SOLID_OPERATOR = SolidOperator(...)``, which choose.py finds (entry.py).
 
 Every operator conserves mass in each cell, and what the fluid loses of momentum the solid gains.  The body force acts
 in a share of the cell, ``force_share``, or a resting disc would feel a force that is not there; rho u = sum f c + h
-with half the force that acts, h.  Those of the literature are of the form
+with half the force that acts, h.  Those of the literature (Noble & Torczynski 1998) are of the form
 
     f_i* = (1 - B) g_i + B (f_i + Omega^s_i),     g = f + Omega + S, the collided populations of the fluid operator
 
-with the share 1 - B.  A fluid operator relaxes the odd moments that are not momentum with the rate ``third_order``.
+with the share 1 - B.  A fluid operator relaxes the antisymmetric moments that are not momentum with the rate
+``third_order``.
 """
+
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
 
 from porescale.common.compiled.jit import by_law, inline
 from porescale.lbm.collision.law import collide, numbers
 
 
-@by_law
-def force_share(b, solid):
-    """Share of a cell with weight b in which the body force acts."""
+class SolidCell(NamedTuple):
+    """Of a cell: e solid fraction, b weight, theta softness of the rim (coverage/soft_rim.py), v velocity of the solid,
+    h half the body force that acts in it."""
+
+    e: np.floating
+    b: np.floating
+    theta: np.floating
+    vx: np.floating
+    vy: np.floating
+    hx: np.floating
+    hy: np.floating
 
 
-@by_law
-def is_soft(solid):
-    """Whether rims are soft (rim.py): a constant, so that what depends on it costs nothing where they are not."""
+class SolidLaw(Protocol):
+    """The contract of a law of solid cells: functions of one cell, compiled into the sweeps of psm_kernels.py.
 
-
-@by_law
-def mix(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, theta, rho, ux, uy, vx, vy, hx,
-    hy, rate, solid,
-):  # fmt: skip
-    """The nine populations after solid and fluid operator.
-
-    f before, g after the fluid operator (shifted);  e solid fraction, b weight, theta softness of the rim (rim.py);
-    u velocity with h;  v of the solid;  rate 1/tau.
+    f: the nine shifted populations before, g after the fluid operator, tuples;  cell: ``SolidCell``;  m: the fluid's
+    ``Macroscopic``, with h;  rate: 1/tau of the cell.
     """
 
+    @staticmethod
+    def force_share(b: Any, solid: Any) -> Any:
+        """Share of a cell with weight b in which the body force acts; ``free_share`` is 1 - B."""
 
-@by_law
-def rates(e, b, theta, slip_x, slip_y, solid):
-    """Two numbers of a cell that its law makes of the solid fraction alone where rims are sharp; slip: u - v."""
+    @staticmethod
+    def is_soft(solid: Any) -> Any:
+        """Whether rims are soft (coverage/soft_rim.py): a constant, so that what depends on it costs nothing where they
+        are not; ``sharp`` is no."""
+
+    @staticmethod
+    def rates(e: Any, b: Any, theta: Any, slip_x: Any, slip_y: Any, solid: Any) -> Any:
+        """Two numbers of a cell that follow from the solid fraction alone where rims are sharp, for all cells of a row
+        at once;  slip: u - v.  ``no_rates`` serves a law that needs none."""
+
+    @staticmethod
+    def blend(f: Any, g: Any, cell: Any, m: Any, rate: Any, solid: Any) -> Any:
+        """The nine populations after solid and fluid operator."""
+
+    @staticmethod
+    def collide_with_solid(f: Any, cell: Any, shares: Any, m: Any, rate: Any, law: Any, solid: Any) -> Any:
+        """``blend`` with what ``collide`` of the fluid's ``law`` makes of f;  shares: ``rates``.
+
+        ``collide_then_blend`` serves any law with sharp rims.
+        """
+
+    @staticmethod
+    def momentum_to_solid(cell: Any, rho: Any, jx: Any, jy: Any, rate: Any, solid: Any) -> Any:
+        """What a cell's load is made of: (a, x, y) such that the solid of velocity v gains (x - a vx, y - a vy).
+
+        j: first moment sum f c, without h.
+        """
 
 
-@by_law
-def collide_beside(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, e, b, even, kept, rho, d, jx, jy, ux, uy, vx, vy, hx, hy, rate, law, solid,
-):  # fmt: skip
-    """``mix`` with what ``collide`` of the fluid's law makes of f: the nine populations after the step.
+force_share = by_law(SolidLaw.force_share)
+is_soft = by_law(SolidLaw.is_soft)
+rates = by_law(SolidLaw.rates)
+blend = by_law(SolidLaw.blend)
+collide_with_solid = by_law(SolidLaw.collide_with_solid)
+momentum_to_solid = by_law(SolidLaw.momentum_to_solid)
 
-    even, kept: ``rates``;  d density excess, j first moment with h;  law: of the fluid operator.
-    """
+
+@inline
+def free_share(b, solid):
+    """``force_share`` 1 - B."""
+    return numbers(b).one - b
+
+
+@inline
+def sharp(solid):
+    """``is_soft``: no."""
+    return False
 
 
 @inline
@@ -57,20 +102,6 @@ def no_rates(e, b, theta, slip_x, slip_y, solid):
 
 
 @inline
-def collide_then_mix(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, e, b, even, kept, rho, d, jx, jy, ux, uy, vx, vy, hx, hy, rate, law, solid,
-):  # fmt: skip
-    """``collide_beside`` of any operator that has sharp rims."""
-    g0, g1, g2, g3, g4, g5, g6, g7, g8 = collide(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, law)
-    return mix(
-        f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, numbers(e).zero, rho, ux, uy, vx,
-        vy, hx, hy, rate, solid,
-    )  # fmt: skip
-
-
-@by_law
-def taken(e, b, rho, jx, jy, hx, hy, rate, solid):
-    """What a cell's load is made of: (a, x, y) such that the solid of velocity v gains (x - a vx, y - a vy).
-
-    j: first moment sum f c.
-    """
+def collide_then_blend(f, cell, shares, m, rate, law, solid):
+    """``collide_with_solid`` of any operator that has sharp rims."""
+    return blend(f, collide(f, m, rate, law), cell, m, rate, solid)

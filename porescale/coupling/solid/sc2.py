@@ -10,17 +10,20 @@ from typing import NamedTuple
 
 import numpy as np
 
+from porescale.coupling.solid.entry import SolidOperator
 from porescale.coupling.solid.law import (
-    collide_beside,
-    collide_then_mix,
+    blend,
+    collide_then_blend,
+    collide_with_solid,
     force_share,
+    free_share,
     is_soft,
-    mix,
+    momentum_to_solid,
     no_rates,
     rates,
-    taken,
+    sharp,
 )
-from porescale.lbm.collision.law import moments, numbers
+from porescale.lbm.collision.law import numbers
 
 
 class Sc2(NamedTuple):
@@ -29,32 +32,22 @@ class Sc2(NamedTuple):
     one: np.floating
 
 
-collide_beside.of(Sc2)(collide_then_mix)
+collide_with_solid.of(Sc2)(collide_then_blend)
+force_share.of(Sc2)(free_share)
+is_soft.of(Sc2)(sharp)
 rates.of(Sc2)(no_rates)
 
 
-@force_share.of(Sc2)
-def _free(b, solid):
-    """1 - B."""
-    return numbers(b).one - b
-
-
-@is_soft.of(Sc2)
-def _sharp(solid):
-    """No."""
-    return False
-
-
-@mix.of(Sc2)
-def _mix(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, theta, rho, ux, uy, vx, vy, hx,
-    hy, rate, solid,
-):  # fmt: skip
+@blend.of(Sc2)
+def _blend(f, g, cell, m, rate, solid):
     """Superposition; the equilibria of v and u differ by what is of first and second order in velocity."""
+    f0, f1, f2, f3, f4, f5, f6, f7, f8 = f
+    g0, g1, g2, g3, g4, g5, g6, g7, g8 = g
+    b, vx, vy, ux, uy = cell.b, cell.vx, cell.vy, m.ux, m.uy
     c = numbers(b)
+    rho = c.one + m.d
     free, kept = c.one - b, c.one - rate
     a = b * kept
-    d, _, _ = moments(f0, f1, f2, f3, f4, f5, f6, f7, f8)
     p = c.three * rho * b
     px, py = p * (vx - kept * ux), p * (vy - kept * uy)
     sx, sy = c.w1 * px, c.w1 * py
@@ -62,7 +55,7 @@ def _mix(
     n = c.c45 * rho * b
     xx, yy = n * (vx * vx - kept * ux * ux), n * (vy * vy - kept * uy * uy)
     xy = c.two * n * (vx * vy - kept * ux * uy)
-    q = b * rate * d - (xx + yy) / c.three
+    q = b * rate * m.d - (xx + yy) / c.three
     ex, ey = c.w1 * (q + xx), c.w1 * (q + yy)
     e5, e7 = c.w2 * (q + xx + yy + xy), c.w2 * (q + xx + yy - xy)
     return (
@@ -78,8 +71,18 @@ def _mix(
     )
 
 
-@taken.of(Sc2)
-def _taken(e, b, rho, jx, jy, hx, hy, rate, solid):
+@momentum_to_solid.of(Sc2)
+def _momentum_to_solid(cell, rho, jx, jy, rate, solid):
     """B (j + (1 - 1/tau) h - rho v)."""
     kept = numbers(rate).one - rate
-    return b * rho, b * (jx + kept * hx), b * (jy + kept * hy)
+    b = cell.b
+    return b * rho, b * (jx + kept * cell.hx), b * (jy + kept * cell.hy)
+
+
+SOLID_OPERATOR = SolidOperator(
+    name="SC2",
+    purpose="superposition: smooth inside grains, but converges at first order only; for comparison",
+    law=Sc2,
+    constants={"one": 1.0},
+    order=3,
+)

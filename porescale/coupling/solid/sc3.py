@@ -12,15 +12,18 @@ from typing import NamedTuple
 
 import numpy as np
 
+from porescale.coupling.solid.entry import SolidOperator
 from porescale.coupling.solid.law import (
-    collide_beside,
-    collide_then_mix,
+    blend,
+    collide_then_blend,
+    collide_with_solid,
     force_share,
+    free_share,
     is_soft,
-    mix,
+    momentum_to_solid,
     no_rates,
     rates,
-    taken,
+    sharp,
 )
 from porescale.lbm.collision.law import numbers
 
@@ -31,29 +34,20 @@ class Sc3(NamedTuple):
     one: np.floating
 
 
-collide_beside.of(Sc3)(collide_then_mix)
+collide_with_solid.of(Sc3)(collide_then_blend)
+force_share.of(Sc3)(free_share)
+is_soft.of(Sc3)(sharp)
 rates.of(Sc3)(no_rates)
 
 
-@force_share.of(Sc3)
-def _free(b, solid):
-    """1 - B."""
-    return numbers(b).one - b
-
-
-@is_soft.of(Sc3)
-def _sharp(solid):
-    """No."""
-    return False
-
-
-@mix.of(Sc3)
-def _mix(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, e, b, theta, rho, ux, uy, vx, vy, hx,
-    hy, rate, solid,
-):  # fmt: skip
+@blend.of(Sc3)
+def _blend(f, g, cell, m, rate, solid):
     """Bounce-back from the moving solid."""
+    f0, f1, f2, f3, f4, f5, f6, f7, f8 = f
+    g0, g1, g2, g3, g4, g5, g6, g7, g8 = g
+    b, vx, vy = cell.b, cell.vx, cell.vy
     c = numbers(b)
+    rho = c.one + m.d
     free = c.one - b
     p = c.two * c.three * rho * b
     px, py = p * vx, p * vy
@@ -72,8 +66,18 @@ def _mix(
     )
 
 
-@taken.of(Sc3)
-def _taken(e, b, rho, jx, jy, hx, hy, rate, solid):
+@momentum_to_solid.of(Sc3)
+def _momentum_to_solid(cell, rho, jx, jy, rate, solid):
     """2 B (j - rho v)."""
-    twice = b + b
+    twice = cell.b + cell.b
     return twice * rho, twice * jx, twice * jy
+
+
+SOLID_OPERATOR = SolidOperator(
+    name="SC3",
+    purpose="bounce-back from the grain: for grains that are held still; moving ones are noisy, and free ones run away",
+    law=Sc3,
+    constants={"one": 1.0},
+    held_only=True,  # in the map at nearly every density ratio (coupling.fall, coupling.fly) and in beds (coupling.bed)
+    order=4,
+)

@@ -13,11 +13,14 @@ second order it lengthens a channel by a cell (5 % of the flow at 20 cells), and
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from porescale.common.compiled.jit import kernel
-from porescale.lbm.boundary.sides import NAMES, Bounds, Link
+from porescale.lbm.boundary.law import Boundary, Link
+from porescale.lbm.boundary.sides import NAMES, Bounds
 from porescale.lbm.collision.law import moments, numbers
 from porescale.lbm.lattice import CX, CY, OPPOSITE, WEIGHTS, direction
 
@@ -33,7 +36,7 @@ class OpenLinks:
     """
 
     def __init__(self, bounds: Bounds, dtype: DTypeLike) -> None:
-        links = [link for link in bounds.links() if bounds.owner(link) == "pressure"]
+        links = [link for link in bounds.links() if bounds.owner(link) is BOUNDARY]
         self.bounds = bounds
         self._owners = [bounds.owners(link) for link in links]
         origins = [_origin(bounds, link) for link in links]
@@ -52,7 +55,7 @@ class OpenLinks:
 
     def set(self, side: str, density: float) -> None:
         """Give a side another density; ValueError unless it is a pressure side and the density positive."""
-        if self.bounds.sides.kind(side) != "pressure":
+        if self.bounds.sides.boundary(side) is not BOUNDARY:
             raise ValueError(f"the {side} side is of kind {self.bounds.sides.kind(side)}, not pressure")
         if not density > 0:
             raise ValueError(f"density of the {side} side: {density} is not positive")
@@ -64,10 +67,20 @@ class OpenLinks:
         for k, owners in enumerate(self._owners):
             self.excess[k] = sum(self.density[side] for side in owners) / len(owners) - 1
 
-    def let_in(self, flat: NDArray[np.floating], parity: int, force: tuple[np.floating, np.floating]) -> None:
+    def close(self, flat: NDArray[np.floating], parity: int, force: tuple[np.floating, np.floating]) -> None:
         """After a step of that parity, what comes in; ``force``: body force density."""
         slots, to = (self.odd, self.inner) if parity else (self.even, self.halo)
         _let_in(flat, slots, to, self.source, self.along, self.weight, self.excess, *force)
+
+    def state(self) -> dict[str, Any]:
+        """Densities of the sides."""
+        return {"density": dict(self.density)} if self.source.size else {}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state."""
+        if "density" in state:
+            self.density |= {side: float(value) for side, value in state["density"].items()}
+            self.write()
 
 
 def _origin(bounds: Bounds, link: Link) -> tuple[int, tuple[int, int]]:
@@ -77,15 +90,15 @@ def _origin(bounds: Bounds, link: Link) -> tuple[int, tuple[int, int]]:
     pressure sides meet its own.
     """
     back = int(OPPOSITE[link.out])
-    across = bounds.sides.kind(link.across) if link.across else None
-    along = bounds.sides.kind(link.along) if link.along else None
-    if across == along == "pressure":
+    across = bounds.sides.boundary(link.across) if link.across else None
+    along = bounds.sides.boundary(link.along) if link.along else None
+    if across is along is BOUNDARY:
         return back, (link.x, link.y)
-    if across == "pressure":
-        if along == "slip":
+    if across is BOUNDARY:
+        if along is not None and along.mirrors:
             return direction(CX[back], -CY[back]), (link.x, link.y)
         return back, (link.x, (link.to[1] - 1) % bounds.ny + 1)
-    if across == "slip":
+    if across is not None and across.mirrors:
         return direction(-CX[back], CY[back]), (link.x, link.y)
     return back, ((link.to[0] - 1) % bounds.nx + 1, link.y)
 
@@ -102,12 +115,28 @@ def _let_in(flat, slots, to, source, along, weight, excess, fx, fy):
     """
     for k in range(to.shape[0]):
         s = slots[k]
-        d, jx, jy = moments(
-            flat[s[0]], flat[s[1]], flat[s[2]], flat[s[3]], flat[s[4]], flat[s[5]], flat[s[6]], flat[s[7]], flat[s[8]]
-        )
+        f = (flat[s[0]], flat[s[1]], flat[s[2]], flat[s[3]], flat[s[4]], flat[s[5]], flat[s[6]], flat[s[7]], flat[s[8]])
+        d, jx, jy = moments(f)
         c = numbers(d)
         ux = (jx - c.half * fx) / (c.one + d)
         uy = (jy - c.half * fy) / (c.one + d)
         cu = along[k, 0] * ux + along[k, 1] * uy
         size = c.one + c.c45 * cu * cu - c.c15 * (ux * ux + uy * uy)
         flat[to[k]] = flat[s[source[k]]] + weight[k] * (excess[k] - d) * size
+
+
+class PressureSide(Boundary):
+    """A given density, with the velocity of the cells inside."""
+
+    name = "pressure"
+    purpose = "holds a pressure and lets the fluid in or out"
+    order, precedence = 4, 2
+    numbers = ("pressure",)
+    passes = settles = True
+
+    def own_links(self, bounds: Any, dtype: DTypeLike) -> OpenLinks:
+        """Their links."""
+        return OpenLinks(bounds, dtype)
+
+
+BOUNDARY = PressureSide()

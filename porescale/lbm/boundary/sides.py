@@ -3,35 +3,33 @@
 In the in-place pattern only an odd step crosses cells, so sides act only around odd steps.  Each link that leaves the
 box owns one slot in the halo and one inside.  Before the odd step the halo slot gets what must come back in; after it,
 the halo slot holds what went out, and the inner slot of the same pair gets what that turns into.  So one list of
-(halo, inner, added) serves every kind of side but pressure (open_links.py): bounce-back pairs a slot with its reversed
-link, free slip with the mirrored one, periodic with the wrapped one; what moves at a wall or comes through a velocity
-side adds 6 w_i c_i . u (Ladd 1994).
+(halo, inner, added) serves every kind of side that is no more than a partner (law.py): bounce-back pairs a slot with
+its reversed link (wall.py), free slip with the mirrored one (slip.py), periodic with the wrapped one (periodic.py);
+what moves at a wall or comes through a velocity side adds 6 w_i c_i . u (Ladd 1994).
 
-A link through a corner of two sides belongs to the kind that comes first in: velocity, wall, pressure, slip, periodic.
-Two velocities, and two densities, are averaged.  A wall's motion along itself ends where it meets another wall or free
-slip: the corner link adds nothing.  A lid drags 6 w u = u/6 less fluid past each section than its cells' velocities
-say; leaving its motion out of both corner links makes good for that, as a source in one corner and a sink in the other.
-With it in, a cavity's flow is u/6 short, a first-order error (measured: extrema at Re 100, 32 cells, 7 instead of 1 %).
+A link through a corner of two sides belongs to the kind with the lower precedence: velocity, wall, pressure, slip,
+periodic.  Two velocities, and two densities, are averaged.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.compiled.jit import kernel
-from porescale.lbm.lattice import CX, CY, OPPOSITE, WEIGHTS, direction
+from porescale.lbm.boundary.choose import boundary
+from porescale.lbm.boundary.law import Boundary, Link
+from porescale.lbm.lattice import CX, CY, OPPOSITE
 
-Kind = Literal["wall", "slip", "periodic", "velocity", "pressure"]
+Kind = str
+"""Name of a kind of side, see ``choose.boundaries``."""
 Velocity = tuple[float, float] | NDArray[np.floating]
 NAMES = ("left", "right", "bottom", "top")
 
 
 @dataclass(frozen=True)
 class Sides:
-    """What each side is, and its numbers in lattice units.
+    """What each side is, and its numbers in lattice units; ValueError at a kind that there is none of.
 
     wall      half-way bounce-back; ``speed`` along itself (+x or +y)
     slip      free slip: a flat surface of water, a line of symmetry
@@ -39,7 +37,7 @@ class Sides:
     velocity  the fluid comes in or goes out with ``velocity``, (ux, uy) or one for each cell, (n, 2); half-way
               bounce-back at the density 1 of rest, so that the mass that passes is the sum of the velocities, exactly,
               and two sides of equal velocity balance.  A wall that pushes (a piston of small stroke) is the same.
-    pressure  the fluid passes at ``density``, 1 + 3 p; its velocity is that of the cells inside (open_links.py)
+    pressure  the fluid passes at ``density``, 1 + 3 p; its velocity is that of the cells inside (pressure.py)
     """
 
     left: Kind = "wall"
@@ -61,8 +59,10 @@ class Sides:
 
     def __post_init__(self) -> None:
         for low, high in (("left", "right"), ("bottom", "top")):
-            if (getattr(self, low) == "periodic") != (getattr(self, high) == "periodic"):
-                raise ValueError(f"{low} and {high} are periodic together or not at all")
+            one, other = self.boundary(low), self.boundary(high)
+            if one is not other and (one.periodic or other.periodic):
+                joined = (one if one.periodic else other).name
+                raise ValueError(f"{low} and {high} are {joined} together or not at all")
 
     def kind(self, side: str) -> Kind:
         """What the side called left, right, bottom or top is."""
@@ -70,25 +70,17 @@ class Sides:
         return kind
 
     def speed(self, side: str) -> float:
-        """Speed of a side along itself; 0 unless it is a wall."""
-        return float(getattr(self, f"{side}_speed")) if self.kind(side) == "wall" else 0.0
+        """Speed of a side along itself; 0 unless its kind has one."""
+        return float(getattr(self, f"{side}_speed")) if "speed" in self.boundary(side).numbers else 0.0
 
-
-class Link(NamedTuple):
-    """A link from cell (x, y) along direction ``out`` to the halo cell ``to``; ``across``: the side left or right that
-    it crosses, ``along``: bottom or top, "" if none.  Cells count from 1."""
-
-    x: int
-    y: int
-    out: int
-    to: tuple[int, int]
-    across: str
-    along: str
+    def boundary(self, side: str) -> Boundary:
+        """The kind of that side, with all that follows from it."""
+        return boundary(self.kind(side))
 
     @property
-    def sides(self) -> tuple[str, ...]:
-        """The one or two sides it crosses."""
-        return tuple(side for side in (self.across, self.along) if side)
+    def periodic(self) -> tuple[bool, bool]:
+        """Whether the box is periodic along x and y."""
+        return self.boundary("left").periodic, self.boundary("bottom").periodic
 
 
 @dataclass(frozen=True)
@@ -112,16 +104,29 @@ class Bounds:
                     yield Link(x, y, out, to, across, along)
 
     def owners(self, link: Link) -> tuple[str, ...]:
-        """The side or sides that a link belongs to: those of the kind that comes first, see above."""
-        for kind in ("velocity", "wall", "pressure", "slip"):
-            found = tuple(side for side in link.sides if self.sides.kind(side) == kind)
-            if found:
-                return found
-        return link.sides
+        """The side or sides that a link belongs to: those of the kind with the lowest precedence."""
+        kinds = [self.sides.boundary(side) for side in link.sides]
+        first = min(kinds, key=lambda kind: (kind.precedence, kind.name))
+        return tuple(side for side, kind in zip(link.sides, kinds, strict=True) if kind is first)
 
-    def owner(self, link: Link) -> Kind:
+    def owner(self, link: Link) -> Boundary:
         """The kind of those sides."""
-        return self.sides.kind(self.owners(link)[0])
+        return self.sides.boundary(self.owners(link)[0])
+
+    def partners(self) -> list[Link]:
+        """Every link that is paired with a slot: all but those that a kind settles itself."""
+        return [link for link in self.links() if not self.owner(link).settles]
+
+    def beyond(self, link: Link) -> tuple[int, int]:
+        """The cell that a link leads to, taken back into the box through periodic sides."""
+        x, y = link.to
+        across = bool(link.across) and self.sides.boundary(link.across).periodic
+        along = bool(link.along) and self.sides.boundary(link.along).periodic
+        return (x - 1) % self.nx + 1 if across else x, (y - 1) % self.ny + 1 if along else y
+
+    def bounced(self, link: Link) -> int:
+        """Flat slot of the reversed link in the link's own cell: half-way bounce-back."""
+        return self.flat(int(OPPOSITE[link.out]), (link.x, link.y))
 
     def flat(self, slot: int, at: tuple[int, int]) -> int:
         """Index of a slot of a cell into the flat populations."""
@@ -134,40 +139,3 @@ class Bounds:
     def place(self, side: str, link: Link) -> int:
         """Number, from 0, of the link's cell along a side."""
         return (link.y if side in ("left", "right") else link.x) - 1
-
-    def partner(self, link: Link) -> tuple[int, float]:
-        """Flat inner slot of a link that no pressure side owns, and what the motion of walls adds."""
-        x, y, out, to = link.x, link.y, link.out, link.to
-        back = int(OPPOSITE[out])
-        kind = self.owner(link)
-        at = (
-            (to[0] - 1) % self.nx + 1 if link.across and self.sides.kind(link.across) == "periodic" else to[0],
-            (to[1] - 1) % self.ny + 1 if link.along and self.sides.kind(link.along) == "periodic" else to[1],
-        )
-        if kind == "periodic":
-            return self.flat(out, at), 0.0
-        if kind == "slip" and len(self.owners(link)) == 1:
-            if self.owners(link) == (link.along,):
-                return self.flat(direction(CX[out], -CY[out]), (at[0], y)), 0.0
-            return self.flat(direction(-CX[out], CY[out]), (x, at[1])), 0.0
-        added = 0.0
-        closed = len(link.sides) == 2 and {self.sides.kind(side) for side in link.sides} <= {"wall", "slip"}
-        if kind == "wall" and not closed:
-            speed_x = self.sides.speed(link.along) if link.along else 0.0
-            speed_y = self.sides.speed(link.across) if link.across else 0.0
-            added = float(6 * WEIGHTS[back] * (CX[back] * speed_x + CY[back] * speed_y))
-        return self.flat(back, (x, y)), added
-
-
-@kernel
-def fill_halo(flat, halo, inner, added):
-    """After an even step: halo slots get what comes back in.  Overwrites flat populations at ``halo``."""
-    for k in range(halo.shape[0]):
-        flat[halo[k]] = flat[inner[k]] + added[k]
-
-
-@kernel
-def empty_halo(flat, halo, inner, added):
-    """After an odd step: what went out becomes what comes in.  Overwrites flat populations at ``inner``."""
-    for k in range(halo.shape[0]):
-        flat[inner[k]] = flat[halo[k]] + added[k]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from porescale.common.compiled.jit import kernel
-from porescale.lbm.boundary.sides import Sides
+from porescale.lbm.boundary.sides import NAMES, Sides
 from porescale.lbm.lattice import CY, OPPOSITE, WEIGHTS, direction
 
 _CROSSING = (direction(1, 0), direction(1, 1), direction(1, -1))
@@ -32,10 +32,13 @@ class Plate:
     def __init__(self, nx: int, ny: int, column: int, sides: Sides, dtype: DTypeLike) -> None:
         if not 0 < column < nx:
             raise ValueError(f"a plate stands between two columns: column {column} is not in 1 … {nx - 1}")
-        for kind in {"periodic", "pressure"} & {sides.bottom, sides.top}:
-            raise ValueError(f"a plate needs a bottom and a top that turn the fluid back: {kind} does not")
-        if (sides.left == "pressure" and column == 1) or (sides.right == "pressure" and column == nx - 1):
-            raise ValueError(f"a plate stands two cells or more from a pressure side: column {column} does not")
+        left, right, bottom, top = (sides.boundary(side) for side in NAMES)
+        for kind in (bottom, top):
+            if kind.periodic or kind.settles:
+                raise ValueError(f"a plate needs a bottom and a top that turn the fluid back: {kind.name} does not")
+        for kind, beside in ((left, 1), (right, nx - 1)):
+            if kind.settles and column == beside:
+                raise ValueError(f"a plate stands two cells or more from a {kind.name} side: column {column} does not")
         first, second, pull, row = [], [], [], []
         for y in range(1, ny + 1):
             for out in _CROSSING:
@@ -45,7 +48,7 @@ class Plate:
                     second.append((out * (ny + 2) + to) * (nx + 2) + column + 1)
                     pull.append(6 * WEIGHTS[out] * CY[out])
                     row.append(min(y, to) - 1)
-                elif (sides.bottom if to < 1 else sides.top) == "slip":
+                elif (bottom if to < 1 else top).mirrors:
                     mirror = direction(-1, int(CY[out]))
                     first.append((mirror * (ny + 2) + to) * (nx + 2) + column)
                     second.append((out * (ny + 2) + to) * (nx + 2) + column + 1)

@@ -1,4 +1,8 @@
-"""Links through sides with a given velocity: what each adds, changeable between steps."""
+"""Sides with a given velocity, which may change between steps: an inlet, an outlet, a wall that pushes.
+
+Half-way bounce-back that adds 6 w_i c_i . u (Ladd 1994) at the density 1 of rest, so that the mass that passes is the
+sum of the velocities, exactly, and two sides of equal velocity balance.
+"""
 
 from __future__ import annotations
 
@@ -8,25 +12,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import kernel
-from porescale.lbm.boundary.sides import NAMES, Bounds, Link
+from porescale.lbm.boundary.law import Boundary, Link
+from porescale.lbm.boundary.sides import NAMES, Bounds
 from porescale.lbm.lattice import CX, CY, OPPOSITE, WEIGHTS
 
 
 class VelocityLinks:
-    """Every share that a velocity side has in a link of the rim (a corner link of two such sides is half of each).
+    """Every share that a velocity side has in a link (a corner link of two such sides is half of each).
 
     velocity (2 ny + 2 nx, 2): of the cells along left, right, bottom, top, lattice units; of velocity sides only.
     """
 
     def __init__(self, bounds: Bounds, links: list[Link]) -> None:
-        """links: those of which ``added`` is a list (rim.py)."""
+        """links: those of which ``added`` is a list (links.py)."""
         self.bounds = bounds
         starts = np.cumsum([0, *(bounds.length(side) for side in NAMES)])
         self._start = dict(zip(NAMES, starts[:-1].tolist(), strict=True))
         self.velocity = np.zeros((int(starts[-1]), 2))
         shares: list[tuple[int, int, float, float]] = []
         for k, link in enumerate(links):
-            if bounds.owner(link) != "velocity":
+            if not bounds.owner(link).prescribes_velocity:
                 continue
             owners = bounds.owners(link)
             back = OPPOSITE[link.out]
@@ -38,7 +43,7 @@ class VelocityLinks:
         self._at = np.array([share[1] for share in shares], np.int64)
         self._along = np.array([share[2:] for share in shares], float).reshape(-1, 2)
         for side in NAMES:
-            if bounds.sides.kind(side) == "velocity":
+            if bounds.sides.boundary(side).prescribes_velocity:
                 self.set(side, getattr(bounds.sides, f"{side}_velocity"))
 
     def __bool__(self) -> bool:
@@ -50,7 +55,7 @@ class VelocityLinks:
 
     def set(self, side: str, velocity: Any) -> None:
         """Give a side another velocity, (2,) or (n, 2); ValueError unless it is a velocity side and the shape fits."""
-        if self.bounds.sides.kind(side) != "velocity":
+        if not self.bounds.sides.boundary(side).prescribes_velocity:
             raise ValueError(f"the {side} side is of kind {self.bounds.sides.kind(side)}, not velocity")
         n = self.bounds.length(side)
         if np.shape(velocity) not in ((2,), (n, 2)):
@@ -69,3 +74,16 @@ def _add(added, link, at, along, velocity):
         added[link[k]] = 0
     for k in range(link.shape[0]):
         added[link[k]] += along[k, 0] * velocity[at[k], 0] + along[k, 1] * velocity[at[k], 1]
+
+
+class VelocitySide(Boundary):
+    """Bounce-back at a given velocity, (ux, uy) or one for each cell: ``VelocityLinks`` overwrites what is added."""
+
+    name = "velocity"
+    purpose = "lets the fluid in or out with a given velocity"
+    order, precedence = 3, 0
+    numbers, required = ("velocity", "profile"), ("velocity",)
+    passes = prescribes_velocity = True
+
+
+BOUNDARY = VelocitySide()

@@ -8,9 +8,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.lbm.collision.law import collide, collide_in_shares, half_force, half_of_force, shear_rate
+from porescale.lbm.collision.entry import Operator, Stability
+from porescale.lbm.collision.law import (
+    collide,
+    collide_partial,
+    half_force,
+    half_of_force,
+    molecular_rate,
+    shear_rate,
+)
 from porescale.lbm.collision.smagorinsky import eddy_version
-from porescale.lbm.collision.trt import relax_halves, relax_shares
+from porescale.lbm.collision.trt import relax_halves, relax_partial
 
 
 class Bgk(NamedTuple):
@@ -23,25 +31,27 @@ class Bgk(NamedTuple):
 
 EddyBgk = eddy_version(Bgk)
 half_force.of(Bgk, EddyBgk)(half_of_force)
-
-
-@shear_rate.of(Bgk)
-def _molecular(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, law):
-    """Rate of the molecular viscosity, the same everywhere."""
-    return law.rate
+shear_rate.of(Bgk)(molecular_rate)
 
 
 @collide.of(Bgk, EddyBgk)
-def _collide(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, law):
+def _collide(f, m, rate, law):
     """Both halves relax with the same rate."""
-    return relax_halves(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, rate, law)
+    return relax_halves(f, m, rate, rate, law)
 
 
-@collide_in_shares.of(Bgk, EddyBgk)
-def _collide_in_shares(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, even, odd, kept, px, py, law,
-):  # fmt: skip
+@collide_partial.of(Bgk, EddyBgk)
+def _collide_partial(f, m, rate, part, law):
     """Both halves at the same rate."""
-    return relax_shares(
-        f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, rate, even, odd, kept, px, py, law
-    )  # fmt: skip
+    return relax_partial(f, m, rate, rate, part, law)
+
+
+OPERATOR = Operator(
+    name="bgk",
+    purpose="one relaxation time: the textbook's, for comparison",
+    law=Bgk,
+    eddy_law=EddyBgk,
+    third_order_rate=lambda law: float(law.rate),
+    holds=Stability(100.0, 5100.0, 8.0, 8.0),
+    order=3,
+)

@@ -1,4 +1,4 @@
-"""Collision operators by name."""
+"""Collision operators by name: the register of this folder."""
 
 import math
 from typing import Any
@@ -6,18 +6,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike
 
-from porescale.lbm.collision.bgk import Bgk, EddyBgk
-from porescale.lbm.collision.central import Central, EddyCentral
-from porescale.lbm.collision.mrt import ENERGY_RATE, SQUARE_RATE, EddyMrt, Mrt
-from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL, EddyTrt, FreeTrt, Trt, odd_rate
+from porescale.common.core.register import discover
+from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL, Operator
 
-OPERATORS = {
-    "trt": "two relaxation times: walls stay where they are at every viscosity",
-    "mrt": "multiple relaxation times: walls as with trt, and sound is damped faster",
-    "central": "central moments: stable as the viscosity goes to zero, and the same in every moving frame",
-    "bgk": "one relaxation time: the textbook's, for comparison",
-}
-"""Name of each operator and what it is good for."""
+OPERATORS: dict[str, Operator] = discover(__package__, "OPERATOR")
+"""Every ``OPERATOR`` of a file of this folder, by name."""
+
+_OF_LAW = {law: operator for operator in OPERATORS.values() for law in (operator.law, operator.eddy_law)}
 
 
 def choose(
@@ -33,33 +28,29 @@ def choose(
 
     ValueError if there is no operator of that name.
     """
-    plain: dict[str, Any] = {"trt": Trt, "mrt": Mrt, "central": Central, "bgk": Bgk}
-    eddy: dict[str, Any] = {"trt": EddyTrt, "mrt": EddyMrt, "central": EddyCentral, "bgk": EddyBgk}
     if operator not in OPERATORS:
         raise ValueError(f"unknown collision operator {operator!r}: choose from {', '.join(OPERATORS)}")
-    kind = eddy[operator] if smagorinsky > 0 else plain[operator]
+    found = OPERATORS[operator]
+    kind = found.eddy_law if smagorinsky > 0 else found.law
     values = {
         "rate": 1 / relaxation_time,
         "fx": force[0],
         "fy": force[1],
         "magic": magic,
-        "energy": ENERGY_RATE,
-        "square": SQUARE_RATE,
         "strain_factor": 18 * math.sqrt(2) * smagorinsky**2,
+        **found.constants,
     }
     real: Any = np.dtype(dtype).type
     return kind(**{name: real(values[name]) for name in kind._fields})
 
 
-def lean(law: Any) -> Any:
-    """The law of the same numbers that computes nothing of a body force that is not there, where there is one."""
-    return FreeTrt(*law) if isinstance(law, Trt) and not (law.fx or law.fy) else law
+def without_force(law: Any) -> Any:
+    """The law of the same numbers that computes nothing of a body force that is zero, where there is one."""
+    operator = _OF_LAW.get(type(law))
+    free = operator.law_without_force if operator and type(law) is operator.law else None
+    return law if free is None or law.fx or law.fy else free(*law)
 
 
 def third_order_rate(law: Any) -> float:
-    """Rate of the odd moments that are not momentum, at the molecular viscosity, of an operator's law."""
-    if isinstance(law, Central | EddyCentral):
-        return 1.0
-    if isinstance(law, Bgk | EddyBgk):
-        return float(law.rate)
-    return odd_rate(1 / float(law.rate), float(law.magic))
+    """Rate of the antisymmetric moments that are not momentum, at the molecular viscosity, of an operator's law."""
+    return _OF_LAW[type(law)].third_order_rate(law)

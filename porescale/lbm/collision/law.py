@@ -1,15 +1,81 @@
-"""What every collision operator shares: numbers in the dtype of the populations, moments, the choice by type.
+"""What every collision operator provides, and what all of them share.
 
-An operator is a NamedTuple of its rates (a law) and a body of ``collide`` for it.  Kernels take the law as their last
-argument and are compiled once for each operator in use.  Every law begins with the fields ``rate`` (1/tau), ``fx`` and
-``fy`` (body force density), lattice units, in the dtype of the populations.
+An operator is one file of this folder.  It holds
+
+  - its law: a flat NamedTuple of numbers whose first fields are ``rate`` (1/tau), ``fx`` and ``fy`` (body force
+    density), lattice units, in the dtype of the populations;
+  - bodies for that law of the four functions of ``CollisionLaw``, each a kernel:  ``@collide.of(MyLaw)``;
+  - its row in the register, ``OPERATOR = Operator(...)``, which choose.py finds (entry.py).
+
+Kernels take the law as their last argument and are compiled once for each law in use.  Numbers of a kernel come from
+``numbers``, or they would promote single precision.  Directions in opposite pairs and shifted populations: lattice.py.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from porescale.common.compiled.jit import by_law, by_precision, inline
+
+
+class Macroscopic(NamedTuple):
+    """Of a cell: density excess d = rho - 1, momentum j with half the force that acts here, velocity u = j/rho."""
+
+    d: np.floating
+    jx: np.floating
+    jy: np.floating
+    ux: np.floating
+    uy: np.floating
+
+
+class Partial(NamedTuple):
+    """What is left of a collision in a cell that is partly solid, see ``CollisionLaw.collide_partial``."""
+
+    plus: np.floating
+    minus: np.floating
+    kept: np.floating
+    px: np.floating
+    py: np.floating
+
+
+class CollisionLaw(Protocol):
+    """The contract of a law of collision: four functions of one cell, compiled into the sweeps of stream.py.
+
+    f: the nine shifted populations of the cell, a tuple;  m: its ``Macroscopic``.  The symmetric and antisymmetric
+    halves of a pair are f+ = (f_i + f_-i)/2 and f- = (f_i - f_-i)/2.  Mass must be conserved and momentum must change
+    by the force.
+    """
+
+    rate: np.floating
+    fx: np.floating
+    fy: np.floating
+
+    @staticmethod
+    def half_force(law: Any) -> Any:
+        """Half the body force density: (hx, hy).  ``half_of_force`` serves every law."""
+
+    @staticmethod
+    def shear_rate(f: Any, m: Any, law: Any) -> Any:
+        """Rate at which the shear stress of this cell relaxes: 1/tau (``molecular_rate``), less with an eddy viscosity
+        (``eddy_version``)."""
+
+    @staticmethod
+    def collide(f: Any, m: Any, rate: Any, law: Any) -> Any:
+        """The nine collided populations of a cell, body force included;  rate: ``shear_rate``."""
+
+    @staticmethod
+    def collide_partial(f: Any, m: Any, rate: Any, part: Any, law: Any) -> Any:
+        """A share of the collision, in a cell that is partly solid:  (1 - plus) f+ + plus g+  and
+        kept f- + minus g- + 3 w c.p,  with g of ``collide``;  part: ``Partial``.
+
+        ``collide_then_add`` serves every law.
+        """
+
+
+half_force = by_law(CollisionLaw.half_force)
+shear_rate = by_law(CollisionLaw.shear_rate)
+collide = by_law(CollisionLaw.collide)
+collide_partial = by_law(CollisionLaw.collide_partial)
 
 
 class Numbers(NamedTuple):
@@ -38,8 +104,9 @@ def numbers(real: type) -> Numbers:
 
 
 @inline
-def moments(f0, f1, f2, f3, f4, f5, f6, f7, f8):
+def moments(f):
     """Density excess and first moment of nine shifted populations: (d, jx, jy)."""
+    f0, f1, f2, f3, f4, f5, f6, f7, f8 = f
     d = f0 + ((f1 + f2) + (f3 + f4)) + ((f5 + f6) + (f7 + f8))
     d5 = f5 - f6
     d7 = f7 - f8
@@ -47,19 +114,17 @@ def moments(f0, f1, f2, f3, f4, f5, f6, f7, f8):
 
 
 @inline
-def stress(f1, f2, f3, f4, f5, f6, f7, f8, third, jx, jy, ux, uy):
-    """Non-equilibrium part of the second moments: (xx, yy, xy); ``third`` is a third of the density excess."""
+def stress(f, m):
+    """Non-equilibrium part of the second moments: (xx, yy, xy)."""
+    _, f1, f2, f3, f4, f5, f6, f7, f8 = f
+    c = numbers(m.d)
+    third = c.one / c.three * m.d
     diagonal = (f5 + f6) + (f7 + f8)
     return (
-        f1 + f2 + diagonal - third - jx * ux,
-        f3 + f4 + diagonal - third - jy * uy,
-        (f5 + f6) - (f7 + f8) - jx * uy,
+        f1 + f2 + diagonal - third - m.jx * m.ux,
+        f3 + f4 + diagonal - third - m.jy * m.uy,
+        (f5 + f6) - (f7 + f8) - m.jx * m.uy,
     )
-
-
-@by_law
-def half_force(law):
-    """Half the body force density: (hx, hy)."""
 
 
 @inline
@@ -69,78 +134,70 @@ def half_of_force(law):
     return half * law.fx, half * law.fy
 
 
-@by_law
-def shear_rate(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, law):
-    """Rate at which the shear stress of this cell relaxes: 1/tau, or less with an eddy viscosity."""
-
-
-@by_law
-def collide(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, law):
-    """The nine collided populations of a cell, body force included.
-
-    f: shifted populations;  d density excess, j first moment with half the force that acts here, u = j/(1 + d);
-    rate: ``shear_rate``.
-    """
-
-
-@by_law
-def collide_in_shares(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, even, odd, kept, px, py, law,
-):  # fmt: skip
-    """What is left of a collision in a cell that is partly solid: (1 - even) f+ + even g+,  kept f- + odd g- + 3 w c.p.
-
-    f+, f-: even and odd half of the populations before, g+, g- after ``collide``, whose arguments the others are.
-    """
+@inline
+def molecular_rate(f, m, law):
+    """``shear_rate`` of the molecular viscosity, the same everywhere."""
+    return law.rate
 
 
 @inline
-def add_shares(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, even, odd, kept, px, py,
-):  # fmt: skip
-    """The same from the populations f before and g after any collision."""
+def add_partial(f, g, part):
+    """``collide_partial`` from the populations f before and g after any collision."""
+    f0, f1, f2, f3, f4, f5, f6, f7, f8 = f
+    g0, g1, g2, g3, g4, g5, g6, g7, g8 = g
     c = numbers(f0)
-    half = c.half
-    ea, eb, oa, ob = half * (c.one - even), half * even, half * kept, half * odd
+    half, px, py = c.half, part.px, part.py
+    ea, eb, oa, ob = half * (c.one - part.plus), half * part.plus, half * part.kept, half * part.minus
     t1, t2 = c.three * c.w1, c.three * c.w2
     q1, m1 = ea * (f1 + f2) + eb * (g1 + g2), oa * (f1 - f2) + ob * (g1 - g2) + t1 * px
     q3, m3 = ea * (f3 + f4) + eb * (g3 + g4), oa * (f3 - f4) + ob * (g3 - g4) + t1 * py
     q5, m5 = ea * (f5 + f6) + eb * (g5 + g6), oa * (f5 - f6) + ob * (g5 - g6) + t2 * (px + py)
     q7, m7 = ea * (f7 + f8) + eb * (g7 + g8), oa * (f7 - f8) + ob * (g7 - g8) + t2 * (py - px)
-    return (c.one - even) * f0 + even * g0, q1 + m1, q1 - m1, q3 + m3, q3 - m3, q5 + m5, q5 - m5, q7 + m7, q7 - m7
+    rest = (c.one - part.plus) * f0 + part.plus * g0
+    return rest, q1 + m1, q1 - m1, q3 + m3, q3 - m3, q5 + m5, q5 - m5, q7 + m7, q7 - m7
 
 
 @inline
-def collide_then_add(
-    f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, even, odd, kept, px, py, law,
-):  # fmt: skip
-    """``collide_in_shares`` for any operator."""
-    g0, g1, g2, g3, g4, g5, g6, g7, g8 = collide(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, law)
-    return add_shares(
-        f0, f1, f2, f3, f4, f5, f6, f7, f8, g0, g1, g2, g3, g4, g5, g6, g7, g8, even, odd, kept, px, py
-    )  # fmt: skip
+def collide_then_add(f, m, rate, part, law):
+    """``collide_partial`` for any operator."""
+    return add_partial(f, collide(f, m, rate, law), part)
 
 
 @inline
-def collide_row(a0, a1, a2, a3, a4, a5, a6, a7, a8, first, last, law):
+def cut(planes, first, last):
+    """Entries ``first`` to ``last`` - 1 of nine rows: an index that might be negative keeps a loop from being
+    vectorised."""
+    a0, a1, a2, a3, a4, a5, a6, a7, a8 = planes
+    return (
+        a0[first:last],
+        a1[first:last],
+        a2[first:last],
+        a3[first:last],
+        a4[first:last],
+        a5[first:last],
+        a6[first:last],
+        a7[first:last],
+        a8[first:last],
+    )
+
+
+@inline
+def collide_row(planes, first, last, law):
     """Collide cells ``first`` to ``last`` - 1 of one row; overwrites its nine slots.
 
-    a_i (nx,): the slots where the row's h_i are read; the collided h_i goes to the slot of the opposite direction.
-    Not checked: that density stays positive.
+    planes: nine arrays (nx,), the slots where the row's h_i are read; the collided h_i goes to the slot of the opposite
+    direction.  Not checked: that density stays positive.
     """
     c = numbers(law.rate)
     hx, hy = half_force(law)
-    # Cut to the range first: an index that might be negative keeps the loop from being vectorised.
-    a0, a1, a2, a3, a4 = a0[first:last], a1[first:last], a2[first:last], a3[first:last], a4[first:last]
-    a5, a6, a7, a8 = a5[first:last], a6[first:last], a7[first:last], a8[first:last]
+    a0, a1, a2, a3, a4, a5, a6, a7, a8 = cut(planes, first, last)
     for x in range(a0.shape[0]):
-        f0, f1, f2, f3, f4 = a0[x], a1[x], a2[x], a3[x], a4[x]
-        f5, f6, f7, f8 = a5[x], a6[x], a7[x], a8[x]
-        d, jx, jy = moments(f0, f1, f2, f3, f4, f5, f6, f7, f8)
+        f = (a0[x], a1[x], a2[x], a3[x], a4[x], a5[x], a6[x], a7[x], a8[x])
+        d, jx, jy = moments(f)
         jx += hx
         jy += hy
-        lightness = c.one / (c.one + d)
-        ux, uy = jx * lightness, jy * lightness
-        rate = shear_rate(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, law)
-        g0, g1, g2, g3, g4, g5, g6, g7, g8 = collide(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, law)
+        specific_volume = c.one / (c.one + d)
+        m = Macroscopic(d, jx, jy, jx * specific_volume, jy * specific_volume)
+        g0, g1, g2, g3, g4, g5, g6, g7, g8 = collide(f, m, shear_rate(f, m, law), law)
         a0[x], a2[x], a1[x], a4[x], a3[x] = g0, g1, g2, g3, g4
         a6[x], a5[x], a8[x], a7[x] = g5, g6, g7, g8

@@ -1,9 +1,10 @@
 """Multiple relaxation times in the moments of Lallemand & Luo 2000, with body force (Guo, Zheng & Shi 2002).
 
-Even moments, in the order of their paper: energy e, its square eps, the stresses p_xx and p_xy; odd ones: momentum j
-and energy flux q.  The stresses relax with 1/tau, e and eps with their own rates: e carries the bulk viscosity and
-damps sound.  The odd moments share the rate that holds the magic parameter (trt.py; for 3/16 it is the 8(2 - s)/(8 - s)
-of Ginzburg & d'Humieres 2003), so walls stay where they are.  Equilibria and sources of the force, per moment:
+Symmetric moments, in the order of their paper: energy e, its square eps, the stresses p_xx and p_xy; antisymmetric
+ones: momentum j and energy flux q.  The stresses relax with 1/tau, e and eps with their own rates: e carries the bulk
+viscosity and damps sound.  The antisymmetric moments share the rate that holds the magic parameter (trt.py; for 3/16 it
+is the 8(2 - s)/(8 - s) of Ginzburg & d'Humieres 2003), so walls stay where they are.  Equilibria and sources of the
+force, per moment:
 
     e  -2 rho + 3 j²/rho,  6 u.F      eps  rho - 3 j²/rho,  -6 u.F      p_xx  (jx² - jy²)/rho,  2 (ux Fx - uy Fy)
     p_xy  jx jy/rho,  ux Fy + uy Fx   q  -j,  -F                         j  j,  F
@@ -17,16 +18,19 @@ from typing import NamedTuple
 import numpy as np
 
 from porescale.common.compiled.jit import inline
+from porescale.lbm.collision.entry import Operator, Stability
 from porescale.lbm.collision.law import (
     collide,
-    collide_in_shares,
+    collide_partial,
     collide_then_add,
     half_force,
     half_of_force,
+    molecular_rate,
     numbers,
     shear_rate,
 )
 from porescale.lbm.collision.smagorinsky import eddy_version
+from porescale.lbm.collision.trt import magic_rate, magic_rate_of
 
 ENERGY_RATE = 1.64
 """Rate of e (Lallemand & Luo 2000, section V)."""
@@ -47,28 +51,22 @@ class Mrt(NamedTuple):
 
 EddyMrt = eddy_version(Mrt)
 half_force.of(Mrt, EddyMrt)(half_of_force)
-collide_in_shares.of(Mrt, EddyMrt)(collide_then_add)
-
-
-@shear_rate.of(Mrt)
-def _molecular(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, law):
-    """Rate of the molecular viscosity, the same everywhere."""
-    return law.rate
+shear_rate.of(Mrt)(molecular_rate)
+collide_partial.of(Mrt, EddyMrt)(collide_then_add)
 
 
 @collide.of(Mrt, EddyMrt)
-def _collide(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, law):
+def _collide(f, m, rate, law):
     """Each moment relaxes with its own rate."""
-    c = numbers(rate)
-    spread = c.one - c.half * rate  # (tau - 1/2)/tau; one division, since with eddies every cell has its own
-    odd = spread / (c.half * spread + law.magic * rate)
-    return relax_moments(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, odd, law)
+    return relax_moments(f, m, rate, magic_rate(rate, law), law)
 
 
 @inline
-def relax_moments(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, odd, law):
-    """The nine collided populations: changes of e, eps, p_xx and p_xy over their norms 36, 36, 4, 4, and of the odd
-    half of each pair."""
+def relax_moments(f, m, rate, minus, law):
+    """The nine collided populations: changes of e, eps, p_xx and p_xy over their norms 36, 36, 4, 4, and of the
+    antisymmetric half of each pair, which relaxes with the rate ``minus``."""
+    f0, f1, f2, f3, f4, f5, f6, f7, f8 = f
+    d, jx, jy, ux, uy = m
     c, fx, fy = numbers(rate), law.fx, law.fy
     half, two, three = c.half, c.two, c.three
     energy, square = law.energy, law.square
@@ -83,22 +81,34 @@ def relax_moments(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, rate, o
     source = c.one - half * rate
     xx = c.quarter * (rate * (jx * ux - jy * uy - (a - b)) + source * two * (ux * fx - uy * fy))
     xy = c.quarter * (rate * (jx * uy - (p - q)) + source * (ux * fy + uy * fx))
-    so = c.one - half * odd
-    mx, my = odd * jx + so * fx, odd * jy + so * fy
+    so = c.one - half * minus
+    mx, my = minus * jx + so * fx, minus * jy + so * fy
     t1, t2 = three * c.w1, three * c.w2
-    ho = half * odd
+    ho = half * minus
     side, corner = -e - two * s, two * e + s
     g0 = f0 + two * two * (s - e)
-    even, m = side + xx, t1 * mx - ho * (f1 - f2)
-    g1 = f1 + even + m
-    g2 = f2 + even - m
-    even, m = side - xx, t1 * my - ho * (f3 - f4)
-    g3 = f3 + even + m
-    g4 = f4 + even - m
-    even, m = corner + xy, t2 * (mx + my) - ho * (f5 - f6)
-    g5 = f5 + even + m
-    g6 = f6 + even - m
-    even, m = corner - xy, t2 * (my - mx) - ho * (f7 - f8)
-    g7 = f7 + even + m
-    g8 = f8 + even - m
+    plus, change = side + xx, t1 * mx - ho * (f1 - f2)
+    g1 = f1 + plus + change
+    g2 = f2 + plus - change
+    plus, change = side - xx, t1 * my - ho * (f3 - f4)
+    g3 = f3 + plus + change
+    g4 = f4 + plus - change
+    plus, change = corner + xy, t2 * (mx + my) - ho * (f5 - f6)
+    g5 = f5 + plus + change
+    g6 = f6 + plus - change
+    plus, change = corner - xy, t2 * (my - mx) - ho * (f7 - f8)
+    g7 = f7 + plus + change
+    g8 = f8 + plus - change
     return g0, g1, g2, g3, g4, g5, g6, g7, g8
+
+
+OPERATOR = Operator(
+    name="mrt",
+    purpose="multiple relaxation times: walls as with trt, and sound is damped faster",
+    law=Mrt,
+    eddy_law=EddyMrt,
+    third_order_rate=magic_rate_of,
+    constants={"energy": ENERGY_RATE, "square": SQUARE_RATE},
+    holds=Stability(10.0, 17.0, 31.0, 200000.0),
+    order=1,
+)

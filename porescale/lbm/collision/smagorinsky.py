@@ -28,10 +28,10 @@ def eddy_version(law: Any) -> Any:
 
 
 @inline
-def _eddy_rate(f0, f1, f2, f3, f4, f5, f6, f7, f8, d, jx, jy, ux, uy, law):
+def _eddy_rate(f, m, law):
     """Rate of molecular and eddy viscosity together."""
     c = numbers(law.rate)
-    xx, yy, xy = stress(f1, f2, f3, f4, f5, f6, f7, f8, c.one / c.three * d, jx, jy, ux, uy)
+    xx, yy, xy = stress(f, m)
     size = np.sqrt(xx * xx + yy * yy + c.two * xy * xy)
     tau = c.one / law.rate
-    return c.two / (tau + np.sqrt(tau * tau + law.strain_factor * size * (c.one / (c.one + d))))
+    return c.two / (tau + np.sqrt(tau * tau + law.strain_factor * size * (c.one / (c.one + m.d))))

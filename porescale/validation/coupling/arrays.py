@@ -16,7 +16,7 @@ import numpy as np
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.coupling.step import Coupled
 from porescale.lbm.lattice import viscosity
-from porescale.validation.coupling.grains_trials import DEFAULT, TAU, Method
+from porescale.validation.coupling.setups import DEFAULT, TAU, Method
 from porescale.validation.coupling.towed import PERIODIC, SLOW, square_array_drag, steady, towed
 from porescale.validation.lbm.channels import one_thread
 

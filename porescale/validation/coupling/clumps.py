@@ -19,7 +19,7 @@ from porescale.dem.grains import Grains
 from porescale.lbm.boundary.sides import Kind, Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
-from porescale.validation.coupling.grains_trials import LAW, TAU
+from porescale.validation.coupling.setups import LAW, TAU
 from porescale.validation.lbm.channels import one_thread
 
 WIDE, HIGH, R = 48, 64, 6.0

@@ -1,4 +1,4 @@
-"""Validations of polygons in fluid: what they cover, drag and torque in slow flow, laws of rigid bodies.
+"""Polygons that stand still in slow flow: the area they cover, drag and torque of square arrays.  Lattice units.
 
 References: drag F/(mu U) of square arrays, U superficial, and torque over mu w and the cell, of forces along the sides
 (tests/reference/stokes_polygons.py), five digits.
@@ -7,32 +7,143 @@ References: drag F/(mu U) of square arrays, U superficial, and torque over mu w 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from porescale.common.evidence.validations import Measured, Validations
-from porescale.validation.coupling import polygons_trials as lab
+from porescale.coupling.coverage.polygon import Polygons
+from porescale.coupling.coverage.rows import make_patches
+from porescale.coupling.psm import Saturated
+from porescale.lbm.boundary.sides import Sides
+from porescale.lbm.fluid import Fluid
+from porescale.lbm.lattice import viscosity
+from porescale.validation.coupling.setups import DEFAULT, TAU, Method
 from porescale.validation.coupling.towed import square_array_drag
+from porescale.validation.lbm.channels import one_thread
 
+Array = NDArray[np.float64]
+EPS = float(np.finfo(float).eps)
 VALIDATIONS = Validations()
 
-EPS = float(np.finfo(float).eps)
+
+def regular(corners: int, area: float, degrees: float = 0.0) -> Array:
+    """Corners (k, 2) of a regular polygon of this area about 0, the first one ``degrees`` from the x axis."""
+    radius = math.sqrt(2.0 * area / (corners * math.sin(2.0 * math.pi / corners)))
+    angle = math.radians(degrees) + 2.0 * np.pi * np.arange(corners) / corners
+    return radius * np.column_stack((np.cos(angle), np.sin(angle)))
+
+
+def plate(length: float, thickness: float, degrees: float = 0.0) -> Array:
+    """Corners (4, 2) of a plate about 0, its length ``degrees`` from the x axis."""
+    a, b = 0.5 * length, 0.5 * thickness
+    cosine, sine = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    x, y = np.array([-a, a, a, -a]), np.array([-b, -b, b, b])
+    return np.column_stack((cosine * x - sine * y, sine * x + cosine * y))
+
+
+def ellipse(a: float, b: float, corners: int = 48) -> Array:
+    """Corners (k, 2) of a polygon with the area and, but for its corners, the shape of an ellipse about 0."""
+    angle = 2.0 * np.pi * (np.arange(corners) + 0.5) / corners
+    wider = math.sqrt(2.0 * math.pi / (corners * math.sin(2.0 * math.pi / corners)))
+    return wider * np.column_stack((a * np.cos(angle), b * np.sin(angle)))
+
+
+def array_drag(
+    corners: ArrayLike,
+    cells: int,
+    *,
+    relaxation_time: float = TAU,
+    places: Sequence[tuple[float, float]] = ((0.125, 0.125), (0.125, 0.375), (0.375, 0.125), (0.375, 0.375)),
+    method: Method = DEFAULT,
+    change: float = 1e-5,
+) -> list[float]:
+    """Drag F/(mu U) of a square array of a polygon (k, 2), in parts of the period, for each place in a cell.
+
+    Driven by a body force G along x: the drag is G times the box, U the conserved flux.
+    """
+    nu, found = viscosity(relaxation_time), []
+    force = 1e-6 * nu
+    for place in places:
+        fluid = Fluid(
+            cells, cells, relaxation_time, operator=method.operator, magic=method.magic, force=(force, 0.0),
+            sides=PERIODIC,
+        )  # fmt: skip
+        body = Polygons([cells * np.asarray(corners, float)])
+        body.centre[0] = 0.5 * cells + place[0], 0.5 * cells + place[1]
+        wet = Saturated(
+            fluid, np.zeros(0), solid_operator=method.solid_operator, weighting=method.weighting, polygons=body
+        )  # fmt: skip
+        flux, before = 0.0, math.nan
+        with one_thread():
+            while not abs(flux - before) <= change * abs(flux):
+                for _ in range(max(50, math.ceil(cells**2 / (25.0 * nu)))):
+                    wet.advance(fluid, *NO_DISCS)
+                flux, before = fluid.momentum()[0] / cells**2, flux
+        found.append(force * cells**2 / (nu * flux))
+    return found
+
+
+def array_torque(
+    corners: ArrayLike, cells: int, *, relaxation_time: float = TAU, place: tuple[float, float] = (0.3, 0.1),
+    method: Method = DEFAULT,
+) -> float:  # fmt: skip
+    """Torque over mu w and the box's area of a square array of a polygon, in parts of the period, that all turn with w
+    and have not got anywhere."""
+    nu, spin = viscosity(relaxation_time), 1e-9
+    fluid = Fluid(cells, cells, relaxation_time, operator=method.operator, magic=method.magic, sides=PERIODIC)
+    body = Polygons([cells * np.asarray(corners, float)])
+    body.centre[0], body.spin[0] = (0.5 * cells + place[0], 0.5 * cells + place[1]), spin
+    wet = Saturated(
+        fluid, np.zeros(0), solid_operator=method.solid_operator, weighting=method.weighting, polygons=body
+    )  # fmt: skip
+    with one_thread():
+        for _ in range(math.ceil(cells**2 / nu)):
+            wet.advance(fluid, *NO_DISCS)
+    return -float(wet.polygon_load[0, 2]) / (nu * spin * cells**2)
+
+
+def area_errors(shapes: Sequence[Array], angles: int) -> list[float]:
+    """Largest errors of the sum of solid fractions over angles and places, cells², of each polygon (k, 2)."""
+    fluid, found = Fluid(64, 64, TAU), []
+    for corners in shapes:
+        body = Polygons([corners])
+        cells = body.fit(fluid, 0.0, 0)
+        patches = make_patches(cells, cells, np.dtype(np.float64))
+        worst = 0.0
+        for k in range(angles):
+            body.angle[0], body.centre[0] = math.pi * k / angles, (20.0 + 0.618 * k % 1.0, 30.0 + 0.414 * k % 1.0)
+            body.cover(patches, 0)
+            covered = patches.fraction[: patches.height[0] * patches.stride[0]]
+            worst = max(worst, abs(float(covered.sum()) - float(body.area[0])))
+        found.append(worst)
+    return found
+
+
+NO_DISCS = np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0)
+PERIODIC = Sides("periodic", "periodic", "periodic", "periodic")
+
 SQUARES = {0: 26.945294, 20: 27.982393, 45: 29.739357}
 """Drag of square arrays of squares, solid fraction 0.1, turned by so many degrees."""
+
 DENSER = {0: 55.353423, 20: 60.926498}
 """The same at solid fraction 0.2."""
+
 TURNING = {0: 1.209845, 20: 1.283351}
 """Torque of turning squares, solid fraction 0.2."""
+
 PLATES = {0: 13.673741, 30: 18.646834, 90: 71.364736}
 """Drag of square arrays of plates, 0.6 by 0.075 of the period, turned by so many degrees, that turn flow aside freely:
 of the tensor R, R_xx - R_xy²/R_yy."""
+
 ASKED = 0.01
 """Largest error of a mean over places in a cell, as asked for of discs (verify_arrays.py)."""
 
 
-def square(fraction: float, degrees: float) -> lab.Array:
+def square(fraction: float, degrees: float) -> Array:
     """A square that takes this part of a cell of side 1, its sides turned by ``degrees`` from the axes."""
-    return lab.regular(4, fraction, 45.0 + degrees)
+    return regular(4, fraction, 45.0 + degrees)
 
 
 @VALIDATIONS.row(
@@ -44,7 +155,7 @@ def square(fraction: float, degrees: float) -> lab.Array:
 )
 def areas() -> Measured:
     """Largest error of the sum of fractions, cells, of a square, a plate and an ellipse at 180 angles and places."""
-    errors = lab.area_errors([lab.regular(4, 100.0), lab.plate(20.0, 2.5), lab.ellipse(10.0, 4.0)], 180)
+    errors = area_errors([regular(4, 100.0), plate(20.0, 2.5), ellipse(10.0, 4.0)], 180)
     return Measured(0.0, errors, max(errors))
 
 
@@ -61,7 +172,7 @@ def squares() -> Measured:
     """Drag at 10 cells a side, tau 0.8, mean over places."""
     cases = [(0.1, 32, turn, drag) for turn, drag in SQUARES.items()]
     cases += [(0.2, 22, turn, drag) for turn, drag in DENSER.items()]
-    found = [float(np.mean(lab.array_drag(square(c, turn), cells))) for c, cells, turn, _ in cases]
+    found = [float(np.mean(array_drag(square(c, turn), cells))) for c, cells, turn, _ in cases]
     exact = [drag for *_, drag in cases]
     return Measured(exact, found, float(np.abs(np.divide(found, exact) - 1).max()))
 
@@ -82,9 +193,7 @@ def plates() -> Measured:
 
 def plate_drag(cells: int, degrees: float) -> float:
     """Drag of the array of plates in a box of so many cells."""
-    return float(
-        np.mean(lab.array_drag(lab.plate(0.6, 0.075, degrees), cells, places=[(0.125, 0.375), (0.375, 0.125)]))
-    )
+    return float(np.mean(array_drag(plate(0.6, 0.075, degrees), cells, places=[(0.125, 0.375), (0.375, 0.125)])))
 
 
 @VALIDATIONS.row(
@@ -96,7 +205,7 @@ def plate_drag(cells: int, degrees: float) -> float:
 )
 def turning() -> Measured:
     """Torque over mu w and the cell at 10 cells a side, tau 0.8, sides at 0 and 20 degrees."""
-    found = [lab.array_torque(square(0.2, turn), 22) for turn in TURNING]
+    found = [array_torque(square(0.2, turn), 22) for turn in TURNING]
     exact = list(TURNING.values())
     return Measured(exact, found, float(np.abs(np.divide(found, exact) - 1).max()))
 
@@ -106,7 +215,7 @@ def beside_the_disc(corners: int, cells: int = 25, solid_fraction: float = 0.2) 
     place = [(0.125, 0.375)]
     radius = math.sqrt(solid_fraction / math.pi)
     disc = square_array_drag(2 * radius * cells, solid_fraction, places=place)[0]
-    return lab.array_drag(lab.regular(corners, solid_fraction, 7.0), cells, places=place, change=1e-6)[0] / disc - 1
+    return array_drag(regular(corners, solid_fraction, 7.0), cells, places=place, change=1e-6)[0] / disc - 1
 
 
 @VALIDATIONS.row(
@@ -122,53 +231,3 @@ def many_corners() -> Measured:
     found = [beside_the_disc(count) for count in (6, 12, 36)]
     size = [abs(each) for each in found]
     return Measured([0.0] * 3, found, size[2] if size[0] > size[1] > size[2] else math.inf)
-
-
-@VALIDATIONS.row(
-    "coupling.neutral_polygons_feel_no_force",
-    source="Galilean invariance: b rho (u - v) = 0 in every cell",
-    because="round-off: four roundings of 0.036 in each of the 110 cells of the largest, all one way",
-    tolerance=4 * 110 * 0.036 * EPS,
-)
-def neutral() -> Measured:
-    """Largest load, and torque over the size, on three polygons of density 1 that uniform flow carries, 300 steps."""
-    loads = lab.loads_on_neutral(300)
-    return Measured(0.0, loads, max(loads))
-
-
-@VALIDATIONS.row(
-    "coupling.momentum_of_polygons",
-    source="Newton: momentum of polygons, discs and fluid, less that of the fluid inside and with virtual masses",
-    because="round-off: each of 400 fluid and 1600 contact steps rounds every velocity, all one way: 2000 eps",
-    tolerance=2000 * EPS,
-)
-def momentum() -> Measured:
-    """Error of the book over sum m |v| at the start: polygons and discs that meet in a periodic box under gravity."""
-    errors = [lab.momentum_error(400, ratio) for ratio in (2.0, 0.5)]
-    return Measured([0.0, 0.0], errors, max(errors))
-
-
-@VALIDATIONS.row(
-    "coupling.level_plate_sinks_straight",
-    source="mirror symmetry",
-    because="round-off: sums over 3e3 cells of populations less those at rest, as large as the speed: 3e3 eps",
-    tolerance=3000 * EPS,
-)
-def mirror() -> Measured:
-    """Sideways speed and tip speed of a level plate that sinks, over the speed down."""
-    aside, tip = lab.level_plate(0.0)
-    return Measured([0.0, 0.0], [aside, tip], max(abs(aside), abs(tip)))
-
-
-@VALIDATIONS.row(
-    "coupling.jeffery_period",
-    source="Jeffery 1922, in two dimensions: half a turn of an ellipse, free in shear g, takes pi (r + 1/r)/g",
-    because="walls 4.3 half lengths off slow it by the order of (2 a/H)², 5.5 % (2.9 % at half as much again), inertia"
-    " at g a²/nu = 0.15 by less than 1 %",
-    tolerance=(2 * 7.5 / 64) ** 2,
-    slow=True,
-)
-def jeffery() -> Measured:
-    """Time of half a turn over Jeffery's: ellipse of 48 corners, axes 15 and 7.5 cells, between walls that slide."""
-    found = lab.half_turn(64, 7.5, 3.75, 0.15) / (math.pi * 2.5)
-    return Measured(1.0, found, abs(found - 1))

@@ -16,7 +16,7 @@ from porescale.common.evidence.validations import Measured, Validations
 from porescale.coupling.step import Coupled
 from porescale.dem.measures.contacts import contacts
 from porescale.dem.resting.sleep import Sleep
-from porescale.validation.coupling.grains_trials import immersed
+from porescale.validation.coupling.setups import immersed
 
 Array = NDArray[np.floating]
 

@@ -11,9 +11,10 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from porescale.common.evidence.validations import Measured, Validations
+from porescale.coupling.psm import Saturated
 from porescale.coupling.step import Coupled
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
@@ -22,14 +23,54 @@ from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
 from porescale.lbm.scales import Scales
-from porescale.validation.coupling.grains_trials import DEFAULT, LAW, TAU, Method, faxen, spinning_disc, weighing
+from porescale.validation.coupling.setups import DEFAULT, LAW, TAU, Method
 from porescale.validation.lbm.channels import one_thread
 
-Array = NDArray[np.floating]
+VALIDATIONS = Validations()
+
+
+def faxen(k: float) -> float:
+    """Drag F/(mu U) of a cylinder towed midway between walls, k radius over half width (Faxen 1946)."""
+    return 4 * math.pi / (-math.log(k) - 0.9157 + 1.7244 * k**2 - 1.7302 * k**4 + 2.4056 * k**6 - 4.5913 * k**8)
+
+
+def weighing(
+    relaxation_time: float, cells: int = 40, radius: float = 5.0, steps: int = 5000, method: Method = DEFAULT
+) -> tuple[float, float]:
+    """Load over F of a disc held in a closed box under a downward body force F on the fluid, and the area it covers."""
+    force = 1e-6
+    fluid = Fluid(cells, cells, relaxation_time, force=(0.0, -force))
+    wet = Saturated(fluid, np.array([radius]), solid_operator=method.solid_operator, weighting=method.weighting)
+    place, rest, no_spin = np.array([[0.3, 0.1]]) + cells / 2, np.zeros((1, 2)), np.zeros(1)
+    with one_thread():
+        for _ in range(steps):
+            wet.advance(fluid, place, rest, no_spin)
+    return float(wet.force[0, 1]) / force, math.pi * float(wet.covering_radius[0]) ** 2
+
+
+def spinning_disc(
+    steps: Sequence[int], *, relaxation_time: float = 1.5, spin: float = 0.02, method: Method = DEFAULT
+) -> tuple[list[float], list[float]]:
+    """Density at the centre, and torque, of a disc kept spinning (radius 5 in 30 x 30 cells) after ``steps``."""
+    fluid = Fluid(30, 30, relaxation_time)
+    wet = Saturated(
+        fluid, np.array([5.0]), solid_operator=method.solid_operator, weighting=method.weighting
+    )  # fmt: skip
+    place, rest, turning = np.array([[15.3, 15.1]]), np.zeros((1, 2)), np.array([spin])
+    density, torque = [], []
+    with one_thread():
+        for step in range(1, max(steps) + 1):
+            wet.advance(fluid, place, rest, turning)
+            if step in steps:
+                density.append(float(fluid.fields()[0][15, 15]))
+                torque.append(float(wet.torque[0]))
+    return density, torque
+
 
 SLOW = 1e-9
 """Speed of a disc that is towed in its place: less than a ten-thousandth of a cell until the flow is steady."""
 PERIODIC = Sides("periodic", "periodic", "periodic", "periodic")
+
 PLACES = ((0.0, 0.0), (0.3, 0.1), (0.5, 0.25), (0.4, 0.45))
 """Places of a centre within a cell, of which the mean is taken."""
 
@@ -214,13 +255,13 @@ def sangani_acrivos(solid_fraction: float) -> float:
     return 4 * math.pi / (-0.5 * math.log(c) - 0.738 + c - 0.887 * c**2 + 2.038 * c**3)
 
 
-VALIDATIONS = Validations()
-
 NEAR_WALL = {"along": 31.593, "towards": 181.712, "turning": 24.006}
 """Rim 0.2 radii above the floor of a closed box of 12 by 6 radii: tests/reference/stokes_box.py, five digits."""
+
 RADIUS = 7.3e-3
 """How much of its radius a disc 10 cells wide may look too big or small in one place: 2 % of a drag that goes as its
 power 2.75, as on arrays of solid fraction 0.2 (verify_arrays.py)."""
+
 FILMS = (0.02, 0.03, 0.05)
 """Gaps in radii of ten cells: a fifth to half a cell."""
 

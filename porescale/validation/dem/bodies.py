@@ -21,19 +21,11 @@ from porescale.dem.measures.energy import elastic_pairs
 from porescale.dem.motion.control import Moved
 from porescale.dem.motion.drivers import Clump
 from porescale.dem.motion.periodic_cell import LOAD, Straining
-from porescale.validation.dem import energy_trials as boxed
-from porescale.validation.dem.discs_trials import (
-    DENSITY,
-    MASS,
-    RADIUS,
-    STIFFNESS,
-    free,
-    law_at,
-    momentum_drift,
-    relative,
-)
+from porescale.validation.dem.momentum import momentum_drift
+from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS, free, law_at, relative
 
 Array = NDArray[np.float64]
+VALIDATIONS = Validations()
 
 PRESSED = 1e-4  # of a diameter: overlap of a lattice at the start
 
@@ -212,8 +204,6 @@ def lattice_exact(shear: float) -> Array:
     return math.sqrt(3.0) / 4.0 * np.array([3.0 + shear, 1.0 - shear, 1.0 + 3.0 * shear])
 
 
-VALIDATIONS = Validations()
-
 BOUNCES = ((0.5, 0.0), (1.0, 20.0), (1.5, -30.0))
 """Angle (rad) of a dumbbell and its spin over its speed (1/m)."""
 SHEARS = (0.0, 0.5)
@@ -281,32 +271,3 @@ def moduli() -> Measured:
     exact = np.array([lattice_exact(shear) for shear in SHEARS])
     found = np.array([lattice_moduli(shear) for shear in SHEARS])
     return Measured(exact.tolist(), found.tolist(), float(np.abs(found - exact).max()))
-
-
-@VALIDATIONS.row(
-    "dem.energy_book_of_driven_bodies",
-    source="first law: clumps, bodies moved and pushed, walls that move, turn and bear a load, tutorial I-2 and I-3",
-    because="a dashpot is booked half a step too long at touch: w0 dt/pi = 1/200 of what is lost, at T_c/200",
-    tolerance=1.0 / 200.0,
-)
-def driven() -> Measured:
-    """Unaccounted energy over the energy turned over, in boxes without drive, with each, and with all."""
-    cases = [("free",), ("placed",), ("pushed",), ("wall turns",), ("servo",), tuple(boxed.DRIVES)]
-    found = [boxed.unaccounted(names, 200.0) for names in cases]
-    return Measured((0.0,) * len(cases), found, max(found))
-
-
-@VALIDATIONS.row(
-    "dem.energy_book_of_driven_bodies_closes_with_the_step",
-    source="first law; order of the residual from T_c/50 to T_c/200",
-    because="first order or better: 0.2 below one, since what walls and pushes err by has the other sign and has not"
-    " gone at 50 steps",
-    tolerance=0.2,
-)
-def driven_order() -> Measured:
-    """Order at which the unaccounted energy falls, clumps alone and with all drives."""
-    orders = []
-    for names in (("free",), tuple(boxed.DRIVES)):
-        coarse, fine = (boxed.unaccounted(names, steps) for steps in (50.0, 200.0))
-        orders.append(math.log(coarse / fine, 4.0))
-    return Measured((1.0, 1.0), orders, max(0.0, 1.0 - min(orders)))

@@ -23,7 +23,7 @@ from porescale.dem.measures.porosity import porosity
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress
 from porescale.dem.prepare.settle import come_to_rest, weights_of
-from porescale.validation.dem import discs_trials as lab
+from porescale.validation.dem import setups as lab
 from porescale.validation.dem.bodies import clumped_cell, random_cell
 
 Array = NDArray[np.float64]

@@ -22,7 +22,8 @@ from porescale.dem.grains import Grains
 from porescale.dem.measures.energy import energy_book
 from porescale.dem.motion.control import Moved
 from porescale.dem.motion.drivers import Clump
-from porescale.validation.dem.discs_trials import DENSITY, RADIUS, STIFFNESS, free, law_at, momentum_drift
+from porescale.validation.dem.momentum import momentum_drift
+from porescale.validation.dem.setups import DENSITY, RADIUS, STIFFNESS, free, law_at
 
 Array = NDArray[np.float64]
 

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from porescale.common.compiled.jit import set_threads, threads
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.lbm.boundary.sides import Sides
-from porescale.lbm.collision.trt import MAGIC_MIDWAY_WALL, odd_rate
+from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
+from porescale.lbm.collision.trt import antisymmetric_rate
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import relaxation_time
 
@@ -42,7 +43,7 @@ def steady_steps(height: int, viscosity: float, magic: float) -> int:
     Between walls one cell apart the halves forget three times more slowly (measured: e in 9 steps at tau 3.5).
     """
     tau = relaxation_time(viscosity)
-    return math.ceil(MEMORY * (height**2 / (math.pi**2 * viscosity) + 3 * (tau + 1 / odd_rate(tau, magic))))
+    return math.ceil(MEMORY * (height**2 / (math.pi**2 * viscosity) + 3 * (tau + 1 / antisymmetric_rate(tau, magic))))
 
 
 def poiseuille(

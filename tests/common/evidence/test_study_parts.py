@@ -13,7 +13,7 @@ from porescale.benchmarks.minimal_psm import PlainWet
 from porescale.common.evidence.overhead import SMALLEST, Built, Kind, Kinds, bytes_of, markdown, measure
 from porescale.dem.contact.linear import Linear
 from porescale.lbm.fluid import Fluid
-from porescale.validation.coupling.grains_trials import immersed
+from porescale.validation.coupling.setups import immersed
 from porescale.validation.dem.sleep import heap
 
 ROUGH = Linear(5e5, 2.0, 1.25e5, 1.0, 0.5)

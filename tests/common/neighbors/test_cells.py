@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.common.neighbors.cells import cell_of, grid_shape, minimum_image, sort_into_cells, wrapped
+from porescale.common.neighbors.cells import Grid, cell_of, grid_shape, minimum_image, sort_into_cells, wrapped
 
 
 def sort(x, columns=4, rows=3, period=(0.0, 0.0), compiled=True):
@@ -14,7 +14,7 @@ def sort(x, columns=4, rows=3, period=(0.0, 0.0), compiled=True):
     cell, order = np.empty(n, np.int32), np.empty(n, np.int32)
     start = np.empty(columns * rows + 1, np.int64)
     run = sort_into_cells if compiled else sort_into_cells.py_func
-    run(x, 0.0, 0.0, 1.0, 1.0, columns, rows, *period, 0.0, cell, start, order)
+    run(x, Grid(0.0, 0.0, 1.0, 1.0, columns, rows, *period), cell, start, order)
     return cell, start, order
 
 

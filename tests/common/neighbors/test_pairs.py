@@ -10,6 +10,7 @@ from porescale.common.core.errors import InputError
 from porescale.common.neighbors import PairList, search
 from porescale.common.neighbors import pair_list as pairs
 from porescale.common.neighbors import skin as drift
+from porescale.common.neighbors.cells import Grid
 from tests.reference.pairs import neighbours, rows_of
 
 LOWER, UPPER = (0.0, -1.0), (10.0, 7.0)
@@ -290,13 +291,18 @@ def test_kernels_as_plain_python():
     reach *= 4.0
     listed = PairList(25, 0.1, LOWER, UPPER, (True, False), full=True)
     listed.build(x, reach)
-    shape = listed._sort(x, reach, 2.0 * reach.max() + 0.1)
+    grid = listed._sort(x, reach, 2.0 * reach.max() + 0.1)
+    where = (
+        x,
+        reach,
+        listed._sorted,
+        listed._order,
+        listed._cell_start,
+        grid,
+        search.Criterion(reach.max(), 0.1, True),
+    )
     start, partner = np.zeros(26, np.int64), np.empty(len(listed.partner), np.int32)
-    total, longest = search.fill_serial.py_func(
-        start, partner, np.empty(100, np.int32), x, reach, *listed._sorted, listed._order, listed._cell_start,
-        *LOWER, *shape, *listed.period, 0.0,
-        reach.max(), 0.1, True,
-    )  # fmt: skip
+    total, longest = search.fill_serial.py_func(start, partner, np.empty(100, np.int32), *where)
     assert total == listed.start[-1]
     assert longest <= 100
     assert np.array_equal(start, listed.start)
@@ -306,7 +312,7 @@ def test_kernels_as_plain_python():
     assert np.all(carried == 1.0)
     assert not drift.strayed.py_func(x, listed.anchor, reach, reach, 0.05, 10.0, 0.0)
     block, bounds = np.empty(25, np.int32), np.empty((5, drift.BOUNDS))
-    drift.into_blocks.py_func(x, *LOWER, 0.2, 0.25, 2, 2, 10.0, 0.0, block)
+    drift.into_blocks.py_func(x, Grid(*LOWER, 0.2, 0.25, 2, 2, 10.0, 0.0), block)
     for far, built in ((0.0, False), (0.2, True)):
         moved = x + far * (np.arange(25)[:, None] == 3)
         how = (listed.anchor, reach, reach, block, bounds, 2, 2, 0.1, 1.0, 10.0, 0.0)

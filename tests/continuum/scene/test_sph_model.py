@@ -7,7 +7,7 @@ import pytest
 
 from continuum_sph.build.report import report
 from continuum_sph.build.simulation import Simulation
-from continuum_sph.validation import trials
+from continuum_sph.validation.water import setups as trials
 from continuum_sph.water import kernel_correction as correction
 from continuum_sph.water import rates, shifting, step
 from continuum_sph.water.eos import Tait

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from continuum_sph.build.report import report
-from continuum_sph.validation import trials
+from continuum_sph.validation.water import setups as trials
 
 
 def warnings(height, **numerics):

@@ -11,7 +11,7 @@ from continuum_sph.build.air import AIR, air_fluid, dry_pores, specific_weights,
 from continuum_sph.build.seepage_report import seepage_report
 from continuum_sph.build.simulation import Simulation
 from continuum_sph.scene.sections import Scene
-from continuum_sph.validation.air import TrappedAir
+from continuum_sph.validation.seepage.air import TrappedAir
 from continuum_sph.water.eos import Gas, Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law

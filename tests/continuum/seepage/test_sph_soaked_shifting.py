@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.validation.seepage_steady_trials import held_ground
+from continuum_sph.validation.seepage.sheet_pile import held_ground
 from continuum_sph.water.state import BY_SHIFTING
 
 eps = np.finfo(float).eps

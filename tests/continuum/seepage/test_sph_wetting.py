@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from continuum_sph.validation.wetting_trials import BOUSSINESQ, Levee, sag
+from continuum_sph.validation.seepage.wetting import BOUSSINESQ, Levee, sag
 
 X = np.linspace(0.0, 2.0, 401)
 # the foot lies half a spacing beyond the last wet place: 1/400 of the way, and so the mean height

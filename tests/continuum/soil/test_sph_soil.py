@@ -20,8 +20,8 @@ from continuum_sph.soil.plasticity import returned
 from continuum_sph.soil.state import MASS, VOLUME, XX, YY, X
 from continuum_sph.soil.stress import deform
 from continuum_sph.soil.tension import hold_apart
-from continuum_sph.validation.soil_element_trials import Element
-from continuum_sph.validation.soil_trials import body, in_tank
+from continuum_sph.validation.soil.element import Element
+from continuum_sph.validation.soil.setups import body, in_tank
 from continuum_sph.water.smoothing import slope_shape
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError, Unstable

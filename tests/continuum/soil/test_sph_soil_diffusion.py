@@ -9,7 +9,7 @@ from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
 from continuum_sph.soil import flow as flow_module
 from continuum_sph.soil.state import GROWN, GXX, SHEARING, VOLUME, YY
 from continuum_sph.soil.stress import deform
-from continuum_sph.validation.soil_trials import RATIO, body
+from continuum_sph.validation.soil.setups import RATIO, body
 from continuum_sph.water.smoothing import Smoothing, kernel_slope
 from porescale.common.core.errors import InputError
 from porescale.common.neighbors import PairList, square_lattice

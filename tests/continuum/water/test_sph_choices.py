@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from continuum_sph.build.water import water_flow
-from continuum_sph.validation import trials
+from continuum_sph.validation.water import setups as trials
 from continuum_sph.water.artificial_viscosity import artificial
 from continuum_sph.water.density import LINEAR
 from continuum_sph.water.energy_budget import book

@@ -8,7 +8,7 @@ import pytest
 from continuum_sph.benchmarks.endurance import still
 from continuum_sph.build.simulation import Simulation
 from continuum_sph.build.water import water_flow
-from continuum_sph.validation.trials import column_scene
+from continuum_sph.validation.water.setups import column_scene
 from continuum_sph.water import parameters as laws
 from continuum_sph.water.density import HYDROSTATIC, PLAIN, haste_of, pace
 from continuum_sph.water.eos import Tait

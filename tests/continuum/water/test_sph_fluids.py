@@ -9,8 +9,8 @@ from continuum_sph.build.inclusion import inclusion_row, pieces
 from continuum_sph.build.report import report
 from continuum_sph.build.simulation import Simulation
 from continuum_sph.cli import scene_type
-from continuum_sph.validation import fluids as trials_fluids
-from continuum_sph.validation.fluids import TENSION
+from continuum_sph.validation.water import fluids as trials_fluids
+from continuum_sph.validation.water.fluids import TENSION
 from continuum_sph.water.energy_budget import book
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from continuum_sph.build.inclusion import circularity
-from continuum_sph.validation import fluids as trials_fluids
+from continuum_sph.validation.water import fluids as trials_fluids
 from continuum_sph.water.fluids import VISCOSITY
 from continuum_sph.water.state import VISCOUS, VOLUME
 from continuum_sph.water.viscosity import STIFFER

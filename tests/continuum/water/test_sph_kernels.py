@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from continuum_sph.build.initial_pressure import released_pressure
-from continuum_sph.validation.exact import couette, drop_period, poiseuille
-from continuum_sph.validation.water import LATTICE
+from continuum_sph.validation.water.channels import couette, poiseuille
+from continuum_sph.validation.water.drop_swing import drop_period
+from continuum_sph.validation.water.kernels import LATTICE
 from continuum_sph.water.artificial_viscosity import artificial
 from continuum_sph.water.eos import Tait, tait, tait_density
 from continuum_sph.water.smoothing import (

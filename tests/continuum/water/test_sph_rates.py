@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from continuum_sph.build.water import water_flow
-from continuum_sph.validation import trials
-from continuum_sph.validation.fluids import drop
-from continuum_sph.validation.trials import column_scene, open_box
+from continuum_sph.validation.water import channels as trials
+from continuum_sph.validation.water.fluids import drop
+from continuum_sph.validation.water.setups import column_scene, open_box
 from continuum_sph.water import rates, rates_walls
 from continuum_sph.water import step as steps
 from continuum_sph.water.density import LINEAR, PLAIN

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.validation import fluids as trials_fluids
-from continuum_sph.validation.exact_drop import drop_swing, swing_period
-from continuum_sph.validation.fluids import OUTER, TENSION
+from continuum_sph.validation.water import fluids as trials_fluids
+from continuum_sph.validation.water.drop_swing import drop_swing, swing_period
+from continuum_sph.validation.water.fluids import OUTER, TENSION
 from continuum_sph.water.state import RHO, VOLUME
 
 RADIUS = 0.2  # m

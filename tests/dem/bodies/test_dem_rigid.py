@@ -21,7 +21,7 @@ from porescale.dem.measures.stress import contact_stress, kinetic_stress
 from porescale.dem.measures.survey import coordination
 from porescale.dem.motion import affine_strain as strain
 from porescale.validation.dem.bodies import clumped_cell, energy_of_bodies, stored
-from porescale.validation.dem.discs_trials import DENSITY, MASS, RADIUS, STIFFNESS
+from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS
 
 EPS = np.finfo(float).eps
 LAW = Linear(1e7)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from porescale.dem.measures.energy import energy_book
-from porescale.validation.dem.energy_trials import DRIVES, LASTS, LAW, RATE, book_of, shaken, unaccounted
+from porescale.validation.dem.energy import DRIVES, LASTS, LAW, RATE, book_of, shaken, unaccounted
 
 WORKS = {
     "moved": "work of holders (J/m)", "placed": "work of holders (J/m)", "turned": "work of holders (J/m)",

@@ -14,7 +14,7 @@ from porescale.dem.forces.walls import PY, Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.motion.periodic_cell import Still
 from porescale.dem.resting.static import bear, clear, resting, unchanged
-from porescale.validation.coupling import grains_trials as lab
+from porescale.validation.coupling import setups as lab
 
 LAW = Linear(1e4, 1.0, 2.5e3, 0.5, 0.5)
 DT = 1e-4

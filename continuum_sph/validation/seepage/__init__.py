@@ -1,0 +1,1 @@
+"""Validations of soil and water together: consolidation, permeability, levels, levees, sheet piles."""

@@ -1,0 +1,1 @@
+"""Validations of soil alone: one element, free bodies, slopes, energy."""

@@ -1,0 +1,74 @@
+"""What experiments with soil share: soil in a tank, a free body of it, columns and layers on a slope.  SI."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from continuum_sph.build.soil import placed
+from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
+from continuum_sph.water.smoothing import Smoothing
+from porescale.common.core.constants import GRAVITY
+from porescale.common.neighbors import PairList
+
+Floats = NDArray[np.float64]
+
+RATIO = 1.3  # smoothing length over spacing
+SKIN = 0.15  # of the pair list, over the smoothing length
+TAN_PHI = 0.5  # of Maeda & Sakai 2004: τ_f = p tan φ; sin 30°
+DENSITY, STIFFNESS, POISSON = 1590.0, 2e6, 0.3  # kg/m³: grains of 2650 at n = 0.4; Pa
+COLUMN = STIFFNESS * (1.0 - POISSON) / ((1.0 + POISSON) * (1.0 - 2.0 * POISSON))  # Pa, modulus M of a column
+AREA = STIFFNESS / (2.0 * (1.0 + POISSON) * (1.0 - 2.0 * POISSON))  # Pa, area modulus B
+
+
+def in_tank(
+    x: Floats,
+    stress: Floats,
+    tank: tuple[float, float],
+    spacing: float,
+    material: Material,
+    *,
+    gravity: float = GRAVITY,
+    tilt: float = 0.0,
+    floor: str = "hold",
+    sides: str = "slip",
+    **law: Any,
+) -> SoilFlow:
+    """Soil at ``x`` (n, 2) m with ``stress`` (n, 4) Pa in a tank (width, height), m, lower left corner at the origin.
+
+    tilt : rad, of the floor: gravity leans to the right;  floor, sides : "hold" the soil or let it "slip", sides
+    "none": endless soil, periodic across;  law : more of `SoilLaw`.  Wendland C2 with h = 1.3 spacings.
+    """
+    lean = (gravity * math.sin(tilt), -gravity * math.cos(tilt))
+    given = SoilLaw(Smoothing("wendland", RATIO * spacing), spacing, (material,), lean, **law)
+    return placed(x, stress, tank, given, floor=floor, sides=sides, skin=SKIN)
+
+
+def run_until(flow: SoilFlow, time: float, each: Callable[[SoilFlow], None] | None = None) -> SoilFlow:
+    """Advance ``flow`` to ``time`` (s) or just beyond, calling ``each`` after every step."""
+    while flow.time < time:
+        flow.advance()
+        if each is not None:
+            each(flow)
+    return flow
+
+
+def body(
+    x: Floats, spacing: float, material: Material, stress: tuple[float, float, float, float], **law: Any
+) -> SoilFlow:
+    """Soil at ``x`` (n, 2) m without walls and weight, under one ``stress`` (4,) Pa, free on all sides."""
+    n = len(x)
+    smoothing = Smoothing("wendland", RATIO * spacing)
+    soil = Soil(
+        n, x.copy(), np.zeros((n, 2)), np.full(n, material.density * spacing**2), np.full(n, material.density),
+        np.tile(np.array(stress), (n, 1)),
+    )  # fmt: skip
+    reach = float(np.abs(x).max()) + 4.0 * spacing
+    pairs = PairList(n, SKIN * smoothing.length, (-reach, -reach), (reach, reach), full=True)
+    flow = SoilFlow(soil, SoilLaw(smoothing, spacing, (material,), (0.0, 0.0), **law), pairs)
+    flow.start()
+    return flow

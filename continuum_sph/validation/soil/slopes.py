@@ -1,0 +1,183 @@
+"""Columns, level ground and slopes of soil: what stays at rest, and what slides.  SI."""
+
+from __future__ import annotations
+
+import functools
+import math
+from typing import Any
+
+import numpy as np
+
+from continuum_sph.build.soil import geostatic
+from continuum_sph.soil import Material, SoilFlow
+from continuum_sph.soil.state import GROWN
+from continuum_sph.validation.soil.setups import AREA, COLUMN, DENSITY, POISSON, STIFFNESS, TAN_PHI, in_tank, run_until
+from porescale.common.evidence.validations import Measured, Validations
+from porescale.common.neighbors import square_lattice
+
+VALIDATIONS = Validations()
+
+GRAVITY = 9.8  # m/s², of Maeda & Sakai 2004
+
+
+def column(height: float, rows: int, material: Material, stressed: bool = True, **law: Any) -> SoilFlow:
+    """A column of soil ``rows`` high and half as wide between slippery sides, with the stress of rest or none."""
+    spacing = height / rows
+    width = spacing * max(8, rows // 2)
+    x = square_lattice((0.0, 0.0), (width, height), spacing)
+    stress = geostatic(height - x[:, 1], material, GRAVITY) if stressed else np.zeros((len(x), 4))
+    return in_tank(x, stress, (width, 1.2 * height), spacing, material, gravity=GRAVITY, **law)
+
+
+def crossing(modulus: str, rows: int) -> float:
+    """Time after which a column that is let go without stress is lowest, over 2 H/√(M/ρ) with M = B + G."""
+    material = Material(STIFFNESS, DENSITY, POISSON, modulus=modulus, yields=False)
+    flow = column(1.0, rows, material, stressed=False)
+    top = flow.soil.x[: flow.soil.soil, 1] > 1.0 - 1.0 / rows
+    before, after, time = 0.0, -1.0, 0.0
+    while after < 0.0 or flow.step < 10:
+        time, before = flow.time, after
+        flow.advance()
+        after = float(flow.soil.v[: flow.soil.soil, 1][top].mean())
+    at = time - before * (flow.time - time) / (after - before)
+    return at / (2.0 / math.sqrt(material.column_modulus / DENSITY))
+
+
+@VALIDATIONS.row(
+    "continuum.soil_column_modulus",
+    source="exact: a confined column let go without stress is lowest after 2 H/√(M/ρ), M = B + G: 1.88 E/2(1 - ν) in "
+    "plane strain, 1.54 with eq. 43",
+    because="surface and floor lie half a spacing beyond the last particles, which the stress there does not know: "
+    "half a spacing of 20 in the height",
+    tolerance=0.5 / 20,
+)
+def modulus_row() -> Measured:
+    """That time over the exact one, for both area moduli, 20 particles high."""
+    found = [crossing("plane strain", 20), crossing("printed", 20)]
+    return Measured(1.0, found, max(abs(value - 1.0) for value in found))
+
+
+@functools.cache
+def rest(seconds: float, restless: float = 0.0) -> tuple[float, float]:
+    """(largest displacement, m, fastest, m/s) of level ground 1 m deep, 20 particles, after ``seconds``."""
+    flow = column(1.0, 20, Material(STIFFNESS, DENSITY, POISSON, sin_friction=TAN_PHI), sound_diffusion=restless)
+    first = flow.soil.x[: flow.soil.soil].copy()
+    run_until(flow, seconds)
+    return float(np.hypot(*(flow.soil.x[: flow.soil.soil] - first).T).max()), flow.max_speed
+
+
+HALF_ROW = DENSITY * GRAVITY * 0.025 / COLUMN  # m: weight of half a row of 0.05 m that 1 m of soil carries wrongly
+
+
+@VALIDATIONS.row(
+    "continuum.soil_at_rest_stays",
+    source="exact: level ground with the stress of its weight does not move",
+    because="weight of half a row over M in a height of 1 m: what the missing support of the surface is worth",
+    tolerance=HALF_ROW,
+    slow=True,
+)
+def rest_row_of_ten_seconds() -> Measured:
+    """Largest displacement of a particle in 10 s, m."""
+    found = rest(10.0)[0]
+    return Measured(0.0, found, found)
+
+
+@functools.cache
+def slope(degrees: float, seconds: float = 10.0, restless: float = 0.0) -> float:
+    """Largest displacement (m) in ``seconds`` of a slope 1 m high, 10 rows, once braked for 1 s, on 0.2 m of ground."""
+    spacing, height, base, crest = 0.1, 1.0, 0.2, 0.5
+    foot = crest + height / math.tan(math.radians(degrees))
+    width = math.ceil((foot + 0.5) / spacing) * spacing
+    lattice = square_lattice((0.0, 0.0), (width, base + height), spacing)
+    top = base + np.clip((foot - lattice[:, 0]) * math.tan(math.radians(degrees)), 0.0, height)
+    inside = lattice[:, 1] < top
+    material = Material(STIFFNESS, DENSITY, POISSON, sin_friction=TAN_PHI)
+    stress = geostatic((top - lattice[:, 1])[inside], material, GRAVITY)
+    braked = 0.5 * math.pi * math.sqrt(COLUMN / DENSITY) / height
+    flow = in_tank(
+        lattice[inside], stress, (width, 1.5), spacing, material,
+        gravity=GRAVITY, drag=braked, settle=1.0, sound_diffusion=restless,
+    )  # fmt: skip
+    run_until(flow, 1.0)
+    first = flow.soil.x[: flow.soil.soil].copy()
+    run_until(flow, 1.0 + seconds)
+    return float(np.hypot(*(flow.soil.x[: flow.soil.soil] - first).T).max())
+
+
+@VALIDATIONS.row(
+    "continuum.soil_slope_below_its_limit_stays",
+    source="exact: below atan(sin φ) = 26.6° no layer of soil without dilatancy shears; slope of 22°",
+    because="a tenth of what a height of 1 m settles by under its own weight, ρ g H²/2M: a creep that anyone would see",
+    tolerance=0.1 * DENSITY * GRAVITY / (2.0 * COLUMN),
+    slow=True,
+)
+def slope_row() -> Measured:
+    """Largest displacement of a particle in 10 s, m."""
+    found = slope(22.0)
+    return Measured(0.0, found, found)
+
+
+def layer(degrees: float, rows: int = 20, friction: float = TAN_PHI) -> SoilFlow:
+    """An endless layer 1 m deep on a slope, with the stress of rest."""
+    tilt, spacing = math.radians(degrees), 1.0 / rows
+    material = Material(STIFFNESS, DENSITY, POISSON, sin_friction=friction)
+    x = square_lattice((0.0, 0.0), (8 * spacing, 1.0), spacing)
+    stress = geostatic(1.0 - x[:, 1], material, GRAVITY * math.cos(tilt))
+    return in_tank(x, stress, (8 * spacing, 2.0), spacing, material, gravity=GRAVITY, tilt=tilt, sides="none")
+
+
+def sliding(degrees: float, rows: int = 20, friction: float = TAN_PHI) -> tuple[float, float]:
+    """(mean acceleration between 0.5 s and 1 s, m/s², of such a layer; the one that `TAN_PHI` gives it)."""
+    flow, tilt = layer(degrees, rows, friction), math.radians(degrees)
+    n, marks = flow.soil.soil, []
+    for time in (0.5, 1.0):
+        run_until(flow, time)
+        marks.append((flow.time, float(flow.soil.v[:n, 0].mean())))
+    (t0, v0), (t1, v1) = marks
+    return (v1 - v0) / (t1 - t0), GRAVITY * (math.sin(tilt) - TAN_PHI * math.cos(tilt))
+
+
+@VALIDATIONS.row(
+    "continuum.soil_slides_beyond_its_limit",
+    source="exact: an endless layer without dilatancy shears where τ = σ_n sin φ, so at atan 0.5 = 26.6°, not 30° "
+    "(Davis 1968), and goes with g (sin β - 0.5 cos β); slope of 28°",
+    because="half of the row at the floor, of 20, is held by it and stays",
+    tolerance=0.5 / 20,
+    slow=True,
+)
+def sliding_row() -> Measured:
+    """Acceleration of the layer over the exact one."""
+    found, exact = sliding(28.0)
+    return Measured(exact, found, abs(found / exact - 1.0))
+
+
+STEEP = 35.0  # degrees
+
+
+def departure(*, seconds: float = 2.0, exchanged: bool = True) -> float:
+    """Largest share by which a particle's density ever departs from that at the start, of a layer that slides.
+
+    exchanged : particles exchange volume, as `continuum_sph.soil.momentum` says.
+    """
+    flow = layer(STEEP)
+    start, largest = flow.soil.density.copy(), 0.0
+    while flow.time < seconds:
+        if not exchanged:
+            flow.soil.spread[:, GROWN] = 0.0
+        flow.advance()
+        largest = max(largest, float(np.abs(flow.soil.density / start - 1.0).max()))
+    return largest
+
+
+@VALIDATIONS.row(
+    "continuum.soil_that_slides_keeps_its_density",
+    source="exact: without dilatancy shear changes no volume; an endless layer on a slope of 35°, which slides 3 m in "
+    "2 s, by a shear strain of 30 at its floor",
+    because="shear along the floor takes σ_xx from K0 σ_yy to σ_yy and mean stress from (1 + K0)/2 of the weight to "
+    "all of it, at once, so by twice that in the swing; over the area modulus B",
+    tolerance=2.0 * 0.5 * (1.0 - POISSON / (1.0 - POISSON)) * DENSITY * GRAVITY * math.cos(math.radians(STEEP)) / AREA,
+)
+def density_row() -> Measured:
+    """Largest departure of a particle's density over the run, over its density."""
+    found = departure()
+    return Measured(0.0, found, found)

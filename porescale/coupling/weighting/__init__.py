@@ -1,0 +1,1 @@
+"""Weights of partially saturated cells, one a file."""

@@ -1,0 +1,79 @@
+"""What experiments with discs share: a material, discs in open boxes and on a floor, and what is read off them.  SI.
+
+All discs of one experiment lie far apart and share a system, so that a sweep over parameters costs one run.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from porescale.dem.contact.linear import Linear
+from porescale.dem.contact.materials import Law, Materials
+from porescale.dem.discs import make_discs
+from porescale.dem.forces.walls import Box
+from porescale.dem.grains import Grains
+
+Array = NDArray[np.float64]
+
+RADIUS = 0.01  # m
+DENSITY = 2500.0  # kg/m^3
+MASS = math.pi * RADIUS**2 * DENSITY  # kg/m
+STIFFNESS = 1e7  # N/m
+APART = 10.0 * RADIUS  # between discs that must not meet
+TANGENTIAL: dict[str, Any] = {"tangential_stiffness": 0.25 * STIFFNESS, "friction": 0.3}
+
+
+def free(discs_at: Any, law: Linear, radius: ArrayLike = RADIUS, floor: bool = False) -> Grains:
+    """Discs at rest in an open box, with a floor at y = 0 if wanted."""
+    discs = make_discs(discs_at, radius, DENSITY)
+    low, high = discs.position.min(axis=0) - 1.0, discs.position.max(axis=0) + 1.0
+    box = Box(
+        (float(low[0]), 0.0 if floor else float(low[1])),
+        (float(high[0]), float(high[1])),
+        left="open", right="open", top="open", bottom="solid" if floor else "open",
+    )  # fmt: skip
+    return Grains(discs, law, box)
+
+
+def row_on_floor(count: int, gaps: ArrayLike, law: Linear) -> Grains:
+    """``count`` discs side by side, ``gaps`` (m) above a floor (below zero: pressed into it)."""
+    x = APART * np.arange(count)
+    return free(np.column_stack((x, RADIUS + np.broadcast_to(np.asarray(gaps, float), (count,)))), law, floor=True)
+
+
+def on_floor(law: Law | Materials, gaps: ArrayLike, **options: Any) -> Grains:
+    """Discs far apart in a row, ``gaps`` (m) above a floor without sides."""
+    gap = np.atleast_1d(np.asarray(gaps, float))
+    places = np.column_stack((APART * np.arange(len(gap)), RADIUS + gap))
+    box = Box((-1.0, 0.0), (APART * len(gap) + 1.0, 1.0), "open", "open", top="open")
+    return Grains(make_discs(places, RADIUS, DENSITY), law, box, **options)
+
+
+def law_at(damping_ratio: float, release: str = "force", mass: float = MASS, **tangential: float) -> Linear:
+    """A law of STIFFNESS with a ``damping_ratio`` at effective ``mass`` (kg/m)."""
+    return Linear(STIFFNESS, 2.0 * damping_ratio * math.sqrt(STIFFNESS * mass), release=release, **tangential)
+
+
+def grows(grains: Grains, loads: Array, dt: float, steps: int) -> bool:
+    """Whether a small disturbance of a loaded equilibrium grows tenfold within ``steps`` of ``dt``."""
+    discs = grains.discs
+    rest = discs.position.copy()
+    rng = np.random.default_rng(0)
+    discs.position += 1e-7 * RADIUS * rng.uniform(-1.0, 1.0, rest.shape)
+    scale = 1e-7 * RADIUS
+    grains.refresh()
+    for _ in range(steps // 20):
+        grains.step(dt, loads, count=20)
+        off = float(np.abs(discs.position - rest).max())
+        if not off < 10.0 * scale * 3.0:
+            return True
+    return False
+
+
+def relative(measured: ArrayLike, reference: ArrayLike) -> float:
+    """Largest |measured/reference - 1|."""
+    return float(np.max(np.abs(np.asarray(measured) / np.asarray(reference) - 1.0)))

@@ -1,0 +1,205 @@
+"""A law dropped as one file into its folder is offered by the command line, and runs."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+LAWS = {
+    "lbm/collision/shear_only.py": '''
+"""Everything at the rate of the shear: BGK by another name."""
+from typing import NamedTuple
+
+import numpy as np
+
+from porescale.lbm.collision.entry import Operator
+from porescale.lbm.collision.law import (
+    collide, collide_partial, collide_then_add, half_force, half_of_force, molecular_rate, shear_rate,
+)
+from porescale.lbm.collision.smagorinsky import eddy_version
+from porescale.lbm.collision.trt import relax_halves
+
+
+class ShearOnly(NamedTuple):
+    rate: np.floating
+    fx: np.floating
+    fy: np.floating
+
+
+EddyShearOnly = eddy_version(ShearOnly)
+half_force.of(ShearOnly, EddyShearOnly)(half_of_force)
+shear_rate.of(ShearOnly)(molecular_rate)
+collide_partial.of(ShearOnly, EddyShearOnly)(collide_then_add)
+
+
+@collide.of(ShearOnly, EddyShearOnly)
+def _collide(f, m, rate, law):
+    return relax_halves(f, m, rate, rate, law)
+
+
+OPERATOR = Operator("shear-only", "for a test", ShearOnly, EddyShearOnly, lambda law: float(law.rate))
+''',
+    "coupling/solid/half_bounce.py": '''
+"""SC3 at half of its weight, by another name."""
+from typing import NamedTuple
+
+import numpy as np
+
+from porescale.coupling.solid.entry import SolidOperator
+from porescale.coupling.solid.law import (
+    blend, collide_then_blend, collide_with_solid, force_share, free_share, is_soft, momentum_to_solid, no_rates,
+    rates, sharp,
+)
+from porescale.lbm.collision.law import Partial, add_partial, numbers
+
+
+class HalfBounce(NamedTuple):
+    k: np.floating
+
+
+collide_with_solid.of(HalfBounce)(collide_then_blend)
+force_share.of(HalfBounce)(free_share)
+is_soft.of(HalfBounce)(sharp)
+rates.of(HalfBounce)(no_rates)
+
+
+@blend.of(HalfBounce)
+def _blend(f, g, cell, m, rate, solid):
+    c = numbers(cell.b)
+    free, rho = c.one - cell.b, c.one + m.d
+    px, py = cell.b * rho * cell.vx, cell.b * rho * cell.vy
+    return add_partial(f, g, Partial(free, free, c.zero, px, py))
+
+
+@momentum_to_solid.of(HalfBounce)
+def _momentum_to_solid(cell, rho, jx, jy, rate, solid):
+    return cell.b * rho, cell.b * jx, cell.b * jy
+
+
+SOLID_OPERATOR = SolidOperator("half-bounce", "for a test", HalfBounce)
+''',
+    "coupling/weighting/square.py": '''
+"""The square of the solid fraction."""
+from typing import NamedTuple
+
+import numpy as np
+
+from porescale.coupling.weighting.entry import Weighting
+from porescale.coupling.weighting.law import weight
+from porescale.lbm.collision.law import numbers
+
+
+class Square(NamedTuple):
+    k: np.floating
+
+
+@weight.of(Square)
+def _weight(solid, theta, slip_x, slip_y, law):
+    e = min(numbers(solid).one, solid)
+    return e * e
+
+
+WEIGHTING = Weighting("square", "for a test", Square)
+''',
+    "lbm/boundary/belt.py": '''
+"""A wall by another name, which slides along itself."""
+from porescale.lbm.boundary.wall import Wall
+
+
+class Belt(Wall):
+    name = "belt"
+    purpose = "for a test"
+    order, precedence = 100, 1
+
+
+BOUNDARY = Belt()
+''',
+}
+
+SCENE = """
+title = "A disc held beside a belt"
+[domain]
+width = 0.02
+height = 0.02
+left = "periodic"
+right = "periodic"
+bottom = "wall"
+top = {{ kind = "{side}", speed = 0.01 }}
+[time]
+end = 0.02
+[output]
+snapshot_interval = 0.02
+series_interval = 0.01
+[fluid]
+spacing = 1e-3
+step = 1e-3
+relaxation_time = 0.8
+operator = "{operator}"
+solid_operator = "{solid_operator}"
+weighting = "{weighting}"
+[[disc]]
+x = 0.01
+y = 0.01
+diameter = 0.006
+"""
+NAMES = {
+    "operator": "shear-only",
+    "solid_operator": "half-bounce",
+    "weighting": "square",
+    "side": "belt",
+}
+
+
+@pytest.fixture(scope="module")
+def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the package with four files more."""
+    root = tmp_path_factory.mktemp("tree")
+    shutil.copytree(ROOT / "porescale", root / "porescale", ignore=shutil.ignore_patterns("__pycache__"))
+    for place, text in LAWS.items():
+        (root / "porescale" / place).write_text(text, encoding="utf-8")
+    return root
+
+
+def porescale(tree: Path, *words: object) -> subprocess.CompletedProcess[str]:
+    """The command line of that tree."""
+    return subprocess.run(
+        [sys.executable, "-m", "porescale", *map(str, words)], cwd=tree, capture_output=True, text=True,
+        env={**os.environ, "PYTHONPATH": str(tree)}, check=False,
+    )  # fmt: skip
+
+
+def scene(folder: Path, **names: str) -> Path:
+    """A scene with these laws."""
+    folder.mkdir()
+    (folder / "scene.toml").write_text(SCENE.format(**{**NAMES, **names}), encoding="utf-8")
+    return folder
+
+
+@pytest.mark.parametrize("key", NAMES)
+def test_check_offers_a_law_that_was_dropped_into_its_folder(tree: Path, tmp_path: Path, key: str) -> None:
+    found = porescale(tree, "check", scene(tmp_path / "wrong", **{key: "nonsense"}))
+    assert found.returncode == 2
+    assert NAMES[key] in found.stdout + found.stderr
+    ours = subprocess.run(
+        [sys.executable, "-m", "porescale", "check", str(tmp_path / "wrong")], cwd=ROOT, capture_output=True, text=True,
+        check=False,
+    )  # fmt: skip
+    assert NAMES[key] not in (ours.stdout + ours.stderr).replace(f'"{NAMES[key]}"', "")
+
+
+def test_new_offers_them_too(tree: Path, tmp_path: Path) -> None:
+    assert porescale(tree, "new", tmp_path / "a").returncode == 0
+    text = (tmp_path / "a" / "scene.toml").read_text(encoding="utf-8")
+    assert all(name in text for name in NAMES.values())
+
+
+def test_they_run(tree: Path, tmp_path: Path) -> None:
+    done = porescale(tree, "run", scene(tmp_path / "all"), "--quiet")
+    assert done.returncode == 0, done.stdout + done.stderr
