@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 from numpy.typing import NDArray
@@ -10,7 +11,6 @@ from numpy.typing import NDArray
 from porescale.build.part import Clock, Fields, Part, Row
 from porescale.build.parts.flow_fields import LAMBDA, total_pressure
 from porescale.build.parts.fluid import FluidPart
-from porescale.build.parts.rectangles import rectangle_loads
 from porescale.build.system import System
 from porescale.coupling.step import Coupled
 from porescale.output.sample import Sampler, midpoints
@@ -122,3 +122,14 @@ class Loading:
                 row[f"{name} drag coefficient ()"] = (fx * ex + fy * ey) / unit
                 row[f"{name} lift coefficient ()"] = (fy * ex - fx * ey) / unit
         return row | rectangle_loads(loads.rectangles, coupled)
+
+
+def rectangle_loads(numbers: Sequence[int], coupled: Coupled) -> Row:
+    """Forces of the fluid and of the grains on rectangles by number, columns of loads.csv."""
+    row: Row = {}
+    for k in numbers:
+        fluid, grains = coupled.rectangle_force[k], coupled.grains.rectangle_force[k]
+        for a, axis in enumerate("xy"):
+            row[f"rectangle {k} force {axis} (N/m)"] = float(fluid[a])
+            row[f"rectangle {k} force of grains {axis} (N/m)"] = float(grains[a])
+    return row

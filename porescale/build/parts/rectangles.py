@@ -84,14 +84,3 @@ class RectanglesPart(Part):
         """Take up a state."""
         self.made_good = float(state["made_good"])
         self.after()
-
-
-def rectangle_loads(numbers: Sequence[int], coupled: Coupled) -> dict[str, float]:
-    """Forces of the fluid and of the grains on rectangles by number, columns of loads.csv."""
-    row: dict[str, float] = {}
-    for k in numbers:
-        fluid, grains = coupled.rectangle_force[k], coupled.grains.rectangle_force[k]
-        for a, axis in enumerate("xy"):
-            row[f"rectangle {k} force {axis} (N/m)"] = float(fluid[a])
-            row[f"rectangle {k} force of grains {axis} (N/m)"] = float(grains[a])
-    return row
