@@ -23,7 +23,7 @@ from porescale.build.parts.series import Watch, energy_row
 from porescale.build.parts.sleep import sleep_row
 from porescale.common.core.errors import Unstable
 from porescale.common.record.model import Cloud, Grid, Snapshot
-from porescale.coupling.divergence_check import Sense
+from porescale.coupling.divergence_check import DivergenceCheck
 from porescale.coupling.step import Coupled
 from porescale.dem.grains import Grains
 from porescale.lbm.boundary.thin_plate import Plate
@@ -105,10 +105,10 @@ class Simulation:
             Instruments(scene, derived.scales, derived.cells) if derived.scales and derived.cells else None
         )
 
-        self._sense: Sense | None = None
+        self._sense: DivergenceCheck | None = None
         if fluid and derived.scales and scene.fluid:
             laws = scene.fluid
-            self._sense = Sense(
+            self._sense = DivergenceCheck(
                 fluid, derived.scales, coupled, operator=laws.operator, eddies=bool(laws.smagorinsky),
                 solid_operator=laws.solid_operator, weighting=weight_of(laws),
             )  # fmt: skip

@@ -50,7 +50,7 @@ class Movers:
                 if self.grains:
                     self.grains.rectangles[k, VELOCITY_X + a] = speed
         if coupled and self.make_good and step % MAKE_GOOD == 0:
-            self.made_good += coupled.saturated.make_good(coupled.fluid)
+            self.made_good += coupled.saturated.restore_mass(coupled.fluid)
 
     def row(self, coupled: Coupled) -> dict[str, float]:
         """Columns of the series."""
