@@ -13,9 +13,9 @@ Measured, a piston in a channel of 20 cells: it pushes out 0.998 of what it disp
 fraction or the mean of both, which take in too little or leave water behind in the corners.
 
 What fills the body has the pressure that it had when it was fluid, and a little too dense is a little too slow where
-sides carry it at density 1, and grows denser still.  So the density of cells deep inside
-is led back to 1 (``relax_density``), at rest and in equilibrium, which does not change the fluid outside; this counts as
-mass that came in too.  Sides that move at the density of what fills the body instead were unstable.
+sides carry it at density 1, and grows denser still.  So the density of cells deep inside is led back to 1
+(``relax_density``), at rest and in equilibrium, which does not change the fluid outside; this counts as mass that came
+in too.  Sides that move at the density of what fills the body instead were unstable.
 
 A link that a free-slip side mirrors joins two cells: it leaves one and comes back to the other, in even steps the one
 way and in odd steps the other (lbm/stream.py).  So e is the mean of both; that of one of them gives the even steps
