@@ -71,12 +71,12 @@ def drive(
     )
 
 
-def judge(folder: Path, card: dict[str, Any]) -> None:
+def check_resume(folder: Path, card: dict[str, Any]) -> None:
     """InputError where the run in ``folder`` cannot be gone on with as ``card`` asks."""
-    from porescale.common.record.drive import refuse_resume
+    from porescale.common.record.drive import check_resume
     from porescale.common.schema.migrations import completing
 
-    refuse_resume(folder, card, today=completing(scene_type(), card, FORMERLY))
+    check_resume(folder, card, today=completing(scene_type(), card, FORMERLY))
 
 
 def report(scene: Scene) -> Report:
@@ -162,7 +162,7 @@ PACKAGE = Package(
     extremes=discovered(BENCHMARKS, "EXTREMES"),
     endurance=discovered(BENCHMARKS, "ENDURANCES"),
     parts=discovered(BENCHMARKS, "KINDS"),
-    judge=judge,
+    check_resume=check_resume,
 )
 
 

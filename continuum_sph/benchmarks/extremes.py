@@ -15,7 +15,7 @@ from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.water import flows, setups
 from continuum_sph.water.energy_budget import book
 from porescale.common.core.constants import GRAVITY
-from porescale.common.evidence.extremes import Extreme, Extremes, Judged
+from porescale.common.evidence.extremes import Extreme, Extremes, Verdict
 from porescale.common.schema.sections import validate
 
 WATER = 1.002e-3  # Pa s
@@ -28,7 +28,7 @@ NEAR = 0.5 * SPACING  # m: particles of this size know a front no better
 CLOSED = 0.01  # of the energy at the start, by which its book may be off
 
 
-def driven(model: Simulation, end: float, judged: bool = False) -> str | Judged:
+def driven(model: Simulation, end: float, judged: bool = False) -> str | Verdict:
     """Take ``model`` to ``end`` (s) and say what became of it; Unstable where it leaves sense.  ``judged``: by how far
     water has run at JUDGED and by its book of energies."""
     model.flow.layer.keep_book()
@@ -50,7 +50,7 @@ def driven(model: Simulation, end: float, judged: bool = False) -> str | Judged:
     if not judged or way is None:
         return said
     off = way - mild_front()
-    return Judged(
+    return Verdict(
         f"{said}; front at {JUDGED:g} s {100.0 * off:+.1f} cm from that at Mach 0.05 with everything else as it comes",
         abs(off) < NEAR and abs(energy - 1.0) < CLOSED,
     )
@@ -79,7 +79,7 @@ def _sound(model: Simulation) -> float:
     return float(model.flow.law.state.sound_speed)
 
 
-def collapse(end: float = 0.8, lid: bool = True, judged: bool = True, **changes: Any) -> Callable[[], str | Judged]:
+def collapse(end: float = 0.8, lid: bool = True, judged: bool = True, **changes: Any) -> Callable[[], str | Verdict]:
     """COLUMN let go in TANK; changes of [water], [tank] (by name) and [numerics].  judged : as in `driven`."""
     tank = {"width": TANK[0], "height": TANK[1], "lid": lid}
     water = {
@@ -92,7 +92,7 @@ def collapse(end: float = 0.8, lid: bool = True, judged: bool = True, **changes:
     return lambda: _run(tank, water, None, numerics, end, judged)
 
 
-def bubble(ratio: float, end: float = 0.1) -> Callable[[], str | Judged]:
+def bubble(ratio: float, end: float = 0.1) -> Callable[[], str | Verdict]:
     """A disc of liquid ``ratio`` times lighter than the water around it, equally stiff, in a tank of 0.4 m."""
     tank = {"width": 0.4, "height": 0.6}
     water = {"column": [{"width": 0.4, "height": 0.4}]}
@@ -101,7 +101,7 @@ def bubble(ratio: float, end: float = 0.1) -> Callable[[], str | Judged]:
     return lambda: _run(tank, water, light, {"spacing": 0.02, "shifting": 1.0}, end)
 
 
-def _run(tank: Any, water: Any, inclusion: Any, numerics: Any, end: float, judged: bool = False) -> str | Judged:
+def _run(tank: Any, water: Any, inclusion: Any, numerics: Any, end: float, judged: bool = False) -> str | Verdict:
     """Check a scene of these sections as `run` does, and run it."""
     scene = validate(
         Scene,
@@ -136,10 +136,10 @@ def spun(tension: str, shifting: float) -> Callable[[], str]:
     return run
 
 
-def thrown(speed: float) -> Callable[[], str | Judged]:
+def thrown(speed: float) -> Callable[[], str | Verdict]:
     """The collapse in a tank without a lid, its uppermost row thrown up (or down) at ``speed`` times sound."""
 
-    def run() -> str | Judged:
+    def run() -> str | Verdict:
         """How it ends after half a second."""
         model = Simulation(setups.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released"))
         scene = model.scene.model_copy(update={"tank": model.scene.tank.model_copy(update={"lid": False})})
@@ -152,7 +152,7 @@ def thrown(speed: float) -> Callable[[], str | Judged]:
     return run
 
 
-def broken() -> str | Judged:
+def broken() -> str | Verdict:
     """The collapse with a particle whose velocity is no number after 10 steps."""
     model = Simulation(setups.column_scene(SPACING, tank=TANK, column=COLUMN, pressure="released"))
     model.advance(10)

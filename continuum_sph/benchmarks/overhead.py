@@ -9,7 +9,7 @@ from typing import Any
 from continuum_sph.benchmarks.minimal_sph import PlainColumn
 from continuum_sph.build.simulation import Simulation
 from continuum_sph.scene.sections import Scene
-from porescale.common.evidence.overhead import SMALLEST, Built, Kind, Kinds
+from porescale.common.evidence.overhead import SMALLEST, BuiltScene, SceneKind, SceneKinds
 from porescale.common.schema.sections import validate
 
 SPACING = 1.0 / 32.0  # m: 2048 particles of water
@@ -54,23 +54,23 @@ def started(it: Scene) -> Simulation:
     return made
 
 
-def added(name: str, because: str = "", **more: Any) -> Kind:
+def added(name: str, because: str = "", **more: Any) -> SceneKind:
     """A scene with something more, beside water alone."""
 
-    def make() -> Built:
+    def make() -> BuiltScene:
         """Both scenes, started."""
         it = scene(**more)
         own, other = started(it), started(scene())
-        return Built(own, parts_of(it), own.flow.layer.fluid, own.advance, other.advance)
+        return BuiltScene(own, parts_of(it), own.flow.layer.fluid, own.advance, other.advance)
 
-    return Kind(name, "particle", PLAIN, make, because=because)
+    return SceneKind(name, "particle", PLAIN, make, because=because)
 
 
-def alone(**more: Any) -> Built:
+def alone(**more: Any) -> BuiltScene:
     """Water alone, with ``more`` in its scene, beside the smallest kernels for it."""
     it = scene(**more)
     made = started(it)
-    return Built(made, parts_of(it), made.flow.layer.fluid, made.advance, PlainColumn(made.flow).advance)
+    return BuiltScene(made, parts_of(it), made.flow.layer.fluid, made.advance, PlainColumn(made.flow).advance)
 
 
 def ground(**more: Any) -> Scene:
@@ -94,21 +94,21 @@ def settled(it: Scene) -> tuple[Simulation, int]:
     return made, made.flow.water.layer.fluid + made.flow.water.skeleton.count
 
 
-def soil_beside_water() -> Built:
+def soil_beside_water() -> BuiltScene:
     """As many particles of soil as there are of water."""
     it = ground()
     made, count = settled(it)
-    return Built(made, parts_of(it), count, made.advance, started(scene()).advance)
+    return BuiltScene(made, parts_of(it), count, made.advance, started(scene()).advance)
 
 
-def in_soil(other: Table, **more: Any) -> Callable[[], Built]:
+def in_soil(other: Table, **more: Any) -> Callable[[], BuiltScene]:
     """Soil with more in its pores, beside soil with an ``other``."""
 
-    def make() -> Built:
+    def make() -> BuiltScene:
         """Both scenes, started."""
         it = ground(**more)
         made, count = settled(it)
-        return Built(made, parts_of(it), count, made.advance, settled(ground(**other))[0].advance)
+        return BuiltScene(made, parts_of(it), count, made.advance, settled(ground(**other))[0].advance)
 
     return make
 
@@ -122,11 +122,11 @@ DISC: Table = {"density": 500.0, "law": "liquid", "disc": [{"x": 0.5, "y": 1.0, 
 BOOK: Table = {"snapshot_interval": 1.0, "series_interval": 1.0, "energy": True}
 SHIFTED: Table = {"gradient": "corrected", "shifting": 2.0}
 
-KINDS = Kinds([
-    Kind(PLAIN, "particle", SMALLEST, alone,
+KINDS = SceneKinds([
+    SceneKind(PLAIN, "particle", SMALLEST, alone,
          because="1 to 5 % from process to process: what calls hand over 1.5 %; Python between kernels 1.5 %; stops at "
                  "walls counted, densities and pressures kept for others 1 %; the pass over pairs 1 %"),
-    Kind(SMOOTHED, "particle", SMALLEST, lambda: alone(numerics={"xsph": 0.5}),
+    SceneKind(SMOOTHED, "particle", SMALLEST, lambda: alone(numerics={"xsph": 0.5}),
          because="as of water only, and 3 % in the pass over pairs"),
     added("water only, twice", "a run beside its like: what the method of measuring makes of nothing"),
     added("energy book", "sums of pressure apart from the rest 8 %, the book's own lines 5 %, taken up 3 %",
@@ -143,10 +143,10 @@ KINDS = Kinds([
     added("second fluid", "number and viscosity of the partner, a comparison, a division a pair", inclusion=DISC),
     added("second fluid with surface tension", "five passes over what is near the interface",
           inclusion=DISC | {"surface_tension": 1.0}),
-    Kind(SOIL, "particle", PLAIN, soil_beside_water, FEWER,
+    SceneKind(SOIL, "particle", PLAIN, soil_beside_water, FEWER,
          "two passes over pairs, gradients of velocity and divergence of stress, and stresses of walls"),
-    Kind(SOAKED, "particle", SOIL, in_soil({}, **WET), FEWER, "twice the particles, in three kinds of pairs"),
-    Kind("air in soil", "particle", SOAKED, in_soil(WET, **UNSATURATED), FEWER,
+    SceneKind(SOAKED, "particle", SOIL, in_soil({}, **WET), FEWER, "twice the particles, in three kinds of pairs"),
+    SceneKind("air in soil", "particle", SOAKED, in_soil(WET, **UNSATURATED), FEWER,
          "a second fluid, and powers of its density"),
 ])  # fmt: skip
 """What `continuum-sph study parts` measures."""

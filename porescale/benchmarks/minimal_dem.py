@@ -6,6 +6,8 @@ turn, and contacts remember nothing.  Law and step as in contact/law.py and kick
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,15 +19,51 @@ from porescale.dem.grains import Grains
 Array = NDArray[np.float64]
 
 
+class Springs(NamedTuple):
+    """A linear law: k, kt N/m and c, ct N s/m along and across the normal; mu."""
+
+    k: float
+    c: float
+    kt: float
+    ct: float
+    mu: float
+
+
+class State(NamedTuple):
+    """Discs, as `Discs.state` has them: position (n, 2) m, angle (n,), velocity m/s, spin rad/s, radius m, mass kg/m,
+    inertia kg m²/m, force N/m, torque N m/m."""
+
+    position: Array
+    angle: Array
+    velocity: Array
+    spin: Array
+    radius: Array
+    mass: Array
+    inertia: Array
+    force: Array
+    torque: Array
+
+
+class Near(NamedTuple):
+    """A half list of pairs: start (n + 1,), partner (p,), carried (p, 1) m, the springs; list_position (n, 2) m, where
+    discs were when it was made, and limit m², the square of how far they may go."""
+
+    start: NDArray[np.int64]
+    partner: NDArray[np.int32]
+    carried: Array
+    list_position: Array
+    limit: float
+
+
 @kernel
-def smooth_steps(
-    count, dt, k, c, position, velocity, radius, mass, force, weight, start, partner, anchor, limit, walls
-):  # fmt: skip
+def smooth_steps(count, dt, law, discs, weight, near, walls):
     """Steps without friction; stops after one in which a disc left the list.  Returns steps done.
 
-    k N/m, c N s/m;  walls (w, 4) or wider: point and unit normal;  limit m²;  the rest as in integrate.py.  Overwrites
-    position, velocity and force.
+    law: Springs;  discs: State, of which position, velocity and force are overwritten;  weight (n, 2) N/m;  near: Near;
+    walls (w, 4) or wider: point and unit normal.
     """
+    position, velocity, radius, mass, force = discs.position, discs.velocity, discs.radius, discs.mass, discs.force
+    start, partner, list_position, limit, k, c = near.start, near.partner, near.list_position, near.limit, law.k, law.c
     for step in range(count):
         force[:, :] = weight
         for i in range(radius.shape[0]):
@@ -60,7 +98,7 @@ def smooth_steps(
             velocity[i, 1] += dt * force[i, 1] / mass[i]
             position[i, 0] += dt * velocity[i, 0]
             position[i, 1] += dt * velocity[i, 1]
-            dx, dy = position[i, 0] - anchor[i, 0], position[i, 1] - anchor[i, 1]
+            dx, dy = position[i, 0] - list_position[i, 0], position[i, 1] - list_position[i, 1]
             if not dx * dx + dy * dy <= limit:
                 left = True
         if left:
@@ -69,23 +107,25 @@ def smooth_steps(
 
 
 @kernel
-def rub(push, slip, spring, dt, kt, ct, mu):
+def rub(push, slip, spring, dt, law):
     """Spring, slider and dashpot: (force N/m, new spring m) at normal force ``push`` N/m and ``slip`` m/s."""
+    kt, ct, mu = law.kt, law.ct, law.mu
     reach = mu * push / kt
     spring = min(max(spring + slip * dt, -reach), reach)
     return min(max(-kt * spring - ct * slip, -mu * push), mu * push), spring
 
 
 @kernel
-def rough_steps(
-    count, dt, k, c, kt, ct, mu, position, angle, velocity, spin, radius, mass, inertia, force, torque, weight, turning,
-    start, partner, carried, anchor, limit, walls, wall_spring,
-):  # fmt: skip
+def rough_steps(count, dt, law, discs, weight, turning, near, walls, wall_spring):
     """Steps with friction; stops after one in which a disc left the list.  Returns steps done.
 
-    kt N/m, ct N s/m, mu; turning (n,) N m/m from outside; carried (p, 1), wall_spring (w, n, 1) m; the rest as in
-    smooth_steps.  Overwrites the state of discs and springs.
+    turning (n,) N m/m from outside;  wall_spring (w, n, 1) m;  the rest as in smooth_steps.  Overwrites the state of
+    discs and springs.
     """
+    position, velocity, radius, mass, force = discs.position, discs.velocity, discs.radius, discs.mass, discs.force
+    angle, spin, inertia, torque = discs.angle, discs.spin, discs.inertia, discs.torque
+    start, partner, carried = near.start, near.partner, near.carried
+    list_position, limit, k, c = near.list_position, near.limit, law.k, law.c
     for step in range(count):
         force[:, :] = weight
         torque[:] = turning
@@ -104,7 +144,7 @@ def rough_steps(
                 du, dv = velocity[i, 0] - velocity[j, 0], velocity[i, 1] - velocity[j, 1]
                 slip = dv * nx - du * ny + spin[i] * arm + spin[j] * (distance - arm)
                 push = max(k * (reach - distance) + c * (du * nx + dv * ny), 0.0)
-                along, carried[n, 0] = rub(push, slip, carried[n, 0], dt, kt, ct, mu)
+                along, carried[n, 0] = rub(push, slip, carried[n, 0], dt, law)
                 gx, gy = -push * nx - along * ny, -push * ny + along * nx
                 fx += gx
                 fy += gy
@@ -124,7 +164,7 @@ def rough_steps(
                     continue
                 slip = velocity[i, 1] * nx - velocity[i, 0] * ny + spin[i] * distance
                 push = max(k * (radius[i] - distance) + c * (velocity[i, 0] * nx + velocity[i, 1] * ny), 0.0)
-                along, wall_spring[w, i, 0] = rub(push, slip, wall_spring[w, i, 0], dt, kt, ct, mu)
+                along, wall_spring[w, i, 0] = rub(push, slip, wall_spring[w, i, 0], dt, law)
                 force[i, 0] -= push * nx + along * ny
                 force[i, 1] -= push * ny - along * nx
                 torque[i] += along * distance
@@ -136,7 +176,7 @@ def rough_steps(
             position[i, 0] += dt * velocity[i, 0]
             position[i, 1] += dt * velocity[i, 1]
             angle[i] += dt * spin[i]
-            dx, dy = position[i, 0] - anchor[i, 0], position[i, 1] - anchor[i, 1]
+            dx, dy = position[i, 0] - list_position[i, 0], position[i, 1] - list_position[i, 1]
             if not dx * dx + dy * dy <= limit:
                 left = True
         if left:
@@ -156,7 +196,8 @@ class PlainDiscs:
         assert grains.material is None
         self.discs, self.weight, self._dt, self._walls = grains.discs.state(), weight, dt, grains.walls.copy()
         self.turning = np.zeros(grains.discs.count)
-        self._law = tuple(float(value) for value in grains.contact.table[0, 0, :5])
+        self._law = Springs(*(float(value) for value in grains.contact.table[0, 0, :5]))
+        self._state = State(*(self.discs[name] for name in State._fields))
         own, box = grains.current_pairs(), grains.box
         self.pairs = PairList(grains.discs.count, own.skin, box.lower, box.upper, carried=1)
         self.pairs.restore(own.state())
@@ -171,14 +212,9 @@ class PlainDiscs:
 
     def _some(self, count: int) -> int:
         """Steps until the list must be made anew, ``count`` at most."""
-        d, listed, (kn, cn, kt, ct, mu) = self.discs, self.pairs, self._law
-        if mu > 0.0:
+        near = Near(self.pairs.start, self.pairs.partner, self.pairs.carried, self.pairs.list_position, self._limit)
+        if self._law.mu > 0.0:
             return int(rough_steps(
-                count, self._dt, kn, cn, kt, ct, mu, d["position"], d["angle"], d["velocity"], d["spin"], d["radius"],
-                d["mass"], d["inertia"], d["force"], d["torque"], self.weight, self.turning, listed.start,
-                listed.partner, listed.carried, listed.anchor, self._limit, self._walls, self._spring,
+                count, self._dt, self._law, self._state, self.weight, self.turning, near, self._walls, self._spring
             ))  # fmt: skip
-        return int(smooth_steps(
-            count, self._dt, kn, cn, d["position"], d["velocity"], d["radius"], d["mass"], d["force"], self.weight,
-            listed.start, listed.partner, listed.anchor, self._limit, self._walls,
-        ))  # fmt: skip
+        return int(smooth_steps(count, self._dt, self._law, self._state, self.weight, near, self._walls))

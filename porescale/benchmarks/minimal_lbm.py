@@ -33,8 +33,9 @@ def slots_of(f, y, parity):
 
 
 @inline
-def plain_cells(a0, a1, a2, a3, a4, a5, a6, a7, a8, even, odd):
-    """Collide and stream cells by their slots a_i (n,), which are overwritten; ``even``, ``odd`` rates."""
+def plain_cells(slots, even, odd):
+    """Collide and stream cells by their nine ``slots`` (n,), which are overwritten; ``even``, ``odd`` rates."""
+    a0, a1, a2, a3, a4, a5, a6, a7, a8 = slots
     for x in range(a0.shape[0]):
         f0, f1, f2, f3, f4, f5, f6, f7, f8 = a0[x], a1[x], a2[x], a3[x], a4[x], a5[x], a6[x], a7[x], a8[x]
         d = f0 + ((f1 + f2) + (f3 + f4)) + ((f5 + f6) + (f7 + f8))
@@ -60,8 +61,7 @@ def plain_cells(a0, a1, a2, a3, a4, a5, a6, a7, a8, even, odd):
 def plain_step(f, parity, even, odd):
     """Collide and stream all cells: overwrites f (9, ny + 2, nx + 2), shifted populations; ``even``, ``odd`` rates."""
     for y in prange(1, f.shape[1] - 1):
-        a0, a1, a2, a3, a4, a5, a6, a7, a8 = slots_of(f, y, parity)
-        plain_cells(a0, a1, a2, a3, a4, a5, a6, a7, a8, even, odd)
+        plain_cells(slots_of(f, y, parity), even, odd)
 
 
 @kernel

@@ -8,6 +8,8 @@ their loads at once.  The areas of cells under a disc are coverage.py's: there i
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -27,17 +29,32 @@ Index = NDArray[np.int64]
 total = sum_by_halves(BLOCK)
 
 
+class Covered(NamedTuple):
+    """What discs cover: centre (n, 2) cells, motion (n, 3) in lattice units and its half-step correction ``turned``,
+    corner (n, 2) of the cells under each disc and their rows (n,), at most ``highest``, ``width`` cells wide; fraction
+    (n * highest * width,).  Row by row of the lattice, the discs in it: start (ny + 1,), listed."""
+
+    centre: Array
+    motion: Array
+    turned: Array
+    corner: Index
+    rows: Index
+    highest: int
+    width: int
+    fraction: Array
+    start: Index
+    listed: Index
+
+
 @kernel
-def cover_all(
-    position, velocity, spin, reach, spacing, step, centre, motion, corner, rows, highest, width, fraction, lines,
-    start, listed,
-):  # fmt: skip
+def cover_all(position, velocity, spin, reach, spacing, step, covered, lines):
     """Where discs lie: position (n, 2) m, velocity m/s, spin rad/s, reach (n,) cells; spacing m, step s.
 
-    Overwrites centre (n, 2) cells, motion (n, 3) in lattice units, corner (n, 2), fraction (n * highest * width,) of
-    the cells under each disc, rows (n,) of which are in use, and lists, row by row of the lattice, the discs in it:
-    start (ny + 1,), listed.  lines: scratch.
+    Overwrites ``covered`` but for the correction and the numbers of rows.  lines: scratch.
     """
+    centre, motion, corner, rows = covered.centre, covered.motion, covered.corner, covered.rows
+    highest, width, fraction = covered.highest, covered.width, covered.fraction
+    start, listed = covered.start, covered.listed
     ny, pace = start.shape[0] - 1, step / spacing
     start[:] = 0
     for n in range(reach.shape[0]):
@@ -61,8 +78,10 @@ def cover_all(
 
 
 @inline
-def lay(n, y, centre, motion, turned, corner, highest, width, fraction, s, sx, sy):
-    """Add disc n in row y: its fractions e to s, e times velocity to sx and sy; arguments as in wet_rows."""
+def lay(n, y, covered, s, sx, sy):
+    """Add disc n in row y: its fractions e to s, e times velocity to sx and sy."""
+    centre, motion, turned, corner = covered.centre, covered.motion, covered.turned, covered.corner
+    highest, width, fraction = covered.highest, covered.width, covered.fraction
     rx, ry = corner[n, 0] + 0.5 - centre[n, 0], y + 0.5 - centre[n, 1]
     vx, cx = motion[n, 0] - motion[n, 2] * ry, turned[n, 0] - turned[n, 2] * ry
     vy, cy = motion[n, 1] + motion[n, 2] * rx, turned[n, 1] + turned[n, 2] * rx
@@ -78,9 +97,11 @@ def lay(n, y, centre, motion, turned, corner, highest, width, fraction, s, sx, s
 
 
 @inline
-def take(n, y, centre, motion, turned, corner, highest, width, fraction, s, sx, sy, partial, load):
+def take(n, y, covered, s, sx, sy, partial, load):
     """Add what row y does to disc n to load (n, 5): force, torque, mass and inertia that answer.  s, sx, sy: as
     wet_cells leaves them;  partial: scratch."""
+    centre, motion, turned, corner = covered.centre, covered.motion, covered.turned, covered.corner
+    highest, width, fraction = covered.highest, covered.width, covered.fraction
     rx, ry = corner[n, 0] + 0.5 - centre[n, 0], y + 0.5 - centre[n, 1]
     vx, cx = motion[n, 0] - motion[n, 2] * ry, turned[n, 0] - turned[n, 2] * ry
     w, c = motion[n, 2], turned[n, 2]
@@ -103,9 +124,12 @@ def take(n, y, centre, motion, turned, corner, highest, width, fraction, s, sx, 
 
 
 @inline
-def wet_cells(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, share, b, evenly, kept, k, spread):
-    """Collide and stream cells that discs cover: slots a_i (n,), sums s, sx, sy (n,) of ``lay``, all overwritten, the
-    sums with what loads are made of.  share, b, evenly, kept (n,): scratch;  k, spread: tau - 1/2, lambda0."""
+def wet_cells(slots, sums, spare, k, spread):
+    """Collide and stream cells that discs cover: nine ``slots`` (n,), three ``sums`` (n,) of ``lay``, all overwritten,
+    the sums with what loads are made of.  spare: four of scratch (n,);  k, spread: tau - 1/2, lambda0."""
+    a0, a1, a2, a3, a4, a5, a6, a7, a8 = slots
+    s, sx, sy = sums
+    share, b, evenly, kept = spare
     onset, smooth, wall = ONSET, SMOOTHING * SMOOTHING, 0.375 / k
     for x in range(a0.shape[0]):
         sum_e = s[x]
@@ -150,50 +174,51 @@ def wet_cells(a0, a1, a2, a3, a4, a5, a6, a7, a8, s, sx, sy, share, b, evenly, k
         s[x], sx[x], sy[x] = held * rho, held * jx, held * jy
 
 
+@inline
+def cut(slots, first, count):
+    """``count`` cells of nine ``slots``, from ``first`` on."""
+    a0, a1, a2, a3, a4, a5, a6, a7, a8 = slots
+    return (
+        part(a0, first, count), part(a1, first, count), part(a2, first, count), part(a3, first, count),
+        part(a4, first, count), part(a5, first, count), part(a6, first, count), part(a7, first, count),
+        part(a8, first, count),
+    )  # fmt: skip
+
+
 @kernel
-def wet_rows(
-    f, parity, even, odd, centre, motion, turned, corner, highest, width, fraction, start, listed, sums, spare, partial,
-    load,
-):  # fmt: skip
+def wet_rows(f, parity, even, odd, covered, sums, spare, partial, load):
     """Collide and stream all cells: overwrites f (9, ny + 2, nx + 2) and load (n, 5), see ``take``.
 
-    even, odd: rates;  turned (n, 3): half-step correction of motion;  sums (3, BLOCK + nx + more): zero before and
-    after;  spare (4, nx), partial (5 * BLOCK,): scratch;  the rest as in cover_all.
+    even, odd: rates;  sums (3, BLOCK + nx + more): zero before and after;  spare (4, nx) and partial
+    (5 * BLOCK,): scratch.
     """
+    corner, width, start, listed = covered.corner, covered.width, covered.start, covered.listed
     nx, k, spread = f.shape[2] - 2, 1.0 / even - 0.5, 1.0 / odd - 0.5
     load[:, :] = 0.0
     for y in range(f.shape[1] - 2):
-        a0, a1, a2, a3, a4, a5, a6, a7, a8 = slots_of(f, y + 1, parity)
+        slots = slots_of(f, y + 1, parity)
         s, sx, sy = sums[0], sums[1], sums[2]
         left, right = nx, 0
         for entry in range(start[y], start[y + 1]):
             n = listed[entry]
             left, right = min(left, corner[n, 0]), max(right, corner[n, 0] + width)
-            lay(n, y, centre, motion, turned, corner, highest, width, fraction, s, sx, sy)
+            lay(n, y, covered, s, sx, sy)
         if left < right:  # whole blocks, or the ends run cell by cell
             left, right = max(left, 0) // BLOCK * BLOCK, min((right + BLOCK - 1) // BLOCK * BLOCK, nx)
         else:
             left, right = nx, nx
         for end in range(2):
             m, o = (right, nx) if end else (0, left)
-            plain_cells(
-                part(a0, m, o - m), part(a1, m, o - m), part(a2, m, o - m), part(a3, m, o - m), part(a4, m, o - m),
-                part(a5, m, o - m), part(a6, m, o - m), part(a7, m, o - m), part(a8, m, o - m), even, odd,
-            )  # fmt: skip
+            plain_cells(cut(slots, m, o - m), even, odd)
         if left < right:
             sums[:, :BLOCK] = 0.0
             sums[:, BLOCK + nx :] = 0.0
             m, n = left, right - left
-            wet_cells(
-                part(a0, m, n), part(a1, m, n), part(a2, m, n), part(a3, m, n), part(a4, m, n), part(a5, m, n),
-                part(a6, m, n), part(a7, m, n), part(a8, m, n), part(s, m + BLOCK, n), part(sx, m + BLOCK, n),
-                part(sy, m + BLOCK, n), part(spare[0], 0, n), part(spare[1], 0, n), part(spare[2], 0, n),
-                part(spare[3], 0, n), k, spread,
-            )  # fmt: skip
+            here = part(s, m + BLOCK, n), part(sx, m + BLOCK, n), part(sy, m + BLOCK, n)
+            room = part(spare[0], 0, n), part(spare[1], 0, n), part(spare[2], 0, n), part(spare[3], 0, n)
+            wet_cells(cut(slots, m, n), here, room, k, spread)
             for entry in range(start[y], start[y + 1]):
-                take(
-                    listed[entry], y, centre, motion, turned, corner, highest, width, fraction, s, sx, sy, partial, load
-                )  # fmt: skip
+                take(listed[entry], y, covered, s, sx, sy, partial, load)
             sums[:, BLOCK + left : BLOCK + right] = 0.0
 
 
@@ -239,16 +264,17 @@ class PlainWet:
         self.dry = PlainDiscs(grains, coupled.force.copy(), scales.step / coupled.contact_steps)
         count, self._reach = grains.discs.count, wet.covering_radius
         cells = (np.floor(2 * self._reach) + 2).astype(np.int64)
-        self._width, self._highest = int(whole_blocks(cells + 1).max()), int(cells.max())
-        self._rows, self._start = cells, np.zeros(fluid.ny + 1, np.int64)
-        self._listed, self._corner = np.zeros(int(cells.sum()), np.int64), np.zeros((count, 2), np.int64)
-        self._centre, self._motion = np.zeros((count, 2)), np.zeros((count, 3))
-        self._fraction = np.zeros(count * self._highest * self._width)
-        self._lines, self._load = np.zeros((SCRATCH, self._width + BLOCK)), np.zeros((count, 5))
-        self._sums, self._spare = np.zeros((3, fluid.nx + self._width + 2 * BLOCK)), np.zeros((4, fluid.nx))
-        self._partial = np.zeros(5 * BLOCK)
+        width, highest = int(whole_blocks(cells + 1).max()), int(cells.max())
         state = wet.state()
-        self._slow, self._turned = state["slow_load"].copy(), state["shift"].copy()
+        self._slow = state["slow_load"].copy()
+        self._covered = Covered(
+            np.zeros((count, 2)), np.zeros((count, 3)), state["shift"].copy(), np.zeros((count, 2), np.int64), cells,
+            highest, width, np.zeros(count * highest * width), np.zeros(fluid.ny + 1, np.int64),
+            np.zeros(int(cells.sum()), np.int64),
+        )  # fmt: skip
+        self._lines, self._load = np.zeros((SCRATCH, width + BLOCK)), np.zeros((count, 5))
+        self._sums, self._spare = np.zeros((3, fluid.nx + width + 2 * BLOCK)), np.zeros((4, fluid.nx))
+        self._partial = np.zeros(5 * BLOCK)
         self._inner = np.column_stack((coupled.inner_velocity, coupled.inner_spin))
         self._inner_mass = np.column_stack((coupled.inner_mass, coupled.inner_inertia))
         mass = scales.density * scales.spacing**2
@@ -260,18 +286,15 @@ class PlainWet:
         s, d, water = self._scales, self.dry.discs, self.water
         for _ in range(steps):
             cover_all(
-                d["position"], d["velocity"], d["spin"], self._reach, s.spacing, s.step, self._centre, self._motion,
-                self._corner, self._rows, self._highest, self._width, self._fraction, self._lines, self._start,
-                self._listed,
+                d["position"], d["velocity"], d["spin"], self._reach, s.spacing, s.step, self._covered, self._lines
             )  # fmt: skip
             wet_rows(
-                water.populations, water.step % 2, water.even, water.odd, self._centre, self._motion, self._turned,
-                self._corner, self._highest, self._width, self._fraction, self._start, self._listed, self._sums,
-                self._spare, self._partial, self._load,
+                water.populations, water.step % 2, water.even, water.odd, self._covered, self._sums, self._spare,
+                self._partial, self._load,
             )  # fmt: skip
             water.close()
             answer(
-                self._load, self._slow, self._turned, d["velocity"], d["spin"], self._weight, self._inner,
+                self._load, self._slow, self._covered.turned, d["velocity"], d["spin"], self._weight, self._inner,
                 self._inner_mass, self._units, s.step, self.dry.weight, self.dry.turning,
             )  # fmt: skip
             self.dry.advance(self._contact_steps)

@@ -14,7 +14,7 @@ from porescale.build.build import build
 from porescale.build.report import PARTS
 from porescale.build.scene import Scene
 from porescale.build.simulation import Simulation
-from porescale.common.evidence.overhead import SMALLEST, Built, Kind, Kinds
+from porescale.common.evidence.overhead import SMALLEST, BuiltScene, SceneKind, SceneKinds
 from porescale.common.schema.sections import validate
 
 CELLS = 256
@@ -65,13 +65,13 @@ def parts_of(it: Scene) -> list[str]:
     return [name for name in PARTS if getattr(it, name)]
 
 
-def built(it: Scene, item: str, other: Callable[[Simulation], Callable[[int], object]]) -> Built:
+def built(it: Scene, item: str, other: Callable[[Simulation], Callable[[int], object]]) -> BuiltScene:
     """The simulation of a scene, one step done, beside what ``other`` makes of it."""
     made = build(it)
     made.advance(WARM)
     fluid, grains = made.fluid, made.grains
     count = fluid.nx * fluid.ny if item == "cell" and fluid else grains.discs.count if grains else 0
-    return Built(made, parts_of(it), count, made.advance, other(made))
+    return BuiltScene(made, parts_of(it), count, made.advance, other(made))
 
 
 def lattice(made: Simulation) -> Callable[[int], object]:
@@ -127,20 +127,20 @@ OPEN: Table = {"width": CELLS * 1e-3, "height": CELLS * 1e-3, "left": "periodic"
 PENTAGON: Table = {"sides": 5, "diameter": 3e-3, "thickness": 1e-4, "density": 2500.0, "at": [(0.5 * GRAINS[0], 0.12)]}
 
 
-def added(name: str, item: str, of: str, base: Callable[..., Scene], **more: Any) -> Kind:
+def added(name: str, item: str, of: str, base: Callable[..., Scene], **more: Any) -> SceneKind:
     """A scene with something more than ``base`` has."""
-    return Kind(name, item, of, lambda: built(base(**more), item, without(base())))
+    return SceneKind(name, item, of, lambda: built(base(**more), item, without(base())))
 
 
-KINDS = Kinds([
-    Kind("water only", "cell", SMALLEST, lambda: built(water(), "cell", lattice),
+KINDS = SceneKinds([
+    SceneKind("water only", "cell", SMALLEST, lambda: built(water(), "cell", lattice),
          because="0.96 to 1.04 from run to run"),
-    Kind("dry grains", "grain", SMALLEST, lambda: built(dry(), "grain", discs)),
-    Kind("dry grains without friction or rotation", "grain", SMALLEST,
+    SceneKind("dry grains", "grain", SMALLEST, lambda: built(dry(), "grain", discs)),
+    SceneKind("dry grains without friction or rotation", "grain", SMALLEST,
          lambda: built(dry({"stiffness": 5e5, "restitution": 0.97, "friction": 0.0}), "grain", discs),
          because="0.99 to 1.00 from run to run, 1.07 on a busy machine; the smallest asks every grain at each step "
                  "whether it touches a wall, here those are asked that may before the pair list is due"),
-    Kind("fixed grains in water", "cell", SMALLEST, lambda: built(fixed(), "cell", nothing_moves), steps=20,
+    SceneKind("fixed grains in water", "cell", SMALLEST, lambda: built(fixed(), "cell", nothing_moves), steps=20,
          because="1.01 to 1.04 from run to run: contact steps of discs that nothing moves are left out"),
     added("rolling friction", "grain", "dry grains", dry, contact=CONTACT | ROLLING),
     added("energy book", "grain", "dry grains", dry, output=BOOK),

@@ -18,7 +18,7 @@ from porescale.benchmarks.overhead import Table, built, nothing_moves, parts_of,
 from porescale.build.build import build
 from porescale.build.scene import Scene
 from porescale.build.simulation import Simulation
-from porescale.common.evidence.overhead import SMALLEST, Built, Kind, Kinds
+from porescale.common.evidence.overhead import SMALLEST, BuiltScene, SceneKind, SceneKinds
 
 PILE = (0.03, 0.02)
 """Width and height, m: some 300 grains, 10 cells each."""
@@ -36,16 +36,16 @@ def wet(**more: object) -> Scene:
     return scene(PILE[0], 1.5 * PILE[1], fluid=FLUID, grains=grains, contact=CONTACT, **more)
 
 
-def sleeping() -> Built:
+def sleeping() -> BuiltScene:
     """The pile whose grains sleep, beside that whose grains do not."""
     it = wet(sleep={"share": 0.05})
     made = build(it)
     made.advance(WARM)
     assert made.grains
-    return Built(made, parts_of(it), made.grains.discs.count, made.advance, without(wet())(made))
+    return BuiltScene(made, parts_of(it), made.grains.discs.count, made.advance, without(wet())(made))
 
 
-def looking() -> Built:
+def looking() -> BuiltScene:
     """A look at every cell of a tank, beside a step of it."""
     it = water()
     made = build(it)
@@ -58,7 +58,7 @@ def looking() -> Built:
         for _ in range(steps):
             largest_of_rows(populations, row, largest)
 
-    return Built(made, parts_of(it), made.fluid.nx * made.fluid.ny, look, made.advance)
+    return BuiltScene(made, parts_of(it), made.fluid.nx * made.fluid.ny, look, made.advance)
 
 
 def smallest(made: Simulation) -> Callable[[int], object]:
@@ -67,16 +67,16 @@ def smallest(made: Simulation) -> Callable[[int], object]:
     return PlainWet(made.coupled).advance
 
 
-KINDS = Kinds([
-    Kind("moving grains in water", "cell", SMALLEST, lambda: built(wet(), "cell", smallest), steps=10,
+KINDS = SceneKinds([
+    SceneKind("moving grains in water", "cell", SMALLEST, lambda: built(wet(), "cell", smallest), steps=10,
          because="1.28 to 1.32 from run to run; of the 0.18 ms more rows with grains take 0.12, half of it to lay them "
                  "out and take their loads, lists and sums over rows 0.03, contact steps 0.01, Python the rest"),
-    Kind("grains that may move", "cell", "the same grains, held", lambda: built(wet(), "cell", nothing_moves),
+    SceneKind("grains that may move", "cell", "the same grains, held", lambda: built(wet(), "cell", nothing_moves),
          steps=10),
-    Kind("sleep under water", "grain", "pile under water", sleeping, steps=10,
+    SceneKind("sleep under water", "grain", "pile under water", sleeping, steps=10,
          because="all sleep: no contact steps, 4 %, and cells stay covered as they were, 14 %, until a grain moves; "
                  "0.84 to 0.88 from run to run, 0.97 on a busy machine"),
-    Kind("a look for water at rest", "cell", "water only", looking,
+    SceneKind("a look for water at rest", "cell", "water only", looking,
          because="cells at rest are not left out: in a collapse there are none once sound has crossed the tank"),
 ])  # fmt: skip
 """More of what `porescale study parts` measures."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import App, Parameter
 
 from porescale.common.cli.options import Threads, use_threads
-from porescale.common.cli.run import refuse_folder, summary
+from porescale.common.cli.run import check_folder, summary
 from porescale.common.core.errors import Fault, InputError
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def run(
     quiet: Annotated[bool, Parameter(help="no progress, no summary")] = False,
 ) -> int:
     """Run a deck: run folder, energy.dat, f-d_curve.dat and new_in_*.dat for the run that goes on from its end."""
-    from porescale.common.record.drive import refuse_resume
+    from porescale.common.record.drive import check_resume
     from porescale.demseg.build import Options
     from porescale.demseg.deck import read_deck
     from porescale.demseg.run import DeckRun, card_of
@@ -61,10 +61,10 @@ def run(
     deck = read_deck(folder)
     name = folder.resolve().name
     where = out or Path("runs") / name
-    refuse_folder(where, PACKAGE, resume=resume, overwrite=overwrite)
+    check_folder(where, PACKAGE, resume=resume, overwrite=overwrite)
     scene = card_of(deck, options)
     if resume:
-        refuse_resume(where, {"package": PACKAGE, "name": name, "scene": scene})
+        check_resume(where, {"package": PACKAGE, "name": name, "scene": scene})
     use_threads(threads)
     model = DeckRun(deck, options, folder)
     outcome = drive_deck(model, where, name, scene, resume=resume, overwrite=overwrite, quiet=quiet)
@@ -141,7 +141,7 @@ def convert(
     overwrite: Annotated[bool, Parameter(help="replace the file")] = False,
 ) -> int:
     """Make a scene of a deck that does not go on from another run."""
-    from porescale.common.cli.folders import refuse_unwritable
+    from porescale.common.cli.folders import require_writable
     from porescale.common.core.atomic import write_text
     from porescale.demseg.build import Options, build, with_bodies
     from porescale.demseg.convert import UNITS, scene_of, toml
@@ -150,7 +150,7 @@ def convert(
 
     name = folder.resolve().name
     file = out or Path(f"{name}.toml")
-    refuse_unwritable(file.parent, "--out")
+    require_writable(file.parent, "--out")
     if file.exists() and not overwrite:
         raise InputError(Fault("--out", str(file), "is there already", repair="name another, or --overwrite it"))
     deck = with_bodies(read_deck(folder), seed)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from porescale.common.cli.options import Quality, Scene, Settings, Threads, refuse_no_scene, use_threads
+from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, use_threads
 from porescale.common.cli.sweep import Again, Jobs, Scheduler, chosen_folder, conclude, enlist, laid_over, say
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.version import VERSION
@@ -45,7 +45,7 @@ def homogenise(
     of the scene says.  material.toml is what `[soil] material = "material.toml"` of a continuum-sph scene reads;
     homogenise.csv and .png show what it stands on.  What was stopped goes on when called again.
     """
-    refuse_no_scene(scene)
+    require_scene(scene)
     from porescale.analysis.homogenise import asked_of, specimen
     from porescale.build.scene import Scene as SceneType
     from porescale.common.schema.sections import open_scene

@@ -31,7 +31,7 @@ PACKAGE = Package(
     stability=discovered(BENCHMARKS, "STABILITY"),
     endurance=discovered(BENCHMARKS, "ENDURANCES"),
     parts=discovered(BENCHMARKS, "KINDS"),
-    judge=run.judge,
+    check_resume=run.check_resume,
     also={demseg.PACKAGE: demseg.show},
     features=run.features,
 )

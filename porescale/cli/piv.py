@@ -11,7 +11,7 @@ from cyclopts import App, Parameter
 
 from porescale.cli.piv_measure import measure
 from porescale.cli.piv_quantity import quantity
-from porescale.common.cli.folders import refuse_unwritable
+from porescale.common.cli.folders import require_writable
 from porescale.common.cli.options import Json
 from porescale.common.core.errors import Fault, InputError
 
@@ -66,7 +66,7 @@ def synth(
     from porescale.piv.images.synth import Camera, exact, pair
 
     folder = out or Path("runs") / f"piv_{flow}"
-    refuse_unwritable(folder, "--out")
+    require_writable(folder, "--out")
     if not 16 <= size <= 8192:
         raise InputError(Fault("--size", size, "is out of range", "px", "16 to 8192"))
     camera = Camera((size, size), density, diameter, noise=noise, lost=lost, disc=disc)
@@ -115,7 +115,7 @@ def render(
 
     folder = out or run / "piv"
     opened = open_run(run)
-    refuse_unwritable(folder, "--out")
+    require_writable(folder, "--out")
     first, last = (float(it) for it in opened.times[[0, -1]]) if len(opened) else (0.0, 0.0)
     begin = first if start is None else quantity("--start", start, "s")
     stop = last if end is None else quantity("--end", end, "s")
@@ -157,7 +157,7 @@ def compare(
     from porescale.piv.fields.pictures import comparison
 
     if out is not None:
-        refuse_unwritable(out, "--out")
+        require_writable(out, "--out")
     moment = None if at is None else quantity("--time", at, "s")
     if factor <= 1 or (within is not None and within <= 0):
         bad = ("--factor", factor, "> 1") if factor <= 1 else ("--within", within, "> 0")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 from porescale.cli.piv_quantity import quantity
-from porescale.common.cli.folders import refuse_unwritable
+from porescale.common.cli.folders import require_writable
 from porescale.common.cli.options import Json, Threads, use_threads
 from porescale.common.core.errors import Fault, InputError
 
@@ -67,10 +67,10 @@ def measure(
         raise InputError(Fault("films", None, "none given", repair="give two pictures, or a film"))
     for path, key in ((csv, "--csv"), (openpiv, "--openpiv")):
         if path is not None:
-            refuse_unwritable(path.parent, key)
+            require_writable(path.parent, key)
     folder = out if out or ((csv or openpiv) and not overlay) else Path("runs") / f"piv_{_stem(films[0])}"
     if folder is not None:
-        refuse_unwritable(folder, "--out")
+        require_writable(folder, "--out")
     if no_slip and not (mask or polygon):
         raise InputError(Fault("--no-slip", None, "there are no solids", repair="give --mask or --polygon"))
     use_threads(threads)

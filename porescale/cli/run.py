@@ -69,12 +69,12 @@ def drive(
     return outcome
 
 
-def judge(folder: Path, card: dict[str, Any]) -> None:
+def check_resume(folder: Path, card: dict[str, Any]) -> None:
     """InputError where the run in ``folder`` cannot be gone on with as ``card`` asks."""
-    from porescale.common.record.drive import refuse_resume
+    from porescale.common.record.drive import check_resume
     from porescale.common.schema.migrations import completing
 
-    refuse_resume(folder, card, today=completing(scene_type(), card))
+    check_resume(folder, card, today=completing(scene_type(), card))
 
 
 def table(folder: Path, name: str) -> dict[str, Array]:

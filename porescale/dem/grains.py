@@ -153,7 +153,7 @@ class Grains(State):
                 left, dt, drag, d.position, d.angle if turning(self, law) else d.angle[:0],
                 d.velocity, d.spin, d.radius, d.mass, d.inertia, d.force, d.torque,
                 self.external_force, self.external_torque,
-                pairs.start, pairs.partner, pairs.carried, pairs.mark, pairs.room**2,
+                pairs.start, pairs.partner, pairs.carried, pairs.checked_position, pairs.skin_margin**2,
                 law,
                 self.walls, self.wall_laws, self.wall_spring, self.wall_load,
                 self.plates, self.plate_laws, self.plate_spring, self.plate_force,

@@ -10,7 +10,7 @@ import pydantic
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.units import to_si
-from porescale.common.neighbors.grading import graded_radii, judge_curve
+from porescale.common.neighbors.grading import check_curve, graded_radii
 from porescale.common.schema.sections import Refused, Section, quantity
 from porescale.scene.ranges import FRICTION, LENGTH
 
@@ -97,7 +97,7 @@ def with_consequences(table: Any) -> Any:
 
 def require_curve(curve: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
     """A grading curve; raises Refused where it is none."""
-    faults = judge_curve(curve, "") if curve else []
+    faults = check_curve(curve, "") if curve else []
     if faults:
         raise Refused(*faults)
     return curve
@@ -110,7 +110,7 @@ def _mean_of(curve: Any, table: Mapping[str, Any]) -> float | None:
     fraction = _number(table.get("packing_fraction", 0.81))
     try:
         points = tuple((to_si(d, "m"), float(p)) for d, p in curve)
-        if fraction is None or None in numbers or judge_curve(points):
+        if fraction is None or None in numbers or check_curve(points):
             return None
         return 2.0 * float(graded_radii(points, fraction * float(np.prod(np.array(numbers, float)))).mean())
     except (TypeError, ValueError, InputError):

@@ -119,7 +119,7 @@ def test_kernels_do_the_same_as_plain_python():
             d.inertia,
             force,
             torque,
-            p.anchor,
+            p.list_position,
             1.0,
             3.0,
             1e-5,

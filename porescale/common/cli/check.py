@@ -5,7 +5,7 @@ from __future__ import annotations
 import json as json_text
 from collections.abc import Callable
 
-from porescale.common.cli.options import Json, Quality, Scene, Settings, refuse_no_scene
+from porescale.common.cli.options import Json, Quality, Scene, Settings, require_scene
 from porescale.common.cli.package import Package
 
 
@@ -16,7 +16,7 @@ def command(package: Package) -> Callable[..., int]:
         """Say what a scene means (resolution, stability, cost) without running it; warn or refuse."""
         from porescale.common.schema.sections import open_scene
 
-        refuse_no_scene(scene)
+        require_scene(scene)
         opened = open_scene(scene, package.scene(), quality=quality, overrides=settings or ())
         report = package.report(opened.scene)
         if json:

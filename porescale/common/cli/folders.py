@@ -13,11 +13,11 @@ def study_folder(out: str) -> Path:
     """The folder that ``--out`` names; InputError where it names none or cannot be written."""
     if out == "":
         raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
-    refuse_unwritable(Path(out), "--out")
+    require_writable(Path(out), "--out")
     return Path(out)
 
 
-def refuse_unwritable(folder: Path, key: str) -> None:
+def require_writable(folder: Path, key: str) -> None:
     """InputError naming ``key`` unless ``folder`` can be made and written; leaves nothing behind."""
     made: list[Path] = []
     probe = folder / f".{os.getpid()}.writable"

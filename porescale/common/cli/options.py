@@ -27,7 +27,7 @@ def use_threads(count: int | None) -> int:
     return set_threads(count)
 
 
-def refuse_no_scene(path: Path) -> None:
+def require_scene(path: Path) -> None:
     """InputError unless ``path`` leads to a TOML file: said at once, before the sections of a scene and the compiler
     that their rooms bring along are imported."""
     from porescale.common.schema import scene_file

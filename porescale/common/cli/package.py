@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from porescale.common.evidence.benchmarks import Benchmarks
     from porescale.common.evidence.endurance import Endurances
     from porescale.common.evidence.extremes import Extremes
-    from porescale.common.evidence.overhead import Kinds
+    from porescale.common.evidence.overhead import SceneKinds
     from porescale.common.evidence.stability import Stability
     from porescale.common.evidence.validations import Validations
     from porescale.common.schema.sections import Section
@@ -77,17 +77,18 @@ class Package:
 
     name : of the command;  summary : one line for --help;  version;
     scene : gives the scene type;  template : gives the commented scene.toml that `new` writes;
-    build : scene -> model, of scenes that report did not refuse;  drive : runs it;  report : scene -> what `check`
-    says, warnings and all (it may raise InputError);
+    build : scene -> model, of scenes that report accepts;  drive : runs it;  report : scene -> the report of `check`,
+    warnings and all (it may raise InputError);
     show : makes pictures and a film in a run folder and gives their paths;
     table : columns of a table of a run folder by its name, "series" for series.csv;
-    also : the same as show for runs of other commands, by what their cards call them;
-    validations, benchmarks : give the registers;  case : folder of a case whose front `bench` measures again, None
-    if there is none;  stability : that of the flows of a stability map, extremes : what
-    `study extremes` tries, endurance : what `study endurance` runs, parts : what `study parts` measures, None if there
-    is none;  judge : InputError where the run in a folder cannot be gone on with as a card asks, None if only a model
-    can say;  features : what trade studies make of a run folder at a time (None: its last snapshot), by name, None if
-    there is nothing.
+    also : the same as show for runs of other commands, by the names in their cards;
+    validations, benchmarks : give the registers;  case : folder of a case whose front `bench` measures again, or None;
+    stability : flows of a stability map;  extremes : tries of `study extremes`;  endurance : flows of `study
+    endurance`;  parts : scenes of `study parts`;  each None if there are none;
+    check_resume : InputError where the run in a folder cannot be resumed with a card; None if only a model can
+    find out;
+    features : what trade studies read of a run folder at a time (None: its last snapshot), by name, None if there is
+    nothing.
     """
 
     name: str
@@ -106,7 +107,7 @@ class Package:
     stability: Callable[[], Stability] | None = None
     extremes: Callable[[], Extremes] | None = None
     endurance: Callable[[], Endurances] | None = None
-    parts: Callable[[], Kinds] | None = None
-    judge: Callable[[Path, dict[str, Any]], None] | None = None
+    parts: Callable[[], SceneKinds] | None = None
+    check_resume: Callable[[Path, dict[str, Any]], None] | None = None
     also: Mapping[str, Callable[[Path], Iterable[Path]]] = field(default_factory=dict)
     features: Callable[[], Mapping[str, Callable[[Path, float | None], NDArray[Any]]]] | None = None

@@ -11,7 +11,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from porescale.common.cli.folders import refuse_unwritable
+from porescale.common.cli.folders import require_writable
 from porescale.common.cli.options import Json, use_threads
 from porescale.common.cli.package import Package
 from porescale.common.cli.trade import circumstances
@@ -46,7 +46,7 @@ def command(package: Package) -> Callable[..., int]:
         ]
         if faults:
             raise InputError(faults)
-        refuse_unwritable(Path(out), "--out")
+        require_writable(Path(out), "--out")
         use_threads(1)
         rows = []
         for kind in kinds:

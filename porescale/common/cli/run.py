@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from porescale.common.cli import pick
-from porescale.common.cli.folders import refuse_unwritable, unusable
-from porescale.common.cli.options import Quality, Scene, Settings, Threads, refuse_no_scene, use_threads
+from porescale.common.cli.folders import require_writable, unusable
+from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, use_threads
 from porescale.common.cli.package import Outcome, Package
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.record.read_card import NAME as CARD
@@ -45,10 +45,10 @@ def command(package: Package) -> Callable[..., int]:
         """Run a scene and write its run folder."""
         from porescale.common.schema.sections import open_scene
 
-        refuse_no_scene(scene)
+        require_scene(scene)
         chosen = None
         if error is not None or budget is not None:
-            refuse_choices(quality, resume)
+            check_choices(quality, resume)
             use_threads(threads)
             chosen = pick.pick(package, scene, error, budget, settings or (), quiet=quiet)
             settings = [*chosen.point.settings, *(settings or ())]
@@ -57,14 +57,14 @@ def command(package: Package) -> Callable[..., int]:
         if out == "":
             raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
         folder = Path(out) if out is not None else Path("runs") / opened.name
-        refuse_folder(folder, package.name, resume=resume, overwrite=overwrite)
+        check_folder(folder, package.name, resume=resume, overwrite=overwrite)
         card = card_of(package, opened)
         if chosen is not None:
             card["picked"] = chosen.as_dict()
         begun = time.perf_counter()
         warnings = package.report(opened.scene).warnings  # what contradicts itself is refused
-        if resume and package.judge is not None:
-            package.judge(folder, card)
+        if resume and package.check_resume is not None:
+            package.check_resume(folder, card)
         use_threads(threads)  # numba counts them; unless moving frames were to be judged, it is imported only now
         for warning in warnings:
             print(f"warning: {warning}", file=sys.stderr)
@@ -93,7 +93,7 @@ def card_of(package: Package, opened: Opened[Any]) -> dict[str, Any]:
     }
 
 
-def refuse_choices(quality: str | None, resume: bool) -> None:
+def check_choices(quality: str | None, resume: bool) -> None:
     """InputError where what a front picks is given, too."""
     for option, given in (("--quality", quality), ("--resume", resume)):
         if given:
@@ -101,7 +101,7 @@ def refuse_choices(quality: str | None, resume: bool) -> None:
             raise InputError(Fault(option, None, "contradicts --error and --budget", repair=repair))
 
 
-def refuse_folder(folder: Path, package: str, *, resume: bool, overwrite: bool) -> None:
+def check_folder(folder: Path, package: str, *, resume: bool, overwrite: bool) -> None:
     """InputError unless a run may and can be written to ``folder``: nothing that is there is lost by accident."""
     if resume and overwrite:
         raise InputError(Fault("--resume", None, "contradicts --overwrite", repair="give one of them"))
@@ -109,7 +109,7 @@ def refuse_folder(folder: Path, package: str, *, resume: bool, overwrite: bool) 
         _refuse_content(folder, package, resume=resume, overwrite=overwrite)
     except OSError as error:  # a name too long, a folder that may not be looked into
         raise unusable(folder, "--out", error) from error
-    refuse_unwritable(folder, "--out")
+    require_writable(folder, "--out")
 
 
 def _refuse_content(folder: Path, package: str, *, resume: bool, overwrite: bool) -> None:

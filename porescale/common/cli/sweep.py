@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from porescale.common.cli.folders import refuse_unwritable
-from porescale.common.cli.options import Quality, Scene, Settings, Threads, refuse_no_scene
+from porescale.common.cli.folders import require_writable
+from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
 
@@ -53,9 +53,9 @@ def command(package: Package) -> Callable[..., int]:
         from porescale.common.studies import sweep_files
         from porescale.common.studies.runner import Campaign
 
-        refuse_no_scene(scene)
+        require_scene(scene)
         points = chosen_points(table, vary or ())
-        file, name = refuse_wrong_points(package, scene, points, quality, settings or ())
+        file, name = check_points(package, scene, points, quality, settings or ())
         folder = chosen_folder(out, f"{name}_sweep")
         campaign = Campaign(module_of(package), file, folder, tuple(settings or ()), quality, threads or 1, again)
         jobs = enlist(campaign, jobs, scheduler)
@@ -87,7 +87,7 @@ def chosen_points(table: Path | None, vary: Sequence[str]) -> list[Point]:
     return crossed(points, options) if options else points
 
 
-def refuse_wrong_points(
+def check_points(
     package: Package, scene: Path, points: Sequence[Point], quality: str | None, settings: Sequence[str]
 ) -> tuple[Path, str]:
     """File and name of the scene; InputError with what is wrong with any of the points, before any of them runs."""
@@ -119,7 +119,7 @@ def chosen_folder(out: str | None, name: str) -> Path:
     if out == "":
         raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
     folder = Path(out) if out is not None else Path("runs") / name
-    refuse_unwritable(folder, "--out")
+    require_writable(folder, "--out")
     return folder
 
 

@@ -16,12 +16,12 @@ from porescale.common.cli.sweep import (
     Again,
     Jobs,
     Scheduler,
+    check_points,
     chosen_folder,
     conclude,
     enlist,
     laid_over,
     module_of,
-    refuse_wrong_points,
     say,
 )
 from porescale.common.core.errors import Fault, InputError
@@ -50,7 +50,7 @@ def command(package: Package) -> Callable[..., int]:
         from porescale.common.schema.scene_file import find
         from porescale.common.studies import trade_files
         from porescale.common.studies.runner import Campaign
-        from porescale.common.studies.trade import Judge, front
+        from porescale.common.studies.trade import Errors, front
         from porescale.common.studies.trade_plan import read_plan
 
         asked, _ = read_plan(find(scene), plan)
@@ -64,7 +64,7 @@ def command(package: Package) -> Callable[..., int]:
         truth = asked.repeats(reference) if reference else []
         groups = [asked.repeats(point) for _, _, point in variants]
         points = [*truth, *(point for group in groups for point in group)]
-        file, name = refuse_wrong_points(package, scene, points, None, settings or ())
+        file, name = check_points(package, scene, points, None, settings or ())
         folder = chosen_folder(out, f"{name}_trade")
         campaign = Campaign(module_of(package), file, folder / "runs", tuple(settings or ()), None, threads or 1, again)
         slots = enlist(campaign, jobs, scheduler)
@@ -72,22 +72,22 @@ def command(package: Package) -> Callable[..., int]:
         if code := conclude([ends[point.name] for point in truth]):
             say("the reference did not finish: nothing to hold the others against")
             return code
-        judged = [ends[point.name] for point in truth]
-        judge = Judge(asked, package.table, features, judged)
+        reference_ends = [ends[point.name] for point in truth]
+        errors = Errors(asked, package.table, features, reference_ends)
         traded = front(
-            [judge.trade(knob, label, point, [ends[one.name] for one in group])
+            [errors.trade(knob, label, point, [ends[one.name] for one in group])
              for (knob, label, point), group in zip(variants, groups, strict=True)]
         )  # fmt: skip
         use_threads(threads)
         words = [package.name, "study", "trade", str(scene), *(["--plan", str(plan)] if plan else [])]
         about = circumstances(package, shlex.join([*words, *laid_over(None, settings)]), threads or 1)
         about["quantities"] = [one.model_dump(mode="json", exclude_none=True) for one in asked.quantity]
-        about["references"] = judge.told()
+        about["references"] = errors.answers()
         if reference:
-            about["reference"] = trade_files.as_dict(judge.trade("", "reference", reference, judged))
+            about["reference"] = trade_files.as_dict(errors.trade("", "reference", reference, reference_ends))
         if asked.draft is not None:
             about["draft"] = asked.draft
-        trade_files.write(folder, about, traded, judge.packings(), asked.caveats())
+        trade_files.write(folder, about, traded, errors.packings(), asked.caveats())
         print(f"{folder / trade_files.FRONT}, {trade_files.NAME}.csv, .md, .png")
         return conclude(list(ends.values()))
 

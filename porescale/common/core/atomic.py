@@ -123,7 +123,7 @@ def owned(folder: Path, *, wait: bool = False) -> Iterator[bool]:
         yield True
 
 
-def refuse_shared(folder: Path) -> InputError:
+def folder_in_use(folder: Path) -> InputError:
     """The error for a folder that a living run holds."""
     return InputError(
         Fault(

@@ -28,7 +28,7 @@ COLOURS = {
 
 
 @dataclass(frozen=True)
-class Judged:
+class Verdict:
     """What there is to say of a try whose result is known: text, and whether it is right."""
 
     said: str
@@ -42,7 +42,7 @@ class Extreme:
 
     axis: str
     value: str
-    run: Callable[[], str | Judged]
+    run: Callable[[], str | Verdict]
 
     @property
     def name(self) -> str:

@@ -28,7 +28,7 @@ Steps = Callable[[int], object]
 
 
 @dataclass(frozen=True)
-class Built:
+class BuiltScene:
     """A kind of scene, made.
 
     model : whose arrays are counted;  parts : names of sections that are built;  count : of ``item``s;  steps : does so
@@ -43,14 +43,14 @@ class Built:
 
 
 @dataclass(frozen=True)
-class Kind:
+class SceneKind:
     """A kind of scene.  item : "cell", "grain" or "particle";  beside : what it is held against, `SMALLEST`, or another
     kind that lacks a part;  because : what a larger ratio than `DEARER` is due to."""
 
     name: str
     item: str
     beside: str
-    make: Callable[[], Built]
+    make: Callable[[], BuiltScene]
     steps: int = 50
     because: str = ""
 
@@ -77,7 +77,7 @@ class Row:
         return self.beside != SMALLEST or self.ratio <= DEARER
 
 
-def measure(kind: Kind, rounds: int = 15) -> Row:
+def measure(kind: SceneKind, rounds: int = 15) -> Row:
     """Build and time a kind: the least over rounds, since others on the machine only ever make a call slower."""
     made = kind.make()
     calls = (lambda: made.other(kind.steps)), (lambda: made.steps(kind.steps))
@@ -117,7 +117,7 @@ def bytes_of(model: Any) -> int:
     return sum(arrays.values())
 
 
-class Kinds(Register[Kind]):
+class SceneKinds(Register[SceneKind]):
     """The kinds of scenes that a package measures."""
 
     what = "kind"

@@ -23,7 +23,7 @@ TAIL = 2.5
 """Lognormal sizes end at so many standard deviations of the logarithm."""
 
 
-def judge_curve(curve: Curve, key: str = "grading") -> list[Fault]:
+def check_curve(curve: Curve, key: str = "grading") -> list[Fault]:
     """What is wrong with a curve."""
     form = "pairs (diameter, percent finer), both ascending"
     if len(curve) < 2:
@@ -48,7 +48,7 @@ def graded_radii(curve: Curve, area: float) -> Floats:
     looks, the mass finer differs from the curve's by at most half a disc of that size, and so does the whole area.
     Raises InputError for a curve that is none, or an area that no disc of the finest size fits.
     """
-    faults = judge_curve(curve)
+    faults = check_curve(curve)
     if faults:
         raise InputError(faults)
     diameter, finer = np.array(curve, dtype=np.float64).T

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from porescale.common.compiled.jit import most_threads, threads
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.neighbors import search
-from porescale.common.neighbors import skin as drift
+from porescale.common.neighbors import skin as skins
 from porescale.common.neighbors.cells import Grid, grid_shape, sort_into_cells
 
 Floats = NDArray[np.float64]
@@ -44,9 +44,10 @@ class PairList:
     After a build (all replaced by the next one: fetch them again after ``update`` returns True)
 
     start : (n + 1,) int64, row i is ``partner[start[i]:start[i + 1]]``, ascending;  partner : (m,) int32;
-    carried : (m, k);  anchor : (n, 2) m, positions at the build;  builds : number of builds so far.
+    carried : (m, k);  list_position : (n, 2) m, positions at the build;  builds : number of builds so far.
 
-    mark (n, 2) m, room m : the list holds, without ``update``, until some point is further than room from its mark;
+    checked_position (n, 2) m, skin_margin m : the list holds, without ``update``, until some point is further than the
+    margin from its checked position;
     both are others after an ``update``.
 
     The list is the same at any number of threads.  Buffers grow geometrically and are reused.
@@ -78,11 +79,11 @@ class PairList:
         self.adaptive, self.most, self.lasted = False, self.skin, 0  # m, largest skin;  updates since the last build
         self.group: NDArray[np.int32] | None = None
         self.builds = self.looks = 0  # of the list; at how far points have gone since
-        self.anchor: Floats = np.zeros((count, 2))
-        self._anchor_reach: Floats = np.zeros(count)
-        self.mark: Floats = np.zeros((count, 2))
-        self._mark_reach: Floats = np.zeros(count)
-        self.room = 0.0
+        self.list_position: Floats = np.zeros((count, 2))
+        self._list_reach: Floats = np.zeros(count)
+        self.checked_position: Floats = np.zeros((count, 2))
+        self._checked_reach: Floats = np.zeros(count)
+        self.skin_margin = 0.0
         # Two of each, so that a build can read the last list while it writes the next.
         self._starts = [np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)]
         self._partners = [np.empty(0, np.int32), np.empty(0, np.int32)]
@@ -95,7 +96,7 @@ class PairList:
         self._sorted = np.empty((3, count - self._first))  # x, y, reach in cell order
         self._block = np.empty(count, np.int32)  # that each anchor lies in, for the list of build ``_blocked``
         self._blocked = -1
-        self._bounds = np.empty((0, drift.BOUNDS))
+        self._bounds = np.empty((0, skins.BOUNDS))
         self._row = np.empty(ROW * most_threads(), np.int32)  # partners of one point before they are put in order
         self._publish(0)
 
@@ -121,7 +122,7 @@ class PairList:
 
     def set_cell(self, width: float, height: float, tilt: float) -> None:
         """Another size of a box that is periodic both ways, from the same lower corner, and how far right (m) the image
-        one height above lies.  Said by whoever strains the box, who also knows when to build anew.
+        one height above lies.  For a box that is strained; its owner also builds the list anew when needed.
         """
         assert all(self.periodic)
         self.upper = (self.lower[0] + width, self.lower[1] + height)
@@ -129,7 +130,7 @@ class PairList:
 
     def update(self, x: Floats, reach: Floats) -> bool:
         """Build if two points of ``x`` (n, 2) m may have come nearer, growth of reach (n,) m included, by the skin
-        since the last build: see `drift`.
+        since the last build: see skin.py.
 
         Those that have not cannot have come within reach unlisted.  True if built; the arrays are then new.  Raises
         ValueError at a position or reach that is no number.
@@ -159,37 +160,39 @@ class PairList:
 
     def _holds(self, x: Floats, reach: Floats) -> bool:
         """Whether no pair can be missing from the list."""
-        if not drift.strayed(x, self.mark, reach, self._mark_reach, self.room, *self.period):
+        if not skins.needs_rebuild(
+            x, self.checked_position, reach, self._checked_reach, self.skin_margin, *self.period
+        ):
             return True
         if self.tilt != 0.0:  # images aside: blocks have other neighbours
             return False
-        largest = 2.0 * float(self._anchor_reach.max(initial=0.0))
+        largest = 2.0 * float(self._list_reach.max(initial=0.0))
         size = BLOCK * (largest + self.skin)
         columns, rows = grid_shape(self.lower, self.upper, size, limit=4 * self.count + 64)
         width, height = (self.upper[axis] - self.lower[axis] for axis in (0, 1))
         if self._blocked != self.builds:
             self._blocked = self.builds
             if self._bounds.shape[0] <= columns * rows:
-                self._bounds = np.empty((columns * rows + 1, drift.BOUNDS))
-            drift.into_blocks(self.anchor, self._grid(columns, rows), self._block)
+                self._bounds = np.empty((columns * rows + 1, skins.BOUNDS))
+            skins.sort_into_blocks(self.list_position, self._grid(columns, rows), self._block)
         gap = min(width / columns, height / rows) - largest
-        since = (x, self.anchor, reach, self._anchor_reach)
-        left = drift.spare(*since, self._block, self._bounds, columns, rows, self.skin, gap, *self.period)
+        since = (x, self.list_position, reach, self._list_reach)
+        left = skins.remaining_skin(*since, self._block, self._bounds, columns, rows, self.skin, gap, *self.period)
         if left < 0.0:
             return False
-        self._look_again(x, reach, 0.5 * left)
+        self._restart_margin(x, reach, 0.5 * left)
         return True
 
-    def _look_again(self, x: Floats, reach: Floats, room: float) -> None:
-        """The list holds until some point is ``room`` (m) from where it is now."""
-        self.mark[:], self._mark_reach[:], self.room = x, reach, room
+    def _restart_margin(self, x: Floats, reach: Floats, margin: float) -> None:
+        """The list holds until some point is ``margin`` (m) from where it is now."""
+        self.checked_position[:], self._checked_reach[:], self.skin_margin = x, reach, margin
         self.looks += 1
 
     def build(self, x: Floats, reach: Floats) -> None:
         """List the pairs of ``x`` (n, 2) m with ``reach`` (n,) m now; data of pairs listed before is kept.
 
         Raises ValueError naming the point whose position or reach is not finite (or reach negative),
-        InputError when a periodic side is shorter than two cutoffs: a point would then meet two images of another.
+        InputError when a periodic side is shorter than two cutoffs: a point would then pair with two images of another.
         """
         assert x.shape == (self.count, 2)
         assert reach.shape == (self.count,)
@@ -228,9 +231,9 @@ class PairList:
         self._publish(total)
         if self.carried.shape[1]:
             search.carry(old_start, old_partner, old_carried, self.start, self.partner, self.carried)
-        self.anchor[:] = x
-        self._anchor_reach[:] = reach
-        self._look_again(x, reach, 0.5 * self.skin)
+        self.list_position[:] = x
+        self._list_reach[:] = reach
+        self._restart_margin(x, reach, 0.5 * self.skin)
         self.builds += 1
         self.lasted = 0
 
@@ -267,16 +270,16 @@ class PairList:
         return grid
 
     def state(self) -> dict[str, NDArray[np.generic]]:
-        """Copies of everything that decides what the list says next."""
+        """Copies of everything that the next update depends on."""
         return {
             "start": self.start.copy(),
             "partner": self.partner.copy(),
             "carried": self.carried.copy(),
-            "anchor": self.anchor.copy(),
-            "anchor_reach": self._anchor_reach.copy(),
-            "mark": self.mark.copy(),
-            "mark_reach": self._mark_reach.copy(),
-            "room": np.array(self.room),
+            "anchor": self.list_position.copy(),
+            "anchor_reach": self._list_reach.copy(),
+            "mark": self.checked_position.copy(),
+            "mark_reach": self._checked_reach.copy(),
+            "room": np.array(self.skin_margin),
             "builds": np.array(self.builds, np.int64),
             "lasted": np.array(self.lasted, np.int64),
             "skin": np.array(self.skin),
@@ -290,14 +293,15 @@ class PairList:
         self.start[:] = state["start"]
         self.partner[:] = state["partner"]
         self.carried[:] = state["carried"]
-        self.anchor[:] = state["anchor"]
-        self._anchor_reach[:] = state["anchor_reach"]
-        # Older states do not say their skin: theirs may have been less, so the next update makes the list anew.  Bits
+        self.list_position[:] = state["anchor"]
+        self._list_reach[:] = state["anchor_reach"]
+        # Older states do not hold their skin: it may have been less, so the next update makes the list anew.  Bits
         # stay: rows are ascending in both, and pairs beyond reach, in which alone the lists differ, bear nothing.
         self.builds = int(state["builds"]) if "skin" in state else 0
         self.lasted, self.skin = int(state.get("lasted", 0)), float(state.get("skin", self.skin))
-        self._look_again(self.anchor, self._anchor_reach, 0.5 * self.skin if self.builds else 0.0)  # where none is said
+        margin = 0.5 * self.skin if self.builds else 0.0
+        self._restart_margin(self.list_position, self._list_reach, margin)  # for states without checked positions
         if "mark" in state:
             mark, reach = (np.asarray(state[name], np.float64) for name in ("mark", "mark_reach"))
-            self._look_again(mark, reach, float(state["room"]))
+            self._restart_margin(mark, reach, float(state["room"]))
         self._blocked = -1

@@ -37,7 +37,7 @@ NOT_YET = frozenset({"broken"})
 NUMBERS = (bool, int, float, np.number, np.bool_)
 
 
-def judge(folder: Path) -> None:
+def check_state(folder: Path) -> None:
     """InputError unless the checkpoint in ``folder`` is one, and of a state that makes sense by itself."""
     content = read_checkpoint(folder / CHECKPOINT)
     for name, kind in PARTS:

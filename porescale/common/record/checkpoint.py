@@ -19,7 +19,7 @@ import numpy as np
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.hdf5 import writing
 from porescale.common.record.model import Array
-from porescale.common.record.read_card import refuse_format
+from porescale.common.record.read_card import require_format
 
 FORMAT = 1
 CHUNK_BYTES = 4 << 20
@@ -72,7 +72,7 @@ def read_header(path: Path, skip: str = "state") -> dict[str, Any]:
 def _tree(file: h5py.File) -> Any:
     tree = json.loads(file["tree"][...].tobytes())
     path = Path(file.filename)
-    refuse_format(path.parent, path.name, tree["format"], FORMAT)
+    require_format(path.parent, path.name, tree["format"], FORMAT)
     return tree["content"]
 
 

@@ -9,15 +9,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from porescale.common.core.atomic import clean, owned, refuse_shared
+from porescale.common.core.atomic import clean, folder_in_use, owned
 from porescale.common.core.errors import Fault, InputError, Unstable
 from porescale.common.record import card as cards
 from porescale.common.record import snapshots
-from porescale.common.record.check_state import judge
+from porescale.common.record.check_state import check_state
 from porescale.common.record.model import Model, variable_step
 from porescale.common.record.progress import Watch
-from porescale.common.record.record import CHECKPOINT, Gone, Record, Today, refuse_changes
-from porescale.common.record.resume import how_far, refuse_another
+from porescale.common.record.record import CHECKPOINT, Gone, Record, Today, check_changes
+from porescale.common.record.resume import how_far, require_same_run
 from porescale.common.record.schedule import SLACK, Schedule, positive
 from porescale.common.record.stop import Interrupted, StopRequest, polite_stop
 
@@ -90,13 +90,13 @@ def drive(
     folder.mkdir(parents=True, exist_ok=True)
     with owned(folder) as held:
         if not held:
-            raise refuse_shared(folder)
+            raise folder_in_use(folder)
         clean(folder)
         run = _Run(model, duration, step_seconds, schedules, checkpoint_seconds, meanwhile)
         name = str(card.get("name") or folder.name)
         resume = resume and (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists()
         if resume:
-            refuse_changes(folder, card, free, today)
+            check_changes(folder, card, free, today)
             done = _already(folder, run)
             if done is not None:
                 text = f"{folder}: finished at t = {done.time:.6g} s, nothing to do"
@@ -109,7 +109,7 @@ def drive(
             return _watched(run, record, watch, after)
 
 
-def refuse_resume(
+def check_resume(
     folder: Path, card: dict[str, Any], free: Collection[str] = cards.FREE, today: Today | None = None
 ) -> None:
     """InputError where the run in ``folder`` cannot be gone on with, of which ``card`` asks for (as of `drive`).
@@ -118,8 +118,8 @@ def refuse_resume(
     checkpoint is one and makes sense.  Nothing where there is no checkpoint yet.
     """
     if (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists():
-        refuse_changes(folder, card, free, today)
-        judge(folder)
+        check_changes(folder, card, free, today)
+        check_state(folder)
 
 
 @dataclass
@@ -255,7 +255,7 @@ def _already(folder: Path, run: _Run) -> Outcome | None:
         return None
     card = cards.read_card(folder)
     if card.get("outcome") == cards.FINISHED:
-        refuse_another(folder, reached, card)
+        require_same_run(folder, reached, card)
         count = len(snapshots.catalogue(folder))
         return Outcome(folder, "already finished", step, time, reached.seconds, count, 0.0)
     past = step > run.last_step if run.step_seconds is not None else False

@@ -33,14 +33,14 @@ def read_card(folder: Path, package: object = None) -> dict[str, Any]:
         raise _fault(folder, f"{NAME} is damaged", repair) from None
     if not isinstance(card, dict) or not isinstance(card.get("scene"), dict):
         raise _fault(folder, f"{NAME} is damaged or not that of a run (it holds no scene)", repair)
-    refuse_format(folder, NAME, card.get("format", FORMAT), FORMAT)
+    require_format(folder, NAME, card.get("format", FORMAT), FORMAT)
     whose = card.get("package")
     if package is not None and whose is not None and whose != package:
         raise _fault(folder, f"holds a run of {whose}, not of {package}", f"use {whose}, or name another folder")
     return card
 
 
-def refuse_format(place: Path, what: str, found: object, reads: int) -> None:
+def require_format(place: Path, what: str, found: object, reads: int) -> None:
     """InputError unless the format that ``what`` in ``place`` says it has, ``found``, is the one that is read here."""
     if hasattr(found, "__index__") and not isinstance(found, bool):
         if operator.index(found) == reads:

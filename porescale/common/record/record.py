@@ -25,7 +25,7 @@ from porescale.common.record.resume import CHECKPOINT as CHECKPOINT
 from porescale.common.record.resume import how_far, take_up
 from porescale.common.record.schedule import Schedule
 from porescale.common.record.series import NAME as SERIES
-from porescale.common.record.series import Series, refuse_shorter
+from porescale.common.record.series import Series, require_length
 
 MADE_LATER = (
     "final.png", "montage.png", "streamlines.png", "vorticity.png", "stream_function.png", "film.mp4", "film.webm",
@@ -96,9 +96,9 @@ class Record:
         """
         card = cards.read_card(folder)
         saved = take_up(folder, model, schedules)
-        refuse_shorter(folder / SERIES, saved.series_bytes)
+        require_length(folder / SERIES, saved.series_bytes)
         for name, size in saved.table_bytes.items():
-            refuse_shorter(_table(folder, name), size)
+            require_length(_table(folder, name), size)
         now = cards.circumstances()
         changed = cards.changed_circumstances(card, now)
         card |= cards.plain(given)
@@ -127,7 +127,7 @@ class Record:
         """Wall-clock time spent on this run so far, all sessions together."""
         return self.before + clock.perf_counter() - self.began
 
-    def refuse_gone(self) -> None:
+    def require_present(self) -> None:
         """Gone unless the folder is the one that the run began to write."""
         if _identity(self.folder) != self._place:
             raise Gone(
@@ -160,7 +160,7 @@ class Record:
 
     def snapshot(self, model: Model, *, scheduled: bool) -> None:
         """Put a snapshot on disk."""
-        self.refuse_gone()
+        self.require_present()
         snapshots.write_part(self.folder, model.snapshot())
         self.snapshot_step = model.step
         self.snapshots += 1
@@ -169,7 +169,7 @@ class Record:
 
     def save(self, model: Model, schedules: dict[str, Schedule]) -> None:
         """Write the checkpoint."""
-        self.refuse_gone()
+        self.require_present()
         start = clock.perf_counter()
         for series in (self.series, *self.tables.values()):
             series.sync()
@@ -204,13 +204,13 @@ class Record:
     def close(self, model: Model, outcome: str, problem: str = "") -> None:
         """Join the parts and say in the card how the run ended."""
         self.close_series()
-        self.refuse_gone()
+        self.require_present()
         snapshots.assemble(self.folder)
         self.conclude(model, outcome, problem)
 
     def conclude(self, model: Model, outcome: str, problem: str = "") -> None:
         """Say in the card how the run ended."""
-        self.refuse_gone()
+        self.require_present()
         self.card.update(outcome=outcome, ended=cards.now(), seconds=self.seconds(), step=model.step, time=model.time)
         self.card["core_seconds"] = self.cost.of(model.step)
         self.card["core_seconds_besides"] = self.cost.besides()
@@ -221,7 +221,7 @@ class Record:
         cards.write_card(self.folder, self.card)
 
 
-def refuse_changes(folder: Path, given: dict[str, Any], free: Collection[str], today: Today | None = None) -> None:
+def check_changes(folder: Path, given: dict[str, Any], free: Collection[str], today: Today | None = None) -> None:
     """InputError naming every scene key that must not differ from the run in ``folder``; or whose run that is.
 
     Of keys that came after that run it is said what goes on as it did, which ``today`` knows.

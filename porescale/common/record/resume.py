@@ -57,7 +57,7 @@ def how_far(folder: Path) -> Reached:
         raise misfit(folder, "holds no state of a run", error) from error
 
 
-def refuse_another(folder: Path, reached: Reached, card: Mapping[str, Any]) -> None:
+def require_same_run(folder: Path, reached: Reached, card: Mapping[str, Any]) -> None:
     """InputError where a checkpoint stands at another step than the ``card`` of a run that came to its end."""
     if card.get("step") != reached.step:
         error = ValueError(f"step {reached.step}, the run ended at {card.get('step')}")

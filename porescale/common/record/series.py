@@ -26,7 +26,7 @@ class Series:
     def __init__(self, path: Path, keep: int = 0) -> None:
         """Go on in ``path`` after its first ``keep`` bytes; 0 starts anew.  InputError when it is shorter."""
         self.path = Path(path)
-        refuse_shorter(self.path, keep)
+        require_length(self.path, keep)
         mode = "r+b" if keep else "wb"
         self._file: IO[bytes] = open(self.path, mode)  # noqa: SIM115  (stays open)
         self._file.truncate(keep)
@@ -59,7 +59,7 @@ class Series:
         self._file.flush()
 
 
-def refuse_shorter(path: Path, keep: int) -> None:
+def require_length(path: Path, keep: int) -> None:
     """InputError unless the file has ``keep`` bytes or more."""
     size = path.stat().st_size if path.exists() else 0
     if size < keep:

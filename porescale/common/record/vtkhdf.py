@@ -23,7 +23,7 @@ import numpy as np
 
 from porescale.common.core.hdf5 import writing
 from porescale.common.record.model import Array, Cloud, Grid, with_depth
-from porescale.common.record.read_card import refuse_format
+from porescale.common.record.read_card import require_format
 from porescale.common.record.vtkhdf_cells import NO_CELLS, TOPOLOGIES, Cells, cells_of, read_cells, with_cells
 
 FORMAT = 1
@@ -280,7 +280,7 @@ def _cells(frame: Frame) -> Cells:
 
 def _kind(file: h5py.File) -> str:
     path = Path(file.filename)
-    refuse_format(path.parent, path.name, file["porescale"].attrs["format"], FORMAT)
+    require_format(path.parent, path.name, file["porescale"].attrs["format"], FORMAT)
     return str(file["porescale"].attrs["kind"])
 
 

@@ -71,7 +71,7 @@ class Promise:
         )
 
 
-def asked_again(package: Package, scene: Path, which: int = 1) -> Promise:
+def repeat(package: Package, scene: Path, which: int = 1) -> Promise:
     """The promise of a point of the front beside ``scene``, 1 the cheapest, and a new run of it."""
     front = read_front(scene)
     asked = replace(front, points=front.points[which - 1 :][:1])
@@ -85,10 +85,10 @@ def asked_again(package: Package, scene: Path, which: int = 1) -> Promise:
         model = package.build(opened.scene)
         package.drive(model, folder, opened.scene, card=card_of(package, opened), resume=False, quiet=True)
         took = time.perf_counter() - before
-        return judged(choice, took, read_card(folder), *error_of(package, front, point, folder))
+        return compare(choice, took, read_card(folder), *error_of(package, front, point, folder))
 
 
-def judged(choice: Choice, took: float, card: Mapping[str, Any], said: float, found: float | None) -> Promise:
+def compare(choice: Choice, took: float, card: Mapping[str, Any], said: float, found: float | None) -> Promise:
     """A choice of a front beside its run: seconds, card, and the error said and found in what can be compared."""
     core_took = float(card["core_seconds"])
     return Promise(
@@ -132,7 +132,7 @@ def benchmark(package: Package, case: Path) -> Benchmarks:
         model.advance(steps)
         return Work(
             lambda: model.advance(steps), float(steps), "steps/s", steps,
-            remark=lambda: asked_again(package, scene, which).line(),
+            remark=lambda: repeat(package, scene, which).line(),
         )  # fmt: skip
 
     return rows

@@ -59,7 +59,7 @@ class Traded:
 
 
 @dataclass
-class Judge:
+class Errors:
     """Answers of runs and their errors.  tables, features : of the package;  references : runs, one for each repeat."""
 
     plan: Plan
@@ -94,7 +94,7 @@ class Judge:
             values = np.interp(at, places, values)
         return distance(values, truth, asked.scale)
 
-    def told(self) -> list[dict[str, list[float]]]:
+    def answers(self) -> list[dict[str, list[float]]]:
         """What the references say to each quantity that is a number, so that a run can be held against them later."""
         numbers = [asked for asked in self.plan.quantity if not (asked.is_curve or asked.feature)]
         return [

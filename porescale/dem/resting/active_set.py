@@ -125,7 +125,8 @@ def part_of(
     return Part(
         index=index, position=d.position[index], angle=d.angle[index], velocity=d.velocity[index], spin=d.spin[index],
         radius=d.radius[index], mass=d.mass[index], inertia=d.inertia[index], force=np.zeros((m, 2)),
-        torque=np.zeros(m), external_force=np.zeros((m, 2)), external_torque=np.zeros(m), anchor=listed.mark[index],
+        torque=np.zeros(m), external_force=np.zeros((m, 2)), external_torque=np.zeros(m),
+        anchor=listed.checked_position[index],
         held=held, withheld=np.zeros((m, 3)), start=start, partner=partner, carried=listed.carried[origin],
         origin=origin, wall_spring=np.ascontiguousarray(grains.wall_spring[:, index]),
         plate_spring=np.ascontiguousarray(grains.plate_spring[:, index]),

@@ -101,7 +101,7 @@ class Sleep:
             part = self._part
             assert part
             self._take_out(grains, part)
-            done, grains.stale = part.steps(grains, left, dt, drag, grains.pairs.room**2, True)
+            done, grains.stale = part.steps(grains, left, dt, drag, grains.pairs.skin_margin**2, True)
             calls = self._put_back(grains, part, done, left == count)
             left -= done
             grains.steps += done
@@ -164,7 +164,7 @@ class Sleep:
                 self._divide(grains, dt)
                 self._builds = pairs.builds
             elif self._looks != pairs.looks:  # by this step, or by who looked at the list since the last
-                np.take(pairs.mark, self._part.index, axis=0, out=self._part.anchor, mode="clip")
+                np.take(pairs.checked_position, self._part.index, axis=0, out=self._part.anchor, mode="clip")
             self._looks = pairs.looks
             d = grains.discs
             if not disturbed(

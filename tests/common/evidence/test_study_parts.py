@@ -10,7 +10,7 @@ from continuum_sph.benchmarks.overhead import scene, started
 from porescale.benchmarks.minimal_dem import PlainDiscs
 from porescale.benchmarks.minimal_lbm import PlainWater
 from porescale.benchmarks.minimal_psm import PlainWet
-from porescale.common.evidence.overhead import SMALLEST, Built, Kind, Kinds, bytes_of, markdown, measure
+from porescale.common.evidence.overhead import SMALLEST, BuiltScene, SceneKind, SceneKinds, bytes_of, markdown, measure
 from porescale.dem.contact.linear import Linear
 from porescale.lbm.fluid import Fluid
 from porescale.validation.coupling.setups import immersed
@@ -131,9 +131,12 @@ def test_a_kind_is_timed_beside_its_other_and_told_in_its_table():
 
         return steps
 
-    built = Built([np.zeros(4)], ("fluid",), 4, count("steps"), count("other"))
-    kinds = Kinds(
-        [Kind("thing", "cell", SMALLEST, lambda: built, steps=5), Kind("more", "cell", "thing", lambda: built)]
+    built = BuiltScene([np.zeros(4)], ("fluid",), 4, count("steps"), count("other"))
+    kinds = SceneKinds(
+        [
+            SceneKind("thing", "cell", SMALLEST, lambda: built, steps=5),
+            SceneKind("more", "cell", "thing", lambda: built),
+        ]
     )
     rows = [measure(kind, rounds=3) for kind in kinds.chosen()]
     assert rows[0].bytes == 8.0

@@ -7,7 +7,7 @@ import json
 import pytest
 
 from porescale.common.core.errors import Fault, InputError, Unstable
-from porescale.common.evidence.extremes import REFUSED, RIGHT, STABLE, STOPPED, Extreme, Extremes, Judged, write
+from porescale.common.evidence.extremes import REFUSED, RIGHT, STABLE, STOPPED, Extreme, Extremes, Verdict, write
 
 
 def refused():
@@ -41,7 +41,7 @@ def test_each_end_is_told_with_its_reason(tmp_path):
 
 def test_what_is_judged_is_right_or_no_more_than_stable():
     for right, end in ((True, RIGHT), (False, STABLE)):
-        row = Extreme("depth", "known", lambda right=right: Judged("2 % off", right)).tried()
+        row = Extreme("depth", "known", lambda right=right: Verdict("2 % off", right)).tried()
         assert (row.end, row.said) == (end, "2 % off")
 
 

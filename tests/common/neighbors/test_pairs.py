@@ -9,7 +9,7 @@ from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError
 from porescale.common.neighbors import PairList, search
 from porescale.common.neighbors import pair_list as pairs
-from porescale.common.neighbors import skin as drift
+from porescale.common.neighbors import skin as skins
 from porescale.common.neighbors.cells import Grid
 from tests.reference.pairs import neighbours, rows_of
 
@@ -117,8 +117,8 @@ def test_two_crowds_that_meet_from_afar_do_not(monkeypatch):
         return built, rows_of(listed) == neighbours(x, np.full(6, 0.1), 0.2, LOWER, UPPER)
 
     assert meet() == (True, True)
-    ask = drift.spare
-    monkeypatch.setattr(drift, "spare", lambda *a: ask(*a[:9], np.inf, *a[10:]))
+    ask = skins.remaining_skin
+    monkeypatch.setattr(skins, "remaining_skin", lambda *a: ask(*a[:9], np.inf, *a[10:]))
     assert meet() == (False, False)
 
 
@@ -154,7 +154,7 @@ def test_no_pair_is_missing_in_a_stream_that_shears(periodic):
     quiet = strayed = 0
     for _ in range(40):
         quiet += not listed.update(x, reach)
-        strayed += bool(drift.strayed(x, listed.anchor, reach, reach, 0.075, *listed.period))
+        strayed += bool(skins.needs_rebuild(x, listed.list_position, reach, reach, 0.075, *listed.period))
         within = neighbours(x, reach, 0.0, LOWER, UPPER, periodic, True)
         for row, must in zip(rows_of(listed), within, strict=True):
             assert set(must) <= set(row)
@@ -310,14 +310,14 @@ def test_kernels_as_plain_python():
     carried = np.empty((total, 1))
     search.carry.py_func(start, partner, np.ones((total, 1)), start, partner, carried)
     assert np.all(carried == 1.0)
-    assert not drift.strayed.py_func(x, listed.anchor, reach, reach, 0.05, 10.0, 0.0)
-    block, bounds = np.empty(25, np.int32), np.empty((5, drift.BOUNDS))
-    drift.into_blocks.py_func(x, Grid(*LOWER, 0.2, 0.25, 2, 2, 10.0, 0.0), block)
+    assert not skins.needs_rebuild.py_func(x, listed.list_position, reach, reach, 0.05, 10.0, 0.0)
+    block, bounds = np.empty(25, np.int32), np.empty((5, skins.BOUNDS))
+    skins.sort_into_blocks.py_func(x, Grid(*LOWER, 0.2, 0.25, 2, 2, 10.0, 0.0), block)
     for far, built in ((0.0, False), (0.2, True)):
         moved = x + far * (np.arange(25)[:, None] == 3)
-        how = (listed.anchor, reach, reach, block, bounds, 2, 2, 0.1, 1.0, 10.0, 0.0)
-        left = drift.spare(moved, *how)
-        assert drift.spare.py_func(moved, *how) == left
+        how = (listed.list_position, reach, reach, block, bounds, 2, 2, 0.1, 1.0, 10.0, 0.0)
+        left = skins.remaining_skin(moved, *how)
+        assert skins.remaining_skin.py_func(moved, *how) == left
         assert (left < 0.0) == built
     assert search.first_unusable.py_func(x, reach) == -1
 

@@ -173,11 +173,11 @@ def test_keys_that_came_later_are_no_change_where_they_do_nothing_new(kept_run):
     run = kept_run("continuum_run_format_1")
     scene = scene_as_dict(load(run / "scene.toml", Ground, overrides=["numerics.noise_floor=0"]))
     card = {"package": "continuum-sph", "scene": scene, "scene_file": str(run / "scene.toml")}
-    assert CONTINUUM.judge is not None
-    CONTINUUM.judge(run, card)
+    assert CONTINUUM.check_resume is not None
+    CONTINUUM.check_resume(run, card)
     scene["numerics"]["courant"] = 0.2  # the twin that must fail: a key that the run had
     with pytest.raises(InputError, match=r"was 0\.25; resume with 0\.25, or start another run"):
-        CONTINUUM.judge(run, card)
+        CONTINUUM.check_resume(run, card)
 
 
 def card_of(folder: Path, number: object) -> None:

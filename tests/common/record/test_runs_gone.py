@@ -157,7 +157,7 @@ def test_a_run_without_the_watch_would_have_ended_well_without_its_folder(tmp_pa
     from porescale.common.record.record import Record
 
     folder = tmp_path / "run"
-    monkeypatch.setattr(Record, "refuse_gone", lambda self: None)
+    monkeypatch.setattr(Record, "require_present", lambda self: None)
     run_toy(folder, model=Watched(lambda: shutil.rmtree(folder)))
     assert not (folder / "series.csv").exists()
     assert issubclass(Gone, PorescaleError)

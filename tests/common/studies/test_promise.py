@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from porescale.common.studies.budget_check import Promise, benchmark, error_of, judged, settings
+from porescale.common.studies.budget_check import Promise, benchmark, compare, error_of, settings
 from porescale.common.studies.front import Choice, FrontPoint, read_front
 
 POINT = FrontPoint("10", None, ("numerics.spacing=0.1",), 0.05, 0.01, 1.0, 0.8, 1e-3, 1.0, {"front": 0.04})
@@ -45,7 +45,7 @@ def test_a_front_without_answers_leaves_the_error_open(tmp_path):
 
 
 def test_a_run_within_30_per_cent_and_the_scatter_keeps_its_promise():
-    kept = judged(Choice(POINT, 2.0, 1.0, 1.0), 2.5, {"core_seconds": 1.1}, 0.05, 0.06)
+    kept = compare(Choice(POINT, 2.0, 1.0, 1.0), 2.5, {"core_seconds": 1.1}, 0.05, 0.06)
     assert kept.on_time
     assert kept.as_good
     assert "kept" in kept.line()

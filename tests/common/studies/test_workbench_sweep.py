@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from porescale.common.cli.sweep import expected, refuse_wrong_points
+from porescale.common.cli.sweep import check_points, expected
 from porescale.common.core.errors import InputError
 from porescale.common.studies import sweep_files
 from porescale.common.studies.parameter_table import Point, crossed, named, read_points, varied
@@ -120,13 +120,13 @@ def test_what_is_wrong_with_any_point_is_said_before_any_runs(tmp_path):
     (tmp_path / "scene.toml").write_text(SCENE)
     points = varied(["decay.rate=1,-1,200", "decay.tart=1"])
     with pytest.raises(InputError) as caught:
-        refuse_wrong_points(TOY, tmp_path, points, None, ())
+        check_points(TOY, tmp_path, points, None, ())
     lines = [fault.line() for fault in caught.value.faults]
     assert sum("decay.tart" in line for line in lines) == 1  # wrong in every point, said once
     assert any(line.startswith("rate=-1") and "> 0" in line for line in lines)
     with pytest.raises(InputError, match="stable limit"):
-        refuse_wrong_points(TOY, tmp_path, varied(["decay.rate=200"]), None, ())
-    assert refuse_wrong_points(TOY, tmp_path, varied(["decay.rate=1,2"]), "fine", ()) == (
+        check_points(TOY, tmp_path, varied(["decay.rate=200"]), None, ())
+    assert check_points(TOY, tmp_path, varied(["decay.rate=1,2"]), "fine", ()) == (
         tmp_path / "scene.toml", tmp_path.name,
     )  # fmt: skip
 

@@ -19,7 +19,7 @@ from porescale.common.studies.front import FrontPoint, Here, begun, choose, pace
 from porescale.common.studies.parameter_table import Point
 from porescale.common.studies.quantities import curve, measured
 from porescale.common.studies.runner import Ended
-from porescale.common.studies.trade import Judge, Traded, distance, front
+from porescale.common.studies.trade import Errors, Traded, distance, front
 from porescale.common.studies.trade_plan import Plan, read_plan
 
 PLAN = """
@@ -119,7 +119,7 @@ def test_no_plan_is_said(tmp_path):
 
 
 def test_the_error_of_a_point_is_its_distance_from_the_reference_of_the_same_repeat(tmp_path):
-    judge = Judge(plan(tmp_path), tables, {}, [ended("4 1"), ended("6 1")])
+    judge = Errors(plan(tmp_path), tables, {}, [ended("4 1"), ended("6 1")])
     point = judge.trade("k", "l", Point("p", ()), [ended("5 1"), ended("6 4")])
     # repeat 1: end off by 1/2, surface by 0; repeat 2: end by 0, surface by 3
     assert point.errors == pytest.approx({"end": math.sqrt(0.25 / 2), "surface": math.sqrt(9 / 2)})
@@ -132,13 +132,13 @@ def test_the_error_of_a_point_is_its_distance_from_the_reference_of_the_same_rep
 
 
 def test_another_repeat_for_reference_would_give_another_error(tmp_path):  # the twin that must fail
-    swapped = Judge(plan(tmp_path), tables, {}, [ended("6 1"), ended("4 1")])
+    swapped = Errors(plan(tmp_path), tables, {}, [ended("6 1"), ended("4 1")])
     point = swapped.trade("k", "l", Point("p", ()), [ended("5 1"), ended("6 4")])
     assert point.errors["end"] != pytest.approx(math.sqrt(0.25 / 2))
 
 
 def test_a_point_that_did_not_finish_is_infinitely_wrong_and_never_on_the_front(tmp_path):
-    judge = Judge(plan(tmp_path), tables, {}, [ended("4 1"), ended("6 1")])
+    judge = Errors(plan(tmp_path), tables, {}, [ended("4 1"), ended("6 1")])
     point = judge.trade("k", "l", Point("p", ()), [ended("4 1"), ended("6 1", "unstable")])
     assert (point.outcome, point.error) == ("unstable", math.inf)
     assert not front([point])[0].on_front
@@ -147,12 +147,12 @@ def test_a_point_that_did_not_finish_is_infinitely_wrong_and_never_on_the_front(
 def test_exact_values_need_no_reference_and_features_are_compared_number_by_number(tmp_path):
     asked = {"quantity": [{"name": "e", "column": "y (m)", "scale": 1.0, "exact": 3.0}],
              "knob": [{"name": "k", "point": [{"label": "a"}]}]}  # fmt: skip
-    point = Judge(validate(Plan, asked), tables, {}).trade("k", "a", Point("p", ()), [ended("5 0")])
+    point = Errors(validate(Plan, asked), tables, {}).trade("k", "a", Point("p", ()), [ended("5 0")])
     assert point.error == 2.0
     asked["quantity"] = [{"name": "f", "feature": "flow", "scale": 2.0}]
     asked["reference"] = {}
     features = {"flow": lambda folder, at: np.array([float(folder.name[0]), 1.0])}
-    judge = Judge(validate(Plan, asked), tables, features, [ended("1")])
+    judge = Errors(validate(Plan, asked), tables, features, [ended("1")])
     assert judge.trade("k", "a", Point("p", ()), [ended("5")]).error == pytest.approx(math.sqrt(4 / 2))
 
 

@@ -70,7 +70,7 @@ def test_one_call_of_many_steps_has_the_bits_of_calls_that_ask_all_discs(law, en
 def test_asked_without_the_way_discs_go_a_touching_one_is_left_out():  # the twin that must fail
     grains = flying(SMOOTH, side=1, speed=0.0)
     grains.refresh()
-    d, room = grains.discs, grains.pairs.room
+    d, room = grains.discs, grains.pairs.skin_margin
     start, steps = d.position.copy(), 50
     d.velocity[0] = (-room / (steps * DT), 0.0)  # to the left by no more than the list allows; the gap is a fifth
     with_way, without = np.zeros((4, 1), np.uint8), np.zeros((4, 1), np.uint8)

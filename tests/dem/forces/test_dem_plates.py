@@ -134,7 +134,7 @@ def test_a_step_that_rebuilds_the_list_makes_no_array():
         grains.step(1e-6, weights)
     builds = grains.pairs.builds
     discs.position += 0.5 / side  # all go together: the pairs stay
-    grains.pairs.anchor[0] -= 1.0  # but one seems to have come from far, so the list is rebuilt
+    grains.pairs.list_position[0] -= 1.0  # but one seems to have come from far, so the list is rebuilt
     grains._stale = True
     held = peak(lambda: grains.step(1e-6, weights))
     assert grains.pairs.builds == builds + 1

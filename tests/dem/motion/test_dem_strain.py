@@ -252,7 +252,7 @@ def test_kernels_do_the_same_as_plain_python():
         )
         run(strain.strain)(cell.state, 1e-5)
         room = run(strain.room_square)(cell.state)
-        left = run(strain.left_affine)(d.position, grains.pairs.anchor, room, cell.state)
+        left = run(strain.left_affine)(d.position, grains.pairs.list_position, room, cell.state)
         made.append((d.position, d.velocity, cell.state, np.array([room, left]), load))
     for one, other in zip(*made, strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-13)  # llvm may contract sums in other order than Python
