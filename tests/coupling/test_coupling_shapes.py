@@ -206,7 +206,7 @@ def set_off(rest, *, one_sided=False):
 def test_a_gate_through_a_slip_lid_may_set_off_at_an_even_step_or_at_an_odd(monkeypatch):
     # A mirrored link goes the one way in even steps and the other in odd ones.  Left out: that density inside is led
     # back every other step.
-    monkeypatch.setattr("porescale.coupling.coverage.bodies.RELIEF", 0.0)
+    monkeypatch.setattr("porescale.coupling.coverage.bodies.DENSITY_SHARE", 0.0)
     np.testing.assert_allclose(set_off(0), set_off(1), rtol=0, atol=1e-14)
     assert np.abs(set_off(0, one_sided=True) - set_off(1, one_sided=True)).max() > 1e-3
 
