@@ -28,7 +28,7 @@ from porescale.coupling.coverage.rows import BLOCK, Motion, list_rows, make_patc
 from porescale.coupling.coverage.shape import Shape
 from porescale.coupling.coverage.soft_rim import MARGIN, SoftRim
 from porescale.coupling.load import add_rows, half_step_correction
-from porescale.coupling.psm_kernels import AT_ONCE, BAND_HEIGHT, RowWork, sweep
+from porescale.coupling.psm_kernels import AT_ONCE, RowWork, sweep
 from porescale.coupling.solid.choose import SOLID_OPERATORS, choose_solid
 from porescale.coupling.solid.choose import solid_operator as solid_operator_of
 from porescale.coupling.weighting.choose import choose_weight, fitting_weight
@@ -38,6 +38,8 @@ from porescale.lbm.fluid import Fluid
 
 LOW_PASS = 0.1
 """Share of a step's load in the one that the half-step correction is made from; 1 lets light discs run away."""
+BAND_HEIGHT = 8
+"""Rows that one thread does at a time; any value gives the same bits."""
 SPREAD = 0.6180339887498949
 """Golden section: bands in the order of the multiples of it, modulo 1, are spread evenly over any number of threads,
 though the grains lie at the bottom."""
@@ -262,8 +264,9 @@ class Saturated:
         if self.bodies:
             self.bodies.before(fluid, self._patches, self._shift, self._slow_load)
         fluid.advance(
-            sweep, self._band_order, self._rows, self._patches, motion, self.periodic_x, self._work, *self._laws
-        )
+            sweep, self._band_order, BAND_HEIGHT, self._rows, self._patches, motion, self.periodic_x, self._work,
+            *self._laws,
+        )  # fmt: skip
         self._sum_loads(fluid)
         if self.operator.half_step_correction:
             half_step_correction(self._load, self._entrained, self._direct, LOW_PASS, self._slow_load, self._shift)
