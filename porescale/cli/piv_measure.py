@@ -145,11 +145,11 @@ def _aside(text: str) -> None:
 
 
 def _passes(pairs: int) -> Callable[[], None]:
-    """Counts the pairs that passes over a film go through, and says so now and then."""
+    """Counts the pairs that passes over a film go through, and prints so now and then."""
     done, last = 0, time.perf_counter()
 
     def tell() -> None:
-        """One pair more."""
+        """Count one pair more, and print the progress."""
         nonlocal done, last
         done += 1
         if time.perf_counter() - last > PATIENCE:

@@ -22,8 +22,8 @@ from porescale.piv.fields.vortices import Vortex, matched
 from porescale.piv.images.camera import Shooting, frames, shooting
 from porescale.piv.images.flows import Discs
 from porescale.piv.images.synth import Camera
-from porescale.validation.piv import pairs as lab
-from porescale.validation.piv.pairs import VALIDATIONS
+from porescale.validation.piv import surfaces as lab
+from porescale.validation.piv.surfaces import VALIDATIONS
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 SIDE, CELLS, TURN = 0.032, 64, 2.0

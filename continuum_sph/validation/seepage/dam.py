@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from continuum_sph.seepage.reservoir import BERTH, berths
 from continuum_sph.validation.seepage.setups import WATER
 from continuum_sph.validation.soil.setups import SKIN
 from continuum_sph.water.density import LINEAR
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.pressure_walls import tank_walls
@@ -41,16 +42,32 @@ SURFACE = {
 inequality, three digits."""
 
 
+class Given(Protocol):
+    """What is given of held ground and its water."""
+
+    @property
+    def permeability(self) -> float:
+        """m/s."""
+
+    @property
+    def sound_speed(self) -> float:
+        """Of the water, m/s."""
+
+    @property
+    def ratio(self) -> float:
+        """Of smoothing length to spacing."""
+
+
 def held_between(
     size: tuple[float, float], spacing: float, soil: Floats, water: Floats, pressure: Floats, pools: list[Reservoir],
-    permeability: float, sound_speed: float, ratio: float, most: int, **options: float | bool
+    given: Given, most: int, **options: float | bool
 ) -> Seepage:  # fmt: skip
     """Ground that is held at ``soil`` (s, 2) m in a tank (width, height), m, water at ``water`` (n, 2) m under
-    ``pressure`` (n,) Pa, and ``pools``; ``most`` particles of water at once."""
-    (width, height), smoothing = size, Smoothing("wendland", ratio * spacing)
+    ``pressure`` (n,) Pa, and ``pools``; ``most`` particles of water at once;  options: of the water's `Law`."""
+    (width, height), smoothing = size, Smoothing("wendland", given.ratio * spacing)
     layers = int(np.ceil(smoothing.support / spacing - 0.5 - 1e-9))
-    walls, state = tank_walls(width, height, spacing, layers), Tait(WATER, sound_speed)
-    frame = Frame(soil, spacing**2, POROSITY, permeability)
+    walls, state = tank_walls(width, height, spacing, layers), Tait(WATER, given.sound_speed)
+    frame = Frame(soil, spacing**2, POROSITY, given.permeability)
     law = {"alpha": 0.1, "diffusion": 0.02, "noise": LINEAR, "cut": True, "corrected": True, "shifting": 0.0} | options
     rules = Law(smoothing, spacing, (Fluid(state),), (0.0, -GRAVITY), **law)  # type: ignore[arg-type]
     margin, skin, present = layers * spacing, SKIN * smoothing.length, len(water)
@@ -72,7 +89,7 @@ def held_between(
     both = Seepage(flow, frame)
     both.start()
     layer.mass[:present] *= flow.porosity[:present]
-    both.supply = Supply(layer, pools, berth, spacing, WATER, WATER * sound_speed**2, GRAVITY)
+    both.supply = Supply(layer, pools, berth, spacing, WATER, WATER * given.sound_speed**2, GRAVITY)
     both.supply.keep(0.0)
     both.start()
     return both
@@ -131,10 +148,7 @@ class Dam:
             Reservoir("downstream", end + gap, size[0], 0.0, zero, np.array([self.downstream]), (False, True)),
         ]
         most = round(size[0] / spacing) * (self.rows + 2)
-        return held_between(
-            size, spacing, soil, x[wet], pressure, pools, self.permeability, self.sound_speed, self.ratio, most,
-            **options,
-        )  # fmt: skip
+        return held_between(size, spacing, soil, x[wet], pressure, pools, self, most, **options)
 
     def heights(self, both: Seepage) -> Floats:
         """Heights (m) of the free surface at `STATIONS`, each over a tenth of the length."""

@@ -74,7 +74,7 @@ class Levee:
         most = round(width / self.spacing) * (round(self.level / self.spacing) + 2)
         return held_between(
             self.size, self.spacing, self.ground, water, WATER * GRAVITY * (self.level - water[:, 1]), pools,
-            self.permeability, self.sound_speed, self.ratio, most,
+            self, most,
         )  # fmt: skip
 
     def line(self, both: Seepage) -> tuple[Floats, Floats]:

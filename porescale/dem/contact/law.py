@@ -120,6 +120,9 @@ class ContactLaw(Protocol):
     needs_radius: ClassVar[bool]
     """Whether points, corners without thickness, have no contact."""
 
+    def __hash__(self) -> int:
+        """Laws are values: equal ones have the same hash."""
+
     @property
     def friction(self) -> float:
         """Friction coefficient."""

@@ -1,8 +1,6 @@
-"""Validations of measuring displacements: synthetic pairs whose displacement is known exactly.
+"""Measuring displacements: synthetic pairs whose displacement is known exactly.
 
 The rows of the accuracy table are means over ten seeds; a pair's own value scatters by a fifth.
-
-Synthetic pairs measured: what ``verify`` judges, cases tabulate and tests vary.
 """
 
 from __future__ import annotations
@@ -18,7 +16,6 @@ from porescale.common.evidence.validations import Measured, Validations
 from porescale.piv.estimate.interpolate import coefficients, sample
 from porescale.piv.estimate.measure import Settings, Vectors, measure
 from porescale.piv.fields.field import in_pixels
-from porescale.piv.fields.surface import of_grains, of_solids
 from porescale.piv.fields.vortices import vortices
 from porescale.piv.images import flows
 from porescale.piv.images.flows import Flow
@@ -26,14 +23,18 @@ from porescale.piv.images.spots import add_spots
 from porescale.piv.images.synth import Camera, Pair, pair
 
 Array = NDArray[np.float64]
+VALIDATIONS = Validations()
 
 SIZE = (512, 512)
+
 CAMERA = Camera(SIZE)
 """0.05 tracers a pixel, diameter 2.8 px, noise 3 grey levels, 5 % lost pairs."""
 CLEAN = Camera(SIZE, noise=0.0, lost=0.0)
 SEEDS = range(10)
+
 NEAR = 16.0
 """Distance from a solid, px, that a row for vectors near solids ends at."""
+
 INVALID = 1.0
 """px: what an invalid vector counts as beside solids."""
 
@@ -167,24 +168,6 @@ def turned(angle: float, radius: float) -> tuple[float, float]:
     return float(np.hypot(u, v)[0]), 2 * radius * float(np.sin(angle / 2))
 
 
-def pile(step: float) -> tuple[list[float], list[float]]:
-    """Areas below the surface of a disc beside three that stand as a triangle, from discs and from a picture of them.
-
-    step : px of columns.  Radius 40 px; exact: r^2 (2 + pi/2) under a disc, as much under the outer halves of the
-    lower two, and r^2 (2 + 2 3^(1/2) + pi/2) under the one on top.  A fifth disc flies.
-    """
-    r = 40.0
-    x = np.array([60.0, 160.0, 240.0, 200.0, 330.0])
-    y = np.array([r, r, r, r + np.sqrt(3) * r, 300.0])
-    discs = flows.Discs(x, y, np.full(5, r))
-    columns: Array = 20.0 + step * (np.arange(round(360 / step), dtype=float) + 0.5)
-    rows: Array = 399.5 - np.arange(400, dtype=float)
-    solid = discs.inside(*np.meshgrid(columns, rows))
-    found = [of_grains(discs, columns), of_solids(columns, rows, solid)]
-    exact = r * r * (2 * (2 + np.pi / 2) + 2 + 2 * np.sqrt(3) + np.pi / 2)
-    return [float(it.height.sum() * step) for it in found], [float(exact)] * 2
-
-
 def light(sigma: float) -> float:
     """Light of a spot in the middle of a picture over that of the whole Gaussian, 2 pi sigma^2."""
     image = np.zeros((65, 65))
@@ -195,8 +178,6 @@ def light(sigma: float) -> float:
 def _rms(values: Array) -> float:
     return float(np.sqrt(np.mean(values**2))) if values.size else 0.0
 
-
-VALIDATIONS = Validations()
 
 ROUND_OFF = float(np.finfo(np.float32).eps)
 ROWS = "exact displacement; tracers 2.8 px, 0.05 a pixel, noise 3 grey levels, 5 % lost, window 16, every fluid vector"
@@ -292,19 +273,6 @@ def vortex_row() -> Measured:
 
 
 @VALIDATIONS.row(
-    "piv.surface_of_a_pile",
-    source="areas below circles: a disc, and three in a triangle, from their outlines and from a picture",
-    because="columns of 1 px by mid-points, rows of 1 px in the picture: half a pixel in 280 columns, all one way at"
-    " worst, 140 px^2 of 23 000",
-    tolerance=0.006,
-)
-def surface() -> Measured:
-    """Areas over the exact one."""
-    found, exact = pile(1.0)
-    return Measured(exact, found, max(abs(a / b - 1) for a, b in zip(found, exact, strict=True)))
-
-
-@VALIDATIONS.row(
     "piv.ten_per_cent_lost",
     source="exact uniform displacement; 10 % of the tracers in one picture only",
     because="no vector of a smooth flow may be off by a pixel; validation and replacement bear it",
@@ -384,6 +352,7 @@ def no_slip() -> Measured:
 
 
 ROWS_STATED = ("uniform", "shear", "stagnation", "lamb_oseen", "taylor_green_128", "taylor_green_64", "discs", "clean")
+
 WITHIN = 0.683
 """Share of normal errors within one standard deviation."""
 
