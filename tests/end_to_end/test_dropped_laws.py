@@ -287,7 +287,7 @@ def test_a_contact_law_that_was_dropped_runs(tree: Path, tmp_path: Path) -> None
         folder = dry(tmp_path / law, law)
         done = porescale(tree, "run", folder, "--quiet")
         assert done.returncode == 0, done.stdout + done.stderr
-        (table,) = folder.rglob("grains.csv")
+        (table,) = folder.rglob("series.csv")
         rows.append(table.read_text(encoding="utf-8"))
     assert rows[0] != rows[1]  # a bounce from another spring
 

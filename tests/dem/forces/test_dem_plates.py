@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from porescale.common.core.errors import Unstable
-from porescale.dem import step as integrate
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
+from porescale.dem.finite import first_without_number
 from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.measures import survey as measure
@@ -106,11 +106,11 @@ def test_a_disc_may_pass_below_a_rising_plate():
 
 def test_the_first_disc_without_a_number_is_found_position_first():
     position, velocity, spin, angle = np.zeros((4, 2)), np.zeros((4, 2)), np.zeros(4), np.zeros(4)
-    for find in (integrate.first_without_number, integrate.first_without_number.py_func):
+    for find in (first_without_number, first_without_number.py_func):
         assert find(position, velocity, spin, angle) == (-1, -1)
     for at, column in (((angle, 1), 3), ((spin, 1), 2), ((velocity, (2, 1)), 1), ((position, (3, 0)), 0)):
         at[0][at[1]] = np.inf if column else np.nan
-        for find in (integrate.first_without_number, integrate.first_without_number.py_func):
+        for find in (first_without_number, first_without_number.py_func):
             assert find(position, velocity, spin, angle) == (np.ravel(at[1])[0], column)
 
 
