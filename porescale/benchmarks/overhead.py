@@ -11,7 +11,7 @@ import numpy as np
 from porescale.benchmarks.minimal_dem import PlainDiscs
 from porescale.benchmarks.minimal_lbm import PlainWater
 from porescale.build.build import build
-from porescale.build.report import PARTS
+from porescale.build.kinds import SECTIONS
 from porescale.build.scene import Scene
 from porescale.build.simulation import Simulation
 from porescale.common.evidence.overhead import SMALLEST, BuiltScene, SceneKind, SceneKinds
@@ -62,7 +62,7 @@ def fixed(**more: Any) -> Scene:
 
 def parts_of(it: Scene) -> list[str]:
     """Sections that the scene has, in the order of the report."""
-    return [name for name in PARTS if getattr(it, name)]
+    return [name for name in SECTIONS if getattr(it, name)]
 
 
 def built(it: Scene, item: str, other: Callable[[Simulation], Callable[[int], object]]) -> BuiltScene:

@@ -1,4 +1,4 @@
-"""From a scene to a simulation: each part is built only if the scene has its section."""
+"""From a scene to a simulation: fluid and grains at time 0, then each part of which the scene has the section."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from pathlib import Path
 
 from porescale.build.cost import require_memory
 from porescale.build.derive import derive
-from porescale.build.initial.fluid import _coupled, _fluid
+from porescale.build.initial.fluid import coupled_of, fluid_of
 from porescale.build.initial.frames import any_frames
-from porescale.build.initial.grains import GATE, _frames, _grains
+from porescale.build.initial.grains import frames_of, grains_of
 from porescale.build.initial.rectangles import on_the_lattice
-from porescale.build.parts.rectangles import Movers
-from porescale.build.parts.sleep import let_sleep
+from porescale.build.kinds import parts_of
+from porescale.build.part import Clock
 from porescale.build.scene import Scene
-from porescale.build.simulation import Gatekeeper, Simulation
+from porescale.build.simulation import Simulation
+from porescale.build.system import System
 from porescale.common.schema.sections import load
 from porescale.coupling.step import buoyant_weight
 
@@ -29,22 +30,25 @@ def build(scene: Scene) -> Simulation:
 
     A packing is settled first, or read from the cache; that can take seconds.
     """
+    system = system_of(scene)
+    return Simulation(system, *parts_of(system))
+
+
+def system_of(scene: Scene) -> System:
+    """Fluid and grains of ``scene`` at time 0; raises InputError."""
     derived = derive(scene)
     require_memory(derived)
-    frames = _frames(scene, derived) if any_frames(scene) else []
-    grains, recorded = _grains(scene, derived, frames) if scene.grains or scene.disc or scene.rectangle else (None, [])
-    fluid = _fluid(scene, derived) if scene.fluid else None
-    solids = on_the_lattice(scene, derived.scales) if derived.scales else []
-    coupled = _coupled(scene, derived, fluid, grains, solids) if fluid and grains else None
-    movers = Movers(scene, solids, derived.scales, grains) if scene.rectangle else None
-    weight = buoyant_weight(grains, 0.0, scene.gravity) if grains and not fluid else None
-    if grains and scene.sleep:
-        let_sleep(scene, grains, coupled.weight if coupled else buoyant_weight(grains, 0.0, scene.gravity))
-    gate = None
-    if scene.gate:
-        plate = fluid.add_plate(derived.gate_column or 0) if fluid else None
-        gate = Gatekeeper(scene.gate.opens_at, scene.gate.lift_speed, plate, grains, GATE)
-    return Simulation(
-        scene, derived, fluid=fluid, grains=grains, coupled=coupled, weight=weight, gate=gate, movers=movers,
-        frames=frames, recorded=recorded,
-    )  # fmt: skip
+    made = System(scene, derived, Clock(derived.model_step))
+    if any_frames(scene):
+        made.frames = frames_of(scene, derived)
+    if scene.grains or scene.disc or scene.rectangle:
+        made.grains, made.recorded = grains_of(scene, derived, made.frames)
+    if scene.fluid:
+        made.fluid = fluid_of(scene, derived)
+    if derived.scales:
+        made.rectangles = on_the_lattice(scene, derived.scales)
+    if made.fluid and made.grains:
+        made.coupled = coupled_of(scene, derived, made.fluid, made.grains, made.rectangles)
+    elif made.grains:
+        made.weight = buoyant_weight(made.grains, 0.0, scene.gravity)
+    return made

@@ -10,6 +10,7 @@ from porescale.build.cost import expected_seconds, memory, require_memory
 from porescale.build.derive import Derived, derive
 from porescale.build.initial.fluid_options import has_soft_rim, weight_of
 from porescale.build.initial.random_polygons import copies_of
+from porescale.build.kinds import SECTIONS
 from porescale.common.cli.report import Report
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting.choose import WEIGHTINGS
@@ -20,14 +21,6 @@ from porescale.scene.scene import Scene
 
 WEEK = 7 * 86400.0
 """s."""
-
-
-PARTS = (
-    "fluid", "grains", "contact", "material", "clump", "segment", "polygon", "container", "bonds", "rock",
-    "control", "wall", "cell", "gate", "disc", "rectangle", "lubrication", "sleep", "probe", "line", "flux",
-    "loads", "permeability",
-)  # fmt: skip
-"""Sections that build something, in the order in which they are told."""
 
 
 def report(scene: Scene) -> Report:
@@ -57,8 +50,8 @@ def report(scene: Scene) -> Report:
 
 def _parts(scene: Scene, out: Report) -> None:
     out.heading("Parts")
-    out.row("built", ", ".join(name for name in PARTS if getattr(scene, name)))
-    out.row("absent, not built", ", ".join(name for name in PARTS if not getattr(scene, name)) or "none")
+    out.row("built", ", ".join(name for name in SECTIONS if getattr(scene, name)))
+    out.row("absent, not built", ", ".join(name for name in SECTIONS if not getattr(scene, name)) or "none")
     out.row("sides", ", ".join(f"{name} {side.text()}" for name, side in scene.domain.sides.items()))
 
 

@@ -138,7 +138,7 @@ def write(
     ends: Sequence[Ended],
     rows: Sequence[Mapping[str, float]],
 ) -> str:
-    """Write homogenise.csv, homogenise.png and, last, material.toml; gives what to say about them."""
+    """Write homogenise.csv, homogenise.png and, last, material.toml; gives the text to print about them."""
     from porescale.analysis.biaxial import curves
     from porescale.analysis.homogenise import packing_of, pressure_of
     from porescale.analysis.material import NAME, UNITS, known, tables, text

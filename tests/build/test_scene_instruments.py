@@ -115,7 +115,7 @@ def test_without_instruments_nothing_is_measured(monkeypatch):
     def refuse(*args: Any, **options: Any) -> None:
         raise AssertionError("measured")
 
-    monkeypatch.setattr(flow_instruments.Instruments, "tables", refuse)
+    monkeypatch.setattr(flow_instruments.FlowInstruments, "tables", refuse)
     monkeypatch.setattr(flow_fields, "stream_function", refuse)
     monkeypatch.setattr(flow_fields, "vorticity", refuse)
     plain = build(water())

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import copy
 import math
+import subprocess
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
@@ -18,12 +20,14 @@ import porescale.coupling.step
 import porescale.dem.grains
 import porescale.lbm.boundary.thin_plate
 import porescale.lbm.fluid
+from porescale.build.parts.gate import GatePart
 from porescale.build.simulation import Simulation
 from tests.reference.same_run import leaves
 from tests.reference.scenes import column, dry, grain, table, water
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 build = porescale.build.build.build
+ROOT = Path(__file__).resolve().parents[2]
 STEPS = 60
 """Past the opening of the gate, a rebuild of the list and an odd and even step."""
 
@@ -126,11 +130,48 @@ def test_a_scene_without_grains_makes_no_pair_list_and_covers_no_cell(monkeypatc
     assert simulation.series()["largest fluid speed (m/s)"] > 0
 
 
+ASKED = """
+import sys
+from porescale import Scene, build
+from tests.reference import scenes
+build(getattr(scenes, sys.argv[1])(**eval(sys.argv[2])))
+print(*sorted(it.rpartition(".")[2] for it in sys.modules if it.startswith("porescale.build.parts.")))
+"""
+HAND = {"grains": {"density": 2500, "grain": [grain(0.004, 0.002)]}, "gravity": [0.0, 0.0]}
+ALL_OF_WATER = {"flow_fields", "flow_series", "fluid"}
+ALL_OF_GRAINS = {"clouds", "frame_measures", "grain_series", "grains"}
+
+
+@pytest.mark.parametrize(
+    ("base", "changes", "parts"),
+    [
+        ("water", {}, ALL_OF_WATER),
+        ("water", {"probe": [{"x": 0.003, "y": 0.003}]}, ALL_OF_WATER | {"flow_instruments"}),
+        ("dry", HAND, ALL_OF_GRAINS),
+        ("dry", HAND | {"gate": {"x": 0.008}, "output__energy": True}, ALL_OF_GRAINS | {"energy", "gate"}),
+    ],
+)
+def test_parts_of_absent_sections_are_not_even_imported(base, changes, parts):
+    words = [sys.executable, "-c", ASKED, base, repr(changes)]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=600, check=True)
+    assert set(done.stdout.split()) == parts
+
+
+@pytest.mark.parametrize("scene", [dry, water, column], ids=lambda it: it.__name__)
+def test_a_simulation_has_the_parts_that_its_sections_ask_for_and_no_other(scene):
+    loose = {"grains__packing__settle": False} if scene is column else {}
+    made = {type(it).__name__ for it in build(scene(gate=None, **loose)).parts}
+    fluid, both = {"FlowSeries"}, {"GrainSeries", "GrainCloud"}
+    assert made == {
+        dry: {"GrainsPart", *both}, water: {"FluidPart", *fluid}, column: {"CoupledPart", *fluid, *both}
+    }[scene]  # fmt: skip
+
+
 def test_without_a_gate_there_is_no_plate(monkeypatch):
     forbid(monkeypatch, "Plate")
     for scene in (column(gate=None, grains__packing__settle=False), dry(), water()):
         simulation = build(scene)
-        assert simulation.gate is None
+        assert simulation.part(GatePart) is None
         assert simulation.fluid is None or simulation.fluid.plates == []
         assert simulation.grains is None or len(simulation.grains.plates) == 0
 

@@ -30,19 +30,22 @@ def chosen(patterns: list[str], quick: bool) -> list[str]:
     return [name for name in names if not patterns or any(fnmatch(name, it) for it in patterns)]
 
 
-def results(names: list[str], jobs: int, threads: tuple[int, ...]) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Each name with what its process found, in the order in which they end."""
+def results(names: list[str], jobs: int, threads: list[int]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Each name with what its processes found, by numbers of threads, in the order in which they end."""
     preload()
-    waiting, running = list(names), list[Child]()
+    waiting, running = [(name, count) for name in names for count in threads], list[Child]()
+    found: dict[str, dict[str, Any]] = {name: {} for name in names}
     with TemporaryDirectory() as folder:
         while waiting or running:
             while waiting and len(running) < jobs:
-                name = waiting.pop(0)
-                running.append(Child(name, SUBJECTS[name], threads, Path(folder)))
+                name, count = waiting.pop(0)
+                running.append(Child(name, SUBJECTS[name], count, Path(folder)))
             wait([it.process.sentinel for it in running])
             for it in [it for it in running if not it.process.is_alive()]:
                 running.remove(it)
-                yield it.name, it.result()
+                found[it.name][str(it.threads)] = it.result()
+                if len(found[it.name]) == len(threads):
+                    yield it.name, {str(count): found[it.name][str(count)] for count in threads}
 
 
 def main() -> int:
@@ -66,7 +69,7 @@ def main() -> int:
     if asked.command == "compare" and known["processor"] not in (None, processor):
         print(f"warning: recorded on {known['processor']}, this is {processor}: last bits may differ", flush=True)
     bad, began = 0, time.perf_counter()
-    for k, (name, found) in enumerate(results(names, asked.jobs, tuple(asked.threads)), 1):
+    for k, (name, found) in enumerate(results(names, asked.jobs, asked.threads), 1):
         if asked.command == "write":
             word = record.kept(name, found, processor, asked.record)
         else:

@@ -168,7 +168,7 @@ GROUND = {
     "dilatant, cohesive": ('dilatancy_angle = "5 degree"\ncohesion = 200\ntension = 100', ""),
     "elastic, stiffening": ("elastic = true\nexponent = 0.5", ""),
     "printed modulus": ('modulus = "printed"\nstress = "none"', ""),
-    "clay": ('friction_angle = 0\ncohesion = 5e-40\ntension = 300\nsides = "hold"', "repulsion = 20"),
+    "clay": ('friction_angle = 0\ncohesion = 1000\ntension = 300\nsides = "hold"', "repulsion = 20"),
     "floor slips": ('floor = "slip"\nrest = 0.6', "settle = 0.05"),
     "as published": (
         "",

@@ -325,10 +325,10 @@ def _commands() -> dict[str, Subject]:
             ("*.csv", "made/*.csv"),
         ),
         "demseg run": Commands(
-            ("porescale demseg run {cases}/demseg_clump --out run --quiet --threads {threads}",),
+            ("porescale demseg run {cases}/demseg_repose --out run --quiet --threads {threads}",),
             ("run/*.dat", "run/*.csv"),
         ),
-        "demseg convert": Commands(("porescale demseg convert {cases}/demseg_triangle --out made",), ("made/*.toml",)),
+        "demseg convert": Commands(("porescale demseg convert {cases}/demseg_triangle --out made.toml",), ("*.toml",)),
         "film of run": Commands((run, film), ("film/*/*.png",)),
     }  # fmt: skip
 

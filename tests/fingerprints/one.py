@@ -55,10 +55,10 @@ def taken(subject: Subject, threads: int) -> dict[str, Any]:
     return {"hash": whole, "parts": parts, "steps": steps, "seconds": round(time.perf_counter() - began, 2)}
 
 
-def _child(subject: Subject, threads: tuple[int, ...], answer: Path) -> None:
-    """In the child: the fingerprints on all numbers of threads, or what went wrong, into a file."""
+def _child(subject: Subject, threads: int, answer: Path) -> None:
+    """In the child: the fingerprint, or what went wrong, into a file."""
     try:
-        found: dict[str, Any] = {str(count): taken(subject, count) for count in threads}
+        found = taken(subject, threads)
     except BaseException as error:
         trace = traceback.extract_tb(error.__traceback__)[-1]
         found = {"error": f"{type(error).__name__}: {error} ({Path(trace.filename).name}:{trace.lineno})"}
@@ -66,10 +66,11 @@ def _child(subject: Subject, threads: tuple[int, ...], answer: Path) -> None:
 
 
 class Child:
-    """A subject at work in a process of its own."""
+    """A subject at work on so many threads, in a process of its own: what modules keep serves no other."""
 
-    def __init__(self, name: str, subject: Subject, threads: tuple[int, ...], room: Path) -> None:
-        self.name, self.answer = name, room / f"{name.replace('/', '_')}.json"
+    def __init__(self, name: str, subject: Subject, threads: int, room: Path) -> None:
+        self.name, self.threads = name, threads
+        self.answer = room / f"{name.replace('/', '_')} {threads}.json"
         self.process = get_context("fork").Process(target=_child, args=(subject, threads, self.answer), daemon=True)
         self.process.start()
 
@@ -79,5 +80,4 @@ class Child:
         if not self.answer.exists():
             return {"error": f"ended with code {self.process.exitcode}"}
         found: dict[str, Any] = json.loads(self.answer.read_text(encoding="utf-8"))
-        self.answer.unlink()
         return found

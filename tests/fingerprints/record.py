@@ -23,10 +23,16 @@ def read(path: Path = RECORD) -> dict[str, Any]:
     return known
 
 
+def failure(found: dict[str, Any]) -> str:
+    """What went wrong on some number of threads, "" if nothing did."""
+    return next((f"fails on {count} threads: {it['error']}" for count, it in found.items() if "error" in it), "")
+
+
 def kept(name: str, found: dict[str, Any], processor: str, path: Path) -> str:
     """Write what was found of a name into the record at once; says so."""
-    if "error" in found:
-        return f"fails: {found['error']}"
+    wrong = failure(found)
+    if wrong:
+        return wrong
     known = read(path)
     first = next(iter(found.values()))
     row = {count: it["hash"] for count, it in found.items()}
@@ -42,8 +48,9 @@ def kept(name: str, found: dict[str, Any], processor: str, path: Path) -> str:
 
 def compared(known: dict[str, Any] | None, found: dict[str, Any]) -> str:
     """Whether what was found of a name is what was recorded, and if not, in which parts it differs."""
-    if "error" in found:
-        return f"fails: {found['error']}"
+    wrong = failure(found)
+    if wrong:
+        return wrong
     if known is None:
         return "fails: not recorded"
     off = [count for count, it in found.items() if it["hash"] != known.get(count)]

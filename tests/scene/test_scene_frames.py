@@ -267,7 +267,7 @@ def test_vtk_sees_the_polygon_and_the_floor(tmp_path):
 
 
 def test_breaks_are_written_by_time_with_place_and_bodies(tmp_path):
-    from porescale.build.parts.bonds import Binder
+    from porescale.build.parts.bonds import BondsPart
     from porescale.output.breaks import write_breaks
 
     pull = {"velocity": 1e-3}  # a tenth of the strength in a period of these springs: in rest all the while
@@ -277,7 +277,7 @@ def test_breaks_are_written_by_time_with_place_and_bodies(tmp_path):
         control=[{"grain": 0, "x": {"velocity": 0.0}}, {"grain": 2, "x": pull, "record": True}],
     )  # fmt: skip
     simulation = build(scene)
-    assert isinstance(simulation._binder, Binder)
+    assert simulation.part(BondsPart)
     assert simulation.series()["bonds ()"] == 2.0
     simulation.advance(round(1.5e-3 / simulation.step_seconds))
     assert simulation.series()["broken bonds ()"] == 1.0

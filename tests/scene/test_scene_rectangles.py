@@ -146,15 +146,16 @@ def test_a_rectangle_goes_as_its_section_says():
     given = {**BLOCK, "velocity": [0.05, 0.0], "starts_at": 5e-4, "stops_at": 1e-3}
     simulation = build(tank(given, grains=ONE, contact={"stiffness": 2e5, "restitution": 0.9},
                             grains__hydraulic_radius_ratio=1.0))  # fmt: skip
-    assert simulation.movers
+    part = simulation.part(rectangles.RectanglesPart)
+    assert part
     assert simulation.grains
     seen = []
     for _ in range(30):
         simulation.advance(1)
-        seen.append(float(simulation.movers.lattice[0].velocity[0]))
+        seen.append(float(part.lattice[0].velocity[0]))
         away = simulation.scene.rectangle[0].travelled(simulation.time)[0]
         # Both are places of order 0.01 m that one sum gives.
-        assert simulation.movers.lattice[0].lower[0] * H == pytest.approx(0.004 + away, abs=4 * 0.01 * EPS)
+        assert part.lattice[0].lower[0] * H == pytest.approx(0.004 + away, abs=4 * 0.01 * EPS)
         assert simulation.grains.rectangles[0, 0] == 0.004 + away
     full = 0.05 * 4e-5 / H
     assert seen[:12] == [0.0] * 12
@@ -174,12 +175,12 @@ def test_a_scene_without_rectangles_builds_nothing_and_does_nothing_for_them(mon
     def refuse(*args: Any, **options: Any) -> None:
         raise AssertionError("asked for a rectangle")
 
-    for name in ("__init__", "place", "advance", "row"):
-        monkeypatch.setattr(rectangles.Movers, name, refuse)
+    for name in ("__init__", "before", "after", "row"):
+        monkeypatch.setattr(rectangles.RectanglesPart, name, refuse)
     simulation = build(column())
     simulation.advance(3)
     simulation.series()
-    assert simulation.movers is None
+    assert simulation.part(rectangles.RectanglesPart) is None
     assert simulation.coupled
     assert simulation.grains
     assert simulation.coupled.saturated.bodies is None
@@ -236,9 +237,10 @@ def test_a_run_goes_on_bit_for_bit_from_a_checkpoint_in_the_middle_of_a_motion(s
     two.restore(state)
     for simulation in (one, two):
         simulation.advance(140)
-    assert one.movers
-    assert two.movers
-    assert one.movers.made_good == two.movers.made_good != 0.0
+    moved, also = (it.part(rectangles.RectanglesPart) for it in (one, two))
+    assert moved
+    assert also
+    assert moved.made_good == also.made_good != 0.0
     assert one.series() == two.series()
     assert one.tables() == two.tables()
     for a, b in zip(one.fields(), two.fields(), strict=True):
@@ -247,7 +249,7 @@ def test_a_run_goes_on_bit_for_bit_from_a_checkpoint_in_the_middle_of_a_motion(s
     state["coupled"]["saturated"]["bodies"]["mass"] += 1.0
     two.restore(state)
     two.advance(140)
-    assert one.movers.made_good != two.movers.made_good
+    assert moved.made_good != also.made_good
 
 
 def test_a_piston_pushes_grains_as_it_does_alone():

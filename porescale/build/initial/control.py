@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from porescale.build.initial.frames import PLATES, Placed, plates_of, prescribe_motion
 from porescale.build.initial.placed import counted
+from porescale.build.initial.rock import has_plates
 from porescale.build.initial.time_functions import control_of
 from porescale.dem.grains import Grains
 from porescale.dem.motion.drivers import Clump as ClumpNumber
@@ -27,26 +28,8 @@ def add_controls(scene: Scene, grains: Grains, placed: Sequence[Placed] = ()) ->
         grains.steering.control(body_of(scene, it), *map(control_of, (it.x, it.y, it.rotation)))
     watched = [(it.called, body_of(scene, it)) for it in scene.control if it.record]
     watched += zip((it.name for it in placed if it.record), own, strict=True)
-    if scene.rock and scene.rock.plates != "none":
+    if has_plates(scene):
         watched += zip(PLATES, plates_of(grains), strict=True)
     if watched:
         grains.steering.watch(*(body for _, body in watched))
     return [name for name, _ in watched]
-
-
-def control_row(grains: Grains, recorded: Sequence[str]) -> dict[str, float]:
-    """Columns of control.csv but the time: displacement since the start, forces of contacts and of the control.
-
-    Forces are means over the last step of the model.  recorded : names of the first bodies that are watched.
-    """
-    row: dict[str, float] = {}
-    for name, line in zip(recorded, grains.steering.record(), strict=False):
-        for what, values, units in (
-            ("displacement", line.displacement, ("m", "m", "rad")),
-            ("contact", line.contact, ("N/m", "N/m", "N m/m")),
-            ("control", line.supply, ("N/m", "N/m", "N m/m")),
-        ):
-            kinds = ("x", "y", "rotation") if what == "displacement" else ("force x", "force y", "moment")
-            row |= {f"{name} {what} {kind} ({unit})": value
-                    for kind, value, unit in zip(kinds, values, units, strict=True)}  # fmt: skip
-    return row

@@ -20,7 +20,8 @@ from porescale.scene.domain import Domain
 from porescale.scene.scene import Scene
 
 
-def _fluid(scene: Scene, derived: Derived) -> Fluid:
+def fluid_of(scene: Scene, derived: Derived) -> Fluid:
+    """The lattice at the start."""
     assert scene.fluid
     assert derived.cells
     assert derived.scales
@@ -52,7 +53,9 @@ def lattice_sides(domain: Domain, scales: Scales, cells: tuple[int, int]) -> Sid
     return Sides(**values)
 
 
-def _coupled(scene: Scene, derived: Derived, fluid: Fluid, grains: Grains, rectangles: Sequence[Rectangle]) -> Coupled:
+def coupled_of(
+    scene: Scene, derived: Derived, fluid: Fluid, grains: Grains, rectangles: Sequence[Rectangle]
+) -> Coupled:
     """Fluid and grains, each as large to the other as the scene says: grains by lambda, held discs as they are."""
     assert scene.fluid
     assert derived.scales

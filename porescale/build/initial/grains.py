@@ -45,13 +45,13 @@ def _box(domain: Domain) -> Box:
     return Box((0.0, 0.0), (domain.width, domain.height), **kinds)
 
 
-def _frames(scene: Scene, derived: Derived) -> list[Placed]:
+def frames_of(scene: Scene, derived: Derived) -> list[Placed]:
     """All bodies of segments, a rock's last."""
     rock = rock_frames(scene, derived.law) if scene.rock and derived.law else []
     return [*placed_frames(scene), *rock]
 
 
-def _grains(scene: Scene, derived: Derived, frames: list[Placed]) -> tuple[Grains, list[str]]:
+def grains_of(scene: Scene, derived: Derived, frames: list[Placed]) -> tuple[Grains, list[str]]:
     """All discs in their order: the packing's, those placed by hand, those that are held, corners of frames; and names
     of the bodies that are recorded."""
     box, law, wall_law = _box(scene.domain), derived.law or UNTOUCHED, derived.wall_law

@@ -29,6 +29,11 @@ BEYOND = 0.1
 """Of the length of a plate's side of the sample: how far it stands out at both ends."""
 
 
+def has_plates(scene: Scene) -> bool:
+    """Whether a scene has a rock between plates."""
+    return scene.rock is not None and scene.rock.plates != "none"
+
+
 def rock_discs(scene: Scene, law: Law) -> Discs | None:
     """The discs of a rock of discs, at rest; None of polygons."""
     assert scene.rock

@@ -65,16 +65,20 @@ def middles(grains: Grains) -> list[tuple[float, float]]:
     return points
 
 
-def places(scene: Scene, grains: Grains) -> dict[str, float]:
-    """Columns of forces.csv: where the walls that move are, m, and the direction of those that turn, rad."""
-    row: dict[str, float] = {}
-    moving = moving_sides(scene)
-    turning = dict(zip(wall_names(scene), scene.wall, strict=True))
-    for name, wall in zip(grains.wall_names, grains.walls, strict=True):
-        it = turning.get(name)
-        if name in moving or (it and (it.moves or it.stress or it.force)):
-            shown = f"{name} wall" if name in SIDES else name
-            row |= {f"{shown} x (m)": float(wall[PX]), f"{shown} y (m)": float(wall[PY])}
-            if it and it.turning:
-                row[f"{shown} direction of normal (rad)"] = math.atan2(float(wall[NY]), float(wall[NX]))
-    return row
+class WallPlaces:
+    """Where the walls of a scene are that move: columns of forces.csv."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.sides, self.walls = moving_sides(scene), dict(zip(wall_names(scene), scene.wall, strict=True))
+
+    def row(self, grains: Grains) -> dict[str, float]:
+        """Places, m, and the direction of those that turn, rad."""
+        row: dict[str, float] = {}
+        for name, wall in zip(grains.wall_names, grains.walls, strict=True):
+            it = self.walls.get(name)
+            if name in self.sides or (it and (it.moves or it.stress or it.force)):
+                shown = f"{name} wall" if name in SIDES else name
+                row |= {f"{shown} x (m)": float(wall[PX]), f"{shown} y (m)": float(wall[PY])}
+                if it and it.turning:
+                    row[f"{shown} direction of normal (rad)"] = math.atan2(float(wall[NY]), float(wall[NX]))
+        return row

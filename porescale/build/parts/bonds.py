@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from porescale.build.initial.frames import Placed, disc_count
+from porescale.build.part import Clock, Part, Row
+from porescale.build.system import System
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.record.model import Cloud
+from porescale.common.record.model import Cloud, Snapshot
 from porescale.dem.bodies.bonding import beside, bond
 from porescale.dem.bodies.rigid import as_bodies
 from porescale.dem.forces.bonds import BondList, touched
 from porescale.dem.grains import Grains
 from porescale.dem.motion.drivers import Clump as ClumpNumber
+from porescale.output.frame_clouds import BONDS
 from porescale.scene.bodies.bonds import KINDS, Bonds
-from porescale.scene.scene import Scene
 
 Body = tuple[int, int]
 
@@ -24,13 +27,14 @@ Body = tuple[int, int]
 class Bodies:
     """What the bodies of a system are called: kind and number of every disc's."""
 
-    def __init__(self, scene: Scene, grains: Grains, placed: list[Placed]) -> None:
+    def __init__(self, grains: Grains, placed: Sequence[Placed], held: int) -> None:
+        """``held`` : discs that are no bodies, the last ones before corners."""
         discs, self.clumps = disc_count(grains), grains.steering.clumps if grains.steered else None
         self.placed = placed
         self.kind, self.number = np.zeros(grains.discs.count, np.int32), np.arange(grains.discs.count, dtype=np.int32)
         first = 0 if self.clumps is None else self.clumps.count - len(placed)
         counts: dict[str, int] = {}
-        self.named: dict[Body, int | ClumpNumber] = {(0, i): i for i in range(discs - len(scene.disc))}
+        self.named: dict[Body, int | ClumpNumber] = {(0, i): i for i in range(discs - held)}
         for c in range(0 if self.clumps is None else self.clumps.count):
             kind = "clump" if c < first else placed[c - first].kind
             number = counts[kind] = counts.get(kind, -1) + 1
@@ -55,19 +59,30 @@ class Bodies:
         return found or list(self.named)
 
 
-class Binder:
+class BondsPart(Part):
     """Makes the bonds of a scene at their times.  made : how many sections have been."""
 
-    def __init__(self, scene: Scene, grains: Grains, placed: list[Placed]) -> None:
-        whole = [("rock", Bonds(bodies=(), known=()))] if scene.rock else []
-        own = [(f"bonds[{k}]", it) for k, it in enumerate(scene.bonds)]
-        self.grains, self.bodies = grains, Bodies(scene, grains, placed)
-        self.sections = sorted([*whole, *own], key=lambda it: it[1].at)
+    def __init__(self, clock: Clock, sections: Sequence[tuple[str, Bonds]], grains: Grains, bodies: Bodies) -> None:
+        """``sections`` : each with its key."""
+        self.clock, self.grains, self.bodies = clock, grains, bodies
+        self.sections = sorted(sections, key=lambda it: it[1].at)
         self.chosen = [self.bodies.chosen(it.bodies, key) for key, it in self.sections]
         self.made = 0
+        self.before()  # what is bonded at time 0 is there in the first record
 
-    def advance(self, time: float, step: float) -> None:
-        """What is to be bonded before the step of ``step`` (s) that begins at ``time`` (s)."""
+    @classmethod
+    def build(cls, system: System) -> BondsPart:
+        """Of a scene with [bonds] or [rock], whose pieces are all bonded at the start."""
+        scene = system.scene
+        assert system.grains
+        whole = [("rock", Bonds(bodies=(), known=()))] if scene.rock else []
+        own = [(f"bonds[{k}]", it) for k, it in enumerate(scene.bonds)]
+        bodies = Bodies(system.grains, system.frames, system.held)
+        return cls(system.clock, [*whole, *own], system.grains, bodies)
+
+    def before(self) -> None:
+        """Bond what is to be bonded in the step that begins nearest to its time."""
+        time, step = self.clock.time, self.clock.seconds
         while self.made < len(self.sections) and time >= self.sections[self.made][1].at - 0.5 * step:
             key, section = self.sections[self.made]
             if section.known:
@@ -118,12 +133,24 @@ class Binder:
 
         return [body for body in bodies if inside(body)]
 
-    def row(self) -> dict[str, float]:
+    def row(self) -> Row:
         """Columns of the series."""
         bonds = self.grains.bonds
         there = 0 if bonds is None else int(np.sum(bonds.back > 0.0))
         whole = 0 if bonds is None else bonds.count
         return {"bonds ()": float(whole), "broken bonds ()": float(there - whole)}
+
+    def show(self, snapshot: Snapshot) -> None:
+        """The cloud of bonds."""
+        snapshot.clouds[BONDS] = self.cloud()
+
+    def state(self) -> dict[str, Any]:
+        """How many sections have been; the bonds are of the grains."""
+        return {"bonds_made": self.made}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state."""
+        self.made = int(state["bonds_made"])
 
     def cloud(self) -> Cloud:
         """Bonds as lines between what they hold: two points each, with whether it is whole, its back tension, when and

@@ -3,28 +3,45 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.build.part import Clock, Part, Row
+from porescale.build.system import System
 from porescale.dem.bodies.rigid import areas
 from porescale.dem.grains import Grains
 
 Array = NDArray[np.float64]
 
 
-class Strained:
+class CellPart(Part):
     """Follows the strain of a cell; shear: the integral of its rate, since the tilt starts anew at half a width."""
 
-    def __init__(self, grains: Grains) -> None:
-        self.grains = grains
+    def __init__(self, clock: Clock, grains: Grains) -> None:
+        self.clock, self.grains = clock, grains
         self.shear = 0.0
 
-    def advance(self, step: float) -> None:
-        """After a step of ``step`` (s): its rates stay till the next."""
-        self.shear += step * float(self.grains.steering.gradient()[0, 1])
+    @classmethod
+    def build(cls, system: System) -> CellPart:
+        """Of a scene with [cell]."""
+        assert system.grains
+        return cls(system.clock, system.grains)
 
-    def row(self) -> dict[str, float]:
+    def after(self) -> None:
+        """Add the shear of the step: its rates stay till the next."""
+        self.shear += self.clock.seconds * float(self.grains.steering.gradient()[0, 1])
+
+    def state(self) -> dict[str, Any]:
+        """The shear; the cell itself is of the grains."""
+        return {"shear": self.shear}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state."""
+        self.shear = float(state["shear"])
+
+    def row(self) -> Row:
         """Columns of the series: strain (logarithms of the stretch of the edges; shear), the stress of the last step
         (compression positive, shear of the sign of the strain that it drives), and the cell."""
         grains = self.grains

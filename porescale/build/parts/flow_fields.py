@@ -14,9 +14,22 @@ from porescale.lbm.scales import Scales
 Array = NDArray[np.floating]
 
 
-def fluid_row(excess: Array, ux: Array, uy: Array, solid: Array, scales: Scales | None) -> dict[str, float]:
+LAMBDA = "hydraulic radius ratio ()"
+"""Column of lambda: every record of grains in fluid carries it."""
+
+
+def total_pressure(gravity: tuple[float, float], scales: Scales, excess: Array) -> Array:
+    """Pressure (Pa) of a density excess (kg/m³), both (ny, nx): with the hydrostatic part that the lattice leaves out,
+    zero in the upper left corner of the box."""
+    ny, nx = excess.shape
+    depth, across = (ny - 0.5 - np.arange(ny)) * scales.spacing, (np.arange(nx) + 0.5) * scales.spacing
+    gx, gy = gravity
+    still = scales.density * (-gy * depth[:, None] + gx * across[None, :])
+    return np.asarray(excess / scales.density * scales.pressure + still)
+
+
+def fluid_row(excess: Array, ux: Array, uy: Array, solid: Array, scales: Scales) -> dict[str, float]:
     """Columns of the series for the fluid between the grains; arrays (ny, nx), SI."""
-    assert scales
     square = ux**2 + uy**2
     energy = 0.5 * float(np.sum((scales.density + excess) * square * (1 - solid))) * scales.spacing**2
     return {

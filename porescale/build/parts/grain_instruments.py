@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.build.initial.frames import Placed, disc_count, free_rows
-from porescale.build.initial.walls import middles, places
+from porescale.build.initial.walls import WallPlaces, middles
+from porescale.build.part import Clock, Part, Row
 from porescale.build.parts.frame_measures import solid_in
+from porescale.build.system import System
 from porescale.common.record.model import Cloud, Grid, Snapshot
 from porescale.dem.bodies.rigid import areas, as_bodies, body_of
 from porescale.dem.forces.rectangle import BOTTOM, RIGHT, TOP
@@ -33,11 +35,10 @@ from porescale.dem.measures.porosity import disc_areas, void_ratio
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress, kinetic_stress, principal
 from porescale.dem.motion.periodic_cell import Straining
+from porescale.scene.measures.coarse_graining import CoarseGraining
 from porescale.scene.scene import Scene
 
 Array = NDArray[Any]
-
-Row = dict[str, float]
 
 
 KERNEL_WIDTH = 2.5
@@ -48,11 +49,14 @@ FIELDS, CONTACTS = "grain_fields", "contacts"
 """Names of the grid and of the cloud in snapshots."""
 
 
-class GrainInstruments:
-    """The regions, the coarse graining and the wall forces of ``scene``."""
+class GrainInstruments(Part):
+    """The regions, the wall forces, the contacts and the coarse graining of a scene."""
 
-    def __init__(self, scene: Scene, grains: Grains, placed: Sequence[Placed] = ()) -> None:
-        self.scene, self.grains, self.placed = scene, grains, placed
+    def __init__(self, clock: Clock, grains: Grains, placed: Sequence[Placed], scene: Scene) -> None:
+        """``placed`` : bodies of segments."""
+        self.clock, self.grains, self.placed = clock, grains, placed
+        self.walls = WallPlaces(scene) if scene.output.forces else None
+        self.contacts, self.coarse_graining = scene.output.contacts, scene.coarse_graining
         self.regions = [(it.name or f"region {k}", Region(it.lower, it.upper)) for k, it in enumerate(scene.region)]
         self.held = np.arange(grains.discs.count) >= grains.discs.count - len(scene.disc)
         if grains.segments is not None:
@@ -60,20 +64,26 @@ class GrainInstruments:
         friction = max(law.friction for law in grains.laws)
         self.least = LEAST_WITH_FRICTION if friction > 0.0 else LEAST_WITHOUT
 
-    def tables(self, time: float) -> dict[str, Row]:
+    @classmethod
+    def build(cls, system: System) -> GrainInstruments:
+        """Of a system with grains that are measured."""
+        assert system.grains
+        return cls(system.clock, system.grains, system.frames, system.scene)
+
+    def tables(self) -> dict[str, Row]:
         """A row of regions.csv and of forces.csv, where the scene asks for them."""
         tables: dict[str, Row] = {}
-        if not (self.regions or self.scene.output.forces):
+        if not (self.regions or self.walls):
             return tables
-        found = contacts(self.grains)
+        found, time = contacts(self.grains), self.clock.time
         if self.regions:
             loose = self.rattling(found)
             tables["regions"] = {"time (s)": time}
             for name, region in self.regions:
                 row = region_row(self.grains, found, region, loose, self.held, self.placed)
                 tables["regions"] |= {f"{name} {column}": value for column, value in row.items()}
-        if self.scene.output.forces:
-            tables["forces"] = {"time (s)": time} | self._forces(found)
+        if self.walls:
+            tables["forces"] = {"time (s)": time} | self._forces(found, self.walls)
         return tables
 
     def rattling(self, found: Contacts) -> NDArray[np.bool_]:
@@ -82,7 +92,7 @@ class GrainInstruments:
         loose: NDArray[np.bool_] = rattlers(found.of_bodies(number), len(number), self.least, self.held)[number]
         return loose
 
-    def _forces(self, found: Contacts) -> Row:
+    def _forces(self, found: Contacts, walls: WallPlaces) -> Row:
         """Force of the grains on every wall, plate and rectangle with its moment about the middle of it (a free wall:
         about its point), where walls are that move, and of all contacts on every held disc, about its centre."""
         grains = self.grains
@@ -96,20 +106,19 @@ class GrainInstruments:
             shown = f"{name} wall" if name in SIDES else name
             fx, fy, moment = on_surface(found, name, middle)
             row |= {f"{shown} force x (N/m)": fx, f"{shown} force y (N/m)": fy, f"{shown} moment (N m/m)": moment}
-        row |= places(self.scene, grains)
+        row |= walls.row(grains)
         discs = np.flatnonzero(self.held[: disc_count(grains)]).tolist()
         for k, (fx, fy, moment) in enumerate(on_discs(found, grains.discs, discs)):
             row |= {f"disc {k} force x (N/m)": float(fx), f"disc {k} force y (N/m)": float(fy),
                     f"disc {k} moment (N m/m)": float(moment)}  # fmt: skip
         return row
 
-    def add_to(self, snapshot: Snapshot) -> None:
+    def show(self, snapshot: Snapshot) -> None:
         """Contacts, what they say of each grain, and fields, where the scene asks for them."""
-        wanted = self.scene.output.contacts
-        if not (wanted or self.scene.coarse_graining):
+        if not (self.contacts or self.coarse_graining):
             return
         found = contacts(self.grains)
-        if wanted:
+        if self.contacts:
             snapshot.clouds[CONTACTS] = contact_cloud(found, self.grains)
             split, number = disc_count(self.grains), body_of(self.grains)
             touching = contact_numbers(found.of_bodies(number), len(number))[number]
@@ -118,13 +127,12 @@ class GrainInstruments:
                 if name in snapshot.clouds:
                     snapshot.clouds[name].data["contact_number"] = touching[rows].astype(np.int32)
                     snapshot.clouds[name].data["rattler"] = loose[rows]
-        if self.scene.coarse_graining:
-            snapshot.grids[FIELDS] = self._fields(found)
+        if self.coarse_graining:
+            snapshot.grids[FIELDS] = self._fields(found, self.coarse_graining)
 
-    def _fields(self, found: Contacts) -> Grid:
+    def _fields(self, found: Contacts, asked: CoarseGraining) -> Grid:
         """The coarse-grained fields of a snapshot."""
-        asked, grains = self.scene.coarse_graining, self.grains
-        assert asked
+        grains = self.grains
         width = asked.width or max(2.0 * KERNEL_WIDTH * float(grains.discs.radius.mean()), asked.spacing)
         cell = grains.cell if isinstance(grains.cell, Straining) else None
         periodic = grains.box.periodic if cell is None else (False, False)

@@ -3,34 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
+from porescale.build.part import Clock, Part, Row
+from porescale.build.system import System
 from porescale.coupling.coverage.rectangle import Rectangle as LatticeRectangle
 from porescale.coupling.step import Coupled
 from porescale.dem.forces.rectangle import LEFT, RIGHT, VELOCITY_X
 from porescale.dem.grains import Grains
-from porescale.lbm.scales import Scales
-from porescale.scene.scene import Scene
+from porescale.scene.bodies.rectangle import Rectangle
 
 MAKE_GOOD = 64
 """Steps after which what left with rectangles is made good: even, and too few for a density to change that is seen."""
 
 
-class Movers:
-    """Moves the rectangles of a scene, for fluid and grains alike."""
+class RectanglesPart(Part):
+    """Moves the rectangles.  made_good : fluid taken out again of what came in with them, cells."""
 
     def __init__(
-        self, scene: Scene, lattice: Sequence[LatticeRectangle], scales: Scales | None, grains: Grains | None
-    ) -> None:
-        self.sections, self.lattice, self.scales, self.grains = scene.rectangle, list(lattice), scales, grains
-        closed = not any(side.open for side in scene.domain.sides.values())
-        wanted = [it.make_good for it in self.sections if it.make_good is not None]
-        self.make_good = wanted[0] if wanted else closed
-        self.made_good = 0.0  # cells
+        self, clock: Clock, sections: Sequence[Rectangle], lattice: Sequence[LatticeRectangle], grains: Grains | None,
+        coupled: Coupled | None, *, make_good: bool,
+    ) -> None:  # fmt: skip
+        """``lattice`` : as the fluid has them, none without fluid;  ``make_good`` : whether the fluid's mass is."""
+        self.clock, self.sections, self.lattice, self.grains = clock, sections, list(lattice), grains
+        self.coupled, self.scales = coupled, coupled.scales if coupled else None
+        self.make_good = make_good
+        self.made_good = 0.0
 
-    def place(self, step: int, step_seconds: float) -> None:
-        """Put all where they are at the start of ``step``."""
+    @classmethod
+    def build(cls, system: System) -> RectanglesPart:
+        """Of a scene with [[rectangle]]."""
+        sections, domain = system.scene.rectangle, system.scene.domain
+        closed = not any(side.open for side in domain.sides.values())
+        wanted = [it.make_good for it in sections if it.make_good is not None]
+        return cls(
+            system.clock, sections, system.rectangles, system.grains, system.coupled,
+            make_good=wanted[0] if wanted else closed,
+        )  # fmt: skip
+
+    def after(self) -> None:
+        """Put all where they are now."""
         for k, section in enumerate(self.sections):
-            here = section.travelled(step * step_seconds)
+            here = section.travelled(self.clock.step * self.clock.seconds)
             for a in range(2):
                 if self.scales:
                     self.lattice[k].lower[a] = (section.lower[a] + here[a]) / self.scales.spacing
@@ -38,8 +52,9 @@ class Movers:
                     self.grains.rectangles[k, LEFT + a] = section.lower[a] + here[a]
                     self.grains.rectangles[k, RIGHT + a] = section.upper[a] + here[a]
 
-    def advance(self, step: int, step_seconds: float, coupled: Coupled | None) -> None:
-        """Give all the velocity that takes them through ``step``, and now and then make the fluid's mass good."""
+    def before(self) -> None:
+        """Give all the velocity that takes them through the step, and now and then make the fluid's mass good."""
+        step, step_seconds, coupled = self.clock.step, self.clock.seconds, self.coupled
         time = step * step_seconds
         for k, section in enumerate(self.sections):
             here, there = section.travelled(time), section.travelled(time + step_seconds)
@@ -52,19 +67,20 @@ class Movers:
         if coupled and self.make_good and step % MAKE_GOOD == 0:
             self.made_good += coupled.saturated.make_good(coupled.fluid)
 
-    def row(self, coupled: Coupled) -> dict[str, float]:
-        """Columns of the series."""
+    def row(self) -> Row:
+        """Columns of the series, in fluid."""
+        coupled = self.coupled
+        if coupled is None:
+            return {}
         area = coupled.scales.spacing**2
         through = self.made_good + coupled.saturated.mass_through_sides
         return {"fluid in with rectangles (m²)": through * area, "of it taken out again (m²)": self.made_good * area}
 
+    def state(self) -> dict[str, Any]:
+        """What was made good; where they are follows from the time."""
+        return {"made_good": self.made_good}
 
-def rectangle_loads(numbers: Sequence[int], coupled: Coupled) -> dict[str, float]:
-    """Forces of the fluid and of the grains on rectangles by number, columns of loads.csv."""
-    row: dict[str, float] = {}
-    for k in numbers:
-        fluid, grains = coupled.rectangle_force[k], coupled.grains.rectangle_force[k]
-        for a, axis in enumerate("xy"):
-            row[f"rectangle {k} force {axis} (N/m)"] = float(fluid[a])
-            row[f"rectangle {k} force of grains {axis} (N/m)"] = float(grains[a])
-    return row
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state."""
+        self.made_good = float(state["made_good"])
+        self.after()

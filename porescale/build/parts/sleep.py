@@ -3,28 +3,33 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from porescale.dem.grains import Grains
-from porescale.scene.scene import Scene
+from porescale.build.part import Part, Row
+from porescale.build.system import System
+from porescale.coupling.step import buoyant_weight
+from porescale.dem.resting.sleep import Sleep as Sleepers
 
-Array = NDArray[np.floating]
 
+class SleepPart(Part):
+    """How many grains sleep, and what energy was taken."""
 
-def let_sleep(scene: Scene, grains: Grains, weight: Array) -> None:
-    """Let the grains sleep where the scene says so; weight (n, 2) N/m: of each, less lift."""
-    from porescale.dem.resting.sleep import Sleep as Sleepers
+    def __init__(self, sleepers: Sleepers) -> None:
+        self.sleepers = sleepers
 
-    if scene.sleep is not None:
+    @classmethod
+    def build(cls, system: System) -> SleepPart:
+        """Of a scene with [sleep]: lets the grains sleep, by their weight less lift."""
+        grains, section = system.grains, system.scene.sleep
+        assert grains
+        assert section
+        weight = system.coupled.weight if system.coupled else buoyant_weight(grains, 0.0, system.scene.gravity)
         size = np.hypot(weight[:, 0], weight[:, 1]).astype(float)
-        grains.sleep = Sleepers(grains, size, scene.sleep.share, scene.sleep.after)
+        grains.sleep = Sleepers(grains, size, section.share, section.after)
+        return cls(grains.sleep)
 
-
-def sleep_row(grains: Grains) -> dict[str, float]:
-    """Columns of the series, where grains may sleep."""
-    if grains.sleep is None:
-        return {}
-    return {
-        "grains asleep ()": float(grains.sleep.count),
-        "energy taken by sleep (J/m)": float(grains.sleep.removed.sum()),
-    }
+    def row(self) -> Row:
+        """Columns of the series."""
+        return {
+            "grains asleep ()": float(self.sleepers.count),
+            "energy taken by sleep (J/m)": float(self.sleepers.removed.sum()),
+        }

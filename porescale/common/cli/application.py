@@ -40,7 +40,7 @@ def application(package: Package) -> App:
 
 
 def _whole(kind: Any, tokens: Sequence[Token]) -> Any:
-    """What the words of an option say; ValueError for 1.5 where a whole number is asked, which would be rounded."""
+    """The value of an option's words; ValueError for 1.5 where a whole number is needed, which would be rounded."""
     if int in (kind, *get_args(kind)):
         for token in tokens:
             if "." in token.value:
@@ -52,7 +52,7 @@ def main(app: App, tokens: Sequence[str] | None = None) -> int:
     """Run a command line (``sys.argv`` if None) and give its exit code.
 
     0 done, 1 a check or run failed, 2 wrong use or input, 3 unstable, 130 interrupted.  What people can cause is
-    said in one line each on stderr; any other exception is a bug of ours and keeps its traceback.
+    printed in one line each on stderr; any other exception is a bug of ours and keeps its traceback.
     """
     try:
         result = app(list(sys.argv[1:] if tokens is None else tokens))

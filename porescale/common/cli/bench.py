@@ -1,4 +1,4 @@
-"""`bench [NAME…]`: rates."""
+"""`bench [NAME…]`: rates in updates per second."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Folders that a command is told to write: tried before anything is built."""
+"""Output folders of commands: tried before anything is built."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def require_writable(folder: Path, key: str) -> None:
 
 
 def unusable(folder: Path, key: str, error: OSError) -> InputError:
-    """What the system says about ``folder``, as a fault of the input."""
+    """The system's error on ``folder``, as a fault of the input."""
     problem = f"cannot be written ({error.strerror or error})"
     return InputError(Fault(key, _shortened(str(folder)), problem, repair="name another folder"))
 

@@ -28,7 +28,7 @@ def use_threads(count: int | None) -> int:
 
 
 def require_scene(path: Path) -> None:
-    """InputError unless ``path`` leads to a TOML file: said at once, before the sections of a scene and the compiler
+    """InputError unless ``path`` leads to a TOML file: raised at once, before the sections of a scene and the compiler
     that their rooms bring along are imported."""
     from porescale.common.schema import scene_file
 

@@ -27,15 +27,15 @@ class Outcome(Protocol):
 
     @property
     def outcome(self) -> str:
-        """ "finished", "already finished"."""
+        """How it ended: "finished" or "already finished"."""
 
     @property
     def step(self) -> int:
-        """Steps done."""
+        """Number of steps done."""
 
     @property
     def time(self) -> float:
-        """Time reached, s."""
+        """Simulated time reached, s."""
 
     @property
     def seconds(self) -> float:
@@ -43,7 +43,7 @@ class Outcome(Protocol):
 
     @property
     def snapshots(self) -> int:
-        """Snapshots on disk."""
+        """Number of snapshots on disk."""
 
     @property
     def steps_per_second(self) -> float:
@@ -51,7 +51,7 @@ class Outcome(Protocol):
 
 
 class Drive(Protocol):
-    """Takes a model through the time its scene asks for, keeping the record in a run folder."""
+    """Takes a model through the time of its scene, keeping the record in a run folder."""
 
     def __call__(
         self,

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 def pick(
     package: Package, scene: Path, error: str | None, budget: str | None, settings: Sequence[str], *, quiet: bool
 ) -> Choice:
-    """The point, said on stderr with what to expect; InputError on wrong options, no front, or nothing that fits."""
+    """The point, printed on stderr with expected cost and error; InputError on wrong
+    options, no front, or nothing that fits."""
     from porescale.common.schema.scene_file import find
     from porescale.common.schema.sections import open_scene
     from porescale.common.studies.front import begun, choose, read_front

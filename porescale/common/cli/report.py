@@ -1,4 +1,4 @@
-"""What `check` says about a scene: named values under headings, and warnings."""
+"""The report of `check` on a scene: named values under headings, and warnings."""
 
 from __future__ import annotations
 

@@ -80,7 +80,7 @@ def command(package: Package) -> Callable[..., int]:
 
 
 def card_of(package: Package, opened: Opened[Any]) -> dict[str, Any]:
-    """What a run card says of the request."""
+    """The entries of a run card that describe the request."""
     from porescale.common.schema.sections import scene_as_dict
 
     return {

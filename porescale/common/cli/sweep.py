@@ -141,7 +141,7 @@ def module_of(package: Package) -> str:
 
 
 def expected(scene: Path) -> list[dict[str, Any]]:
-    """The rows of expected.toml beside the scene file that say where to read a number, none where there is none.
+    """The rows of expected.toml beside the scene file that name a number to read, none where there is none.
 
     Raises InputError with what is wrong with any of them.
     """

@@ -1,4 +1,4 @@
-"""Faults: what a person can cause, said in one line each, and the exit code each kind of failure has."""
+"""Faults: what a person can cause, in one line each, and the exit code each kind of failure has."""
 
 from __future__ import annotations
 

@@ -64,7 +64,7 @@ class Forgiving(io.RawIOBase):
         return self._file.tell()
 
     def seekable(self) -> bool:
-        """It is."""
+        """True: a file can always seek."""
         return True
 
     def close(self) -> None:

@@ -29,7 +29,7 @@ __all__ = [
 
 Dtype = Literal["float32", "float64"]
 LARGEST = 10_000_000
-"""Size that may be asked for: of discs some 10 GiB, of cells along a side more than any machine holds."""
+"""Largest size that is accepted: of discs some 10 GiB, of cells along a side more than any machine holds."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Work:
     call : does it once;  updates : cells, discs, particles or image pairs that a call updates;
     unit : "cells/s" and so on;  size : as in the row;  bytes : what one update must move between memory and
     processor (0: not bound by memory);  variant : added to the row's name when a benchmark times several;  remark :
-    what else is to be said, found once.
+    a further line of text, made once.
     """
 
     call: Callable[[], object]
@@ -84,7 +84,7 @@ class Row:
     share_of_bandwidth: float | None
 
     def as_dict(self) -> dict[str, Any]:
-        """JSON-able."""
+        """The fields as JSON takes them."""
         return asdict(self)
 
 

@@ -3,7 +3,7 @@
 Rooms register what lasts; `study endurance` runs it, a million steps by default, and writes a table and a picture.
 Quantities are taken as they are at marks, equal numbers of steps apart; each has a largest distance from its value at
 the first mark that counts, and a reason for it.  The peak of the process's memory must not grow from there on, either,
-and nothing must be found wrong: that is asked as often as a run asks.
+and nothing must be found wrong: that is checked as often as in a run.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Held:
 
 @dataclass(frozen=True)
 class Endurance:
-    """What lasts.  start : makes it;  settles : marks before the first that counts;  share : of the steps asked for
+    """What lasts.  start : makes it;  settles : marks before the first that counts;  share : of the requested steps
     that it does, where they are dear."""
 
     name: str

@@ -1,8 +1,8 @@
-"""Extremes: what a simulator may be asked for, from mild to absurd, and how each ends, as a table and a picture.
+"""Extremes: a simulator tried from mild to absurd, and how each ends, as a table and a picture.
 
 Rooms register what they try; `study extremes` runs it.  A try is refused before the start (InputError), stopped with
 the place, the criterion and the reason (Unstable), or stable: it came to its end in sense.  Where a number is known it
-is judged as well, and right when that holds.  Any other end is a fault of ours and is not caught.
+is compared as well, and right when that holds.  Any other end is a fault of ours and is not caught.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ COLOURS = {
 
 @dataclass(frozen=True)
 class Verdict:
-    """What there is to say of a try whose result is known: text, and whether it is right."""
+    """The result of a try whose answer is known: text, and whether it is right."""
 
     said: str
     right: bool
@@ -37,7 +37,7 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Extreme:
-    """One try.  axis : what is varied;  value : how far, as text;  run : does it, returns what there is to say of it,
+    """One try.  axis : what is varied;  value : how far, as text;  run : does it, returns its result in words,
     raises InputError or Unstable."""
 
     axis: str
@@ -50,7 +50,7 @@ class Extreme:
         return f"{self.axis}.{self.value}"
 
     def tried(self) -> Row:
-        """Run it, and say how it ended."""
+        """Run it, and give how it ended."""
         start = time.perf_counter()
         try:
             came = self.run()
@@ -90,7 +90,7 @@ def write(folder: Path, command: str, rows: Sequence[Row]) -> None:
 
 
 def markdown(command: str, rows: Sequence[Row]) -> str:
-    """The table."""
+    """The table of all tries, one a row."""
     lines = [
         f"Written by `{command}`.  *Stable*: it came to its end in sense;  *right*: and a known number holds.",
         "",

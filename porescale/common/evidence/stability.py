@@ -38,8 +38,8 @@ class Axis:
 class Tried:
     """What a flow came to.
 
-    stable : never beyond sense;  error : distance from what is right, >= 0, as the flow defines it, None if it cannot
-    be said;  numbers : further ones worth keeping, by name.
+    stable : never beyond sense;  error : distance from what is right, >= 0, as the flow defines it, None if it is not
+    known;  numbers : further ones worth keeping, by name.
     """
 
     stable: bool
@@ -74,9 +74,9 @@ Measure = Callable[[str, float, float], Tried]
 class Flow:
     """A registered flow.
 
-    title : one line;  x, y : what is varied;  laws : names, given whether the short version is asked for;  right :
+    title : one line;  x, y : what is varied;  laws : names, given whether it is the short version;  right :
     largest error that counts as right;  because : what the error is and why that much;  judged : largest x at which an
-    error can be told;  monotone : once unstable at an x, so beyond it: the limit is found by halving;  limit : the one
+    error is known;  monotone : once unstable at an x, so beyond it: the limit is found by halving;  limit : the one
     of the numbers that instability follows, "" if none.
     """
 
@@ -93,7 +93,7 @@ class Flow:
     limit: str = ""
 
     def count(self, quick: bool) -> int:
-        """Laws times values of y: the pieces of work that ``run`` is asked for."""
+        """Laws times values of y: the number of calls of ``run``."""
         return len(self.laws(quick)) * len(self.y.chosen(quick))
 
     def run(self, law: str, y: float, quick: bool) -> list[Row]:

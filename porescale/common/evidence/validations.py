@@ -119,7 +119,7 @@ class Validations(Register[Validation]):
         return [item for item in super().chosen(names) if slow or not item.slow or item.name in names]
 
     def run(self, names: Sequence[str] = (), *, slow: bool = False) -> list[Row]:
-        """Run those `chosen`."""
+        """Run the rows that `chosen` gives."""
         return [item.run() for item in self.chosen(names, slow=slow)]
 
 

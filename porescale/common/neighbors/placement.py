@@ -54,7 +54,7 @@ def place(
     Either ``radii`` (n,) m, or two of mean ``diameter`` (m), ``count`` and ``packing_fraction`` (disc area
     over box area, at most 0.80): the third follows.  Diameters are uniform in diameter (1 ± spread), with
     0 <= spread < 1.  A fraction that fixes the count is met as nearly as whole discs allow; ``Placement.fraction``
-    says what came out.  Equal discs (spread 0) crystallise above a fraction of about 0.7.
+    gives what was reached.  Equal discs (spread 0) crystallise above a fraction of about 0.7.
 
     Raises InputError for values out of range, or with the overlap left when the discs do not fit.
     """

@@ -13,7 +13,7 @@ SHIFT = 4
 """OpenCV coordinates in sixteenths of a pixel."""
 ONE = 1 << SHIFT
 SPECK = 4.0
-"""Arrows shorter than this many pixels say nothing."""
+"""Arrows shorter than this many pixels are left out."""
 
 
 class Canvas:
@@ -133,7 +133,7 @@ class Canvas:
             cv2.line(image, start, end, colour, width, cv2.LINE_AA, SHIFT)
 
     def _colours(self, cloud: Cloud) -> Array:
-        """(n, 3) uint8."""
+        """Colours of values, (n, 3) uint8."""
         name = self.look.colouring(cloud)
         painted = np.full((len(cloud.position), 3), rgb(GRAIN), np.uint8)
         if name and self.look.kinds:

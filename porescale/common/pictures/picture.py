@@ -139,7 +139,7 @@ def painter_of(run: Run, look: Look) -> Painter:
 
 
 def pictures(folder: Path | str, look: Look | None = None, **changes: Any) -> list[Path]:
-    """Write montage.png, final.png and, if the look asks for them, streamlines.png; returns their paths."""
+    """Write montage.png, final.png and, if the look has them, streamlines.png; returns their paths."""
     run = open_run(folder)
     painter = painter_of(run, replace(look or Look(), **changes))
     cells = painter.survey.look.cells
@@ -228,7 +228,7 @@ def _dress(axes: Axes, found: Survey, font: float, *, x_label: bool = True, y_la
 
 
 def _bar(figure: Figure, scale: Scale, where: tuple[tuple[int, int], float, float, float, float], font: float) -> None:
-    """A colour bar at pixels; arrows at its ends say that values beyond have the last colour."""
+    """A colour bar at pixels; arrows at its ends: values beyond have the last colour."""
     axes = _place(figure, *where)
     norm = Normalize(scale.low * scale.factor, scale.high * scale.factor)
     extend = "max" if scale.low == 0 else "both"

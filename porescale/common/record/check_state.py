@@ -1,7 +1,7 @@
-"""Whether a checkpoint can be gone on with, judged before a model is built for it, and before one takes it up.
+"""Whether a checkpoint can be gone on with, checked before a model is built for it, and before one takes it up.
 
 Checksums say that a file holds what was written, not that this makes sense.  What a model takes up goes through
-kernels, which do not look whether an index is one: a state is therefore judged by itself first, then beside the state
+kernels, which do not look whether an index is one: a state is therefore checked by itself first, then beside the state
 of the model that is to take it up.
 """
 

@@ -1,4 +1,4 @@
-"""Drive a model through time and keep its record.  The loop knows steps, events and files, no physics."""
+"""Drive a model through time and keep its record.  The loop handles steps, events and files, no physics."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def check_resume(
 ) -> None:
     """InputError where the run in ``folder`` cannot be gone on with, of which ``card`` asks for (as of `drive`).
 
-    What can be said without a model, which may take long to build: whether it is this scene's, and whether its
+    What can be checked without a model, which may take long to build: whether it is this scene's, and whether its
     checkpoint is one and makes sense.  Nothing where there is no checkpoint yet.
     """
     if (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists():
@@ -232,7 +232,7 @@ def _after_block(run: _Run, record: Record) -> None:
 
 
 def _record_due(run: _Run, record: Record) -> bool:
-    """Row and snapshot where their schedules say so; returns whether there was a snapshot."""
+    """Row and snapshot where their schedules have an event; returns whether there was a snapshot."""
     model = run.model
     row = run.schedules["series"].due(model.step, model.time)
     snapshot = run.schedules["snapshots"].due(model.step, model.time)

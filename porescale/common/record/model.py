@@ -33,7 +33,7 @@ class Grid:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """(ny, nx)."""
+        """Rows and columns: (ny, nx)."""
         ny, nx = next(iter(self.cells.values())).shape[:2]
         return int(ny), int(nx)
 
@@ -97,16 +97,21 @@ class Model(Protocol):
     False): it is then advanced one step at a time, ``time`` is the authority, and events are recorded at
     the first step at or after their time.
 
-    A model that measures more than its series says has a method ``tables()`` that gives a row for each further
+    A model that measures more than its series holds has a method ``tables()`` that gives a row for each further
     file: {"loads": {"time (s)": …, …}} goes to loads.csv, at the same times as the series and cut back like it.
     """
 
-    step: int
-    """Steps done."""
-    time: float
-    """Time reached, s."""
-    step_seconds: float
-    """Length of a step, s (of the next one, if it varies)."""
+    @property
+    def step(self) -> int:
+        """Steps done."""
+
+    @property
+    def time(self) -> float:
+        """Time reached, s."""
+
+    @property
+    def step_seconds(self) -> float:
+        """Length of a step, s (of the next one, if it varies)."""
 
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps.  May raise Unstable."""

@@ -19,7 +19,7 @@ from porescale.common.record.vtkhdf import Frame
 
 
 class Run:
-    """What a run recorded.  Snapshots are read when asked for, one at a time."""
+    """What a run recorded.  Snapshots are read one at a time, on access."""
 
     def __init__(self, folder: Path, card: dict[str, Any], frames: dict[int, dict[str, Frame]]) -> None:
         self.folder, self.card = folder, card
@@ -41,12 +41,12 @@ class Run:
 
     @property
     def times(self) -> Array:
-        """(snapshots,) s."""
+        """Times of the snapshots, (snapshots,) s."""
         return np.array([next(iter(entry.values())).time for _, entry in self._frames])
 
     @property
     def steps(self) -> Array:
-        """(snapshots,) steps done."""
+        """Steps done at the snapshots, (snapshots,)."""
         return np.array([step for step, _ in self._frames], np.int64)
 
     @property

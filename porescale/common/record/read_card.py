@@ -12,13 +12,13 @@ from porescale.common.core.errors import Fault, InputError
 NAME = "card.json"
 """Every run folder has one from its first moment on."""
 FORMAT = 1
-"""Of run folders.  Cards that do not say theirs have this one."""
+"""Format of run folders; cards that do not state theirs have this one."""
 
 
 def read_card(folder: Path, package: object = None) -> dict[str, Any]:
     """The card of the run in ``folder``: a table with the scene as a table in it.
 
-    package : whose run it must be, where that matters and the card says it.  InputError, naming the folder, when
+    package : whose run it must be, where that matters and the card holds it.  InputError, naming the folder, when
     there is no card, when it is damaged or none of ours, and when it is another package's.
     """
     folder = Path(folder)

@@ -168,7 +168,7 @@ class Record:
             self.scheduled_snapshot_step = model.step
 
     def save(self, model: Model, schedules: dict[str, Schedule]) -> None:
-        """Write the checkpoint."""
+        """Write the checkpoint, whole or not at all."""
         self.require_present()
         start = clock.perf_counter()
         for series in (self.series, *self.tables.values()):
@@ -202,7 +202,7 @@ class Record:
         return f"last good state: {self.folder / CHECKPOINT} ({where})"
 
     def close(self, model: Model, outcome: str, problem: str = "") -> None:
-        """Join the parts and say in the card how the run ended."""
+        """Join the parts and write into the card how the run ended."""
         self.close_series()
         self.require_present()
         snapshots.assemble(self.folder)
@@ -224,7 +224,7 @@ class Record:
 def check_changes(folder: Path, given: dict[str, Any], free: Collection[str], today: Today | None = None) -> None:
     """InputError naming every scene key that must not differ from the run in ``folder``; or whose run that is.
 
-    Of keys that came after that run it is said what goes on as it did, which ``today`` knows.
+    Keys that came after that run are filled in by ``today`` with values that continue it unchanged.
     """
     old, new = cards.read_card(folder, given.get("package"))["scene"], cards.plain(given).get("scene")
     whole: Any = old
@@ -243,7 +243,7 @@ def check_changes(folder: Path, given: dict[str, Any], free: Collection[str], to
 
 
 def _identity(folder: Path) -> tuple[int, int] | None:
-    """What the system knows ``folder`` by, whatever its name; None where there is none."""
+    """The system's identity of ``folder``, whatever its name; None where there is none."""
     try:
         found = folder.stat()
     except (FileNotFoundError, NotADirectoryError):

@@ -1,4 +1,4 @@
-"""Going on from a checkpoint: all that it holds is judged before anything of the run is touched.
+"""Going on from a checkpoint: all that it holds is checked before anything of the run is touched.
 
 A checkpoint may be cut, spoilt, of another scene, another program or a later version, or a file that is none: each is
 an InputError of one line, and the run folder stays as it is.
@@ -34,7 +34,7 @@ class Reached:
 
 @dataclass(frozen=True)
 class Saved:
-    """What a checkpoint knows of the run's files.
+    """What a checkpoint holds of the run's files.
 
     series_bytes, table_bytes : length of the scheduled rows;  row_step, snapshot_step : of the last scheduled ones;
     last_snapshot_step : of the last one, which may be there only because the run ended.

@@ -27,7 +27,7 @@ class Schedule:
         self.done = -1
 
     def due(self, step: int, time: float) -> bool:
-        """Whether an event falls on this step.  With a varying step: asks once for each step."""
+        """Whether an event falls on this step.  With a varying step: call it once for each step."""
         if math.isinf(self.interval):
             return step == 0
         if self.ratio is None:

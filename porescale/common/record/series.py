@@ -49,7 +49,7 @@ class Series:
         os.fsync(self._file.fileno())
 
     def close(self) -> None:
-        """Sync and close."""
+        """Sync to disk and close the file."""
         if not self._file.closed:
             self.sync()
             self._file.close()

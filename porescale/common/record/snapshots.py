@@ -26,7 +26,7 @@ DAMAGE = (OSError, KeyError, ValueError, RuntimeError, TypeError, AttributeError
 
 
 def damaged(folder: Path, error: BaseException) -> InputError:
-    """What to say of a snapshot file in ``folder`` that ``error`` came from."""
+    """The message for a snapshot file in ``folder`` that ``error`` came from."""
     reason = " ".join(str(error).split())[:120]
     repair = "run it again, or take the file from a backup"
     return InputError(Fault("run folder", str(folder), f"a snapshot file is damaged ({reason})", repair=repair))

@@ -18,12 +18,12 @@ def completing(
     """What completes the full scene on an older run's card with the keys that came after it, at what they were before.
 
     That is their default, or what ``formerly``, tables like those of a scene, says where the default does something
-    else.  Files that it names are looked for where the scene of ``card`` lies, which asks to go on with the run.  A
+    else.  Files that it names are looked for where the scene of ``card`` lies, with which the run is resumed.  A
     scene that is none today stays as it is.
     """
 
     def completed(scene: Mapping[str, Any]) -> Mapping[str, Any]:
-        """That scene."""
+        """The scene of a card with the keys that came later."""
         folder = Path(card["scene_file"]).parent if "scene_file" in card else None
         try:
             return scene_as_dict(validate(scene_type, scene_file.merge(formerly, scene), folder=folder))

@@ -1,4 +1,4 @@
-"""A field of a section that measures something: its unit, its range, and what to say when it is wrong."""
+"""A field of a section that measures something: its unit, its range, and the error message when it is wrong."""
 
 from __future__ import annotations
 

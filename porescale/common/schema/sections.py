@@ -1,4 +1,4 @@
-"""Scenes are data: typed sections, read from TOML with every fault of a file said at once."""
+"""Scenes are data: typed sections, read from TOML with every fault of a file reported at once."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class Section(BaseModel):
 
 
 def _is_plain_number(field: FieldInfo) -> bool:
-    """Whether a field holds a number, not a boolean, and is no quantity (which looks after itself)."""
+    """Whether a field holds a number, not a boolean, and is no quantity (which checks itself)."""
     kinds = (field.annotation, *get_args(field.annotation))
     marked = any(isinstance(mark, Quantity) for mark in field.metadata)
     return (int in kinds or float in kinds) and bool not in kinds and not marked
@@ -128,7 +128,7 @@ def load(path: str | Path, scene_type: type[S], *, quality: str | None = None, o
 def open_scene(
     path: str | Path, scene_type: type[S], *, quality: str | None = None, overrides: Sequence[str] = ()
 ) -> Opened[S]:
-    """`load`, with what a command needs to know besides.  Later wins: scene, quality level, overrides."""
+    """`load`, with what a command needs besides.  Later wins: scene, quality level, overrides."""
     file = scene_file.find(Path(path))
     table = scene_file.read(file)
     _refuse_another(scene_type, table, file)

@@ -29,7 +29,7 @@ from porescale.common.studies.trade import rms
 from porescale.common.studies.trade_plan import Quantity
 
 WITHIN = 0.3
-"""Share of the time said by which a run may be off."""
+"""Share of the expected time by which a run may be off."""
 SCATTERS = 3.0
 """Standard deviations: one run in 370 lies beyond."""
 ALIKE = 0.01
@@ -52,7 +52,7 @@ class Promise:
 
     @property
     def on_time(self) -> bool:
-        """Whether the run took within 30 % of what was said."""
+        """Whether the run took within 30 % of the expected time."""
         return abs(self.took / self.expected - 1.0) <= WITHIN
 
     @property
@@ -61,7 +61,7 @@ class Promise:
         return self.found is None or self.found <= self.said + max(SCATTERS * self.scatter, ALIKE * self.said)
 
     def line(self) -> str:
-        """What was said and what came of it."""
+        """Expected and measured time and error."""
         time = "kept" if self.on_time else "not kept"
         good = "not known" if self.found is None else f"{percent(self.found)}, {'kept' if self.as_good else 'not kept'}"
         return (
@@ -89,7 +89,7 @@ def repeat(package: Package, scene: Path, which: int = 1) -> Promise:
 
 
 def compare(choice: Choice, took: float, card: Mapping[str, Any], said: float, found: float | None) -> Promise:
-    """A choice of a front beside its run: seconds, card, and the error said and found in what can be compared."""
+    """A choice of a front beside its run: seconds, card, and the error expected and found in what can be compared."""
     core_took = float(card["core_seconds"])
     return Promise(
         choice.point.label, choice.seconds, took, choice.core_seconds, core_took, said, choice.point.scatter, found
@@ -102,7 +102,7 @@ def settings(point: FrontPoint) -> tuple[str, ...]:
 
 
 def error_of(package: Package, front: Front, point: FrontPoint, folder: Path) -> tuple[float, float | None]:
-    """Error that the front says and rms distance of a run from the answers of its first reference, over the quantities
+    """Error of the front and rms distance of a run from the answers of its first reference, over the quantities
     whose answers it keeps: numbers, not curves and fields.  The error in all quantities and None where there are none.
     """
     table = json.loads(front.file.read_text(encoding="utf-8"))

@@ -24,15 +24,15 @@ Columns = Mapping[str, NDArray[Any]]
 
 TIME = "time (s)"
 WHERE = ("end", "max", "min")
-"""Words that say where to read."""
+"""Words for the place where a number is read."""
 SHARES = ("fall", "peak")
 """What a column may be a share of."""
 
 
 def measured(columns: Columns, row: Mapping[str, Any]) -> float:
-    """The number that ``row`` speaks of; nan beyond the end of the run, infinity where it never falls so low.
+    """The number that ``row`` describes; nan beyond the end of the run, infinity where it never falls so low.
 
-    Whole steps end a little off the time that was asked for: the last row stands for less than half a row more.
+    Whole steps end a little off the prescribed time: the last row stands for less than half a row more.
 
     Raises KeyError where the table has no such column, ValueError where ``at`` is none of the above.
     """

@@ -110,7 +110,7 @@ class Campaign:
     def all(self, points: Sequence[Point], jobs: int, say: Callable[[str], object]) -> Iterator[Ended]:
         """Every point, as it ends, ``jobs`` at a time; what was done earlier comes first.
 
-        ``say`` is told how many are done and how long the rest will take.  Ctrl-C and SIGTERM are handed on to what
+        ``say`` gets how many are done and how long the rest will take.  Ctrl-C and SIGTERM are handed on to what
         runs, which then saves its state, and raise KeyboardInterrupt.
         """
         earlier = [self.before(point) for point in points]

@@ -26,7 +26,7 @@ def keys_of(ends: Sequence[Ended]) -> list[str]:
 
 
 def number(ended: Ended, row: Mapping[str, Any], tables: Tables) -> float:
-    """What ``row`` asks of a finished point; nan where it has no such table or column."""
+    """The number that ``row`` describes, of a finished point; nan where it has no such table or column."""
     try:
         return measured(tables(ended.folder, str(row.get("file", "series"))), row)
     except (KeyError, IndexError, ValueError):
@@ -79,7 +79,7 @@ def _short(value: Any) -> str:
 
 
 def picture(ends: Sequence[Ended], rows: Sequence[Mapping[str, Any]], tables: Tables) -> bytes:
-    """The columns that the rows speak of over time, a panel each, a curve for each finished point, as a PNG."""
+    """The columns that the rows name, over time, a panel each, a curve for each finished point, as a PNG."""
     columns = list(dict.fromkeys((str(row.get("file", "series")), str(row["column"])) for row in rows))[:12]
     across = min(3, max(1, len(columns)))
     down = max(1, -(-len(columns) // across))

@@ -69,7 +69,7 @@ class Errors:
     _kept: dict[tuple[Path, str], Answer] = field(default_factory=dict)
 
     def answer(self, ended: Ended, asked: Quantity) -> Answer:
-        """What a run says to a quantity; KeyError where it has no such column or feature."""
+        """The value of a quantity in a run; KeyError where it has no such column or feature."""
         key = (ended.folder, asked.name)
         if key not in self._kept:
             self._kept[key] = self._answer(ended, asked)
@@ -95,7 +95,7 @@ class Errors:
         return distance(values, truth, asked.scale)
 
     def answers(self) -> list[dict[str, list[float]]]:
-        """What the references say to each quantity that is a number, so that a run can be held against them later."""
+        """Values in the references of each quantity that is a number, so that a run can be held against them later."""
         numbers = [asked for asked in self.plan.quantity if not (asked.is_curve or asked.feature)]
         return [
             {asked.name: self.answer(ended, asked)[1].tolist() for asked in numbers if asked.exact is None}
@@ -144,14 +144,14 @@ def rms(values: Any) -> float:
 
 
 def costs(ends: Sequence[Ended]) -> tuple[float, float, float, int, float, float, float]:
-    """Core-seconds, seconds, bytes, steps, simulated time, core-seconds besides, pace: means over runs that say them;
-    seconds stand in for core-seconds, all steps for the first ones.  Where some say their pace, costs are those of
+    """Core-seconds, seconds, bytes, steps, simulated time, core-seconds besides, pace: means over runs that have them;
+    seconds stand in for core-seconds, all steps for the first ones.  Where some have their pace, costs are those of
     these runs: a pace goes with the core-seconds of its own run, since machines have better and worse hours.
     """
     ends = [ended for ended in ends if ended.card.get("core_pace")] or ends
 
     def mean(key: str) -> float:
-        """Over the runs that say it, 0 where none does."""
+        """Mean over the runs that have it, 0 where none has."""
         known = [float(ended.card[key]) for ended in ends if ended.card.get(key)]
         return sum(known) / len(known) if known else 0.0
 

@@ -1,4 +1,4 @@
-"""What a trade study asks: trade.toml beside a scene.
+"""What a trade study measures and varies: trade.toml beside a scene.
 
 draft = 0.1                         # error of a draft at most; as far as repeats of the reference are apart if absent
 
@@ -68,7 +68,7 @@ class Variant(Settings):
 
 
 class Knob(Section):
-    """What is varied."""
+    """One thing that the study varies."""
 
     name: str = pydantic.Field(min_length=1)
     point: tuple[Variant, ...] = pydantic.Field(min_length=1)
@@ -113,7 +113,7 @@ class Quantity(Section):
 
 
 class Plan(Section):
-    """A trade study."""
+    """Everything that trade.toml holds."""
 
     draft: float | None = quantity("", None, gt=0, help="error of a draft at most")
     base: Settings = pydantic.Field(default_factory=Settings, description="what lies under every point")
