@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from porescale.build.initial.contact_laws import density_of, laws
+from porescale.build.initial.contact_laws import MaterialPlan
 from porescale.build.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema.sections import scene_as_dict, validate
@@ -42,7 +42,7 @@ def pressure_of(scene: Scene) -> float:
     if packing.pressure is not None:
         return packing.pressure
     lighter = scene.fluid.density if scene.fluid else 0.0
-    weight = (density_of(scene, packing.material) - lighter) * abs(scene.gravity[1])
+    weight = (MaterialPlan.of(scene).density(packing.material) - lighter) * abs(scene.gravity[1])
     return 0.5 * packing.packing_fraction * weight * packing.height
 
 
@@ -61,7 +61,7 @@ def packing_of(scene: Scene) -> Packing:
 def mean_mass(scene: Scene) -> float:
     """Mass (kg/m) of a grain of the packing's mean diameter."""
     packing = packing_of(scene)
-    return math.pi / 4.0 * packing.diameter**2 * density_of(scene, packing.material)
+    return math.pi / 4.0 * packing.diameter**2 * MaterialPlan.of(scene).density(packing.material)
 
 
 def judge(scene: Scene) -> None:
@@ -90,7 +90,7 @@ def judge(scene: Scene) -> None:
 
 def stiffness_over_pressure(scene: Scene) -> float:
     """Contact stiffness k (N/m a metre) over the pressure: E follows it, angles do not where it is large."""
-    law = laws(scene, mean_mass(scene))[0]
+    law = MaterialPlan.of(scene).law_and_others(packing_of(scene).material, mean_mass(scene))[0]
     assert isinstance(law, Linear)  # as judged
     return law.stiffness / pressure_of(scene)
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from porescale.common.evidence.endurance import Endurance, Endurances, Held
-from porescale.coupling.divergence_check import Sense
+from porescale.coupling.divergence_check import DivergenceCheck
 from porescale.coupling.step import Coupled
 from porescale.validation.coupling.setups import handful, immersed
 from porescale.validation.coupling.sleep import let_sleep
@@ -40,7 +40,7 @@ class Watched:
         discs = coupled.grains.discs
         self._size = float(np.sum(discs.mass[:, None] * np.abs(discs.velocity)))
         self._cells = coupled.fluid.nx * coupled.fluid.ny
-        self._sense = Sense(
+        self._sense = DivergenceCheck(
             coupled.fluid, coupled.scales, coupled, operator="trt", eddies=False, solid_operator="exact-wall"
         )
 

@@ -18,9 +18,10 @@ from porescale.benchmarks.minimal_lbm import PlainWater, plain_cells, slots_of
 from porescale.common.compiled.jit import inline, kernel, part, sum_by_halves
 from porescale.coupling.coverage.discs import SCRATCH, cover_disc
 from porescale.coupling.coverage.rows import BLOCK, whole_blocks
+from porescale.coupling.immersed import FOLLOWING
 from porescale.coupling.psm import LOW_PASS
 from porescale.coupling.solid.exact_wall import ONSET, SMOOTHING
-from porescale.coupling.step import FOLLOWING, Coupled
+from porescale.coupling.step import Coupled
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -225,7 +226,7 @@ def wet_rows(f, parity, even, odd, covered, sums, spare, partial, load):
 def answer(load, slow, turned, velocity, spin, weight, inner, inner_mass, units, step, force, turning):
     """What discs are given: force (n, 2) N/m with ``weight``, turning (n,) N m/m, the fluid inside given back.
 
-    As half_step_correction of load.py and total_load of step.py.  Overwrites slow, turned, inner (n, 3): the load
+    As half_step_correction of load.py and total_load of immersed.py.  Overwrites slow, turned, inner (n, 3): the load
     low-passed, the correction, and the motion of the fluid inside, of inner_mass (n, 2) kg/m, kg m²/m;  units (4,)
     N/m, N m/m, kg/m, kg m²/m.
     """
@@ -255,7 +256,7 @@ class PlainWet:
 
     def __init__(self, coupled: Coupled) -> None:
         fluid, wet, scales, grains = coupled.fluid, coupled.saturated, coupled.scales, coupled.grains
-        assert np.all(coupled.uptake == 1.0)
+        assert np.all(coupled.response_share == 1.0)
         assert coupled.lubrication is None
         assert not any((fluid.step % 2, *fluid.force, len(grains.held), grains.steered, len(wet.pairs)))
         self._scales, self._contact_steps = scales, coupled.contact_steps

@@ -66,7 +66,7 @@ def displaced(grains: Grains, radius: Array, density: float) -> Displaced:
     return Displaced(mass, inertia, thinness)
 
 
-def whole(grains: Grains, mass: Array, inertia: Array) -> tuple[Array, Array]:
+def of_whole_bodies(grains: Grains, mass: Array, inertia: Array) -> tuple[Array, Array]:
     """Mass and moment of inertia about its centroid of the body of each disc, (n,), from shares of discs."""
     clumps = clumps_of(grains)
     if clumps is None:

@@ -1,4 +1,4 @@
-"""Whether a fluid, alone or with grains, still makes sense, and if not: where, since when, and why, in words."""
+"""Whether a fluid, alone or with grains, has diverged, and if so: where, since when, and why, in words."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Unstable
-from porescale.coupling.coverage.interpenetration import refuse_crossing
+from porescale.coupling.coverage.interpenetration import require_apart
 from porescale.coupling.displaced import displaced
 from porescale.coupling.divergence_cause import Circumstances, likely_cause
 from porescale.coupling.step import Coupled
@@ -22,8 +22,8 @@ from porescale.lbm.scales import Scales
 Array = NDArray[np.floating]
 
 
-class Sense:
-    """Watches a fluid, and the grains in it.  Remembers how it stood at the last look, for the cause.
+class DivergenceCheck:
+    """Checks a fluid, and the grains in it.  Keeps how it stood at the last check, for the cause.
 
     operator, eddies, solid_operator, weighting : names of the laws, for the cause; None: the weight that fits.
     """
@@ -35,7 +35,7 @@ class Sense:
         self.fluid, self.scales, self.coupled = fluid, scales, coupled
         ratio, cells = _lightest(coupled) if coupled else (None, 0.0)
         self.last = Circumstances(
-            operator, eddies, fluid.relaxation_time, self._told(), 0.0, solid_operator,
+            operator, eddies, fluid.relaxation_time, self._prescribed_speed(), 0.0, solid_operator,
             fitting_weight(solid_operator, weighting), ratio, cells,
             lid=any(fluid.sides.speed(name) for name in NAMES),
         )  # fmt: skip
@@ -60,11 +60,11 @@ class Sense:
                 cause = likely_cause(self._before(speed))
                 raise Unstable(where, name, float(values[y, x]) * factor, unit, step, time, cause)
         if self.coupled and self.coupled.polygons:
-            refuse_crossing(self.coupled.polygons, self.coupled.grains, step, time)
-        fastest = max(float(speed.max()), self._told())
+            require_apart(self.coupled.polygons, self.coupled.grains, step, time)
+        fastest = max(float(speed.max()), self._prescribed_speed())
         self.last = replace(self.last, speed=fastest, density_change=float(change.max()))
 
-    def _told(self) -> float:
+    def _prescribed_speed(self) -> float:
         """The fastest of grains and sides, cells per step; what is no number does not count."""
         speed = _sides_speed(self.fluid.sides)
         if self.coupled and self.coupled.grains.discs.count:

@@ -2,14 +2,12 @@
 
 A polygon is a frame (dem/bodies/frames.py), a rigid body whose corners are rows among the discs.  The fluid sees its
 outline, without the thickness of its segments: bodies that touch keep a film of both thicknesses between them.  Load,
-fluid inside and layer around are those of the body (step.py), and so is the equation of motion; what moves it is
+fluid inside and layer around are those of the body (immersed.py), and so is the equation of motion; what moves it is
 handed to its corners in shares like those of its mass, which add up to the force and the torque about the centroid
 however the body turns in the contact steps.
 """
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,22 +15,22 @@ from numpy.typing import NDArray
 from porescale.common.compiled.jit import kernel
 from porescale.common.core.errors import Fault, InputError
 from porescale.coupling.coverage.polygon import Polygons
+from porescale.coupling.immersed import LAYER, Immersed
 from porescale.dem.bodies.clumps import Clumps
 from porescale.dem.bodies.frames import Frame, polygon_moments
 from porescale.dem.bodies.rigid import clumps_of
 from porescale.dem.grains import Grains
+from porescale.lbm.scales import Scales
 
 Array = NDArray[np.float64]
 
 OFF_CENTRE = 1e-9
 """Of a polygon's size: how far its centre of mass may lie from the middle of its area."""
-KEPT = ("inner_velocity", "inner_spin", "inner_momentum", "force", "fluid_force", "torque", "fluid_torque")
-"""What goes on from step to step."""
 
 
 @kernel
-def share_out(first, start, member, mass, body_mass, force, torque, disc_force, disc_torque):
-    """Hand the force (m, 2) and torque (m,) on polygons to their corners, in proportion to their mass.
+def distribute_load(first, start, member, mass, body_mass, force, torque, disc_force, disc_torque):
+    """Distribute the force (m, 2) and torque (m,) on polygons over their corners, in proportion to their mass.
 
     Polygon n is clump first + n with the discs member[start[first + n]] to member[start[first + n + 1] - 1];
     mass (discs,), body_mass (clumps,) kg/m.  Overwrites these rows of disc_force (discs, 2) and disc_torque (discs,).
@@ -87,38 +85,29 @@ def _outline_moments(corners: Array) -> tuple[float, float]:
     return float(length.sum()), float(length @ np.sum(corners**2 + corners * ahead + ahead**2, axis=1)) / 3.0
 
 
-class ImmersedPolygons:
-    """The polygons of ``grains``, in the order of the frames.
+class ImmersedPolygons(Immersed):
+    """The polygons of ``grains``, in the order of the frames, and their equation of motion.
 
-    polygons : of the lattice, in cells of ``spacing`` m;  outlines : corners of each, (k, 2) m about its centroid, at
-    angle 0;  weight (m, 2) N/m, less buoyancy;  inner_mass, inner_inertia
-    (m,): of fluid of ``density`` (kg/m³) within;  uptake (m, 2): see step.py;  inner_velocity, inner_spin,
-    inner_momentum: of the fluid inside;  fluid_force (m, 2) N/m, fluid_torque (m,) N m/m;  force, torque: as the
-    contact steps hold them, with the weight.
+    polygons : of the lattice, in cells;  outlines : corners of each, (k, 2) m about its centroid, at angle 0.
     Raises InputError at a frame that is no convex polygon, or whose centre of mass is off.
     """
 
-    def __init__(
-        self, grains: Grains, spacing: float, density: float, acceleration: tuple[float, float], layer: float
-    ) -> None:
-        """layer: m, that answers within a step, see step.py."""
+    def __init__(self, grains: Grains, scales: Scales, acceleration: tuple[float, float]) -> None:
         clumps = clumps_of(grains)
         assert clumps is not None
         self._grains = grains
         self.first, corners = outlines(grains)
         self.outlines = corners
-        self.polygons = Polygons([each / spacing for each in corners])
-        m = len(corners)
+        self.polygons = Polygons([each / scales.spacing for each in corners])
         moments = np.array([[area, second] for area, _, second in map(polygon_moments, corners)])
-        self.inner_mass, self.inner_inertia = density * moments[:, 0], density * moments[:, 1]
+        inner_mass, inner_inertia = scales.density * moments[:, 0], scales.density * moments[:, 1]
         mass, inertia = clumps.mass[self.first :], clumps.inertia[self.first :]
-        self.weight = (mass - self.inner_mass)[:, None] * np.asarray(acceleration, float)
-        around = density * layer * np.array([_outline_moments(each) for each in corners])
-        self.uptake = np.minimum(1.0, np.column_stack((mass, inertia)) / around)
-        self.inner_velocity, self.inner_spin = clumps.velocity[self.first :].copy(), clumps.spin[self.first :].copy()
-        self.inner_momentum = self.inner_mass[:, None] * self.inner_velocity
-        self.force, self.fluid_force = np.zeros((m, 2)), np.zeros((m, 2))
-        self.torque, self.fluid_torque = np.zeros(m), np.zeros(m)
+        weight = (mass - inner_mass)[:, None] * np.asarray(acceleration, float)
+        around = scales.density * (LAYER * scales.spacing) * np.array([_outline_moments(each) for each in corners])
+        share = np.minimum(1.0, np.column_stack((mass, inertia)) / around)
+        super().__init__(
+            inner_mass, inner_inertia, clumps.velocity[self.first :], clumps.spin[self.first :], weight, share
+        )
 
     @property
     def _clumps(self) -> Clumps:
@@ -144,24 +133,15 @@ class ImmersedPolygons:
         """(m,) rad/s, half a step back."""
         return self._clumps.spin[self.first :]
 
-    def hand_on(self, force: Array, torque: Array, fluid_force: Array, fluid_torque: Array) -> None:
+    def distribute(self, force: Array, torque: Array, fluid_force: Array, fluid_torque: Array) -> None:
         """Overwrite the corners' rows of these arrays (discs, 2), (discs,) with shares of the polygons' own."""
         clumps, mass = self._clumps, self._grains.discs.mass
         for own, turning, rows, turns in (
             (self.force, self.torque, force, torque),
             (self.fluid_force, self.fluid_torque, fluid_force, fluid_torque),
         ):
-            share_out(self.first, clumps.start, clumps.member, mass, clumps.mass, own, turning, rows, turns)
+            distribute_load(self.first, clumps.start, clumps.member, mass, clumps.mass, own, turning, rows, turns)
 
     def momentum(self, step: float) -> Array:
-        """What polygons add to the book of step.py beside their own: virtual masses, less the fluid inside, (2,)."""
-        return np.asarray((1 / self.uptake[:, 0] - 1) @ self.force * step - self.inner_momentum.sum(axis=0))
-
-    def state(self) -> dict[str, Any]:
-        """What the next step takes from those before."""
-        return {name: getattr(self, name) for name in KEPT}
-
-    def restore(self, state: dict[str, Any]) -> None:
-        """Take up a state of the same polygons."""
-        for name in KEPT:
-            getattr(self, name)[...] = state[name]
+        """What polygons add to the conserved momentum beside their own: virtual masses, less the fluid inside, (2,)."""
+        return np.asarray(self.virtual_momentum(step) - self.inner_momentum.sum(axis=0))

@@ -128,7 +128,7 @@ def add_rows(corner, height, ny, periodic_y, row_load, load, inside):
 
 
 @kernel
-def add_rims(corner, height, ny, periodic_y, row_load, rim):
+def sum_rim_slip(corner, height, ny, periodic_y, row_load, rim):
     """Sum of the rows of the first bodies where rims are soft; overwrites rim (n, 2), see ``accumulate_load_row``."""
     for n in range(rim.shape[0]):
         rim[n, 0] = 0.0

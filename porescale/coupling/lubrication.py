@@ -18,6 +18,7 @@ The gap is that between the radii the fluid sees, or else that between the mecha
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,17 +31,26 @@ from porescale.dem.grains import Grains
 Array = NDArray[np.float64]
 
 CELLS = 1.0
-"""Gap in cells below which the correction acts, unless told otherwise."""
+"""Gap in cells below which the correction acts, unless another is given."""
 FILM = 3 * math.sqrt(2) * math.pi
 """Force over mu V_n (R*/g)^(3/2)."""
 
 
+class FilmLaw(NamedTuple):
+    """viscosity : dynamic, Pa s;  cut : g_c, m, the gap from which the lattice does it;  dt : contact step, s."""
+
+    viscosity: float
+    cut: float
+    dt: float
+
+
 @inline
-def film(gap, radius, viscosity, cut, mass, dt):
+def film(gap, radius, mass, law):
     """Force over closing speed, N s/m², of a film ``gap`` thick (m) between surfaces of reduced ``radius`` (m).
 
-    viscosity Pa s;  cut m: the gap from which the lattice does it;  mass kg/m: of the lighter;  dt s.
+    mass kg/m: of the lighter;  law: ``FilmLaw``.
     """
+    viscosity, cut, dt = law
     if not 0.0 < gap < cut:
         return 0.0
     thinnest = radius * (3.0 * FILM * viscosity * dt / mass) ** (2.0 / 3.0)
@@ -49,15 +59,15 @@ def film(gap, radius, viscosity, cut, mass, dt):
 
 
 @kernel
-def add_films(
-    position, velocity, radius, mass, start, partner, period_x, period_y, walls, viscosity, cut, dt, force
-):  # fmt: skip
+def add_films(position, velocity, radius, mass, start, partner, period, walls, law, force):
     """Add the forces of all films to force (n, 2) N/m.
 
     position, velocity (n, 2) m, m/s;  radius (n,) m: those between which the gap lies;  mass (n,) kg/m;
-    start (n + 1,), partner: half list in CSR of all pairs with a gap below ``cut`` (m);  period m, 0: none;
-    walls (w, 4): a point and the normal into the domain;  viscosity Pa s;  dt s.  Not checked: that centres differ.
+    start (n + 1,), partner: half list in CSR of all pairs with a gap below ``cut`` (m);  period (2,) m, 0: none;
+    walls (w, 4): a point and the normal into the domain;  law: ``FilmLaw``.  Not checked: that centres differ.
     """
+    period_x, period_y = period
+    cut = law.cut
     for i in range(radius.shape[0]):
         for k in range(start[i], start[i + 1]):
             j = partner[k]
@@ -70,7 +80,7 @@ def add_films(
                 nx, ny = dx / distance, dy / distance
                 closing = (velocity[i, 0] - velocity[j, 0]) * nx + (velocity[i, 1] - velocity[j, 1]) * ny
                 lighter = min(mass[i], mass[j])
-                push = closing * film(distance - reach, radius[i] * radius[j] / reach, viscosity, cut, lighter, dt)
+                push = closing * film(distance - reach, radius[i] * radius[j] / reach, lighter, law)
                 force[i, 0] -= push * nx
                 force[i, 1] -= push * ny
                 force[j, 0] += push * nx
@@ -80,7 +90,7 @@ def add_films(
             gap = (position[i, 0] - walls[w, 0]) * nx + (position[i, 1] - walls[w, 1]) * ny - radius[i]
             if 0.0 < gap < cut:
                 leaving = velocity[i, 0] * nx + velocity[i, 1] * ny
-                push = -leaving * film(gap, radius[i], viscosity, cut, mass[i], dt)
+                push = -leaving * film(gap, radius[i], mass[i], law)
                 force[i, 0] += push * nx
                 force[i, 1] += push * ny
 
@@ -96,6 +106,7 @@ class Lubrication:
 
     def __init__(self, grains: Grains, radius: Array, *, viscosity: float, cut: float, dt: float) -> None:
         self.radius, self.viscosity, self.cut, self.dt = radius, viscosity, cut, dt
+        self._law = FilmLaw(viscosity, cut, dt)
         discs = grains.discs
         thinnest = self.thinnest(radius, discs.mass)  # at a wall, the largest R*
         worst = int(thinnest.argmax()) if discs.count else 0
@@ -104,7 +115,7 @@ class Lubrication:
                 Fault("lubrication", cut, f"the film of grain {worst} would be unstable", "m",
                       f"> {thinnest[worst]:.3g}", "take more contact steps, or leave it out")
             )  # fmt: skip
-        # The list knows mechanical radii: gaps between smaller ones are wider by what they lack.
+        # The list has mechanical radii: gaps between smaller ones are wider by what they lack.
         less = float((discs.radius - radius).min()) if discs.count else 0.0
         grains.list_up_to(max(0.0, cut - 2 * less))
         self.force, self._sum = np.zeros((discs.count, 2)), np.zeros((discs.count, 2))
@@ -123,8 +134,8 @@ class Lubrication:
             pairs = grains.current_pairs()
             self._total[:] = force
             add_films(
-                d.position, d.velocity, self.radius, d.mass, pairs.start, pairs.partner, *grains.box.period,
-                grains.walls, self.viscosity, self.cut, self.dt, self._total,
+                d.position, d.velocity, self.radius, d.mass, pairs.start, pairs.partner, grains.box.period,
+                grains.walls, self._law, self._total,
             )  # fmt: skip
             np.add(self._sum, self._total, out=self._sum)
             grains.step(self.dt, self._total, torque)

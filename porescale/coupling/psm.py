@@ -1,4 +1,14 @@
-"""The partially saturated cells of a lattice: what discs cover of it, and one fluid step with them in it."""
+"""Partially saturated cells (Noble & Torczynski 1998): one fluid step with bodies in the lattice.
+
+    e_n      area fraction of each cell that body n covers, exactly       coverage/
+    v        velocity of the solid in a cell, sum e_n v_n/sum e_n         coverage/rows.py, psm_kernels.py
+    B        weight of the cell, from e and tau                           weighting/
+    f_i*     collided populations, of fluid and solid operator            lbm/collision/, solid/
+    F_n,T_n  sum over cells of the momentum that the solid gains          load.py
+    v_n      corrected by half a step where cells are full                load.py, ``half_step_correction``
+
+``Saturated.advance`` is that step.
+"""
 
 import math
 from collections.abc import Sequence
@@ -10,15 +20,15 @@ from numpy.typing import NDArray
 from porescale.common.compiled.jit import most_threads
 from porescale.coupling.coverage.bodies import Bodies
 from porescale.coupling.coverage.discs import CHUNKS, SCRATCH, cover
-from porescale.coupling.coverage.overlap import take_off
+from porescale.coupling.coverage.overlap import subtract_overlap
 from porescale.coupling.coverage.polygon import Polygons
 from porescale.coupling.coverage.rectangle import Rectangle
 from porescale.coupling.coverage.ring import Ring
 from porescale.coupling.coverage.rows import BLOCK, Motion, list_rows, make_patches, make_rows, rasterize
 from porescale.coupling.coverage.shape import Shape
-from porescale.coupling.coverage.soft_rim import MARGIN, Rim
+from porescale.coupling.coverage.soft_rim import MARGIN, SoftRim
 from porescale.coupling.load import add_rows, half_step_correction
-from porescale.coupling.psm_kernels import AT_ONCE, BAND_HEIGHT, RowWork, sweep
+from porescale.coupling.psm_kernels import AT_ONCE, RowWork, sweep
 from porescale.coupling.solid.choose import SOLID_OPERATORS, choose_solid
 from porescale.coupling.solid.choose import solid_operator as solid_operator_of
 from porescale.coupling.weighting.choose import choose_weight, fitting_weight
@@ -28,6 +38,8 @@ from porescale.lbm.fluid import Fluid
 
 LOW_PASS = 0.1
 """Share of a step's load in the one that the half-step correction is made from; 1 lets light discs run away."""
+BAND_HEIGHT = 8
+"""Rows that one thread does at a time; any value gives the same bits."""
 SPREAD = 0.6180339887498949
 """Golden section: bands in the order of the multiples of it, modulo 1, are spread evenly over any number of threads,
 though the grains lie at the bottom."""
@@ -35,15 +47,25 @@ though the grains lie at the bottom."""
 Array = NDArray[np.floating]
 
 
+def row_work(nx: int, row_load: NDArray[np.float64], dtype: np.dtype[Any], *, soft: bool) -> RowWork:
+    """Scratch of all threads for rows of nx cells, and the given loads of rows."""
+    threads = most_threads()
+    scratch = np.zeros((threads, 4 if soft else 3, BLOCK + nx + BLOCK), dtype)
+    weights = np.zeros((threads, 5, max(min(nx, AT_ONCE), 7 * BLOCK)), dtype)
+    return RowWork(np.arange(BLOCK).astype(dtype), row_load, scratch, weights)
+
+
 class Saturated:
     """Discs of given radii (cells), convex polygons, rectangles and rings as the fluid sees them.
 
     force (n, 2), torque (n,): loads of the last step on the discs, lattice units; rectangle_force (m, 2), ring_force,
-    ring_torque: on the others, what the fluid inside them takes already given back.  The fluid sees a radius of
-    ``covering_radius`` cells.  Rectangles and rings go as their owner says between steps; where they reach through a
-    side of the box it moves with them, and ``mass_through_sides`` tells what came in (shapes/crossing.py).  pairs:
-    (p, 2) discs of one rigid body that overlap, see overlap.py.  polygon_load (p, 3), polygon_inside (p, 2): of the
-    polygons, as of discs; they go as their owner says.  A step allocates no array of the size of anything.
+    ring_torque: on the others, what the fluid inside them takes already given back;  entrained (n, 2): mass and moment
+    of inertia of the fluid that took the discs' velocity.  The fluid sees a radius of ``covering_radius`` cells.
+    Rectangles and rings go as their owner says between steps; where they reach through a side of the box it moves with
+    them, and ``mass_through_sides`` is what came in (coverage/through_sides.py).  pairs: (p, 2) discs of one rigid body
+    that overlap, see coverage/overlap.py.  polygon_load (p, 3), polygon_entrained (p, 2): of the polygons, as of discs;
+    they go as their owner says.  operator: the row of the solid operator.  A step allocates no array of the size of
+    anything.
     """
 
     def __init__(
@@ -58,69 +80,79 @@ class Saturated:
         polygons: Polygons | None = None,
         soft_rim: bool = False,
     ) -> None:
-        ny, nx = fluid.ny, fluid.nx
-        dtype = fluid.populations.dtype
         self.radius = np.ascontiguousarray(radius, float)
         self.periodic_x, self.periodic_y = fluid.sides.periodic
-        operator = solid_operator_of(solid_operator)
-        third_order = third_order_rate(fluid.law)
-        shift = operator.radius_shift * (fluid.relaxation_time - 0.5) * (1 / third_order - 0.5)
-        widest = 0.5 * min(nx if self.periodic_x else math.inf, ny if self.periodic_y else math.inf)
-        if self.radius.max(initial=0) > widest * (1 + 1e-12):
-            raise ValueError("a disc is wider than the periodic box")
-        self.covering_radius = np.minimum(self.radius + shift / np.maximum(self.radius, 1.0), widest)
-        width = (np.floor(2 * self.covering_radius) + 2).astype(np.int64)
-        if soft_rim and operator.soft_law is None:
+        self._shape = fluid.ny, fluid.nx
+        self.operator = solid_operator_of(solid_operator)
+        if soft_rim and self.operator.soft_law is None:
             able = " or ".join(name for name, other in SOLID_OPERATORS.items() if other.soft_law)
             raise ValueError(f"soft rims go with the solid operator {able}")
-        width += MARGIN * soft_rim
-        high, wide = width, width + 1
-        self.polygons, discs = polygons, len(radius)
-        if polygons:
-            cells = polygons.fit(fluid, shift, discs)
-            high, wide = np.append(high, cells), np.append(wide, cells)
-        movers = len(high)
-        shapes: list[Shape] = [*rectangles, *rings]
-        self.bodies: Bodies | None = None
-        if shapes:
-            sizes = [shape.size(fluid, shift) for shape in shapes]
-            self.bodies = Bodies(fluid, movers, shapes, len(rectangles))
-            wide = np.append(wide, [size[0] for size in sizes])
-            high = np.append(high, [size[1] for size in sizes])
-        count = len(high)
-        self._patches = make_patches(wide, high, dtype)
-        self._rows = make_rows(self._patches, ny)
-        widest, highest = int(self._patches.stride[:discs].max(initial=BLOCK)), int(high.max(initial=0))
-        self._lines = np.zeros((CHUNKS, SCRATCH, widest + BLOCK))
-        row_load = np.zeros((count, highest, 7 if soft_rim else 5))
-        bands = -(-ny // BAND_HEIGHT)
-        self._band_order = np.argsort(np.arange(bands) * SPREAD % 1).astype(np.int64)
-        ramp = np.arange(BLOCK).astype(dtype)
-        threads = most_threads()
-        scratch = np.zeros((threads, 4 if soft_rim else 3, BLOCK + nx + BLOCK), dtype)
-        weights = np.zeros((threads, 5, max(min(nx, AT_ONCE), 7 * BLOCK)), dtype)
-        self._work = RowWork(ramp, row_load, scratch, weights)
+        tau, third_order, dtype = fluid.relaxation_time, third_order_rate(fluid.law), fluid.populations.dtype
         self._laws = (
-            choose_weight(fitting_weight(solid_operator, weighting), fluid.relaxation_time, dtype, soft=soft_rim),
-            choose_solid(solid_operator, fluid.relaxation_time, third_order, dtype, soft=soft_rim),
-        )  # fmt: skip
+            choose_weight(fitting_weight(solid_operator, weighting), tau, dtype, soft=soft_rim),
+            choose_solid(solid_operator, tau, third_order, dtype, soft=soft_rim),
+        )
+        shift = self.operator.radius_shift * (tau - 0.5) * (1 / third_order - 0.5)
+        self._set_covering_radius(shift)
+        self.polygons = polygons
+        self.bodies: Bodies | None = None
+        high, wide = self._sizes(fluid, shift, [*rectangles, *rings], len(rectangles), MARGIN * soft_rim)
+        discs, count = len(self.radius), len(high)
+        self._patches = make_patches(wide, high, dtype)
+        self._rows = make_rows(self._patches, fluid.ny)
+        widest = int(self._patches.stride[:discs].max(initial=BLOCK))
+        self._lines = np.zeros((CHUNKS, SCRATCH, widest + BLOCK))
+        row_load = np.zeros((count, int(high.max(initial=0)), 7 if soft_rim else 5))
+        self._work = row_work(fluid.nx, row_load, dtype, soft=soft_rim)
+        bands = -(-fluid.ny // BAND_HEIGHT)
+        self._band_order = np.argsort(np.arange(bands) * SPREAD % 1).astype(np.int64)
         self.pairs = np.zeros((0, 2), np.int64)
         self._placed = np.full((discs, 2), np.nan)  # centres for which the patches are filled
         self._stands = np.zeros(self._placed.shape, np.bool_)
         self._covered: Array | None = None
-        self._shape = ny, nx
-        self._load, self._inside = np.zeros((count, 3)), np.zeros((count, 2))
-        self.force, self.torque = self._load[:discs, :2], self._load[:discs, 2]
-        self.inside = self._inside[:discs]
-        self.polygon_load, self.polygon_inside = self._load[discs:movers], self._inside[discs:movers]
-        self.operator = operator
-        self._slow_load, self._shift = np.zeros((count, 3)), np.zeros((count, 3))
+        self._set_loads(count, np.asarray(fluid.force))
         self._theta = np.zeros(count)
-        self.rim = Rim(self.radius, shift, fluid.relaxation_time, self._theta[:discs]) if soft_rim else None
+        self.soft_rim = SoftRim(self.radius, shift, tau, self._theta[:discs]) if soft_rim else None
+
+    def _set_covering_radius(self, shift: float) -> None:
+        """The radii that the lattice is covered with;  shift: what they lack times the radius, cells².
+
+        ValueError where a disc does not fit into the periodic box.
+        """
+        ny, nx = self._shape
+        widest = 0.5 * min(nx if self.periodic_x else math.inf, ny if self.periodic_y else math.inf)
+        if self.radius.max(initial=0) > widest * (1 + 1e-12):
+            raise ValueError("a disc is wider than the periodic box")
+        self.covering_radius = np.minimum(self.radius + shift / np.maximum(self.radius, 1.0), widest)
+
+    def _sizes(
+        self, fluid: Fluid, shift: float, shapes: list[Shape], rectangles: int, margin: int
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Height and width in cells of the patches of all bodies: discs, polygons, and ``shapes``, rectangles first."""
+        width = (np.floor(2 * self.covering_radius) + 2).astype(np.int64) + margin
+        high, wide = width, width + 1
+        if self.polygons:
+            cells = self.polygons.fit(fluid, shift, len(self.radius))
+            high, wide = np.append(high, cells), np.append(wide, cells)
+        if shapes:
+            sizes = [shape.size(fluid, shift) for shape in shapes]
+            self.bodies = Bodies(fluid, len(high), shapes, rectangles)
+            wide = np.append(wide, [size[0] for size in sizes])
+            high = np.append(high, [size[1] for size in sizes])
+        return high, wide
+
+    def _set_loads(self, count: int, force: Array) -> None:
+        """Arrays of the loads of ``count`` bodies, and what the body force on the fluid adds to each at once."""
+        discs = len(self.radius)
+        movers = discs + (self.polygons.count if self.polygons else 0)
+        self._load, self._entrained = np.zeros((count, 3)), np.zeros((count, 2))
+        self.force, self.torque, self.entrained = self._load[:discs, :2], self._load[:discs, 2], self._entrained[:discs]
+        self.polygon_load, self.polygon_entrained = self._load[discs:movers], self._entrained[discs:movers]
+        self._slow_load, self._shift = np.zeros((count, 3)), np.zeros((count, 3))
         self._direct = np.zeros((count, 2))
-        self._direct[:discs] = -np.pi * self.covering_radius[:, None] ** 2 * np.asarray(fluid.force)
-        if polygons:
-            self._direct[discs:movers] = -polygons.covered_area[:, None] * np.asarray(fluid.force)
+        self._direct[:discs] = -np.pi * self.covering_radius[:, None] ** 2 * force
+        if self.polygons:
+            self._direct[discs:movers] = -self.polygons.covered_area[:, None] * force
 
     @property
     def covered(self) -> Array:
@@ -164,30 +196,36 @@ class Saturated:
         """Mass that has come in through sides with what fills rectangles and rings, cells of density 1.
 
         A gate that leaves a closed box through its lid takes its area with it, and the mean density falls by the gate's
-        share of the box: let water in through a side, or call ``make_good``.
+        share of the box: let water in through a side, or call ``restore_mass``.
         """
         return self.bodies.mass if self.bodies else 0.0
 
-    def make_good(self, fluid: Fluid) -> float:
+    def restore_mass(self, fluid: Fluid) -> float:
         """Take that mass out of all cells evenly and count anew; returns it.  Does nothing before an odd step."""
-        return self.bodies.make_good(fluid, self._patches) if self.bodies else 0.0
+        return self.bodies.restore_mass(fluid, self._patches) if self.bodies else 0.0
 
     def _place(self, centre: Array, velocity: Array, spin: Array) -> Motion:
-        """Fill the bodies' patches, and list what lies in which row; centre, velocity and spin of them all.
+        """Fill the bodies' patches, and list what lies in which row; how they all move.
 
         Where there are discs only and none has moved since, all of that is there already.
         """
-        others = self.rim or self.polygons or self.bodies
+        others = self.soft_rim or self.polygons or self.bodies
         if not others and np.equal(centre, self._placed, out=self._stands).all():
             return Motion(centre, velocity, spin, self._shift, self._theta)
         self._placed[:] = centre
-        if self.rim:
-            self.rim.soften(self.covering_radius)
-        cover(centre, self.covering_radius, self._patches, self._lines)
+        if self.soft_rim:
+            self.soft_rim.soften(self.covering_radius)
+        return self._rasterized(centre, velocity, spin, self.covering_radius, self.soft_rim)
+
+    def _rasterized(
+        self, centre: Array, velocity: Array, spin: Array, radius: Array, soft_rim: SoftRim | None
+    ) -> Motion:
+        """The same, with discs of ``radius`` (n,) cells."""
+        cover(centre, radius, self._patches, self._lines)
         if len(self.pairs):
-            take_off(centre, self.covering_radius, self.pairs, self._patches)
-        if self.rim:
-            self.rim.filter(self._patches)
+            subtract_overlap(centre, radius, self.pairs, self._patches)
+        if soft_rim:
+            soft_rim.filter(self._patches)
         motion = centre, velocity, spin
         if self.polygons:
             self.polygons.cover(self._patches, len(self.radius))
@@ -198,14 +236,23 @@ class Saturated:
         list_rows(self._patches, self.periodic_y, self._rows)
         return Motion(*motion, self._shift, self._theta)
 
-    def cover(self, centre: Array, velocity: Array, spin: Array) -> None:
-        """Fill the solid fields for discs at centre (n, 2), cells, with velocity and spin in lattice units."""
-        self._placed[:] = np.nan  # the owner may have lent other radii
-        motion = self._place(centre, velocity, spin)
-        self._placed[:] = np.nan
-        rasterize(
-            self._rows, self._patches, motion, self.periodic_x, self._work.ramp, self._work.scratch, self.covered
-        )  # fmt: skip
+    def cover(self, centre: Array, velocity: Array, spin: Array, *, bare: bool = False) -> None:
+        """Fill the solid fields for discs at centre (n, 2), cells, with velocity and spin in lattice units.
+
+        bare: with the radii and outlines that were given, without what the lattice needs of them.
+        """
+        if bare:
+            if self.polygons:
+                self.polygons.bare = True
+            motion = self._rasterized(centre, velocity, spin, self.radius, None)
+            if self.polygons:
+                self.polygons.bare = False
+        else:
+            self._placed[:] = np.nan
+            motion = self._place(centre, velocity, spin)
+        self._placed[:] = np.nan  # the patches are none that a step may use again
+        work = self._work
+        rasterize(self._rows, self._patches, motion, self.periodic_x, work.ramp, work.scratch, self.covered)
 
     def weights(self) -> Array:
         """Weight B of every cell (ny, nx), right after ``cover``."""
@@ -214,31 +261,36 @@ class Saturated:
     def advance(self, fluid: Fluid, centre: Array, velocity: Array, spin: Array) -> None:
         """One fluid step with the bodies where they are; fills the loads."""
         motion = self._place(centre, velocity, spin)
-        patches = self._patches
         if self.bodies:
-            self.bodies.before(fluid, patches, self._shift, self._slow_load)
-        fluid.advance(sweep, self._band_order, self._rows, patches, motion, self.periodic_x, self._work, *self._laws)
-        add_rows(
-            patches.corner, patches.height, fluid.ny, self.periodic_y, self._work.row_load, self._load, self._inside
+            self.bodies.before(fluid, self._patches, self._shift, self._slow_load)
+        fluid.advance(
+            sweep, self._band_order, BAND_HEIGHT, self._rows, self._patches, motion, self.periodic_x, self._work,
+            *self._laws,
         )  # fmt: skip
-        if self.rim:
-            self.rim.follow(patches, fluid.ny, self.periodic_y, self._work.row_load)
+        self._sum_loads(fluid)
+        if self.operator.half_step_correction:
+            half_step_correction(self._load, self._entrained, self._direct, LOW_PASS, self._slow_load, self._shift)
+
+    def _sum_loads(self, fluid: Fluid) -> None:
+        """The loads of the bodies from those of their rows."""
+        patches, row_load = self._patches, self._work.row_load
+        add_rows(patches.corner, patches.height, fluid.ny, self.periodic_y, row_load, self._load, self._entrained)
+        if self.soft_rim:
+            self.soft_rim.follow(patches, fluid.ny, self.periodic_y, row_load)
         if self.bodies:
             self.bodies.after(fluid, patches, self._load, self._direct)
-        if self.operator.half_step_correction:
-            half_step_correction(self._load, self._inside, self._direct, LOW_PASS, self._slow_load, self._shift)
 
     def state(self) -> dict[str, Any]:
         """What the next step takes from those before."""
         state: dict[str, Any] = {"slow_load": self._slow_load, "shift": self._shift}
-        if self.rim:
-            state["rim_slip"] = self.rim.slip
+        if self.soft_rim:
+            state["rim_slip"] = self.soft_rim.slip
         return state | ({"bodies": self.bodies.state()} if self.bodies else {})
 
     def restore(self, state: dict[str, Any]) -> None:
         """Take up a state of the same discs."""
         self._slow_load[...], self._shift[...] = state["slow_load"], state["shift"]
-        if self.rim:
-            self.rim.slip[...] = state["rim_slip"]
+        if self.soft_rim:
+            self.soft_rim.slip[...] = state["rim_slip"]
         if self.bodies:
             self.bodies.restore(state["bodies"])

@@ -28,8 +28,6 @@ AT_ONCE = 512
 """Cells of a row whose weights are worked out, then used: they stay in the nearest cache."""
 STRETCH = 64
 """Cells of a row that are saturated or plain together."""
-BAND_HEIGHT = 8
-"""Rows that one thread does at a time; any value gives the same bits."""
 
 
 class RowWork(NamedTuple):
@@ -175,10 +173,10 @@ def saturated_row(y, planes, rows, patches, motion, periodic_x, work, laws):
 
 
 @parallel_kernel
-def sweep(f, parity, band_order, rows, patches, motion, periodic_x, work, weighting, solid, law):
+def sweep(f, parity, band_order, height, rows, patches, motion, periodic_x, work, weighting, solid, law):
     """Step of ``parity`` with bodies; overwrites populations f and work.row_load.  Before an odd one: fill the halo.
 
-    Bands of ``BAND_HEIGHT`` rows are spread over the threads in ``band_order``;  motion: ``Motion`` of all bodies;
+    Bands of ``height`` rows are spread over the threads in ``band_order``;  motion: ``Motion`` of all bodies;
     work: ``RowWork`` of all threads;  weighting, solid, law: of weight, solid and fluid operator.
     """
     # By name: what a loop over threads writes into a member of a tuple is lost.
@@ -187,6 +185,6 @@ def sweep(f, parity, band_order, rows, patches, motion, periodic_x, work, weight
         band = band_order[turn]
         mine = thread()
         own = RowWork(ramp, row_load, scratch[mine], weights[mine])
-        for y in range(band * BAND_HEIGHT, min((band + 1) * BAND_HEIGHT, f.shape[1] - 2)):
+        for y in range(band * height, min((band + 1) * height, f.shape[1] - 2)):
             planes = slots(f, y + 1, parity)
             saturated_row(y, planes, rows, patches, motion, periodic_x, own, (weighting, solid, law))

@@ -115,6 +115,11 @@ def test_every_validation_and_benchmark_has_a_name_of_its_own():
     assert {"lbm", "psm", "dem", "column"} <= {row.name for row in PACKAGE.benchmarks()}
 
 
+def test_the_command_line_is_there_before_arrays_and_models_are():
+    ask = "import porescale.cli.main, sys; print(sorted({'numpy', 'pydantic', 'numba'} & set(sys.modules)))"
+    assert done([sys.executable, "-c", ask]).stdout.strip() == "[]"
+
+
 def test_the_parts_of_the_package_are_those_of_its_modules():
     assert PACKAGE.scene() is Scene
     assert PACKAGE.template() == new.template()

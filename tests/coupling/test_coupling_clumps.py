@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.coupling.coverage.overlap import overlapping, take_off
-from porescale.coupling.displaced import displaced, whole
+from porescale.coupling.coverage.overlap import overlapping, subtract_overlap
+from porescale.coupling.displaced import displaced, of_whole_bodies
 from porescale.coupling.step import buoyant_weight
 from porescale.dem.bodies.union import outline
 from porescale.validation.coupling import clumps as lab
@@ -25,7 +25,7 @@ def test_fluid_within_a_clump_is_that_of_its_union():
     union, inside = outline(at, radius), displaced(coupled.grains, coupled.grains.discs.radius, 3.0)
     assert inside.mass[:3].sum() == pytest.approx(3.0 * union.area, rel=1e-13)
     np.testing.assert_allclose(inside.mass[:3] @ at / inside.mass[:3].sum(), union.centroid, rtol=1e-12)
-    _, about = whole(coupled.grains, inside.mass, inside.inertia)
+    _, about = of_whole_bodies(coupled.grains, inside.mass, inside.inertia)
     np.testing.assert_allclose(about[:3], 3.0 * union.second_moment, rtol=1e-12)
     assert inside.mass[3] == pytest.approx(3.0 * np.pi * 16.0, rel=1e-13)
     assert (inside.mass > 0.0).all()
@@ -72,7 +72,7 @@ def test_kernels_do_the_same_as_plain_python():
         wet, d = (coupled := immersed([TRIPLE])).saturated, coupled.grains.discs
         pairs, wet.pairs = wet.pairs, np.zeros((0, 2), np.int64)
         wet.cover(d.position, np.zeros_like(d.position), np.zeros(d.count))
-        run = take_off.py_func if plain else take_off
+        run = subtract_overlap.py_func if plain else subtract_overlap
         run(d.position, wet.covering_radius, pairs, wet._patches)
         found.append(wet._patches.fraction.copy())
     np.testing.assert_allclose(found[0], found[1], rtol=0, atol=1e-15)  # one root may be rounded otherwise

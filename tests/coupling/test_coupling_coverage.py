@@ -10,8 +10,7 @@ import pytest
 from porescale.coupling.coverage import discs as coverage
 from porescale.coupling.coverage import rows as coverage_rows
 from porescale.coupling.coverage.rows import BLOCK
-from porescale.coupling.psm import Saturated
-from porescale.coupling.psm_kernels import BAND_HEIGHT
+from porescale.coupling.psm import BAND_HEIGHT, Saturated
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from tests.reference import psm as twin

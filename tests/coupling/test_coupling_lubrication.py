@@ -30,8 +30,8 @@ def films(grains, cut=1.0, dt=0.25, *, plain=False):
     d, pairs = grains.discs, grains.current_pairs()
     add = law.add_films.py_func if plain else law.add_films
     add(
-        d.position, d.velocity, d.radius, d.mass, pairs.start, pairs.partner, *grains.box.period, grains.walls, MU,
-        cut, dt, force,
+        d.position, d.velocity, d.radius, d.mass, pairs.start, pairs.partner, grains.box.period, grains.walls,
+        law.FilmLaw(MU, cut, dt), force,
     )  # fmt: skip
     return force, lub
 
@@ -97,7 +97,11 @@ def test_the_thinnest_film_is_stable_and_one_eight_times_as_stiff_is_not():
         d = grains.discs
         for _ in range(60):
             force = np.zeros((2, 2))
-            push = stiffer * law.film(1e-3, 2.0, MU, 1.0, d.mass[0], 0.25) * (d.velocity[0, 0] - d.velocity[1, 0])
+            push = (
+                stiffer
+                * law.film(1e-3, 2.0, d.mass[0], law.FilmLaw(MU, 1.0, 0.25))
+                * (d.velocity[0, 0] - d.velocity[1, 0])
+            )
             force[:, 0] = -push, push
             grains.step(0.25, force)
             d.position[:] = [(20.0, 20.0), (28.001, 20.0)]

@@ -82,8 +82,8 @@ def test_kernels_are_the_same_uncompiled(monkeypatch):
     made = []
     for plain in (False, True):
         if plain:
-            monkeypatch.setattr(rim, "blend", rim.blend.py_func)
-            monkeypatch.setattr(rim, "smear", rim.smear.py_func)
+            monkeypatch.setattr(rim, "softness", rim.softness.py_func)
+            monkeypatch.setattr(rim, "filter_patch", rim.filter_patch.py_func)
         theta, theta2, covering = np.zeros((3, 2))
         soften, smeared = (rim.soften, rim.filter_patches)
         if plain:
@@ -102,12 +102,12 @@ def test_slow_flow_knows_nothing_of_it():
     # Speed 1e-9: theta of order (3.3 · 1e-9 · 3/1.7e-3)^(4/3)/4 = 1e-7, of the loads likewise.
     sharp, soft = (towed(soft, 1e-9)[1] for soft in (False, True))
     assert np.abs(soft.force - sharp.force).max() < 1e-5 * np.abs(sharp.force).max()
-    assert 0 < soft.rim.theta.max() < 1e-6
+    assert 0 < soft.soft_rim.theta.max() < 1e-6
 
 
 def test_fast_flow_does():
     sharp, soft = (towed(soft, 0.05)[1] for soft in (False, True))
-    assert soft.rim.theta.min() > 0.1
+    assert soft.soft_rim.theta.min() > 0.1
     assert np.abs(soft.force - sharp.force).max() > 1e-2 * np.abs(sharp.force).max()
 
 

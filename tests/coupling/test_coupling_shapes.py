@@ -102,7 +102,7 @@ def test_absent_shapes_build_nothing():
     assert "bodies" not in wet.state()
     assert wet.rectangle_force.shape == wet.ring_force.shape == (0, 2)
     assert wet.ring_torque.shape == (0,)
-    assert wet.mass_through_sides == wet.make_good(Fluid(8, 8, 0.7)) == 0.0
+    assert wet.mass_through_sides == wet.restore_mass(Fluid(8, 8, 0.7)) == 0.0
 
 
 def test_kernels_are_right_as_plain_python():
@@ -117,7 +117,7 @@ def test_kernels_are_right_as_plain_python():
     motion = np.array([[1.75, 1.0]]), np.array([[0.01, 0.02]]), np.zeros(1)
     for kernel in (crossing.move_sides, crossing.move_sides.py_func):
         touching = np.zeros(1, bool)
-        mass = kernel(0, 12, 10, False, False, wet._patches, *motion, links, added, touching)
+        mass = kernel(0, (12, 10, False, False), wet._patches, *motion, links, added, touching)
         assert touching[0]
         # 4 cells high through the left side, 5.5 wide through the bottom; sums of some 30 numbers of 0.01.
         assert mass == pytest.approx(0.01 * 4 + 0.02 * 5.5, abs=30 * 0.01 * EPS)
@@ -206,7 +206,7 @@ def set_off(rest, *, one_sided=False):
 def test_a_gate_through_a_slip_lid_may_set_off_at_an_even_step_or_at_an_odd(monkeypatch):
     # A mirrored link goes the one way in even steps and the other in odd ones.  Left out: that density inside is led
     # back every other step.
-    monkeypatch.setattr("porescale.coupling.coverage.bodies.RELIEF", 0.0)
+    monkeypatch.setattr("porescale.coupling.coverage.bodies.DENSITY_SHARE", 0.0)
     np.testing.assert_allclose(set_off(0), set_off(1), rtol=0, atol=1e-14)
     assert np.abs(set_off(0, one_sided=True) - set_off(1, one_sided=True)).max() > 1e-3
 

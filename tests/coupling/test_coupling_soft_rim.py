@@ -44,7 +44,7 @@ def differences(wrong=None, steps=4):
     fluid = Fluid(NX, NY, TAU, operator="central", sides=PERIODIC)
     fluid.set_flow(ux, uy, rho)
     wet = Saturated(fluid, np.array([d.r for d in there]), soft_rim=True)
-    wet.rim.slip[:] = SLIP
+    wet.soft_rim.slip[:] = SLIP
     worst = np.zeros(4)
     for _ in range(steps):
         place, motion = np.array([(d.x, d.y) for d in there]), np.array([(d.u, d.v) for d in there])
@@ -54,7 +54,7 @@ def differences(wrong=None, steps=4):
             d.x, d.y = d.x + d.u, d.y + d.v
         density, jx, _ = box.lattice.moments()
         now, vx, _ = fluid.fields(np.ones_like(density))
-        pairs = (wet.force, force), (wet.torque, torque), (now * vx, jx), (wet.rim.slip, box.slip)
+        pairs = (wet.force, force), (wet.torque, torque), (now * vx, jx), (wet.soft_rim.slip, box.slip)
         worst = np.maximum(worst, [np.abs(np.subtract(*pair)).max() for pair in pairs])
     return worst
 
@@ -108,5 +108,5 @@ def test_slips_at_a_rim_do_not_depend_on_the_place_of_the_sides():
         wet = Saturated(fluid, np.array([4.2]), soft_rim=True)
         for _ in range(5):
             wet.advance(fluid, np.array([[x, 9.1]]), np.array([[0.05, 0.02]]), np.zeros(1))
-        slips.append(float(wet.rim.slip[0]))
+        slips.append(float(wet.soft_rim.slip[0]))
     assert slips == pytest.approx([slips[0]] * 3, rel=1e3 * EPS)

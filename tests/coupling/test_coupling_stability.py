@@ -14,7 +14,7 @@ from porescale.common.core.errors import Unstable
 from porescale.common.evidence.stability import STABLE, UNSTABLE, Row, holds_up_to
 from porescale.coupling import limits
 from porescale.coupling.divergence_cause import Circumstances, likely_cause
-from porescale.coupling.divergence_check import Sense, worst_cell
+from porescale.coupling.divergence_check import DivergenceCheck, worst_cell
 from porescale.coupling.psm import Saturated
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting.choose import WEIGHTINGS
@@ -106,10 +106,10 @@ def test_the_cause_is_what_is_furthest_beyond_what_holds(change, said):
     assert said in likely_cause(replace(CALM, **change))
 
 
-def sense(**more) -> Sense:
+def sense(**more) -> DivergenceCheck:
     coupled = immersed((20, 16), [(10.0, 8.0)], 3.0, 2.5)
     laws = {"operator": "trt", "eddies": False, "solid_operator": "odd-SC1", **more}
-    return Sense(coupled.fluid, coupled.scales, coupled, **laws)
+    return DivergenceCheck(coupled.fluid, coupled.scales, coupled, **laws)
 
 
 def test_the_cell_in_which_it_began_is_named():
@@ -160,10 +160,10 @@ def test_the_lightest_free_disc_counts():
     assert sense().last.density_ratio == pytest.approx(2.5)
     coupled = immersed((30, 16), [(8.0, 8.0), (22.0, 8.0)], [3.0, 2.0], [2.5, 0.3])
     coupled.grains.hold(1)
-    watch = Sense(coupled.fluid, coupled.scales, coupled, operator="trt", eddies=False, solid_operator="SC1")
+    watch = DivergenceCheck(coupled.fluid, coupled.scales, coupled, operator="trt", eddies=False, solid_operator="SC1")
     assert (watch.last.density_ratio, watch.last.cells_per_diameter) == (pytest.approx(2.5), 6.0)
     coupled.grains.hold(0)
-    watch = Sense(coupled.fluid, coupled.scales, coupled, operator="trt", eddies=False, solid_operator="SC1")
+    watch = DivergenceCheck(coupled.fluid, coupled.scales, coupled, operator="trt", eddies=False, solid_operator="SC1")
     assert watch.last.density_ratio is None
 
 

@@ -285,7 +285,7 @@ def allocates(kernel):
 
 
 def test_no_kernel_of_a_step_allocates():
-    from porescale.coupling import load, step
+    from porescale.coupling import immersed, load
     from porescale.coupling.coverage import discs as coverage
     from porescale.coupling.coverage import rows as coverage_rows
     from porescale.dem import step as integrate
@@ -300,8 +300,8 @@ def test_no_kernel_of_a_step_allocates():
         coupled.fluid.advance()
         coupled.advance()
     used = [
-        coverage.cover, coverage_rows.list_rows, load.add_rows, load.half_step_correction, step.to_lattice,
-        step.total_load, links.fill_halo, links.empty_halo, solid_collision.sweep,
+        coverage.cover, coverage_rows.list_rows, load.add_rows, load.half_step_correction, immersed.to_lattice,
+        immersed.total_load, links.fill_halo, links.empty_halo, solid_collision.sweep,
         stream.sweep, plate.exchange, integrate.contact_steps,
     ]  # fmt: skip
     assert [kernel.__name__ for kernel in used if allocates(kernel)] == []

@@ -52,7 +52,7 @@ class Scene:
         self.fluid.set_flow(self.turned(ux, turn) + frame[0], self.turned(uy, turn) + frame[1], self.turned(rho, turn))
         self.wet = Saturated(self.fluid, self.radius, solid_operator=solid, weighting=weight, soft_rim=soft)
         if soft:
-            self.wet.rim.slip[:] = SLIP
+            self.wet.soft_rim.slip[:] = SLIP
 
     @staticmethod
     def turned(field, turn):

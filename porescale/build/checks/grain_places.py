@@ -184,7 +184,7 @@ def _loose_sides(scene: Scene, packing: Packing) -> str:
     """Sides on which no wall or gate stands within a diameter of the packing, in words; a full period holds itself."""
     if scene.domain.periodic[0] and packing.width > scene.domain.width - packing.diameter:
         return ""
-    domain, gate, held = scene.domain, scene.gate, beside(scene, packing)
+    domain, gate, held = scene.domain, scene.gate, beside(scene.rectangle, packing)
     ends = {"left": (packing.left, 0.0), "right": (packing.left + packing.width, domain.width)}
     loose = []
     for (side, (edge, wall)), near_face in zip(ends.items(), held, strict=True):

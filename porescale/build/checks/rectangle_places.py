@@ -211,9 +211,9 @@ def nearest(it: Rectangle, path: Body, place: Array, t0: float, t1: float) -> fl
     return min(distance(t0), distance(t1))
 
 
-def require_free_of_rectangles(scene: Scene, discs: Discs) -> None:
+def require_free_of_rectangles(sections: Sequence[Rectangle], discs: Discs) -> None:
     """InputError naming the first disc, of a packing that has settled say, that a rectangle is in."""
-    for k, it in enumerate(scene.rectangle):
+    for k, it in enumerate(sections):
         off = discs.position - np.clip(discs.position, it.lower, it.upper)
         inside = np.hypot(*off.T) < discs.radius * (1 - 0.1)
         if inside.any():

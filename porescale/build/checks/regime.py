@@ -21,6 +21,7 @@ from porescale.build.checks.limits import (
     thin,
 )
 from porescale.build.initial.clumps import least_density
+from porescale.build.initial.contact_laws import MaterialPlan
 from porescale.build.initial.fluid_options import collision_options, weight_of
 from porescale.build.initial.frames import Placed
 from porescale.build.initial.placed import by_hand
@@ -175,7 +176,9 @@ def check_regime(
     filled = packing.packing_fraction * ratio**2 if packing else 0.0
     found = [coarse(mean, *laws, scales.spacing, filled), slow(scales.relaxation_time, laws[0])]
     if scene.grains:
-        found.append(light(least_density(scene) / scales.density, smallest, *laws, scales.spacing))
+        found.append(
+            light(least_density(MaterialPlan.of(scene), scene.clump) / scales.density, smallest, *laws, scales.spacing)
+        )
     warnings += filter(None, found)
     if scene.grains is None or packing is None:
         return 0.0

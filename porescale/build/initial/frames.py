@@ -13,7 +13,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.build.initial.contact_laws import density_of
+from porescale.build.initial.contact_laws import MaterialPlan
 from porescale.build.initial.random_polygons import copies_of
 from porescale.build.initial.time_functions import control_of
 from porescale.common.core.errors import Fault, InputError
@@ -78,7 +78,7 @@ def placed_frames(scene: Scene) -> list[Placed]:
     faults: list[Fault] = []
     for key, kind, section in _sections(scene):
         try:
-            found += _made(scene, key, kind, section)
+            found += _made(MaterialPlan.of(scene), key, kind, section)
         except InputError as error:
             faults += [_of_section(fault, key) for fault in error.faults]
     if faults:
@@ -108,14 +108,14 @@ def _of_section(fault: Fault, key: str) -> Fault:
     return replace(fault, key=f"{key}.{name}", value=value, repair=repair)
 
 
-def _made(scene: Scene, key: str, kind: Kind, section: SegmentBody | PolygonBody | Container) -> list[Placed]:
+def _made(plan: MaterialPlan, key: str, kind: Kind, section: SegmentBody | PolygonBody | Container) -> list[Placed]:
     """The copies of one section."""
-    number = material_number(scene, section.material, kind == "container")
+    number = plan.number(section.material, wall=kind == "container")
     more: dict[str, Any] = {"material": number}
     if isinstance(section, Container):
         name = section.name or key.replace("[", " ").removesuffix("]")
-        return [Placed(key, kind, _container(scene, section, more), _prescribed(section), name, section.record)]
-    density = section.density or density_of(scene, section.material)
+        return [Placed(key, kind, _container(plan, section, more), _prescribed(section), name, section.record)]
+    density = section.density or plan.density(section.material)
     more |= {"velocity": section.velocity, "spin": section.spin}
     told, made = HELD if section.held else FREE, []
     for at, angle, size in copies_of(section):
@@ -145,11 +145,11 @@ def _lines(section: SegmentBody | Container, at: Any, angle: float, density: flo
     return from_ends(ends.reshape(-1, 2, 2), section.thickness, density, **more)
 
 
-def _container(scene: Scene, section: Container, more: dict[str, Any]) -> Frame:
+def _container(plan: MaterialPlan, section: Container, more: dict[str, Any]) -> Frame:
     """The frame of a container, with its pivot for a centroid."""
     points = np.array(section.chain or section.ends).reshape(-1, 2)
     width = max(2.0 * section.thickness, ROD * float(np.ptp(points, axis=0).max()))
-    density = density_of(scene, section.material or (scene.contact.wall_material if scene.contact else ""))
+    density = plan.density(section.material or plan.of_walls)
     frame = _lines(section, (0.0, 0.0), 0.0, density, more | {"width": width, "long": True})
     if section.pivot is None:
         return frame
@@ -165,13 +165,6 @@ def _turned(points: Any, at: Any, angle: float, size: float = 1.0) -> Array:
     c, s = np.cos(angle), np.sin(angle)
     turned: Array = size * np.array(points, float) @ np.array([[c, s], [-s, c]]) + np.array(at, float)
     return turned
-
-
-def material_number(scene: Scene, name: str, wall: bool = False) -> int:
-    """Number of a material by name, "" for the first, or that of the walls; of one that is not there, 0."""
-    names = [it.name for it in scene.material]
-    wanted = name or (scene.contact.wall_material if wall and scene.contact else "")
-    return names.index(wanted) if wanted in names else 0
 
 
 def disc_count(grains: Grains) -> int:

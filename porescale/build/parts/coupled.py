@@ -11,7 +11,7 @@ from porescale.build.parts.fluid import FluidPart
 from porescale.build.system import System
 from porescale.common.core.errors import Unstable
 from porescale.common.record.model import Array
-from porescale.coupling.divergence_check import Sense
+from porescale.coupling.divergence_check import DivergenceCheck
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
 
@@ -19,7 +19,7 @@ from porescale.lbm.scales import Scales
 class CoupledPart(FluidPart):
     """A step of the fluid, with as many contact steps of the grains as go into it."""
 
-    def __init__(self, clock: Clock, fluid: Fluid, scales: Scales, sense: Sense, system: System) -> None:
+    def __init__(self, clock: Clock, fluid: Fluid, scales: Scales, sense: DivergenceCheck, system: System) -> None:
         """``system`` : with both."""
         super().__init__(clock, fluid, scales, sense, system)
         assert system.coupled

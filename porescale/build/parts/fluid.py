@@ -12,7 +12,7 @@ from porescale.build.parts.flow_fields import UNITS, derived_fields, total_press
 from porescale.build.system import System
 from porescale.common.core.errors import Unstable
 from porescale.common.record.model import Array, Grid, Snapshot
-from porescale.coupling.divergence_check import Sense
+from porescale.coupling.divergence_check import DivergenceCheck
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
 
@@ -20,7 +20,7 @@ from porescale.lbm.scales import Scales
 class FluidPart(Stepper):
     """Fluid alone.  mass : excess of the lattice's mass at the start, lattice units."""
 
-    def __init__(self, clock: Clock, fluid: Fluid, scales: Scales, sense: Sense, system: System) -> None:
+    def __init__(self, clock: Clock, fluid: Fluid, scales: Scales, sense: DivergenceCheck, system: System) -> None:
         """``system`` : gravity and the fields that snapshots have."""
         self.clock, self.fluid, self.scales, self.sense = clock, fluid, scales, sense
         self.gravity, self.names = system.scene.gravity, system.scene.output.fields
@@ -33,7 +33,7 @@ class FluidPart(Stepper):
         assert fluid
         assert scales
         assert section
-        sense = Sense(
+        sense = DivergenceCheck(
             fluid, scales, system.coupled, operator=section.operator, eddies=bool(section.smagorinsky),
             solid_operator=section.solid_operator, weighting=weight_of(section),
         )  # fmt: skip

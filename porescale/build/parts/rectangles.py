@@ -65,7 +65,7 @@ class RectanglesPart(Part):
                 if self.grains:
                     self.grains.rectangles[k, VELOCITY_X + a] = speed
         if coupled and self.make_good and step % MAKE_GOOD == 0:
-            self.made_good += coupled.saturated.make_good(coupled.fluid)
+            self.made_good += coupled.saturated.restore_mass(coupled.fluid)
 
     def row(self) -> Row:
         """Columns of the series, in fluid."""

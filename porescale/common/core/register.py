@@ -2,22 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from importlib import import_module
-from pkgutil import iter_modules
+from pkgutil import walk_packages
 from typing import Any
 
 
-def discover(package: str, attribute: str) -> dict[str, Any]:
-    """What the modules of a package call ``attribute``, by its ``name``, sorted by its ``order``, then by name.
+def entries(package: str, attribute: str) -> Iterator[Any]:
+    """The objects called ``attribute`` of all modules below ``package``, in the order of the modules' dotted names.
 
-    Imports every module of the package; those without the attribute count as helpers.  ValueError where two entries
-    have the same name.
+    Imports every module below the package; those without the attribute count as helpers.
+    """
+    modules = walk_packages(import_module(package).__path__, f"{package}.")
+    for module in map(import_module, sorted(it.name for it in modules if not it.ispkg)):
+        if attribute in vars(module):
+            yield vars(module)[attribute]
+
+
+def discover(package: str, attribute: str) -> dict[str, Any]:
+    """The `entries` of a package by their ``name``, sorted by their ``order``, then by name.
+
+    ValueError where two entries have the same name.
     """
     found: dict[str, Any] = {}
-    for module in iter_modules(import_module(package).__path__):
-        entry = vars(import_module(f"{package}.{module.name}")).get(attribute)
-        if entry is None:
-            continue
+    for entry in entries(package, attribute):
         if entry.name in found:
             raise ValueError(f"{package}: two entries are called {entry.name!r}")
         found[entry.name] = entry

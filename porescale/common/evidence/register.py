@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import pkgutil
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from importlib import import_module
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.schema.messages import nearest
+from porescale.common.core.register import entries
 
 
 class Named(Protocol):
@@ -66,19 +64,12 @@ def choose(asked: Sequence[str], known: Iterable[str], what: str) -> list[str]:
     topics = {name.partition(".")[0] for name in names}
     unknown = [name for name, found in below.items() if not found]
     if unknown:
+        from porescale.common.schema.messages import nearest  # brings pydantic, for which --help must not wait
+
         repair = {name: nearest(name, [*names, *topics], "names") for name in unknown}
         raise InputError([Fault(name, None, f"no such {what}", repair=repair[name]) for name in unknown])
     wanted = {other for found in below.values() for other in found}
     return [name for name in names if not asked or name in wanted]
-
-
-def registers(package: str, name: str) -> Iterator[Any]:
-    """The objects called ``name`` of all modules below ``package``, in the order of the modules' dotted names."""
-    found = import_module(package)
-    modules = [it.name for it in pkgutil.walk_packages(found.__path__, f"{package}.") if not it.ispkg]
-    for module in map(import_module, sorted(modules)):
-        if name in vars(module):
-            yield vars(module)[name]
 
 
 def discovered(package: str, name: str) -> Callable[[], Any]:
@@ -89,7 +80,7 @@ def discovered(package: str, name: str) -> Callable[[], Any]:
 
     def joined() -> Any:
         """One register of the same class with the rows of all."""
-        found = list(registers(package, name))
+        found = list(entries(package, name))
         return type(found[0])(row for register in found for row in register)
 
     return joined

@@ -10,11 +10,11 @@ import numpy as np
 from porescale.common.compiled.jit import kernel
 from porescale.coupling.coverage.rows import Patches
 from porescale.coupling.coverage.shape import Array, Shape, periodic
-from porescale.coupling.coverage.through_sides import move_sides, relieve, side_links, take_sides
+from porescale.coupling.coverage.through_sides import move_sides, relax_density, side_links, side_loads
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import WEIGHTS
 
-RELIEF = 0.1
+DENSITY_SHARE = 0.1
 """Share by which the density inside a body that passes a side is led back to 1 every other step."""
 
 
@@ -24,7 +24,7 @@ class Bodies:
     centre, velocity (n, 2), spin (n,): of all bodies, as kernels read them;  direct (m, 2): what the body force on the
     fluid adds to the load of a shape at once.
     load (m, 3): force and torque of the fluid on the shapes in the last step;  mass: what has come in through sides
-    with them and was not made good.  Lattice units.  Steps allocate nothing but a few bytes, and where a ring moves.
+    with them and was not taken out again.  Lattice units.  A step allocates a few bytes, and more where a ring moves.
     """
 
     def __init__(self, fluid: Fluid, discs: int, shapes: Sequence[Shape], rectangles: int) -> None:
@@ -72,15 +72,15 @@ class Bodies:
         are cleared for it.
         """
         self.mass += move_sides(
-            self.discs, *self._grid, patches, self.centre, self.velocity, self.spin, self._links,
+            self.discs, self._grid, patches, self.centre, self.velocity, self.spin, self._links,
             fluid.links.added, self.touching,
         )  # fmt: skip
         for k in range(len(self.shapes)):
             if self.touching[k]:
                 shift[self.discs + k] = slow_load[self.discs + k] = 0.0
                 if fluid.step % 2 == 0 and self.shapes[k].velocity.any():
-                    self.mass += relieve(
-                        self.discs + k, RELIEF, WEIGHTS, *self._grid[2:], patches, fluid.populations
+                    self.mass += relax_density(
+                        self.discs + k, DENSITY_SHARE, WEIGHTS, *self._grid[2:], patches, fluid.populations
                     )  # fmt: skip
 
     def hold_sides(self) -> None:
@@ -90,16 +90,16 @@ class Bodies:
     def after(self, fluid: Fluid, patches: Patches, load: Array, direct: Array) -> None:
         """The shapes' loads: ``load`` (n, 3) of all bodies' cells, less what sides bear, and the rate at which the
         velocity of the fluid inside changes, given back.  Overwrites the shapes' rows of direct (n, 2)."""
-        take_sides(
-            self.discs, *self._grid, patches, self.centre, self.velocity, self.spin, self._links, fluid.links.added,
+        side_loads(
+            self.discs, self._grid, patches, self.centre, self.velocity, self.spin, self._links, fluid.links.added,
             fluid.populations.reshape(-1), self._borne,
         )  # fmt: skip
         shape_loads(load[self.discs :], self._borne, self._inside, self.velocity[self.discs :],
                     self.spin[self.discs :], self._before, self.load)  # fmt: skip
         direct[self.discs :] = self.direct
 
-    def make_good(self, fluid: Fluid, patches: Patches) -> float:
-        """Take ``mass`` out of the fluid evenly, at rest and in equilibrium; returns it and starts the book anew.
+    def restore_mass(self, fluid: Fluid, patches: Patches) -> float:
+        """Take ``mass`` out of the fluid evenly, at rest and in equilibrium; returns it and counts anew.
 
         A uniform pressure moves nothing: it is as if the water's level followed a gate that leaves.  What fills the
         shapes is left as it is.  Between an odd and an even step only; else nothing is done and 0 returned.

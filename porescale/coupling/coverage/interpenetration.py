@@ -1,7 +1,7 @@
 """Whether convex polygons lie within each other, or discs in them.
 
-Those that touch keep a film between them, and contacts push where corners meet sides within that film.  Who is through
-it is pushed no more: forces say nothing of it, so outlines are asked.
+Those in contact keep a film between them, and contacts push where corners touch sides within that film.  A body beyond
+it is pushed no more: forces do not show that, so the outlines are compared.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def depth(one: Array, other: Array) -> float:
     return least
 
 
-def refuse_crossing(polygons: ImmersedPolygons, grains: Grains, step: int, time: float) -> None:
+def require_apart(polygons: ImmersedPolygons, grains: Grains, step: int, time: float) -> None:
     """Unstable where two of the ``polygons`` lie within each other, or the centre of a disc within one."""
     place, turned = polygons.position, polygons.angle
     reach = np.array([np.hypot(each[:, 0], each[:, 1]).max() for each in polygons.outlines])

@@ -45,7 +45,7 @@ def common(x, y, x1, y1, r1, x2, y2, r2):
 
 
 @kernel
-def take_off(centre, radius, pairs, patches):
+def subtract_overlap(centre, radius, pairs, patches):
     """Take what two discs of a pair have in common off them, in cells that neither fills.
 
     centre (n, 2), radius (n,) cells;  pairs (p, 2).  Overwrites ``patches.fraction``, which ``cover`` has filled.

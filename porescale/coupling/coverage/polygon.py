@@ -43,7 +43,7 @@ SPARE = 3
 
 
 @inline
-def take_edge(x0, y0, x1, y1, y, row):
+def add_edge(x0, y0, x1, y1, y, row):
     """Add to every cell of a row what lies to the right of an edge: plus if the edge goes down, minus if up.
 
     x0, y0, x1, y1: its ends, cells, x within the row;  y: the row's lower side;  row (stride,): overwritten.
@@ -131,7 +131,7 @@ def cover_polygons(before, outline, begin, centre, angle, at, line, patches):
             row[:] = 0.0
             for k in range(own.shape[0]):
                 m = k + 1 if k + 1 < own.shape[0] else 0
-                take_edge(own[k, 0], own[k, 1], own[m, 0], own[m, 1], float(j0 + j), row)
+                add_edge(own[k, 0], own[k, 1], own[m, 0], own[m, 1], float(j0 + j), row)
             first = start[p] + j * stride[p]
             for i in range(row.shape[0]):
                 e = row[i] if row[i] > little and i < columns else 0.0

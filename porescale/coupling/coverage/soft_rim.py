@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange
 from porescale.coupling.coverage.rows import Patches
-from porescale.coupling.load import add_rims
+from porescale.coupling.load import sum_rim_slip
 
 SLIP_FACTOR = 0.24
 """Of theta |v - u| in k."""
@@ -33,7 +33,7 @@ MARGIN = 4
 
 
 @inline
-def blend(slip, radius, viscosity):
+def softness(slip, radius, viscosity):
     """theta and theta2 of a body of ``radius`` cells at a rim slip and viscosity in lattice units."""
     q = (3.3 * slip * math.sqrt(2.0 * radius) / viscosity) ** (4.0 / 3.0)
     return q / (q + 4.0), q / (q + 36.0)
@@ -47,7 +47,7 @@ def soften(slip, radius, radius_shift, viscosity, theta, theta2, covering_radius
     """
     for n in range(radius.shape[0]):
         r = radius[n]
-        first, second = blend(slip[n], r, viscosity)
+        first, second = softness(slip[n], r, viscosity)
         theta[n] = first
         theta2[n] = second
         inset = math.sqrt(r) * (0.49 * first + 0.25 * second)
@@ -63,7 +63,7 @@ def follow_slip(rim, share, slip):
 
 
 @inline
-def smear(patch, height, stride, s):
+def filter_patch(patch, height, stride, s):
     """Filter a patch (height * stride,) by (s, 1 - 2 s, s) both ways, one cell up and to the right, in place.
 
     The last two columns and rows must be empty before.
@@ -92,13 +92,13 @@ def filter_patches(theta, theta2, patches):
     for n in prange(theta.shape[0]):
         if theta[n] > 0.0:
             patch = fraction[start[n] : start[n] + height[n] * stride[n]]
-            smear(patch, height[n], stride[n], 0.25 * theta[n])
-            smear(patch, height[n], stride[n], 0.25 * theta2[n])
+            filter_patch(patch, height[n], stride[n], 0.25 * theta[n])
+            filter_patch(patch, height[n], stride[n], 0.25 * theta2[n])
             corner[n, 0] -= 2
             corner[n, 1] -= 2
 
 
-class Rim:
+class SoftRim:
     """Soft rims of discs.  slip (n,): low-passed, lattice units, what goes on from step to step;  theta (n,)."""
 
     def __init__(
@@ -115,10 +115,10 @@ class Rim:
         )  # fmt: skip
 
     def filter(self, patches: Patches) -> None:
-        """Smear the discs' fractions; overwrites their patches and corners."""
+        """Filter the discs' fractions; overwrites their patches and corners."""
         filter_patches(self.theta, self.theta2, patches)
 
     def follow(self, patches: Patches, ny: int, periodic_y: bool, row_load: NDArray[np.floating]) -> None:
         """Take up the slip of the step done."""
-        add_rims(patches.corner, patches.height, ny, periodic_y, row_load, self._sums)
+        sum_rim_slip(patches.corner, patches.height, ny, periodic_y, row_load, self._sums)
         follow_slip(self._sums, SLIP_SHARE, self.slip)

@@ -13,9 +13,9 @@ Measured, a piston in a channel of 20 cells: it pushes out 0.998 of what it disp
 fraction or the mean of both, which take in too little or leave water behind in the corners.
 
 What fills the body has the pressure that it had when it was fluid, and a little too dense is a little too slow where
-sides carry it at density 1, and grows denser still.  So the density of cells deep inside
-is led back to 1 (``relieve``), at rest and in equilibrium, which fluid outside does not notice; this is booked too.
-Sides that move at the density of what fills the body instead were unstable.
+sides carry it at density 1, and grows denser still.  So the density of cells deep inside is led back to 1
+(``relax_density``), at rest and in equilibrium, which does not change the fluid outside; this counts as mass that came
+in too.  Sides that move at the density of what fills the body instead were unstable.
 
 A link that a free-slip side mirrors joins two cells: it leaves one and comes back to the other, in even steps the one
 way and in odd steps the other (lbm/stream.py).  So e is the mean of both; that of one of them gives the even steps
@@ -25,8 +25,8 @@ A gap below a cell is unresolved: by the cell's fraction the side moves with the
 part, what a body needs that lifts off it.  Through a free-slip side only the part of v across
 it counts.
 
-What fills a body passes the side with it: mass is not conserved, and what comes in is booked.  Momentum passes as well:
-the part of a body's load that sides bear,
+What fills a body passes the side with it: mass is not conserved, and what comes in is counted.  Momentum passes as
+well: the part of a body's load that sides bear,
 
     sum e_n ((f_out + f_back) c - v_n (f_back - f_out)),
 
@@ -104,8 +104,12 @@ def side_links(fluid: Fluid) -> SideLinks:
 
 
 @inline
-def fraction_of(n, x, y, nx, ny, periodic_x, periodic_y, patches):
-    """Solid fraction that body n has of cell (x, y): the sum over its images through periodic sides."""
+def fraction_of(n, x, y, grid, patches):
+    """Solid fraction that body n has of cell (x, y): the sum over its images through periodic sides.
+
+    grid: (nx, ny, whether x is periodic, whether y is).
+    """
+    nx, ny, periodic_x, periodic_y = grid
     found = 0.0
     j = y - patches.corner[n, 1]
     if periodic_y:
@@ -126,11 +130,11 @@ def fraction_of(n, x, y, nx, ny, periodic_x, periodic_y, patches):
 
 
 @kernel
-def move_sides(first, nx, ny, periodic_x, periodic_y, patches, centre, velocity, spin, links, added, touching):
+def move_sides(first, grid, patches, centre, velocity, spin, links, added, touching):
     """Let the sides move with the bodies from ``first`` on that reach through them; returns the mass that comes in.
 
-    centre, velocity (n, 2), spin (n,): of all bodies, lattice units.  Overwrites added, of the box's links, and
-    touching (bodies from ``first`` on,): whether they reach a side.
+    grid: see ``fraction_of``;  centre, velocity (n, 2), spin (n,): of all bodies, lattice units.  Overwrites added, of
+    the box's links, and touching (bodies from ``first`` on,): whether they reach a side.
     """
     touching[:] = False
     mass = 0.0
@@ -140,8 +144,8 @@ def move_sides(first, nx, ny, periodic_x, periodic_y, patches, centre, velocity,
         covered_along = 0.0
         pull = 0.0
         for n in range(first, patches.height.shape[0]):
-            own = fraction_of(n, x, y, nx, ny, periodic_x, periodic_y, patches)
-            other = fraction_of(n, links.beside[k, 0], links.beside[k, 1], nx, ny, periodic_x, periodic_y, patches)
+            own = fraction_of(n, x, y, grid, patches)
+            other = fraction_of(n, links.beside[k, 0], links.beside[k, 1], grid, patches)
             if own + other > 0.0:
                 touching[n - first] = True
                 e = min(own + links.share[k] * (other - own), 1.0 - covered)
@@ -160,7 +164,7 @@ def move_sides(first, nx, ny, periodic_x, periodic_y, patches, centre, velocity,
 
 
 @kernel
-def take_sides(first, nx, ny, periodic_x, periodic_y, patches, centre, velocity, spin, links, added, flat, borne):
+def side_loads(first, grid, patches, centre, velocity, spin, links, added, flat, borne):
     """What the sides gave, in the step just done, to what fills the bodies from ``first`` on that reach through them.
 
     flat: populations.  Overwrites borne (bodies from ``first`` on, 3): force along x and y, torque about the centre.
@@ -170,9 +174,9 @@ def take_sides(first, nx, ny, periodic_x, periodic_y, patches, centre, velocity,
         x, y = links.cell[k, 0], links.cell[k, 1]
         covered = 0.0
         for n in range(first, patches.height.shape[0]):
-            e = fraction_of(n, x, y, nx, ny, periodic_x, periodic_y, patches)
+            e = fraction_of(n, x, y, grid, patches)
             if links.share[k] > 0.0:
-                other = fraction_of(n, links.beside[k, 0], links.beside[k, 1], nx, ny, periodic_x, periodic_y, patches)
+                other = fraction_of(n, links.beside[k, 0], links.beside[k, 1], grid, patches)
                 e += links.share[k] * (other - e)
             if e > 0.0:
                 e = min(e, 1.0 - covered)
@@ -189,7 +193,7 @@ def take_sides(first, nx, ny, periodic_x, periodic_y, patches, centre, velocity,
 
 
 @kernel
-def relieve(n, share, weights, joined_x, joined_y, patches, f):
+def relax_density(n, share, weights, joined_x, joined_y, patches, f):
     """Lead the density of cells deep inside body n back to 1 by ``share`` of what is missing; returns the mass added.
 
     Deep: covered fully, and all cells around it too, or beyond a side.  Overwrites populations f (9, ny + 2, nx + 2),

@@ -131,7 +131,7 @@ def lift_gate(
             gate.lower += gate.velocity
             if step % 10 == 9:
                 if made_good:
-                    given += wet.make_good(fluid)
+                    given += wet.restore_mass(fluid)
                 density = fluid.fields()[0]
                 lowest, highest = min(lowest, float(density.min())), max(highest, float(density.max()))
                 off = max(off, abs(fluid.mass_excess() - start - wet.mass_through_sides))

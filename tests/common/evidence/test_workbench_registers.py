@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 from io import StringIO
 
 import numpy as np
@@ -17,7 +18,7 @@ from porescale.common.core.errors import InputError
 from porescale.common.evidence import benchmarks, validations
 from porescale.common.evidence.bandwidth import Copy, flip
 from porescale.common.evidence.benchmarks import Benchmarks, Work, copy_bandwidth
-from porescale.common.evidence.register import choose
+from porescale.common.evidence.register import choose, discovered
 from porescale.common.evidence.timing import interleaved, rate
 from porescale.common.evidence.validations import Measured, Validations
 
@@ -122,6 +123,33 @@ def test_registers_join_and_refuse_twins() -> None:
         joined.include(other)
     with pytest.raises(AssertionError):
         joined.row("lbm.good", source="x", because="y", tolerance=0)
+
+
+FILE = """
+from porescale.common.evidence.benchmarks import Benchmarks, Work
+BENCHMARKS = Benchmarks()
+
+@BENCHMARKS.row("NAME")
+def _(size, threads, dtype):
+    return Work(lambda: None, 1.0, "toys/s", 1)
+"""
+
+
+def test_a_file_in_the_folder_adds_its_rows(tmp_path, monkeypatch):
+    folder = tmp_path / "rates_of_toys" / "more"
+    folder.mkdir(parents=True)
+    for place, name in ((folder, "late"), (folder.parent, "early")):
+        (place / "__init__.py").write_text("")
+        (place / f"{name}.py").write_text(FILE.replace("NAME", name))
+    (folder / "helper.py").write_text("")
+    monkeypatch.syspath_prepend(tmp_path)
+    joined = discovered("rates_of_toys", "BENCHMARKS")
+    assert isinstance(joined(), Benchmarks)
+    assert [row.name for row in joined()] == ["early", "late"]
+    (folder / "helper.py").write_text(FILE.replace("NAME", "late"))  # a second row of that name
+    monkeypatch.delitem(sys.modules, "rates_of_toys.more.helper")
+    with pytest.raises(AssertionError, match="two rows named late"):
+        joined()
 
 
 def test_a_validation_without_a_reason_is_no_validation() -> None:

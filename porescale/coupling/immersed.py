@@ -1,0 +1,144 @@
+"""The equation of motion of bodies in fluid: what moves each, and the fluid inside it.
+
+The fluid inside a disc is dragged along, so the sum over its cells contains -m_f dU/dt, m_f = rho0 pi R_h²; it is given
+back with an acceleration known from before, likewise for rotation with m_f R_h²/2 (a rigid disc of fluid).  Of the
+inside no more than S, the sum of B rho, takes the disc's velocity within a step; more given back at once drives light
+discs.  So the velocity V of the fluid inside follows,  V += beta (U - V), beta = 0.9 min(1, S/m_f),  and m_f dV/dt is
+given back.
+
+The layer of fluid around a light disc that answers within a step throws it to and fro.  It is given that layer as a
+virtual mass on both sides of its equation of motion, on the right with the acceleration of the step before (Schwarz,
+Kempe & Froehlich 2015, J. Comput. Phys. 281, 591):  (m_p + m_v) a^n = F + m_v a^(n-1);  m_v = 2 pi R_h times 3/4 of a
+cell, less m_p.  The force m_p a^n that moves it then changes by a share m_p/(m_p + m_v) a step; heavier discs, with
+m_v <= 0, take up all of it.
+
+All of it is in ``total_load``, line by line: follows is beta, response_share is m_p/(m_p + m_v).
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.compiled.jit import kernel
+
+Array = NDArray[np.floating]
+
+FOLLOWING = 0.9
+"""Share of S/m_f with which the fluid inside follows: 1 lets discs of density ratio 0.1 run away."""
+LAYER = 0.75
+"""Thickness in cells of the layer that answers within a step: sound's 0.58, and what viscosity adds.  Without it discs
+of density ratio 0.3 run away at 6 cells per diameter, 0.2 at 10, 0.1 at 16."""
+CARRIED = ("inner_velocity", "inner_spin", "inner_momentum", "force", "fluid_force", "torque", "fluid_torque")
+"""What goes on from step to step, and its keys in a checkpoint."""
+
+
+class CellLoad(NamedTuple):
+    """Sums over the cells of bodies, lattice units: force (n, 2), torque (n,), and entrained (n, 2), mass and moment of
+    inertia of the fluid that answers within a step."""
+
+    force: Array
+    torque: Array
+    entrained: Array
+
+
+class InnerFluid(NamedTuple):
+    """The fluid inside bodies: mass (n,) kg/m, inertia (n,) kg m²/m, velocity (n, 2) m/s, spin (n,) rad/s and
+    momentum (n, 2) kg/s."""
+
+    mass: Array
+    inertia: Array
+    velocity: Array
+    spin: Array
+    momentum: Array
+
+
+class BodyLoad(NamedTuple):
+    """Loads on bodies: of the fluid, fluid_force (n, 2) N/m and fluid_torque (n,) N m/m, and what moves them, force and
+    torque."""
+
+    fluid_force: Array
+    fluid_torque: Array
+    force: Array
+    torque: Array
+
+
+@kernel
+def to_lattice(position, velocity, spin, spacing, step, centre, lattice_velocity, lattice_spin):
+    """SI position (n, 2) m, velocity m/s, spin rad/s into cells and lattice units; overwrites the last three."""
+    scale = step / spacing
+    for n in range(spin.shape[0]):
+        for a in range(2):
+            centre[n, a] = position[n, a] / spacing
+            lattice_velocity[n, a] = velocity[n, a] * scale
+        lattice_spin[n] = spin[n] * step
+
+
+@kernel
+def total_load(cells, units, velocity, spin, weight, response_share, step, inner, load):
+    """What the fluid does to every body, the inner mass given back, and with the weight.
+
+    cells: ``CellLoad``, lattice units, of ``units`` (4,) N/m, N m/m, kg/m, kg m²/m;  velocity (n, 2) m/s, spin (n,)
+    rad/s;  weight (n, 2) N/m;  response_share (n, 2): share of a change of force, and of torque, taken up in a step;
+    step s.  Overwrites velocity, spin and momentum of inner, ``InnerFluid``, and load, ``BodyLoad``.
+    """
+    entrained = cells.entrained
+    for n in range(spin.shape[0]):
+        mass, inertia = inner.mass[n], inner.inertia[n]
+        follows = FOLLOWING * min(1.0, entrained[n, 0] * units[2] / mass) if mass > 0.0 else 1.0
+        for a in range(2):
+            change = follows * (velocity[n, a] - inner.velocity[n, a])
+            load.fluid_force[n, a] = cells.force[n, a] * units[0] + mass * change / step
+            load.force[n, a] += response_share[n, 0] * (weight[n, a] + load.fluid_force[n, a] - load.force[n, a])
+            inner.velocity[n, a] += change
+            inner.momentum[n, a] += mass * change
+        follows = FOLLOWING * min(1.0, entrained[n, 1] * units[3] / inertia) if inertia > 0.0 else 1.0
+        change = follows * (spin[n] - inner.spin[n])
+        load.fluid_torque[n] = cells.torque[n] * units[1] + inertia * change / step
+        load.torque[n] += response_share[n, 1] * (load.fluid_torque[n] - load.torque[n])
+        inner.spin[n] += change
+
+
+class Immersed:
+    """Bodies in fluid, all discs or all polygons, as their equation of motion has them; SI units.
+
+    weight (n, 2) N/m, less buoyancy;  response_share (n, 2);  inner_mass, inner_inertia (n,), inner_velocity,
+    inner_spin, inner_momentum: see ``InnerFluid``;  fluid_force, fluid_torque, force, torque: see ``BodyLoad``.
+    """
+
+    def __init__(
+        self, mass: Array, inertia: Array, velocity: Array, spin: Array, weight: Array, response_share: Array
+    ) -> None:
+        """mass, inertia (n,): of the fluid inside, which starts with the velocity and spin of the bodies."""
+        n = len(mass)
+        self.weight, self.response_share = weight, response_share
+        self.inner_mass, self.inner_inertia = mass, inertia
+        self.inner_velocity, self.inner_spin = velocity.copy(), spin.copy()
+        self.inner_momentum = mass[:, None] * velocity
+        self.fluid_force, self.fluid_torque = np.zeros((n, 2)), np.zeros(n)
+        self.force, self.torque = np.zeros((n, 2)), np.zeros(n)
+        self._inner = InnerFluid(
+            self.inner_mass, self.inner_inertia, self.inner_velocity, self.inner_spin, self.inner_momentum
+        )
+        self._load = BodyLoad(self.fluid_force, self.fluid_torque, self.force, self.torque)
+
+    def respond(self, cells: CellLoad, units: Array, velocity: Array, spin: Array, step: float) -> None:
+        """The loads of a fluid step, from the cells' sums and the bodies' motion (m/s, rad/s); step: s."""
+        total_load(
+            cells, units, velocity, spin, self.weight, self.response_share, step, self._inner, self._load
+        )  # fmt: skip
+
+    def virtual_momentum(self, step: float) -> Array:
+        """Momentum of the virtual masses, m_v a dt, (2,) kg/s."""
+        return np.asarray((1 / self.response_share[:, 0] - 1) @ self.force * step)
+
+    def state(self) -> dict[str, Any]:
+        """What the next step takes from those before."""
+        return {name: getattr(self, name) for name in CARRIED}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state of the same bodies."""
+        for name in CARRIED:
+            getattr(self, name)[...] = state[name]
