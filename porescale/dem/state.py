@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.arrays import DiscArrays, Pairs, Surface, Surfaces, contact_arrays
-from porescale.dem.contact.law import BUDGET, KernelLaw
+from porescale.dem.contact.budget import BUDGET
+from porescale.dem.contact.law import KernelLaw
 from porescale.dem.contact.materials import Law, Materials
 from porescale.dem.discs import Discs
 from porescale.dem.forces.bonds import BondList

@@ -284,11 +284,9 @@ def test_a_contact_law_that_was_dropped_is_offered(tree: Path, tmp_path: Path) -
 def test_a_contact_law_that_was_dropped_runs(tree: Path, tmp_path: Path) -> None:
     rows = []
     for law in ("linear", "stiffening"):
-        folder = dry(tmp_path / law, law)
-        done = porescale(tree, "run", folder, "--quiet")
+        done = porescale(tree, "run", dry(tmp_path / law, law), "--quiet")
         assert done.returncode == 0, done.stdout + done.stderr
-        (table,) = folder.rglob("series.csv")
-        rows.append(table.read_text(encoding="utf-8"))
+        rows.append((tree / "runs" / law / "series.csv").read_text(encoding="utf-8"))
     assert rows[0] != rows[1]  # a bounce from another spring
 
 

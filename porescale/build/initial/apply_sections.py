@@ -13,7 +13,7 @@ from porescale.build.initial.frames import Placed
 from porescale.build.initial.placed import by_hand
 from porescale.build.initial.time_functions import schedule_of
 from porescale.build.initial.walls import add_walls, moving_sides
-from porescale.dem.contact.law import BUDGET
+from porescale.dem.contact.budget import BUDGET
 from porescale.dem.grains import Grains
 from porescale.dem.motion.time_function import Schedule
 from porescale.scene.cell import RATES, STRESSES, Cell

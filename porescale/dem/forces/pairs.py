@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from porescale.common.compiled.jit import inline
+from porescale.dem.contact.budget import add_contact_losses, add_release_losses, has_budget
 from porescale.dem.contact.law import (
     CN,
     COMPLIANCE_R,
@@ -26,11 +27,8 @@ from porescale.dem.contact.law import (
     MUR,
     RULE,
     Relative,
-    add_contact_losses,
-    add_release_losses,
     contact,
     force_components,
-    has_budget,
     has_history,
     load_history,
     moments,

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel
 from porescale.common.core.errors import Fault, InputError
-from porescale.dem.contact.law import SURFACES, add_work, has_budget, has_history, store_history
+from porescale.dem.contact.budget import SURFACES, add_work, has_budget
+from porescale.dem.contact.law import has_history, store_history
 from porescale.dem.forces.walls import add_leaving_losses, surface_contact
 
 LEFT, BOTTOM, RIGHT, TOP, VELOCITY_X, VELOCITY_Y = range(6)

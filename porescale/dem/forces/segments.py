@@ -33,8 +33,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel
+from porescale.dem.contact.budget import has_budget
 from porescale.dem.contact.law import (
-    has_budget,
     has_history,
     load_history,
     material_of,

@@ -16,15 +16,11 @@ from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel
 from porescale.common.core.errors import Fault, InputError
+from porescale.dem.contact.budget import SURFACES, add_contact_losses, add_release_losses, add_work, has_budget
 from porescale.dem.contact.law import (
-    SURFACES,
     Relative,
-    add_contact_losses,
-    add_release_losses,
-    add_work,
     contact,
     force_components,
-    has_budget,
     has_history,
     load_history,
     material_of,

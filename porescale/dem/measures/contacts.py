@@ -21,7 +21,7 @@ from porescale.dem.forces.pairs import pair_forces
 from porescale.dem.forces.rectangle import BOTTOM, LEFT, RIGHT, TOP, add_rectangle_forces, nearest_face
 from porescale.dem.forces.walls import HIGH, LOW, NX, PRESENT, PX, X, add_plate_forces, add_wall_forces
 from porescale.dem.listing import current_pairs
-from porescale.dem.measures.contact_list import NOBODY, Contacts, listed, nearest_image
+from porescale.dem.measures.contact_list import NOBODY, Bodies, Contacts, Places, listed, nearest_image
 from porescale.dem.measures.contacts_segments import bond_contacts, segment_contacts
 from porescale.dem.state import State
 
@@ -71,11 +71,18 @@ def _pairs(grains: State) -> Contacts:
     distance = np.hypot(*apart.T)
     normal = apart / distance[:, None]
     arm = 0.5 * (distance + (d.radius[i] ** 2 - d.radius[j] ** 2) / distance)
+    bodies = Bodies(i, j, np.full(count, NOBODY))
+    at = Places(
+        d.position[i] + arm[:, None] * normal, normal, d.position[i], apart, d.radius[i] + d.radius[j] - distance
+    )
     return listed(
-        i, j, np.full(count, NOBODY), d.position[i] + arm[:, None] * normal, normal, d.position[i], apart,
-        d.radius[i] + d.radius[j] - distance, both.force[1::2], both.torque.reshape(-1, 2), carried[:, 0],
+        bodies,
+        at,
+        both.force[1::2],
+        both.torque.reshape(-1, 2),
+        carried[:, 0],
         grains.contact.table[_material(grains, i), _material(grains, j), MU],
-    )  # fmt: skip
+    )
 
 
 Forces = Callable[[Index], tuple[DiscArrays, Array]]
@@ -96,10 +103,9 @@ def _surface(grains: State, number: int, nearest: Array, distance: Array, forces
     count, other = len(i), np.zeros(len(i))
     if springs_of(grains.contact) > 1:  # what is not the tangential force on its arm resists rolling
         other = np.maximum(depth, 0.0) * (force[:, 1] * normal[:, 0] - force[:, 0] * normal[:, 1]) - torque
-    return listed(
-        i, np.full(count, NOBODY), np.full(count, number), nearest[i], normal, d.position[i], branch,
-        d.radius[i] - depth, -force, np.column_stack((torque, other)), spring, friction[_material(grains, i)],
-    )  # fmt: skip
+    bodies = Bodies(i, np.full(count, NOBODY), np.full(count, number))
+    at = Places(nearest[i], normal, d.position[i], branch, d.radius[i] - depth)
+    return listed(bodies, at, -force, np.column_stack((torque, other)), spring, friction[_material(grains, i)])
 
 
 def _material(grains: State, discs: Index) -> NDArray[Any]:

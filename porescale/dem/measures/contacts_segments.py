@@ -15,7 +15,7 @@ from porescale.dem.contact.law import MU
 from porescale.dem.forces.bonds import BondList, pressing, touched
 from porescale.dem.forces.segment_list import SegmentList
 from porescale.dem.forces.segments import OUTLINE, Segments, add_segment_forces, hand_over, meeting, weight_of
-from porescale.dem.measures.contact_list import NOBODY, Contacts, listed, nearest_image
+from porescale.dem.measures.contact_list import NOBODY, Bodies, Contacts, Places, listed, nearest_image
 from porescale.dem.state import State
 
 Array = NDArray[np.float64]
@@ -87,11 +87,22 @@ def _alone(
     branch = way if share is None else way - share[:, None] * (d.position[members[:, 2]] - d.position[a])
     table = grains.contact.table
     material = np.zeros(d.count, np.uint8) if grains.material is None else grains.material
+    bodies = Bodies(i, a, np.full(count, NOBODY))
+    at = Places(
+        d.position[i] + arm[:, None] * normal,
+        normal,
+        d.position[i],
+        branch,
+        d.radius[i] + d.radius[a] - distance if overlap is None else overlap,
+    )
     return listed(
-        i, a, np.full(count, NOBODY), d.position[i] + arm[:, None] * normal, normal, d.position[i], branch,
-        d.radius[i] + d.radius[a] - distance if overlap is None else overlap, found.force[1::each],
-        found.torque.reshape(-1, each)[:, :2], memory[:, 0], table[material[i], material[a], MU],
-    )  # fmt: skip
+        bodies,
+        at,
+        found.force[1::each],
+        found.torque.reshape(-1, each)[:, :2],
+        memory[:, 0],
+        table[material[i], material[a], MU],
+    )
 
 
 def bond_contacts(grains: State, own: BondList) -> Contacts:
@@ -116,7 +127,6 @@ def _taken_off(grains: State, known: Segments, ends: Index, back: Array | None) 
     normal = way / distance[:, None]
     force = -back[:, None] * normal
     torque = np.column_stack((np.zeros(count), far[:, 0] * force[:, 1] - far[:, 1] * force[:, 0]))
-    return listed(
-        i, other, np.full(count, NOBODY), d.position[i] + 0.5 * way, normal, d.position[i], way - far,
-        d.radius[i] + d.radius[other] - distance, force, torque, np.zeros(count), np.zeros(count),
-    )  # fmt: skip
+    bodies = Bodies(i, other, np.full(count, NOBODY))
+    at = Places(d.position[i] + 0.5 * way, normal, d.position[i], way - far, d.radius[i] + d.radius[other] - distance)
+    return listed(bodies, at, force, torque, np.zeros(count), np.zeros(count))

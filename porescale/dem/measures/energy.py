@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from porescale.common.compiled.jit import kernel
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.bodies.bonding import framed_parts
-from porescale.dem.contact.law import (
+from porescale.dem.contact.budget import (
     BEFORE_SPIN,
     BEFORE_X,
     DRAG,
@@ -33,10 +33,8 @@ from porescale.dem.contact.law import (
     ROLLING_FRICTION,
     SURFACES,
     TANGENTIAL_DASHPOT,
-    load_history,
-    material_of,
-    stored,
 )
+from porescale.dem.contact.law import load_history, material_of, stored
 from porescale.dem.forces.bonds import stored_in_bonds
 from porescale.dem.forces.rectangle import BOTTOM, LEFT, RIGHT, TOP, VELOCITY_X
 from porescale.dem.forces.segments import survey_segments

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import by_law, inline, parallel_kernel, prange
-from porescale.dem.contact.law import BEFORE_SPIN, BEFORE_X, BEFORE_Y, DRAG, EXTERNAL, HOLDERS, add_work
+from porescale.dem.contact.budget import BEFORE_SPIN, BEFORE_X, BEFORE_Y, DRAG, EXTERNAL, HOLDERS, add_work
 from porescale.dem.forces.threads import BLOCK, Serial, Threads
 
 Array = NDArray[np.float64]

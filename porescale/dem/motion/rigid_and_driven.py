@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import kernel
 from porescale.dem.bodies.clumps import ClumpArrays, gather, place_members
-from porescale.dem.contact.law import EXTERNAL, HOLDERS, add_work
+from porescale.dem.contact.budget import EXTERNAL, HOLDERS, add_work
 from porescale.dem.motion.affine_strain import affine_kick_drift, any_left, drift_of
 from porescale.dem.motion.control import CLUMP, INDEX, KIND, PUSH, apply_control
 from porescale.dem.motion.leapfrog import withhold

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
-from porescale.dem.contact.law import BEFORE_SPIN, BEFORE_X, DRAG
+from porescale.dem.contact.budget import BEFORE_SPIN, BEFORE_X, DRAG
 from porescale.dem.forces.rectangle import VELOCITY_X, VELOCITY_Y
 from porescale.dem.forces.walls import LOW, PRESENT, VELOCITY, VX, WALL
 from porescale.dem.listing import current_pairs
