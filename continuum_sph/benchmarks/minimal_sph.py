@@ -10,10 +10,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.water.density import HYDROSTATIC, haste_of
+from continuum_sph.water.density import HYDROSTATIC, noise_scale
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.rates import split_rows
 from continuum_sph.water.smoothing import WENDLAND
-from continuum_sph.water.state import RHO, STIFF, VOLUME, VX, VY, P, X, Y
+from continuum_sph.water.state import COMPRESSIBILITY, RHO, VOLUME, VX, VY, P, X, Y
 from continuum_sph.water.step import Flow
 from porescale.common.compiled.jit import parallel_kernel, prange
 from porescale.common.compiled.simd import LANES, greater, lesser, nothing, root, take_rows, total
@@ -28,7 +29,7 @@ def plain_drift(
 ):
     """Half kick, drift, densities a step on and their pressures, of fluid particles: overwrites x, v, record.
 
-    Arguments as of `motion.kick_drift`;  b: of Tait, Pa.  Returns the largest (c/c0)².
+    Arguments as of `leapfrog.kick_drift`;  b: of Tait, Pa.  Returns the largest (c/c0)².
     """
     fastest = 0.0
     for i in prange(density.shape[0]):
@@ -53,14 +54,14 @@ def plain_drift(
         record[i, RHO] = rho
         record[i, P] = b * (power * relative - 1.0)
         record[i, VOLUME] = mass[i] / rho
-        record[i, STIFF] = rho / (7.0 * b / density0 * power)
+        record[i, COMPRESSIBILITY] = rho / (7.0 * b / density0 * power)
         fastest = max(fastest, power)
     return fastest
 
 
 @parallel_kernel
 def plain_walls(fluid, start, split, partner, record, h, g):
-    """Pressure of the fluid before wall particles, `boundary.load_walls`: overwrites their column of ``record``."""
+    """Pressure of the fluid before wall particles, `load_walls`: overwrites their column of ``record``."""
     for w in prange(fluid, record.shape[0]):
         weight, p = 0.0, 0.0
         for k in range(np.uint64(start[w]), np.uint64(split[w])):
@@ -76,8 +77,8 @@ def plain_walls(fluid, start, split, partner, record, h, g):
 
 @parallel_kernel
 def plain_pairs(
-    fluid, start, split, partner, record, acceleration, rate, smoothed, h, g, alpha, softening, delta, calm, sound, mu,
-    xsph,
+    fluid, start, split, partner, record, acceleration, rate, smoothed, h, g, alpha, softening, delta, noise_speed,
+    sound, mu, xsph,
 ):  # fmt: skip
     """Overwrites ``acceleration`` (fluid, 2) and ``rate`` (fluid,), and ``smoothed`` (fluid, 2) if it is not None, as
     `rates.rates`;  g: downwards;  xsph: ε, or None."""
@@ -85,10 +86,10 @@ def plain_pairs(
     if smoothed is not None:
         strength = 2.0 * xsph * 1.75 / (np.pi * h * h)
     inverse, soft, half_g = 1.0 / h, softening * h * h, 0.5 * g
-    haste, restless = haste_of(calm, h)
+    inverse_noise_speed, sound_share = noise_scale(noise_speed, h)
     for i in prange(fluid):
         xi, yi, vxi, vyi = record[i, X], record[i, Y], record[i, VX], record[i, VY]
-        rho, own, stiff = record[i, RHO], record[i, P], record[i, STIFF]
+        rho, own, stiff = record[i, RHO], record[i, P], record[i, COMPRESSIBILITY]
         specific = 1.0 / rho
         friction = 2.0 * mu * specific
         ax, ay, change, spread, sx, sy = nothing(), nothing(), nothing(), nothing(), nothing(), nothing()
@@ -103,7 +104,7 @@ def plain_pairs(
             cube = rest * rest * rest
             part = volume * scale * cube
             approach = vx * dx + vy * dy
-            hasty = lesser(restless + haste * greater(approach, -approach), 1.0)
+            hasty = lesser(sound_share + inverse_noise_speed * greater(approach, -approach), 1.0)
             spread += (rho - rho_j + (stiff + stiff_j) * (half_g * dy)) * (part * hasty)
             change += approach * part
             both = rho + rho_j
@@ -153,13 +154,15 @@ class PlainColumn:
     def __init__(self, flow: Flow) -> None:
         layer, law, own = flow.layer, flow.law, flow.pairs
         assert len(law.fluids) == 1
-        assert not any((law.images, law.varied, law.fluids[0].cohesion, law.gravity[0], layer.booked))
+        assert not any((law.images, law.varied, law.fluids[0].cohesion, law.gravity[0], layer.has_budget))
         assert law.smoothing.kind == WENDLAND
         assert law.noise == HYDROSTATIC
         assert not any((law.sticky, law.corrected, law.shifting, law.beta, law.cut, law.filter_every))
         assert own.period == (0.0, 0.0)
-        self.fluid, self.law, self.state = layer.fluid, law, law.fluids[0].state
-        assert getattr(self.state, "exponent", None) == 7.0
+        state = law.fluids[0].state
+        assert isinstance(state, Tait)
+        assert state.exponent == 7.0
+        self.fluid, self.law, self.state = layer.fluid, law, state
         self.x, self.v, self.mass, self.density = (a.copy() for a in (layer.x, layer.v, layer.mass, layer.density))
         self.acceleration, self.record = layer.acceleration.copy(), layer.record.copy()
         self._rate, self._before, self._length = layer.rate.copy(), layer.rate_before.copy(), layer.length.copy()

@@ -19,6 +19,14 @@ SUPPORT = 2.0  # smoothing lengths
 
 
 @inline
+def kernel_kind(kind):
+    """The kernel as a number: Wendland's where ``kind`` is None, which is then compiled in."""
+    if kind is None:
+        return WENDLAND
+    return kind
+
+
+@inline
 def kernel_value(kind, q, h):
     """W, 1/m², at q = r/h;  h smoothing length, m;  kind CUBIC or WENDLAND.
 

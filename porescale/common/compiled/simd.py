@@ -18,14 +18,14 @@ import numpy as np
 from porescale.common.compiled.jit import when_compiling
 
 LANES = 4  # twice as many are 2 % faster where vectors are that wide (measured), and half as many registers elsewhere
-WORDS = 32  # that `put_ascending` compares at once: a row of partners
+WORDS = 32  # that `store_sorted` compares at once: a row of partners
 COLUMNS = 8  # that `take_rows` reads of a record
 CODE = f"{__package__}.simd_code"
 """What these functions are in kernels."""
 
 
 def root(a: Any) -> Any:
-    """√a."""
+    """Square root of every lane."""
     return np.sqrt(a)
 
 
@@ -76,7 +76,7 @@ def put_line(line: Any, first: Any, end: Any, values: Any) -> None:
     line[first : first + count] = values[:count]
 
 
-def put_ascending(line: Any, count: Any, target: Any, first: Any) -> None:
+def store_sorted(line: Any, count: Any, target: Any, first: Any) -> None:
     """Write the first ``count`` entries of ``line`` to ``target[first]`` and on, the least first; both int32.
 
     Every entry counts those less than it, which says where it goes: quick for tens of entries, and nothing is guessed.

@@ -23,9 +23,9 @@ from porescale.common.compiled.simd import (
     lesser,
     nearest,
     nothing,
-    put_ascending,
     put_line,
     root,
+    store_sorted,
     take_line,
     total,
 )
@@ -80,7 +80,7 @@ def _operator(keys: tuple[Callable[..., Any], ...], code: Callable[..., Any], op
     for operation in keys:
 
         class Template(AbstractTemplate):
-            """The operator on vectors, as numba is told of it."""
+            """The operator on vectors, as numba sees it."""
 
             key: Any = operation
 
@@ -146,12 +146,12 @@ _function(lesser, _chosen("<"), lambda a, b: a if a < b else b)
 
 
 def _zero(typing: Any) -> Any:
-    """``nothing`` in kernels."""
+    """Signature and code of ``nothing`` in kernels."""
     return lanes(), lambda context, builder, _, values: ir.Constant(VECTOR, [0.0] * LANES)
 
 
 def _sum(typing: Any, a: Any) -> Any:
-    """``total`` in kernels."""
+    """Signature and code of ``total`` in kernels."""
 
     def code(context: Any, builder: Any, _: Any, values: Any) -> Any:
         """Halves of the vector added until one number is left."""
@@ -167,7 +167,7 @@ def _sum(typing: Any, a: Any) -> Any:
 
 
 def _put_line(typing: Any, line: Any, first: Any, end: Any, values: Any) -> Any:
-    """``put_line`` in kernels."""
+    """Signature and code of ``put_line`` in kernels."""
 
     def code(context: Any, builder: Any, _: Any, taken: Any) -> Any:
         """One store where all lanes lie before the end, else those that do, one by one."""
@@ -189,7 +189,7 @@ def _put_line(typing: Any, line: Any, first: Any, end: Any, values: Any) -> Any:
 
 
 def _put_ascending(typing: Any, line: Any, count: Any, target: Any, first: Any) -> Any:
-    """``put_ascending`` in kernels: WORDS entries at a time are compared with all."""
+    """``store_sorted`` in kernels: WORDS entries at a time are compared with all."""
     vector, none = ir.VectorType(SHORT, WORDS), COUNT(0)
 
     def code(context: Any, builder: Any, _: Any, values: Any) -> Any:
@@ -226,12 +226,12 @@ def _kept(builder: Any, values: Any, first: Any, end: Any) -> Any:
 
 
 def _keep(typing: Any, a: Any, first: Any, end: Any) -> Any:
-    """``kept`` in kernels."""
+    """Signature and code of ``kept`` in kernels."""
     return lanes(lanes, types.int64, types.int64), lambda context, builder, _, values: _kept(builder, *values)
 
 
 def _take_line(typing: Any, line: Any, first: Any, end: Any) -> Any:
-    """``take_line`` in kernels."""
+    """Signature and code of ``take_line`` in kernels."""
 
     def code(context: Any, builder: Any, _: Any, values: Any) -> Any:
         """A load, of which lanes beyond the end are zero."""
@@ -283,7 +283,7 @@ def _choose_put(line: Any, first: Any, end: Any, values: Any) -> Any:
     return lambda line, first, end, values: _put(line, first, end, values)
 
 
-@overload(put_ascending, strict=False, jit_options=INLINED)
+@overload(store_sorted, strict=False, jit_options=INLINED)
 def _choose_ascending(line: Any, count: Any, target: Any, first: Any) -> Any:
     return lambda line, count, target, first: _ascending(line, count, target, first)
 
