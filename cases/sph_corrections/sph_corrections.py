@@ -10,7 +10,7 @@ import numpy as np
 from continuum_sph.build.water import water_flow
 from continuum_sph.validation.water import channels, flows, setups
 from continuum_sph.validation.water.channels import poiseuille
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.smoothing import Smoothing
 from continuum_sph.water.state import Layer
 from continuum_sph.water.step import Flow

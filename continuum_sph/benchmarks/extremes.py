@@ -1,4 +1,4 @@
-"""What `continuum-sph study extremes` asks for: each number from mild to absurd, in a flow that shows what it does."""
+"""What `continuum-sph study extremes` tries: each number from mild to absurd, in a flow that shows what it does."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from continuum_sph.build.simulation import Simulation
 from continuum_sph.build.water import WaterPart
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.water import flows, setups
-from continuum_sph.water.energy_budget import book
+from continuum_sph.water.energy_budget import budget
 from porescale.common.core.constants import GRAVITY
 from porescale.common.evidence.extremes import Extreme, Extremes, Verdict
 from porescale.common.schema.sections import validate
@@ -24,15 +24,15 @@ FALL = (2.0 * GRAVITY * COLUMN[1]) ** 0.5  # m/s, from the top of the columns
 CHECKED = 20  # steps between two looks at whether all is in sense
 JUDGED = 0.25  # s: the front of the columns has come half a metre, and has as far to go to the wall
 SPACING = 0.05  # m
-NEAR = 0.5 * SPACING  # m: particles of this size know a front no better
+NEAR = 0.5 * SPACING  # m: particles of this size resolve a front no better
 CLOSED = 0.01  # of the energy at the start, by which its book may be off
 
 
 def driven(model: Simulation, end: float, judged: bool = False) -> str | Verdict:
-    """Take ``model`` to ``end`` (s) and say what became of it; Unstable where it leaves sense.  ``judged``: by how far
+    """Take ``model`` to ``end`` (s) and state the outcome; Unstable where it leaves sense.  ``judged``: by how far
     water has run at JUDGED and by its book of energies."""
-    model.flow.layer.keep_book()
-    start = book(model.flow)["energy balance"]
+    model.flow.layer.keep_budget()
+    start = budget(model.flow)["energy balance"]
     fastest, way = 0.0, None
     while model.time < end:
         model.advance(CHECKED)
@@ -40,18 +40,18 @@ def driven(model: Simulation, end: float, judged: bool = False) -> str | Verdict
         fastest = max(fastest, model.flow.swiftest)
         if way is None and model.time >= JUDGED:
             way = front(model)
-    energy = book(model.flow)["energy balance"] / start if start else 1.0
+    energy = budget(model.flow)["energy balance"] / start if start else 1.0
     n = model.flow.layer.fluid
     pressure = model.flow.layer.pressure[:n]
     outside = n - int(model.part(WaterPart).inside().sum())
-    said = f"{model.step} steps to {model.time:.3g} s; fastest {fastest:.3g} m/s = {fastest / _sound(model):.2g} c0"
-    said += f"; pressure {pressure.min():.3g} to {pressure.max():.3g} Pa; energy balance {energy:.3f} of the start"
-    said += f"; {outside} particles outside" if outside else ""
+    text = f"{model.step} steps to {model.time:.3g} s; fastest {fastest:.3g} m/s = {fastest / _sound(model):.2g} c0"
+    text += f"; pressure {pressure.min():.3g} to {pressure.max():.3g} Pa; energy balance {energy:.3f} of the start"
+    text += f"; {outside} particles outside" if outside else ""
     if not judged or way is None:
-        return said
+        return text
     off = way - mild_front()
     return Verdict(
-        f"{said}; front at {JUDGED:g} s {100.0 * off:+.1f} cm from that at Mach 0.05 with everything else as it comes",
+        f"{text}; front at {JUDGED:g} s {100.0 * off:+.1f} cm from that at Mach 0.05 with everything else as it comes",
         abs(off) < NEAR and abs(energy - 1.0) < CLOSED,
     )
 
@@ -124,12 +124,12 @@ def spun(tension: str, shifting: float) -> Callable[[], str]:
     def run() -> str:
         """A quarter turn: least pressure, how far it reaches, energies."""
         flow = flows.spinning_square(24, cut=tension == "cut", shifting=shifting)
-        flow.layer.keep_book()
-        layer, start, pull = flow.layer, book(flow)["energy balance"], 0.0
+        flow.layer.keep_budget()
+        layer, start, pull = flow.layer, budget(flow)["energy balance"], 0.0
         while flow.time < 0.5 * np.pi:  # a quarter turn
             flow.advance()
             pull = min(pull, float(layer.pressure[: layer.fluid].min()))
-        energy = book(flow)["energy balance"] / start
+        energy = budget(flow)["energy balance"] / start
         apart = float(np.abs(layer.x[: layer.fluid]).max())
         return f"a quarter turn; least pressure {pull:.3g} Pa; reaches {apart:.3g} m; energy balance {energy:.3f}"
 

@@ -17,7 +17,8 @@ from continuum_sph.scene.air import AirSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.water import Column
 from continuum_sph.seepage import PoreFlow
-from continuum_sph.water.eos import Gas
+from continuum_sph.water.eos.law import Given
+from continuum_sph.water.eos.register import laws
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.state import P
@@ -34,7 +35,8 @@ HEAVY = 0.03
 
 def air_fluid(air: AirSection) -> Fluid:
     """The air of a section."""
-    return Fluid(Gas(air.density, air.pressure, air.exponent, printed=air.law == "printed"), air.viscosity)
+    law = laws()[air.law].of(Given(air.density, None, air.pressure, air.exponent, 0.0))
+    return Fluid(law, air.viscosity)
 
 
 class AirPart(Part):

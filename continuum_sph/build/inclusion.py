@@ -12,7 +12,9 @@ from scipy.spatial import cKDTree
 from continuum_sph.build.initial_pressure import lattice_pressure
 from continuum_sph.scene.inclusion import InclusionSection
 from continuum_sph.scene.sections import Scene
-from continuum_sph.water.eos import Gas, Tait
+from continuum_sph.water.eos.law import Given
+from continuum_sph.water.eos.liquid import Tait
+from continuum_sph.water.eos.register import laws
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.step import Flow
@@ -37,12 +39,9 @@ class InclusionPart(Part):
 
 def inclusion_fluid(given: InclusionSection, water: Tait) -> Fluid:
     """The second fluid of a section, in water of a state."""
-    if given.law == "liquid":
-        exponent = given.exponent or 7.0
-        as_stiff = (water.stiffness * exponent / given.density) ** 0.5
-        return Fluid(Tait(given.density, given.sound_speed or as_stiff, exponent), given.viscosity, given.cohesion)
-    gas = Gas(given.density, given.pressure, given.exponent or 1.403, printed=given.law == "printed")
-    return Fluid(gas, given.viscosity, given.cohesion)
+    said = Given(given.density, given.sound_speed, given.pressure, given.exponent, water.stiffness)
+    law = laws()[given.law].of(said)
+    return Fluid(law, given.viscosity, given.cohesion)
 
 
 def fill_inclusion(scene: Scene, law: Law, x: Floats, rho: Floats, material: NDArray[np.int64]) -> None:

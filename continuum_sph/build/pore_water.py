@@ -16,7 +16,7 @@ from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import PoreFlow, Resistance, Seepage, Supply, skeleton_of
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.seepage.reservoir import BERTH, berths
-from continuum_sph.seepage.sheet_pile import PartedList
+from continuum_sph.seepage.sheet_pile import CutPairList
 from continuum_sph.soil import SoilFlow
 from continuum_sph.water.density import LINEAR
 from continuum_sph.water.parameters import Law
@@ -110,12 +110,12 @@ def seepage_flow(scene: Scene) -> Seepage:
     layer = Layer(len(x), np.concatenate((x, walls)), np.concatenate((v, np.zeros_like(walls))), mass, rho)
     layer.material[wet:present] = AIR if scene.air else 0
     if scene.output.energy:
-        layer.keep_book()
+        layer.keep_budget()
     box = (-margin, -margin), (width + margin, top)
     overlap = Overlap(len(x), skeleton.count, law.smoothing.length, skin, *box)
     pairs = PairList(layer.count, skin, *box, full=True)
     if pile:
-        pairs, overlap.pairs = PartedList(pairs, pile, len(x), side, layer.v), PartedList(overlap.pairs, pile)
+        pairs, overlap.pairs = CutPairList(pairs, pile, len(x), side, layer.v), CutPairList(overlap.pairs, pile)
     flow = PoreFlow(
         layer, law, pairs, skeleton=skeleton, overlap=overlap,
         resistance=Resistance(section.porosity, section.permeability_law),

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.water.eos import Gas
-from continuum_sph.water.fluids import THINNEST, Fluid, table
+from continuum_sph.water.fluids import LEAST_DENSITY, Fluid, table
 
 Floats = NDArray[np.float64]
 
@@ -28,19 +27,16 @@ def bounds(fluids: tuple[Fluid, ...]) -> tuple[Floats, Floats, Floats]:
     most = first.pressure(np.array(DENSEST * first.density))
     dense = [DENSEST * first.density, *(max(DENSEST * it.density, float(it.density_at(most))) for it in others)]
     swift = [first.sound_speed, *(max(first.sound_speed, it.sound_speed) for it in others)]
-    return (1.0 - SLACK) * table(fluids)[:, THINNEST], np.array(dense), np.array(swift)
+    return (1.0 - SLACK) * table(fluids)[:, LEAST_DENSITY], np.array(dense), np.array(swift)
 
 
 def sound_speeds(fluids: tuple[Fluid, ...], material: NDArray[np.int64], density: Floats) -> Floats:
-    """Speed of sound (n,) m/s in particles of a ``density`` (n,) kg/m³ within `bounds`: c0 (ρ/ρ0)^((γ-1)/2), of a gas
-    as printed c0/{1 - γ(ρ/ρ0 - 1)}.  material (n,): numbers of their fluids."""
+    """Speed of sound (n,) m/s in particles of a ``density`` (n,) kg/m³ within `bounds`, by the law of each fluid.
+
+    material (n,): numbers of their fluids.
+    """
     found = np.zeros(len(density))
     for number, fluid in enumerate(fluids):
-        own, state = material == number, fluid.state
-        ratio = density[own] / state.density
-        if isinstance(state, Gas) and state.printed:
-            rest = 1.0 - state.exponent * (ratio - 1.0)
-            found[own] = state.sound_speed / np.maximum(rest, np.finfo(np.float64).tiny)
-        else:
-            found[own] = state.sound_speed * np.maximum(ratio, 0.0) ** (0.5 * (state.exponent - 1.0))
+        own = material == number
+        found[own] = fluid.state.sound_speed_at(density[own])
     return found

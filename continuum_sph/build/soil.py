@@ -22,7 +22,7 @@ from continuum_sph.build.sheet_pile import sheet_pile
 from continuum_sph.scene.numerics import NumericsSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil import SoilSection
-from continuum_sph.seepage.sheet_pile import PartedList, Pile
+from continuum_sph.seepage.sheet_pile import CutPairList, Pile
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw, porosity
 from continuum_sph.soil.parameters import RULES
 from continuum_sph.soil.state import XX, XY, YY, ZZ
@@ -222,7 +222,7 @@ def placed(
     box = ((-margin, -margin), (width + margin, height + margin)) if closed else ((0.0, -margin), (width, height))
     pairs = PairList(count, skin * law.smoothing.length, *box, (not closed, False), full=True)
     if pile:
-        pairs = PartedList(pairs, pile, n, side, soil.v)
+        pairs = CutPairList(pairs, pile, n, side, soil.v)
     flow = SoilFlow(soil, law, pairs)
     flow.lower[:], flow.upper[:] = lower, upper
     flow.start()

@@ -24,8 +24,8 @@ from continuum_sph.build.sanity import (
 from continuum_sph.build.sanity_fluids import bounds, sound_speeds
 from continuum_sph.scene.sections import Scene
 from continuum_sph.water.density import NAMES
-from continuum_sph.water.energy_budget import book, held
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.energy_budget import budget, held
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import RULES, Law
 from continuum_sph.water.pressure_walls import tank_walls
@@ -100,7 +100,7 @@ class WaterPart(Part):
         inside = self.inside()
         at = x[inside] if inside.any() else np.zeros((1, 2))
         speed2 = (v * v).sum(axis=1)
-        energy = book(self.flow) if layer.booked else held(self.flow)
+        energy = budget(self.flow) if layer.has_budget else held(self.flow)
         return {
             "front (m)": float(at[:, 0].max()) + half,
             "highest water (m)": float(at[:, 1].max()) + half,
@@ -252,7 +252,7 @@ def water_flow(scene: Scene) -> Flow:
         material=material,
     )
     if scene.output.energy:
-        layer.keep_book()
+        layer.keep_budget()
     margin = layers * spacing
     pairs = PairList(
         layer.count,

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import pydantic
 
 from continuum_sph.scene.bounds import LARGEST, SMALLEST
+from continuum_sph.water.eos.register import offered
 from porescale.common.schema.sections import Section, quantity
+
+if TYPE_CHECKING:
+    LawName = str
+else:
+    LawName = Literal[tuple(offered())]
 
 
 class Disc(Section):
@@ -22,12 +28,13 @@ class InclusionSection(Section):
     """A second fluid, in discs within the water: bubbles or drops.
 
     law : "liquid" (eq. 41), as stiff as the water unless sound_speed says otherwise; gas under the pressure of the air,
-    "adiabatic", or "printed" (eqs 39, 40);  surface_tension : σ against the water;  cohesion : a of eq. 54 within it.
+    "adiabatic", or "printed" (eqs 39, 40); or another file of `continuum_sph.water.eos`;  surface_tension : σ against
+    the water;  cohesion : a of eq. 54 within it.
     """
 
     density: float = quantity("kg/m^3", 1.207, ge=1e-2, le=1e5, help="density under the pressure of the air")
     viscosity: float = quantity("Pa s", 1.810e-5, ge=0, le=1e9, help="viscosity")
-    law: Literal["liquid", "adiabatic", "printed"] = "adiabatic"
+    law: LawName = "adiabatic"
     sound_speed: float | None = quantity("m/s", None, ge=1e-3, le=1e6, help="speed of sound of a liquid")
     pressure: float = quantity("Pa", 1e5, ge=1e-3, le=1e9, help="pressure of the air, of a gas")
     exponent: float | None = quantity("", None, ge=1.01, le=20, help="exponent: 7 of a liquid, 1.403 of a gas")

@@ -1,18 +1,18 @@
 """Water and grains in one volume: porosity and flux at water particles, and what of their forces the grains bear.
 
 Notation and derivation: `continuum_sph.seepage`.  What water finds about it of the soil is gathered once a step, by
-`meet`, drag's sums too, with the weights of all pairs; soil finds its weights in `bear`.
+`gather_soil`, drag's sums too, with the weights of all pairs; soil finds its weights in `load_soil`.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from continuum_sph.seepage.overlap import closeness
+from continuum_sph.seepage.overlap import overlap_kernel
 from continuum_sph.water.smoothing import CUBIC, kernel_value
 from continuum_sph.water.state import BY_SHIFTING, RHO, VOLUME, VX, VY, X, Y
 from porescale.common.compiled.jit import parallel_kernel, prange
-from porescale.common.compiled.simd import LANES, kept, nothing, put_line, take_four, take_rows, total
+from porescale.common.compiled.simd import LANES, gather_four, gather_rows, mask_tail, reduce_add, store, zeros
 from porescale.common.neighbors.cells import minimum_image
 
 (
@@ -27,33 +27,34 @@ LEAST_POROSITY = 0.05  # grains that crowd beyond this leave the water no more v
 
 
 @parallel_kernel
-def meet(fluid, near, soil, weight, record, mass, burden, gravity, thick, pores, h, period_x, period_y):
+def gather_soil(fluid, near, soil, weight, record, mass, burden, gravity, specific_weight, pores, reach):
     """Overwrites ``weight`` (m,) 1/m² of the water's rows, W, and all lines of ``pores`` (14, fluid…) but porosity,
     room and pull.
 
     near, soil, weight: rows of the overlap;  record: of the water alone;  mass (fluid…,) kg/m;  burden: see Skeleton;
-    gravity: g, m/s²;  thick (fluid,) N/m³, what stands for ρ g in the drag on particles of several fluids,
-    ρ_w g μ/μ_w; empty for one;  h: smoothing length;  periods, m or 0.
+    gravity: g, m/s²;  specific_weight (fluid,) N/m³, what stands for ρ g in the drag on particles of several fluids,
+    ρ_w g μ/μ_w; empty for one;  reach: see `overlap.Reach`.
     """
-    several = thick.shape[0] > 0
+    several = specific_weight.shape[0] > 0
+    h, period_x, period_y = reach.h, reach.period_x, reach.period_y
     turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
     turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
     for i in prange(fluid):
         xi = record[i, X]
         yi = record[i, Y]
-        grains = nothing()
-        flux_x = nothing()
-        flux_y = nothing()
-        resisting = nothing()
-        masses = nothing()
-        flow_x = nothing()
-        flow_y = nothing()
+        grains = zeros()
+        flux_x = zeros()
+        flux_y = zeros()
+        resisting = zeros()
+        masses = zeros()
+        flow_x = zeros()
+        flow_y = zeros()
         k = near[i]
         while k < near[i + 1]:  # any soil stands for the missing end of a row, with no weight
-            xj, yj, volume, resistance, inertia, vx, vy, _ = take_rows(burden, soil, k, near[i + 1], 0, 0, fluid)
-            near_by = closeness(xi - xj, yi - yj, h, period_x, period_y, turns_x, turns_y)
-            near_by = kept(near_by, k, near[i + 1])
-            put_line(weight, k, near[i + 1], near_by)
+            xj, yj, volume, resistance, inertia, vx, vy, _ = gather_rows(burden, soil, k, near[i + 1], 0, 0, fluid)
+            near_by = overlap_kernel(xi - xj, yi - yj, h, period_x, period_y, turns_x, turns_y)
+            near_by = mask_tail(near_by, k, near[i + 1])
+            store(weight, k, near[i + 1], near_by)
             k += LANES
             share = volume * near_by
             grains += share
@@ -64,22 +65,22 @@ def meet(fluid, near, soil, weight, record, mass, burden, gravity, thick, pores,
             flow_x += share * vx
             flow_y += share * vy
             masses += inertia * near_by
-        pores[GRAINS, i] = total(grains)
-        pores[FLUX_X, i] = total(flux_x)
-        pores[FLUX_Y, i] = total(flux_y)
-        resists = total(resisting)
+        pores[GRAINS, i] = reduce_add(grains)
+        pores[FLUX_X, i] = reduce_add(flux_x)
+        pores[FLUX_Y, i] = reduce_add(flux_y)
+        resists = reduce_add(resisting)
         pores[RESISTING, i] = resists
-        pores[MASSES, i] = total(masses)
+        pores[MASSES, i] = reduce_add(masses)
         pores[DENSITY, i] = record[i, RHO]
         pores[MASS, i] = mass[i]
-        pores[WEIGHT, i] = thick[i] if several else record[i, RHO] * gravity
+        pores[WEIGHT, i] = specific_weight[i] if several else record[i, RHO] * gravity
         share = 1.0 / resists if resists > 0.0 else 0.0
-        pores[SLIP_X, i] = record[i, VX] - share * total(flow_x) if resists > 0.0 else 0.0
-        pores[SLIP_Y, i] = record[i, VY] - share * total(flow_y) if resists > 0.0 else 0.0
+        pores[SLIP_X, i] = record[i, VX] - share * reduce_add(flow_x) if resists > 0.0 else 0.0
+        pores[SLIP_Y, i] = record[i, VY] - share * reduce_add(flow_y) if resists > 0.0 else 0.0
 
 
 @parallel_kernel
-def blend(fluid, start, split, partner, record, home, pores, h, period_x, period_y):
+def mix_fluxes(fluid, start, split, partner, record, home, pores, h, period_x, period_y):
     """Overwrites porosity and room in ``pores`` (14, fluid…), and in ``record`` the velocity by q and the volume by
     m/(n ρ_f), of water.
 
@@ -108,10 +109,10 @@ def blend(fluid, start, split, partner, record, home, pores, h, period_x, period
 
 
 @parallel_kernel
-def keep_met(fluid, pores, slant, drift, rate):
-    """Takes off ``rate`` (fluid,) what `part_forces` will multiply too much: 1 - n of what shifting gives.
+def keep_place_density(fluid, pores, slant, drift, rate):
+    """Takes off ``rate`` (fluid,) what `share_forces` will multiply too much: 1 - n of what shifting gives.
 
-    A particle that drifts meets the true density of another place, δu · ∇ρ, however little room grains leave there.
+    A particle that drifts takes the true density of another place, δu · ∇ρ, however little room grains leave there.
     slant (fluid, 2) kg/m⁴, drift (fluid, 2) m/s: those that `rates` has had.
     """
     for i in prange(fluid):
@@ -119,12 +120,12 @@ def keep_met(fluid, pores, slant, drift, rate):
 
 
 @parallel_kernel
-def part_forces(fluid, mass, acceleration, gx, gy, pores, rate, power, thrust):
+def share_forces(fluid, mass, acceleration, gx, gy, pores, rate, power, thrust):
     """Divides ``rate`` (fluid,) and ``power`` (fluid, 6), but for BY_SHIFTING and STOPPED, by n; overwrites the
     last two columns of ``thrust`` (fluid, 4), N/m: force of the whole volume over the grains' weight.
 
     acceleration (fluid, 2) m/s² of the water, with gravity (gx, gy), which acts on each layer by itself;  mass
-    (fluid…,) kg/m, of water;  power: None without a book.
+    (fluid…,) kg/m, of water;  power: None without a budget.
     """
     for i in prange(fluid):
         porosity = pores[POROSITY, i]
@@ -143,25 +144,27 @@ def part_forces(fluid, mass, acceleration, gx, gy, pores, rate, power, thrust):
 
 
 @parallel_kernel
-def bear(fluid, near, other, weight, x, grains, thrust, force, h, period_x, period_y):
-    """Overwrites ``force`` (s, 2) N/m on the soil, of `part_forces`, and ``weight`` (m,) 1/m² of its rows, W.
+def load_soil(fluid, near, other, weight, x, grains, thrust, force, h, period_x, period_y):
+    """Overwrites ``force`` (s, 2) N/m on the soil, of `share_forces`, and ``weight`` (m,) 1/m² of its rows, W.
 
     near, other, weight: the overlap, water rows first;  x (s, 2) m, grains (s,) m²: of the soil;  thrust (fluid, 4):
-    places of the water, m, and what `part_forces` makes;  h: smoothing length;  periods, m or 0.
+    places of the water, m, and what `share_forces` makes;  h: smoothing length;  periods, m or 0.
     """
     turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
     turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
     for s in prange(grains.shape[0]):
-        fx = nothing()
-        fy = nothing()
+        fx = zeros()
+        fy = zeros()
         k = near[fluid + s]
         end = near[fluid + s + 1]
         while k < end:
-            xj, yj, tx, ty = take_four(thrust, other, k, end, 0)
-            near_by = kept(closeness(x[s, 0] - xj, x[s, 1] - yj, h, period_x, period_y, turns_x, turns_y), k, end)
-            put_line(weight, k, end, near_by)
+            xj, yj, tx, ty = gather_four(thrust, other, k, end, 0)
+            near_by = mask_tail(
+                overlap_kernel(x[s, 0] - xj, x[s, 1] - yj, h, period_x, period_y, turns_x, turns_y), k, end
+            )
+            store(weight, k, end, near_by)
             k += LANES
             fx += near_by * tx
             fy += near_by * ty
-        force[s, 0] = grains[s] * total(fx)
-        force[s, 1] = grains[s] * total(fy)
+        force[s, 0] = grains[s] * reduce_add(fx)
+        force[s, 1] = grains[s] * reduce_add(fy)

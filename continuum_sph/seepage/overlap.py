@@ -6,38 +6,49 @@ and so are porosity and drag of water that moves through soil at rest; that of W
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.water.smoothing import CUBIC, kernel_value
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
-from porescale.common.compiled.simd import LANES, nearest, put_line, root, take_two
+from porescale.common.compiled.simd import LANES, gather_two, rint, sqrt, store
 from porescale.common.neighbors import PairList
 
 Floats = NDArray[np.float64]
 
 
 @inline
-def closeness(dx, dy, h, period_x, period_y, turns_x, turns_y):
+def overlap_kernel(dx, dy, h, period_x, period_y, turns_x, turns_y):
     """W, 1/m², of the nearest images at (dx, dy) m;  turns: 1/period, 1/m, or 0."""
-    dx -= period_x * nearest(dx * turns_x)
-    dy -= period_y * nearest(dy * turns_y)
-    return kernel_value(CUBIC, root(dx * dx + dy * dy) * (1.0 / h), h)
+    dx -= period_x * rint(dx * turns_x)
+    dy -= period_y * rint(dy * turns_y)
+    return kernel_value(CUBIC, sqrt(dx * dx + dy * dy) * (1.0 / h), h)
 
 
 @parallel_kernel
 def overlap_weights(start, partner, x, weight, h, period_x, period_y):
     """Overwrites ``weight`` (m,) 1/m², W of every entry of a full list;  x (n, 2) m;  h: smoothing length;  periods, m
-    or 0.  A step has them from `mixture.meet` and `mixture.bear`, to the same bits; here they are made anew."""
+    or 0.  A step has them from `mixture.gather_soil` and `mixture.load_soil`, to the same bits; here they are made
+    anew."""
     turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
     turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
     for i in prange(x.shape[0]):
         k = start[i]
         while k < start[i + 1]:
-            xj, yj = take_two(x, partner, k, start[i + 1], i)
-            near = closeness(x[i, 0] - xj, x[i, 1] - yj, h, period_x, period_y, turns_x, turns_y)
-            put_line(weight, k, start[i + 1], near)
+            xj, yj = gather_two(x, partner, k, start[i + 1], i)
+            near = overlap_kernel(x[i, 0] - xj, x[i, 1] - yj, h, period_x, period_y, turns_x, turns_y)
+            store(weight, k, start[i + 1], near)
             k += LANES
+
+
+class Reach(NamedTuple):
+    """h: smoothing length, m;  period_x, period_y: m or 0."""
+
+    h: Any
+    period_x: Any
+    period_y: Any
 
 
 class Overlap:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.seepage.exchange import against_soil, brake, take
+from continuum_sph.seepage.exchange import apply_drag, apply_reaction, relative_to_soil
 from continuum_sph.seepage.mixture import (
     LINES,
     POROSITY,
@@ -16,13 +16,13 @@ from continuum_sph.seepage.mixture import (
     ROOM,
     SLIP_X,
     SLIP_Y,
-    bear,
-    blend,
-    keep_met,
-    meet,
-    part_forces,
+    gather_soil,
+    keep_place_density,
+    load_soil,
+    mix_fluxes,
+    share_forces,
 )
-from continuum_sph.seepage.overlap import Overlap
+from continuum_sph.seepage.overlap import Overlap, Reach
 from continuum_sph.seepage.pressure_face import Drain, drain_walls, follow
 from continuum_sph.seepage.resistance import Resistance
 from continuum_sph.seepage.skeleton import Skeleton
@@ -37,7 +37,7 @@ class PoreFlow(Flow):
     """Water of a law among the grains of a skeleton.
 
     resistance : law of drag;  specific_weight (fluid,) N/m³, of several
-    fluids, see `meet`, or empty;  drains : faces of given
+    fluids, see `gather_soil`, or empty;  drains : faces of given
     pressure;  pores (14, fluid + LANES) what water particles have about them, see `mixture`;  borne (soil, 2) N/m, drag
     on the soil of the last half step;  heat (fluid + soil,) J/m, work that drag took from both layers.
     """
@@ -60,12 +60,9 @@ class PoreFlow(Flow):
 
     def begin(self, step: float) -> float:
         """As of water alone; what lies behind open faces goes along."""
-        pairs, layer = self.pairs, self.layer
+        layer, near = self.layer, self.near(self.law.smoothing.kind)
         for face in self.drains:
-            follow(
-                face.rows, pairs.start, self.split, pairs.partner, layer.x, layer.v, *face.normal, step,
-                self.law.smoothing.length, *pairs.period,
-            )  # fmt: skip
+            follow(face.rows, near, layer.x, layer.v, *face.normal, step)
         return super().begin(step)
 
     def evaluate(self, step: float, ratio: float) -> None:
@@ -75,11 +72,11 @@ class PoreFlow(Flow):
         self.overlap.update(x, soil.x)
         super().evaluate(step, ratio)
         self.thrust[:, :2] = x
-        part_forces(
-            layer.fluid, layer.mass, layer.acceleration, *self.law.gravity, self.pores, layer.rate, self.book[0],
+        share_forces(
+            layer.fluid, layer.mass, layer.acceleration, *self.law.gravity, self.pores, layer.rate, self.budget[0],
             self.thrust,
         )  # fmt: skip
-        bear(
+        load_soil(
             layer.fluid, *self.overlap.rows, soil.x, soil.grains, self.thrust, soil.force, length, *self.pairs.period
         )  # fmt: skip
 
@@ -87,41 +84,41 @@ class PoreFlow(Flow):
         """As of water alone, of the mixture."""
         super().sum_pairs(half)
         if self.law.shifting > 0.0:
-            keep_met(self.layer.fluid, self.pores, self.slant, self.layer.drift, self.layer.rate)
+            keep_place_density(self.layer.fluid, self.pores, self.density_gradient, self.layer.drift, self.layer.rate)
 
-    def show_walls(self, step: float, ratio: float) -> None:
+    def update_walls(self, step: float, ratio: float) -> None:
         """What the water sees of walls, of grains and of open faces, a ``step`` (s) on."""
-        super().show_walls(step, ratio)
+        super().update_walls(step, ratio)
         layer, pairs, smoothing = self.layer, self.pairs, self.law.smoothing
-        how = (smoothing.kind, smoothing.length, *pairs.period)
+        how = (smoothing.length, *pairs.period)
         self.skeleton.show()
-        meet(
+        gather_soil(
             layer.fluid, *self.overlap.rows, layer.record, layer.mass, self.skeleton.burden, self.resistance.gravity,
-            self.specific_weight, self.pores, *how[1:],
+            self.specific_weight, self.pores, Reach(*how),
         )  # fmt: skip
-        blend(layer.fluid, pairs.start, self.split, pairs.partner, layer.record, self.home, self.pores, *how[1:])
+        mix_fluxes(layer.fluid, pairs.start, self.split, pairs.partner, layer.record, self.home, self.pores, *how)
         for face in self.drains:
             drain_walls(
-                face.rows, face.pressure, pairs.start, self.split, pairs.partner, layer.x, layer.record,
-                layer.pressure, *face.point, *face.normal, *how,
+                face.rows, face.pressure, self.near(smoothing.kind), layer.x, layer.record, layer.pressure, *face.point,
+                *face.normal,
             )  # fmt: skip
 
-    def feel(self) -> None:
+    def update_pull(self) -> None:
         """Take up the accelerations that both layers have now, without drag, for the drag that follows."""
         layer, soil = self.layer, self.skeleton
         shown = soil.weigh(soil.acceleration)
-        against_soil(layer.fluid, *self.overlap.rows, shown, layer.acceleration, self.pores, PULL_X)
+        relative_to_soil(layer.fluid, *self.overlap.rows, shown, layer.acceleration, self.pores, PULL_X)
 
-    def glide(self) -> None:
+    def update_slip(self) -> None:
         """Take up the velocities that both layers have now; `evaluate` does so too."""
         layer, soil = self.layer, self.skeleton
-        against_soil(layer.fluid, *self.overlap.rows, soil.weigh(soil.v), layer.v, self.pores, SLIP_X)
+        relative_to_soil(layer.fluid, *self.overlap.rows, soil.weigh(soil.v), layer.v, self.pores, SLIP_X)
 
-    def brake(self, seconds: float) -> None:
+    def drag(self, seconds: float) -> None:
         """Drag of ``seconds`` between water and soil, with the velocities and accelerations taken up last."""
         layer, soil, law = self.layer, self.skeleton, self.resistance
-        brake(layer.fluid, self.pores, layer.v, law.number, law.factor, seconds, self.parts, self.push, self.heat)
-        take(
+        apply_drag(layer.fluid, self.pores, layer.v, law.number, law.factor, seconds, self.parts, self.push, self.heat)
+        apply_reaction(
             layer.fluid, *self.overlap.rows, self.push, soil.resisting, soil.mass, soil.v, seconds, self.borne,
             self.heat,
         )  # fmt: skip

@@ -17,10 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from continuum_sph.water.bundles import image
 from continuum_sph.water.smoothing import CUBIC, kernel_value
 from continuum_sph.water.state import VX, VY, P, X, Y
 from porescale.common.compiled.jit import parallel_kernel, prange
-from porescale.common.neighbors.cells import minimum_image
 
 Floats = NDArray[np.float64]
 
@@ -50,14 +50,13 @@ class Drain:
 
 
 @parallel_kernel
-def drain_walls(
-    rows, given, start, split, partner, x, record, pressure, ox, oy, nx, ny, kind, h, period_x, period_y
-):  # fmt: skip
+def drain_walls(rows, given, near, x, record, pressure, ox, oy, nx, ny):
     """Overwrites pressure and velocity of the wall particles ``rows`` (k,) in ``record`` and ``pressure`` (n,) Pa.
 
-    given (k,) Pa;  start, split, partner: full list, water first in each row;  x (n, 2) m;  (ox, oy), (nx, ny): a point
-    of the face and its normal into the water;  kind, h: smoothing;  periods, m or 0.
+    given (k,) Pa;  near: see `water.bundles`;  x (n, 2) m;  (ox, oy), (nx, ny): a point of the face and its normal into
+    the water.
     """
+    kind, h = near.kind, near.h
     for number in prange(rows.shape[0]):
         w = rows[number]
         depth = (ox - x[w, 0]) * nx + (oy - x[w, 1]) * ny
@@ -66,10 +65,10 @@ def drain_walls(
         height = 0.0
         ux = 0.0
         uy = 0.0
-        for k in range(np.uint64(start[w]), np.uint64(split[w])):
-            j = np.uint64(partner[k])
-            dx = minimum_image(x[w, 0] - record[j, X], period_x)
-            dy = minimum_image(x[w, 1] - record[j, Y], period_y)
+        for k in range(np.uint64(near.start[w]), np.uint64(near.split[w])):
+            j = np.uint64(near.partner[k])
+            dx = image(x[w, 0] - record[j, X], near.period_x)
+            dy = image(x[w, 1] - record[j, Y], near.period_y)
             value = kernel_value(kind, np.sqrt(dx * dx + dy * dy) / h, h)
             weight += value
             p += record[j, P] * value
@@ -87,20 +86,21 @@ def drain_walls(
 
 
 @parallel_kernel
-def follow(rows, start, split, partner, x, v, nx, ny, step, h, period_x, period_y):
+def follow(rows, near, x, v, nx, ny, step):
     """Moves the wall particles ``rows`` (k,) along the normal (nx, ny) by ``step`` (s) at the mean velocity of the
     water before them; overwrites their ``x`` (n, 2) m.
 
-    start, split, partner: full list, water first in each row;  v (n, 2) m/s;  h: smoothing length;  periods, m or 0.
+    near: see `water.bundles`;  v (n, 2) m/s.
     """
+    h = near.h
     for number in prange(rows.shape[0]):
         w = rows[number]
         weight = 0.0
         speed = 0.0
-        for k in range(np.uint64(start[w]), np.uint64(split[w])):
-            j = np.uint64(partner[k])
-            dx = minimum_image(x[w, 0] - x[j, 0], period_x)
-            dy = minimum_image(x[w, 1] - x[j, 1], period_y)
+        for k in range(np.uint64(near.start[w]), np.uint64(near.split[w])):
+            j = np.uint64(near.partner[k])
+            dx = image(x[w, 0] - x[j, 0], near.period_x)
+            dy = image(x[w, 1] - x[j, 1], near.period_y)
             value = kernel_value(CUBIC, np.sqrt(dx * dx + dy * dy) / h, h)
             weight += value
             speed += (v[j, 0] * nx + v[j, 1] * ny) * value

@@ -36,7 +36,7 @@ column of water that falls is not topped up beyond."""
 
 
 @kernel
-def moor(fluid, x, v, mass, density, predicted, berth, density0):
+def park_waiting(fluid, x, v, mass, density, predicted, berth, density0):
     """Puts particles without mass back where they wait, at rest; overwrites their ``x``, ``v`` (n, 2), ``density`` and
     ``predicted`` (fluid,) kg/m³;  berth (fluid, 2) m;  density0 kg/m³."""
     for i in range(fluid):
@@ -50,7 +50,7 @@ def moor(fluid, x, v, mass, density, predicted, berth, density0):
 
 
 @kernel
-def sound_out(fluid, x, mass, material, left, right, ramp_left, ramp_right, bottom, spacing, least, tops):
+def measure_strip(fluid, x, mass, material, left, right, ramp_left, ramp_right, bottom, spacing, least, tops):
     """(Σ w m over the strip above its bottom, kg/m;  number of its highest particle of a w over
     ``least``, -1 for none);  overwrites ``tops``
     (columns,) m, the highest particle near the middle of each column of the strip, half a spacing below the bottom
@@ -148,7 +148,7 @@ class Supply:
         layer = self.layer
         for reservoir in self.reservoirs:
             self._level(reservoir, time)
-        moor(
+        park_waiting(
             layer.fluid, layer.x, layer.v, layer.mass, layer.density, layer.predicted, self.berth, self.density
         )  # fmt: skip
 
@@ -157,7 +157,7 @@ class Supply:
         layer, target = self.layer, pool.wanted(time)
         full = self.density * pool.width
         while True:
-            held, highest = sound_out(
+            held, highest = measure_strip(
                 layer.fluid, layer.x, layer.mass, layer.material, pool.left, pool.right, *pool.ramps, pool.bottom,
                 self.spacing, -1.0 if target <= pool.bottom else 0.5, pool.tops,
             )  # fmt: skip

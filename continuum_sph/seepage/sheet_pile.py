@@ -46,7 +46,7 @@ def side_of(x, y, at, bottom):
 
 
 @kernel
-def part(x, side, start, partner, at, bottom):
+def cut_pairs(x, side, start, partner, at, bottom):
     """Leave in a list what the pile lets see each other: overwrites ``start`` (n + 1,) and ``partner``; returns the
     number of pairs left.
 
@@ -76,7 +76,7 @@ def part(x, side, start, partner, at, bottom):
 
 
 @kernel
-def hold_back(x, v, last, at, bottom, half):
+def keep_out(x, v, last, at, bottom, half):
     """Put particles that have entered the pile since they were at ``last`` (k, 2) m on the side that they came from:
     overwrites their x (m), v (m/s), the first k rows of (n, 2), and ``last``.  at, bottom, half its thickness: m.
     Particles that come from farther than its thickness have not moved, but been put there.  Returns how many."""
@@ -146,7 +146,7 @@ class Pile:
         return np.concatenate(places), np.concatenate(facing), side
 
 
-class PartedList(PairList):
+class CutPairList(PairList):
     """A full list of pairs that do not see each other through a pile, whose particles are its last points.
 
     v : (n, 2) m/s, velocities of the points, the first ``free`` of which the pile keeps out;  side : (m,) of the pile's
@@ -174,13 +174,13 @@ class PartedList(PairList):
         """As of any list, after particles that have entered the pile are put on its surface: overwrites ``x``."""
         if not self.builds:
             self.last[:] = x[: len(self.last)]
-        self.stopped += hold_back(x, self.v, self.last, self.at, self.bottom, self.half)
+        self.stopped += keep_out(x, self.v, self.last, self.at, self.bottom, self.half)
         return super().update(x, reach)
 
     def build(self, x: Floats, reach: Floats) -> None:
         """As of any list, of what sees each other."""
         super().build(x, reach)
-        self._publish(part(x, self.side, self.start, self.partner, self.at, self.bottom))
+        self._publish(cut_pairs(x, self.side, self.start, self.partner, self.at, self.bottom))
 
     def state(self) -> dict[str, NDArray[np.generic]]:
         """Copies of everything that decides what the list says next."""

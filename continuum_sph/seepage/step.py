@@ -82,32 +82,32 @@ class Seepage:
         water.overlap.update(water.layer.x[: water.layer.fluid], water.skeleton.x)
         water.start()
         self.ground.start()
-        self.take_up()
-        self.choose()
+        self.accelerate()
+        self.choose_step()
         water.last_steps = (self.next_step, self.next_step)
 
     def advance(self) -> None:
         """One step."""
         water, ground, step = self.water, self.ground, self.next_step
-        water.glide()  # accelerations are those of the end of the last step
-        water.brake(0.5 * step)
+        water.update_slip()  # accelerations are those of the end of the last step
+        water.drag(0.5 * step)
         ground.begin(step)
         ratio = water.begin(step)
         if self.supply is not None:
             self.supply.keep(water.time + step)
         ground.strain(step)
         water.evaluate(step, ratio)
-        self.take_up()
-        water.brake(0.5 * step)
+        self.accelerate()
+        water.drag(0.5 * step)
         ground.end(step)
         ground.step += 1
         ground.time += step
         water.end(step)
-        self.choose()
+        self.choose_step()
 
-    def take_up(self) -> None:
-        """Accelerations of the soil without drag.  Its walls know of the drag: they carry on what weight and all forces
-        make of its stress.  The next drag knows both layers' accelerations."""
+    def accelerate(self) -> None:
+        """Accelerations of the soil without drag.  Its walls include the drag: they continue what weight and all forces
+        make of its stress.  The next drag is given both layers' accelerations."""
         water, soil = self.water, self.water.skeleton
         np.copyto(self.wet, soil.force)
         soil.force += water.borne
@@ -118,9 +118,9 @@ class Seepage:
         if not soil.held:
             np.divide(water.borne, soil.mass[:, None], out=self.wet)
             soil.acceleration -= self.wet
-        water.feel()
+        water.update_pull()
 
-    def choose(self) -> None:
+    def choose_step(self) -> None:
         """The next step: the shortest that water, ground and their common sound allow."""
         self.next_step = min(self.water.next_step, self.ground.next_step, self.bound)
         self.water.next_step = self.next_step

@@ -17,12 +17,13 @@ import numpy as np
 from continuum_sph.soil.gradient import velocity_gradients
 from continuum_sph.soil.leapfrog import kick, kick_drift
 from continuum_sph.soil.material import DENSITY, TENSION, table
-from continuum_sph.soil.momentum import accelerate
+from continuum_sph.soil.momentum import Choices, accelerate
 from continuum_sph.soil.parameters import RULES, SoilLaw
 from continuum_sph.soil.state import Soil
-from continuum_sph.soil.stress import deform
-from continuum_sph.soil.tension import hold_apart
-from continuum_sph.soil.walls import place_walls, show_walls
+from continuum_sph.soil.stress import Straining, deform
+from continuum_sph.soil.tension import repel_under_tension
+from continuum_sph.soil.walls import place_walls, update_walls
+from continuum_sph.water.bundles import Neighbours
 from continuum_sph.water.no_step import no_step
 from continuum_sph.water.rates import split_rows
 from porescale.common.core.errors import Fault, InputError
@@ -68,7 +69,7 @@ class SoilFlow:
         self.pulling = self.law.repulsion > 0.0 and bool((self.table[:, TENSION] > 0.0).any())
         self.split = np.zeros(soil.count, np.int64)
         self.lower, self.upper = np.full(2, -np.inf), np.full(2, np.inf)
-        # Walls do not meet each other.
+        # Walls do not interact.
         self.pairs.group = np.where(np.arange(soil.count) < soil.soil, -1, 0).astype(np.int32)
 
     def refuse_other_sizes(self) -> None:
@@ -115,45 +116,43 @@ class SoilFlow:
 
     def strain(self, step: float) -> None:
         """Velocity gradients at the new positions, and densities and stresses a ``step`` (s) on."""
-        soil, law, pairs = self.soil, self.law, self.pairs
-        self.show_walls()
-        velocity_gradients(
-            soil.soil, pairs.start, self.split, pairs.partner, soil.record, soil.facing, soil.matrix, law.corrected,
-            step, law.smoothing.kind, law.smoothing.length, *pairs.period,
-        )  # fmt: skip
-        quickest = deform(
-            soil.density, soil.stress, soil.material, self.table, soil.matrix, soil.spread,
-            soil.separation_strain, soil.plastic_shear, soil.record, step,
-            min(step, LASTING * self.strained), -1.0 if law.printed_spin else 1.0, law.most,
+        soil, law = self.soil, self.law
+        self.update_walls()
+        velocity_gradients(soil.soil, soil.record, soil.facing, soil.matrix, self.near, law.corrected, step)
+        spin = -1.0 if law.printed_spin else 1.0
+        max_sound2 = deform(
+            soil.density, soil.stress, soil.material, self.table, soil.matrix, soil.spread, soil.separation_strain,
+            soil.plastic_shear, soil.record, Straining(step, min(step, LASTING * self.strained), spin, law.most),
         )  # fmt: skip
         self.strained = step
-        self.sound_rate = float(quickest) ** 0.5 / law.smoothing.length
+        self.sound_rate = float(max_sound2) ** 0.5 / law.smoothing.length
 
     def push(self) -> None:
         """Accelerations."""
-        soil, law, pairs = self.soil, self.law, self.pairs
+        soil, law = self.soil, self.law
         if self.before_force is not None:
             self.before_force(self)
-        self.show_walls()
+        self.update_walls()
+        choices = Choices(
+            *law.gravity, law.damping, law.printed_damping, law.diffusion, law.sound_diffusion * self.sound_rate,
+            law.spacing_recovery, law.spacing,
+        )  # fmt: skip
         accelerate(
-            soil.soil, pairs.start, self.split, pairs.partner, soil.record, soil.facing, soil.force, soil.stress,
-            soil.acceleration, soil.spread, soil.drift, law.smoothing.kind, law.smoothing.length, *law.gravity,
-            law.damping, law.printed_damping, law.diffusion, law.sound_diffusion * self.sound_rate,
-            law.spacing_recovery, law.spacing, *pairs.period,
+            soil.soil, soil.record, soil.facing, soil.force, soil.stress, soil.acceleration, soil.spread, soil.drift,
+            self.near, choices,
         )  # fmt: skip
         if self.pulling:
-            hold_apart(
-                soil.soil, pairs.start, self.split, pairs.partner, soil.record, soil.stress, soil.acceleration,
-                law.smoothing.kind, law.smoothing.length, law.spacing, law.repulsion, *pairs.period,
+            repel_under_tension(
+                soil.soil, soil.record, soil.stress, soil.acceleration, self.near, law.spacing, law.repulsion
             )  # fmt: skip
 
     def end(self, step: float) -> None:
         """Second half kick of a ``step`` (s), and length of the next from the largest |a| and c/h."""
         soil = self.soil
         drag = self.law.drag if self.time < self.law.settle else 0.0
-        hardest, swiftest = kick(soil.v, soil.acceleration, 0.5 * step, math.exp(-drag * step))
-        self.max_speed = float(swiftest) ** 0.5
-        limits = self.law.limits(float(hardest) ** 0.5, self.sound_rate, self.limit)
+        acceleration2, speed2 = kick(soil.v, soil.acceleration, 0.5 * step, math.exp(-drag * step))
+        self.max_speed = float(speed2) ** 0.5
+        limits = self.law.limits(float(acceleration2) ** 0.5, self.sound_rate, self.limit)
         self.rule = int(np.argmin(limits))
         self.next_step = limits[self.rule]
         if not 0.0 < self.next_step < np.inf:
@@ -162,14 +161,21 @@ class SoilFlow:
                 "lower numerics.courant, or raise soil.numerics.damping or soil.stiffness",
             )  # fmt: skip
 
-    def show_walls(self) -> None:
-        """What soil sees of walls: stress and velocity of the soil before them."""
-        soil, law, pairs = self.soil, self.law, self.pairs
-        show_walls(
-            soil.soil, pairs.start, self.split, pairs.partner, soil.v, soil.mass, soil.stress, soil.force,
-            soil.material, self.table, soil.facing, soil.record, law.smoothing.kind, law.smoothing.length,
-            *law.gravity, *pairs.period,
+    def update_walls(self) -> None:
+        """What soil reads of walls: stress and velocity of the soil before them."""
+        soil = self.soil
+        update_walls(
+            soil.soil, self.near, soil.v, soil.mass, soil.stress, soil.force, soil.material, self.table, soil.facing,
+            soil.record, *self.law.gravity,
         )  # fmt: skip
+
+    @property
+    def near(self) -> Neighbours:
+        """The list of pairs as kernels take it."""
+        pairs, smoothing = self.pairs, self.law.smoothing
+        x, y = pairs.period
+        around, along = (x, y) if max(x, y) > 0.0 else (None, None)
+        return Neighbours(pairs.start, self.split, pairs.partner, around, along, smoothing.kind, smoothing.length)
 
     def state(self) -> dict[str, Any]:
         """Everything that later steps depend on."""

@@ -40,13 +40,13 @@ def kick_drift(x, v, mass, density, acceleration, drift, record, half, step, low
 @parallel_kernel
 def kick(v, acceleration, half, kept):
     """Second half kick of soil: v = kept (v + half a).  Returns the largest |a|² (m²/s⁴) and |v|² (m²/s²)."""
-    hardest = 0.0
-    swiftest = 0.0
+    max_acceleration2 = 0.0
+    max_speed2 = 0.0
     for i in prange(acceleration.shape[0]):
         ax = acceleration[i, 0]
         ay = acceleration[i, 1]
         v[i, 0] = kept * (v[i, 0] + half * ax)
         v[i, 1] = kept * (v[i, 1] + half * ay)
-        hardest = max(hardest, ax * ax + ay * ay)
-        swiftest = max(swiftest, v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1])
-    return hardest, swiftest
+        max_acceleration2 = max(max_acceleration2, ax * ax + ay * ay)
+        max_speed2 = max(max_speed2, v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1])
+    return max_acceleration2, max_speed2

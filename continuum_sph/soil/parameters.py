@@ -44,7 +44,7 @@ class SoilLaw:
     courant: float = 0.25
 
     def __post_init__(self) -> None:
-        """InputError when diffusion at the pace of sound takes more of a zig-zag in a step than there is."""
+        """InputError when diffusion at the rate of sound takes more of a zig-zag in a step than there is."""
         most = 1.0 / (FALL * self.courant)
         if self.sound_diffusion > most:
             key = "soil.numerics.restless_diffusion"
@@ -64,15 +64,15 @@ class SoilLaw:
         left = 1.0 - FALL * self.courant * self.sound_diffusion
         return max(0.0, left) / (FALL * self.diffusion) if self.diffusion > 0.0 else float("inf")
 
-    def limits(self, acceleration: float, pace: float, others: float) -> tuple[float, float, float]:
+    def limits(self, acceleration: float, sound_rate: float, others: float) -> tuple[float, float, float]:
         """Steps allowed by sound, acceleration (m/s²) and other layers (s), s: eq. 49.
 
-        0.25/max(c/h), 0.25 √(h/|a|);  ``pace``: the largest c/h, 1/s.  The third of eq. 49, h²/8ν with ν = α c h/8 of
-        the damping, is h/(α c) and never less than the first for α up to 4.
+        0.25/max(c/h), 0.25 √(h/|a|);  ``sound_rate``: the largest c/h, 1/s.  The third of eq. 49, h²/8ν with ν =
+        α c h/8 of the damping, is h/(α c) and never less than the first for α up to 4.
         """
         h, infinite = self.smoothing.length, float("inf")
         return (
-            self.courant / pace if pace > 0.0 else infinite,
+            self.courant / sound_rate if sound_rate > 0.0 else infinite,
             self.courant * (h / acceleration) ** 0.5 if acceleration > 0.0 else infinite,
             others,
         )

@@ -3,13 +3,15 @@
 Gradients come from the positions at the end of a step and the velocities of its middle, G' = ∂v½/∂x(t + Δt).  Those of
 the middle are G = G' (1 - Δt/2 G')⁻¹, and skew for every rigid turning, where G' is off by the strain Δt ω²/2: a block
 turned by 90° would strain itself.  Density: ρ' = ρ det(1 - Δt G'), exact for uniform G', and less by the volume that
-diffused to a particle, see `divergence`.
+diffused to a particle, see `momentum`.
 
 What pushes is T = σ K + t J, t = rest σ : J (1 - M)/tr M, so that Σ V σ : G is the work of T in the plain sums for
 any velocities: see `gradient` for J and rest.  Rigid turning takes no work, and forces no angular momentum.
 """
 
 from __future__ import annotations
+
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,8 +23,8 @@ from continuum_sph.soil.state import (
     GXY,
     GYX,
     GYY,
-    QUICK,
-    SHEARING,
+    SHEAR_RATE,
+    SOUND_OVER_DENSITY,
     TXX,
     TXY,
     TYX,
@@ -36,16 +38,26 @@ from continuum_sph.soil.state import (
 from porescale.common.compiled.jit import parallel_kernel, prange
 
 
-@parallel_kernel
-def deform(density, stress, material, table, matrix, spread, opening, plastic, record, step, spreading, spin, most):
-    """Overwrites, of soil, ``density`` (soil,) kg/m³, ``stress`` (n, 4) Pa, ``opening``, ``plastic`` (soil,) and in
-    ``record`` (n, 16) c/ρ, shear strain rate and σ·K.
+class Straining(NamedTuple):
+    """step, s;  spreading: for how long diffusion lasts, s;  spin: 1, or -1 to turn stress as eq. 38 is printed;  most:
+    shear strain of a step that `accelerate` follows."""
 
-    material, table, matrix: see Soil;  spread (soil, 5) Pa/s and m²/s: diffusion of stress and volume of `accelerate`,
-    which lasts for ``spreading``, s;  step, s;  spin: 1, or -1 to turn stress as eq. 38 is printed;  most: shear strain
-    of a step that `accelerate` sees.  Returns the largest c², m²/s²; a maximum is exact in any order.
+    step: Any
+    spreading: Any
+    spin: Any
+    most: Any
+
+
+@parallel_kernel
+def deform(density, stress, material, table, matrix, spread, separation_strain, plastic_shear, record, straining):
+    """Overwrites, of soil, ``density`` (soil,) kg/m³, ``stress`` (n, 4) Pa, ``separation_strain``, ``plastic_shear``
+    (soil,) and in ``record`` (n, 16) c/ρ, shear strain rate and σ·K.
+
+    material, table, matrix: see `state.Soil`;  spread (soil, 5) Pa/s and m²/s: diffusion of stress and volume of
+    `accelerate`;  straining: see `Straining`.  Returns the largest c², m²/s²; a maximum is exact in any order.
     """
-    quickest = 0.0
+    step, spreading, spin, most = straining.step, straining.spreading, straining.spin, straining.most
+    max_sound2 = 0.0
     for i in prange(density.shape[0]):
         row = table[material[i]]
         axx = record[i, GXX]
@@ -63,7 +75,7 @@ def deform(density, stress, material, table, matrix, spread, opening, plastic, r
         xx, yy, xy, zz, opened, flow = new_stress(
             stress[i, XX] + spreading * spread[i, XX], stress[i, YY] + spreading * spread[i, YY],
             stress[i, XY] + spreading * spread[i, XY], stress[i, ZZ] + spreading * spread[i, ZZ],
-            gxx, strain_xy + turn_xy, strain_xy - turn_xy, gyy, step, opening[i], row,
+            gxx, strain_xy + turn_xy, strain_xy - turn_xy, gyy, step, separation_strain[i], row,
         )  # fmt: skip
         shrunk = (1.0 - step * axx) * (1.0 - step * ayy) - step * step * axy * ayx
         density[i] *= shrunk * record[i, VOLUME] / (record[i, VOLUME] + spreading * spread[i, GROWN])
@@ -71,19 +83,19 @@ def deform(density, stress, material, table, matrix, spread, opening, plastic, r
         stress[i, YY] = yy
         stress[i, XY] = xy
         stress[i, ZZ] = zz
-        opening[i] = opened
-        plastic[i] += flow
+        separation_strain[i] = opened
+        plastic_shear[i] += flow
         speed2 = (row[AREA] + row[SHEAR]) * softening(0.5 * (xx + yy), row) / density[i]
-        quickest = max(quickest, speed2)
+        max_sound2 = max(max_sound2, speed2)
         kxx = matrix[i, 0]
         kxy = matrix[i, 1]
         kyy = matrix[i, 2]
-        record[i, QUICK] = np.sqrt(speed2) / density[i]
+        record[i, SOUND_OVER_DENSITY] = np.sqrt(speed2) / density[i]
         shearing = np.sqrt((gxx - gyy) * (gxx - gyy) + (gxy + gyx) * (gxy + gyx))
-        record[i, SHEARING] = shearing if shearing * step <= most else most / step
+        record[i, SHEAR_RATE] = shearing if shearing * step <= most else most / step
         turn = (xx - yy) * matrix[i, 3] - xy * matrix[i, 4]
         record[i, TXX] = xx * kxx + xy * kxy
         record[i, TXY] = xx * kxy + xy * kyy - turn
         record[i, TYX] = xy * kxx + yy * kxy + turn
         record[i, TYY] = xy * kxy + yy * kyy
-    return quickest
+    return max_sound2

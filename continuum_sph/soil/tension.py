@@ -1,4 +1,4 @@
-"""What keeps soil that bears tension in one piece: particles that pull push each other off when they come near.
+"""What keeps soil that bears tension in one piece: particles under tension repel each other at short range.
 
 Under tension smoothed particles pair up, and the pairs part from each other: zig-zags, which gradients do not see, grow
 as √(T/ρ)/h, and damping, which goes with sound, stops only those of small tension T.  The cure is a repulsion of short
@@ -19,9 +19,9 @@ from __future__ import annotations
 import numpy as np
 
 from continuum_sph.soil.state import MASS, VOLUME, XX, XY, YY, X, Y
+from continuum_sph.water.bundles import image
 from continuum_sph.water.smoothing import kernel_value, slope_scale, slope_shape
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
-from porescale.common.neighbors.cells import minimum_image
 
 
 @inline
@@ -33,14 +33,12 @@ def tension_of(stress, i):
 
 
 @parallel_kernel
-def hold_apart(
-    soil, start, split, partner, record, stress, acceleration, kind, h, spacing, strength, period_x, period_y
-):  # fmt: skip
+def repel_under_tension(soil, record, stress, acceleration, near, spacing, strength):
     """Adds to ``acceleration`` (soil, 2) m/s² what pushes particles under tension apart.
 
-    start, split, partner: full list, soil up to ``split[i]``;  record, stress: see Soil;  kind, h: smoothing;
-    spacing, m;  strength: A;  periods, m or 0.
+    record, stress: see `state.Soil`;  near: see `water.bundles`;  spacing, m;  strength: A.
     """
+    kind, h = near.kind, near.h
     scale = slope_scale(kind, h)
     inverse_h = 1.0 / h
     nearest = spacing * inverse_h
@@ -49,19 +47,19 @@ def hold_apart(
         own = tension_of(stress, i)
         ax = 0.0
         ay = 0.0
-        for k in range(np.uint64(start[i]), np.uint64(split[i])):
-            j = np.uint64(partner[k])
+        for k in range(np.uint64(near.start[i]), np.uint64(near.split[i])):
+            j = np.uint64(near.partner[k])
             pull = own + tension_of(stress, j)
             if pull == 0.0:
                 continue
-            dx = minimum_image(record[i, X] - record[j, X], period_x)
-            dy = minimum_image(record[i, Y] - record[j, Y], period_y)
+            dx = image(record[i, X] - record[j, X], near.period_x)
+            dy = image(record[i, Y] - record[j, Y], near.period_y)
             q = np.sqrt(dx * dx + dy * dy) * inverse_h
             if q >= nearest:
                 continue
-            near = kernel_value(kind, q, h) * whole
-            near *= near
-            push = pull * (near * near - 1.0) * record[j, VOLUME] * scale * slope_shape(kind, q)
+            closer = kernel_value(kind, q, h) * whole
+            closer *= closer
+            push = pull * (closer * closer - 1.0) * record[j, VOLUME] * scale * slope_shape(kind, q)
             ax -= push * dx
             ay -= push * dy
         part = strength * record[i, VOLUME] / record[i, MASS]

@@ -30,9 +30,9 @@ from continuum_sph.soil.state import (
     X,
     Y,
 )
+from continuum_sph.water.bundles import image
 from continuum_sph.water.smoothing import kernel_value
 from porescale.common.compiled.jit import parallel_kernel, prange
-from porescale.common.neighbors.cells import minimum_image
 
 HOLDING, SLIPPING = 0, 1
 """Materials of wall particles."""
@@ -40,15 +40,14 @@ FARTHEST = 3.0  # largest ratio of the distances of a wall particle and of the s
 
 
 @parallel_kernel
-def show_walls(
-    soil, start, split, partner, v, mass, stress, force, material, table, facing, record, kind, h, gx, gy,
-    period_x, period_y,
-):  # fmt: skip
-    """What soil sees of walls (rows ``soil`` on); overwrites their rows of ``stress`` (n, 4) Pa and ``record`` (n, 16).
+def update_walls(soil, near, v, mass, stress, force, material, table, facing, record, gx, gy):
+    """What soil reads of walls (rows ``soil`` on); overwrites their rows of ``stress`` (n, 4) Pa and ``record``
+    (n, 16).
 
-    start, split, partner: full list, soil up to ``split[i]``;  v (n, 2) m/s, mass (n,) kg/m, force (soil, 2) N/m,
-    material, facing: see Soil;  table: the materials;  kind, h: smoothing;  gx, gy: gravity, m/s²;  periods, m or 0.
+    near: see `water.bundles`;  v (n, 2) m/s, mass (n,) kg/m, force (soil, 2) N/m, material, facing: see `state.Soil`;
+    table: the materials;  gx, gy: gravity, m/s².
     """
+    kind, h = near.kind, near.h
     for w in prange(soil, record.shape[0]):
         wx = record[w, X]
         wy = record[w, Y]
@@ -62,10 +61,10 @@ def show_walls(
         ux = 0.0
         uy = 0.0
         front = 0.0
-        for k in range(np.uint64(start[w]), np.uint64(split[w])):
-            j = np.uint64(partner[k])
-            dx = minimum_image(wx - record[j, X], period_x)
-            dy = minimum_image(wy - record[j, Y], period_y)
+        for k in range(np.uint64(near.start[w]), np.uint64(near.split[w])):
+            j = np.uint64(near.partner[k])
+            dx = image(wx - record[j, X], near.period_x)
+            dy = image(wy - record[j, Y], near.period_y)
             if not before(facing, w, wx - dx, wy - dy):
                 continue
             value = kernel_value(kind, np.sqrt(dx * dx + dy * dy) / h, h)

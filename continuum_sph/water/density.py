@@ -8,46 +8,46 @@ density only, so that water at rest stays: Fourtakas et al., Computers & Fluids 
 departure from a linear field: Antuono et al., Comput. Phys. Commun. 181 (2010) 532 ("linear", δ-SPH).
 
 What it gives one particle of a pair it takes from the other, Σ V dρ/dt = 0 in all three.  It moves no particle, and so
-parts densities from how closely particles lie: with γ = n m/ρ (n: particles per area), 1 on the lattice,
+separates densities from how closely particles lie: with γ = n m/ρ (n: particles per area), 1 on the lattice,
 
     d ln γ/dt = -(1/ρ) diffusion,     Σ V (p_i + p_j) ∇W ≈ ∇p + A p ∇ln γ
 
 (A = 2, or 1 with corrected gradients).  Water at rest whose γ is uneven, as settling leaves it next to walls and the
 surface, has pressures off the hydrostatic by A p ∇ln γ; diffusion levels these, and γ with them, as fast as
-δ h c0 A p/(ρ c0²).  At the pace of sound, as published, that takes minutes of a metre of water, c0 = 44 m/s and
+δ h c0 A p/(ρ c0²).  At the speed of sound, as published, that takes minutes of a metre of water, c0 = 44 m/s and
 δ = 0.1, 4·10⁵ steps, and lifts its mean height by 2·10⁻⁴ of the depth per 10⁵ steps.  "Linear" lets ρ have any slope,
 so nothing holds long waves of γ: water sinks by 3·10⁻³ per 10⁵ steps, and the pressure on the floor by 6 %.
 
-So a pair goes at its own pace, as soil does (`soil.divergence`): that of sound where it closes or parts as quickly as
-in noise that counts, less where it is slower, none at rest.  (|v_ij · x_ij|/r in place of sound keeps gas in
-hydrostatic equilibrium from conducting its heat away: Wadsley, Veeravalli & Couchman, Mon. Not. R. Astron. Soc. 387
-(2008) 427; Price et al., Publ. Astron. Soc. Aust. 35 (2018) e031.)  Noise of a pressure p' moves at p'/(ρ c0).  If what
-counts is a thousandth of the weight of a metre of water, then what levels γ moves pairs at 10⁻³ of that, and stops
-itself.  Under "linear" water in the open stays restless at five times such speeds and goes on sinking, 2.8 in place of
-3.9·10⁻³ in 10⁵ steps; among grains, whose drag calms it, it stands.
+So the densities of a pair diffuse at the speed of sound where it closes or separates as quickly as in noise above a
+threshold, more slowly below it, and not at rest, as stress of soil does (`soil.momentum`).  (|v_ij · x_ij|/r in place
+of sound keeps gas in hydrostatic equilibrium from conducting its heat away: Wadsley, Veeravalli & Couchman, Mon. Not.
+R. Astron. Soc. 387 (2008) 427; Price et al., Publ. Astron. Soc. Aust. 35 (2018) e031.)  Noise of a pressure p' moves at
+p'/(ρ c0).  With a threshold of a thousandth of the weight of a metre of water, what levels γ moves pairs at 10⁻³ of
+that, and stops itself.  Under "linear" water in the open keeps moving at five times such speeds and goes on sinking,
+2.8 in place of 3.9·10⁻³ in 10⁵ steps; among grains, whose drag stops it, it stands.
 """
 
 from __future__ import annotations
 
 from porescale.common.compiled.jit import inline
-from porescale.common.compiled.simd import greater, lesser
+from porescale.common.compiled.simd import maximum, minimum
 
 PLAIN, HYDROSTATIC, LINEAR = range(3)
 NAMES = ("plain", "hydrostatic", "linear")
 
 
 @inline
-def pace(approach, haste, restless):
-    """Share of the speed of sound at which the densities of a pair diffuse: min(1, restless + haste |v_ij · x_ij|).
+def diffusion_share(approach, inverse_noise_speed, sound_share):
+    """Share of the speed of sound at which the densities of a pair diffuse: min(1, s + |v_ij · x_ij|/(h v_n)).
 
-    approach v_ij · x_ij, m²/s;  haste, s/m², and restless: see `haste_of`.
+    approach v_ij · x_ij, m²/s;  inverse_noise_speed 1/(h v_n), s/m², and sound_share s: of `noise_scale`.
     """
-    return lesser(restless + haste * greater(approach, -approach), 1.0)
+    return minimum(sound_share + inverse_noise_speed * maximum(approach, -approach), 1.0)
 
 
 @inline
-def haste_of(calm, h):
-    """haste and restless of `pace`: 1/(h calm) and 0;  of a ``calm`` (m/s) of 0 0 and 1, the pace of sound always."""
-    if calm > 0.0:
-        return 1.0 / (h * calm), 0.0
+def noise_scale(noise_speed, h):
+    """1/(h v_n), s/m², and 0 of a ``noise_speed`` v_n (m/s);  0 and 1, the speed of sound always, of v_n = 0."""
+    if noise_speed > 0.0:
+        return 1.0 / (h * noise_speed), 0.0
     return 0.0, 1.0

@@ -1,4 +1,4 @@
-"""The energies of a flow and what became of them: a book that closes.
+"""The energies of a flow and what became of them: a budget that closes.
 
 kinetic + potential + compressive + heat (viscosity) + diffused (density diffusion) + stopped (at a wall's surface) less
 the work of walls, of surface tension and of shifting stays what it was, but for the steps in time, for particles held
@@ -33,10 +33,10 @@ def held(flow: Flow) -> dict[str, float]:
     return {"kinetic energy": kinetic, "potential energy": potential, "compressive energy": compressive}
 
 
-def book(flow: Flow) -> dict[str, float]:
-    """The same, what was turned over since `Layer.keep_book`, "total energy", which is that held, and "energy balance",
-    which adds what was turned over."""
-    assert flow.layer.booked
+def budget(flow: Flow) -> dict[str, float]:
+    """The same, what was turned over since `Layer.keep_budget`, "total energy", which is that held, and "energy
+    balance", which adds what was turned over."""
+    assert flow.layer.has_budget
     own, turned = held(flow), flow.layer.energy.sum(axis=0)
     total = sum(own.values())
     return own | {

@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from continuum_sph.water.fluids import alike
-from continuum_sph.water.smoothing import kernel_slope, kernel_value, slope_scale, slope_shape
+from continuum_sph.water.bundles import image, inverse_period, nearest_image
+from continuum_sph.water.fluids import pair_fluid
+from continuum_sph.water.smoothing import kernel_kind, kernel_slope, kernel_value, slope_scale, slope_shape
 from continuum_sph.water.state import RHO, VOLUME, X, Y
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
-from porescale.common.compiled.simd import LANES, nearest, nothing, root, take_rows, take_two, total
-from porescale.common.neighbors.cells import minimum_image
+from porescale.common.compiled.simd import LANES, gather_rows, reduce_add, sqrt, zeros
 
 NONE, FULL = 0.5, 0.8  # a level surface has 0.49 in its first row and 0.90 in its second
 TRACE = 3
@@ -46,105 +46,112 @@ def clumping(ratio):
 
 
 @parallel_kernel
-def surroundings(
-    fluid, start, split, partner, record, traits, matrix, crowd, slant, kind, h, spacing, period_x, period_y
-):  # fmt: skip
-    """Overwrites, of fluid particles, ``matrix`` (fluid, 4), L and the trace of M;  ``crowd`` (fluid, 2) 1/m,
-    Σ {1 + R (W/W(spacing))⁴} V ∇W, which points away from where particles crowd;  ``slant`` (fluid, 2) kg/m⁴, gradient
-    of density within the material, exact for linear fields.
+def neighbourhood_moments(fluid, record, near, properties, matrix, concentration, density, spacing):
+    """Overwrites, of fluid particles, ``matrix`` (fluid, 4), L and the trace of M;  ``concentration`` (fluid, 2) 1/m,
+    Σ {1 + R (W/W(spacing))⁴} V ∇W, which points to where particles are fewest;  ``density`` (fluid, 2) kg/m⁴, gradient
+    of density within the fluid, exact for linear fields.  The last two are None where they have no use.
 
-    start, split, partner: full list, walls from ``split[i]`` on;  record: see Layer;  traits: of `rates`, None of one
-    fluid;  kind, h: smoothing;  spacing of the particles, m;  periods, m or 0, or both None.  Where crowd or slant is
-    not wanted it is None.
+    record: see `state.Layer`;  near, properties: see `bundles`;  spacing of the particles, m.
     """
-    inverse_h = 1.0 / h
-    scale = slope_scale(kind, h)
-    whole = 1.0 / kernel_value(kind, spacing * inverse_h, h)
-    turns_x = 0.0
-    turns_y = 0.0
-    if period_x is not None:
-        turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
-        turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
+    kind, h = kernel_kind(near.kind), near.h
+    whole = 1.0 / kernel_value(kind, spacing * (1.0 / h), h)
     for i in prange(fluid):
-        xi = record[i, X]
-        yi = record[i, Y]
-        rho = record[i, RHO]
-        mxx = nothing()
-        mxy = nothing()
-        myy = nothing()
-        nxx = nothing()
-        nxy = nothing()
-        nyy = nothing()
-        ax = nothing()
-        ay = nothing()
-        bx = nothing()
-        by = nothing()
-        first = start[i]
-        while first < split[i]:  # a particle stands for the missing end of its row, at no distance from itself
-            xj, yj, _, _, rho_j, _, volume, _ = take_rows(record, partner, first, split[i], i)
-            dx = xi - xj
-            dy = yi - yj
-            if period_x is not None:
-                dx -= period_x * nearest(dx * turns_x)
-                dy -= period_y * nearest(dy * turns_y)
-            q = root(dx * dx + dy * dy) * inverse_h
-            part = volume * scale * slope_shape(kind, q)
-            px = part * dx
-            py = part * dy
-            mxx += px * dx
-            mxy += px * dy
-            myy += py * dy
-            if crowd is not None:
-                weight = clumping(kernel_value(kind, q, h) * whole)
-                ax += weight * px
-                ay += weight * py
-            if slant is not None:
-                if traits is not None:
-                    material_j, _ = take_two(traits, partner, first, split[i], i)
-                    same = alike(traits[i, 0], material_j)
-                    px *= same
-                    py *= same
-                    nxx += px * dx
-                    nxy += px * dy
-                    nyy += py * dy
-                bx += (rho_j - rho) * px
-                by += (rho_j - rho) * py
-            first += LANES
-        xx = -total(mxx)
-        xy = -total(mxy)
-        yy = -total(myy)
-        if slant is not None:
-            if traits is not None:
-                lxx, lxy, lyy = inverse(-total(nxx), -total(nxy), -total(nyy))
-            else:
-                lxx, lxy, lyy = inverse(xx, xy, yy)
-            slant[i, 0] = lxx * total(bx) + lxy * total(by)
-            slant[i, 1] = lxy * total(bx) + lyy * total(by)
-        cx = total(ax)
-        cy = total(ay)
-        for k in range(np.uint64(split[i]), np.uint64(start[i + 1])):
-            j = np.uint64(partner[k])
-            dx = xi - record[j, X]
-            dy = yi - record[j, Y]
-            if period_x is not None:
-                dx = minimum_image(dx, period_x)
-                dy = minimum_image(dy, period_y)
-            q = np.sqrt(dx * dx + dy * dy) * inverse_h
-            part = record[j, VOLUME] * kernel_slope(kind, q, h)
-            px = part * dx
-            py = part * dy
-            xx -= px * dx
-            xy -= px * dy
-            yy -= py * dy
-            if crowd is not None:
-                weight = clumping(kernel_value(kind, q, h) * whole)
-                cx += weight * px
-                cy += weight * py
+        m, own, c, b = fluid_moments(i, record, near, properties, whole)
+        store_density_gradient(density, i, chosen(properties, own, m), b)
+        xx, xy, yy, cx, cy = wall_moments(i, record, near, m, c, whole)
         lxx, lxy, lyy = inverse(xx, xy, yy)
         matrix[i, 0] = lxx
         matrix[i, 1] = lxy
         matrix[i, 2] = lyy
         matrix[i, TRACE] = xx + yy
-        if crowd is not None:
-            crowd[i, 0] = cx
-            crowd[i, 1] = cy
+        store_concentration(concentration, i, cx, cy)
+
+
+@inline
+def fluid_moments(i, record, near, properties, whole):
+    """Sums over partners of particle i in the fluids: (M: xx, xy, yy;  the same over those of its own fluid;  the
+    concentration's, 1/m, x and y;  Σ V_j (ρ_j - ρ_i) ∇_i W within its fluid, kg/m⁴, x and y).
+
+    whole: 1/W(spacing), m²;  the rest: of `neighbourhood_moments`.
+    """
+    kind, h = kernel_kind(near.kind), near.h
+    inverse_h, scale = 1.0 / h, slope_scale(kind, h)
+    turns_x, turns_y = inverse_period(near.period_x), inverse_period(near.period_y)
+    xi, yi, rho = record[i, X], record[i, Y], record[i, RHO]
+    mxx, mxy, myy, nxx, nxy, nyy = zeros(), zeros(), zeros(), zeros(), zeros(), zeros()
+    ax, ay, bx, by = zeros(), zeros(), zeros(), zeros()
+    k, end = near.start[i], near.split[i]
+    while k < end:  # a particle stands for the missing end of its row, at no distance from itself
+        xj, yj, _, _, rho_j, _, volume, _ = gather_rows(record, near.partner, k, end, i)
+        dx, dy = nearest_image(xi - xj, near.period_x, turns_x), nearest_image(yi - yj, near.period_y, turns_y)
+        q = sqrt(dx * dx + dy * dy) * inverse_h
+        part = volume * scale * slope_shape(kind, q)
+        px, py = part * dx, part * dy
+        mxx += px * dx
+        mxy += px * dy
+        myy += py * dy
+        weight = clumping(kernel_value(kind, q, h) * whole)
+        ax += weight * px
+        ay += weight * py
+        same, _ = pair_fluid(properties, near.partner, k, end, i)
+        px *= same
+        py *= same
+        nxx += px * dx
+        nxy += px * dy
+        nyy += py * dy
+        bx += (rho_j - rho) * px
+        by += (rho_j - rho) * py
+        k += LANES
+    m, own = (
+        (-reduce_add(mxx), -reduce_add(mxy), -reduce_add(myy)),
+        (-reduce_add(nxx), -reduce_add(nxy), -reduce_add(nyy)),
+    )
+    return m, own, (reduce_add(ax), reduce_add(ay)), (reduce_add(bx), reduce_add(by))
+
+
+@inline
+def wall_moments(i, record, near, m, c, whole):
+    """M (xx, xy, yy) and the concentration's sums (x, y) 1/m of `fluid_moments`, with partners in walls."""
+    kind, h = kernel_kind(near.kind), near.h
+    inverse_h = 1.0 / h
+    xx, xy, yy = m
+    cx, cy = c
+    for k in range(np.uint64(near.split[i]), np.uint64(near.start[i + 1])):
+        j = np.uint64(near.partner[k])
+        dx, dy = image(record[i, X] - record[j, X], near.period_x), image(record[i, Y] - record[j, Y], near.period_y)
+        q = np.sqrt(dx * dx + dy * dy) * inverse_h
+        part = record[j, VOLUME] * kernel_slope(kind, q, h)
+        px = part * dx
+        py = part * dy
+        xx -= px * dx
+        xy -= px * dy
+        yy -= py * dy
+        weight = clumping(kernel_value(kind, q, h) * whole)
+        cx += weight * px
+        cy += weight * py
+    return xx, xy, yy, cx, cy
+
+
+@inline
+def chosen(properties, own, m):
+    """``own`` of several fluids, ``m`` of one."""
+    if properties is None:
+        return m
+    return own
+
+
+@inline
+def store_density_gradient(density, i, m, b):
+    """Overwrites row i of ``density`` (fluid, 2) kg/m⁴, unless it is None, with the sums ``b`` corrected by M."""
+    if density is not None:
+        lxx, lxy, lyy = inverse(m[0], m[1], m[2])
+        density[i, 0] = lxx * b[0] + lxy * b[1]
+        density[i, 1] = lxy * b[0] + lyy * b[1]
+
+
+@inline
+def store_concentration(concentration, i, cx, cy):
+    """Overwrites row i of ``concentration`` (fluid, 2) 1/m, unless it is None."""
+    if concentration is not None:
+        concentration[i, 0] = cx
+        concentration[i, 1] = cy

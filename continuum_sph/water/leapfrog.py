@@ -1,142 +1,201 @@
 """Kernels that move particles one by one: half kicks, drift, pressure from density.
 
-As of `rates`, what a scene does not ask for is None.
+As of `rates`, what a scene has no use for is None.  Pressures are those of one fluid, by whose law the kernel is
+compiled: of several fluids each takes a call, which leaves the particles of the others alone.
 """
 
 from __future__ import annotations
 
-from continuum_sph.water.eos import printed_gas, tait
-from continuum_sph.water.fluids import DENSITY, EXPONENT, PRINTED, SOUND, STIFFNESS, THINNEST, VISCOSITY
-from continuum_sph.water.state import RHO, STIFF, STOPPED, VOLUME, VX, P, X
+from typing import Any, NamedTuple
+
+from continuum_sph.water.eos.law import pressure_of
+from continuum_sph.water.fluids import LEAST_DENSITY
+from continuum_sph.water.state import COMPRESSIBILITY, RHO, STOPPED, VOLUME, VX, P, X
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
 
 
-@inline
-def row_of(table, number):
-    """What `show` knows of the fluid of that number."""
-    row = table[number]
-    return row[DENSITY], row[SOUND], row[STIFFNESS], row[EXPONENT], row[PRINTED], row[THINNEST]
+class Motion(NamedTuple):
+    """acceleration (fluid, 2) m/s²;  smoothed (fluid, 2) m/s, None without XSPH, and drift (fluid, 2) m/s, None without
+    shifting: what moves particles besides their velocity."""
+
+    acceleration: Any
+    smoothed: Any
+    drift: Any
 
 
-@inline
-def show(i, rho, mass, row, cut, pressure, record):
-    """Pressure (Pa) of particle i from its density ``rho`` by the law of a ``row`` of `row_of`; overwrites its
-    ``pressure`` and ``record`` but for places and velocities.  Returns its c², m²/s².
+class Densities(NamedTuple):
+    """density (fluid,) kg/m³;  rate, rate_before (fluid,) kg/(m³ s), of the last step and the one before."""
+
+    density: Any
+    rate: Any
+    rate_before: Any
+
+
+class Pressing(NamedTuple):
+    """What pressures are made of, and where they go.
+
+    number, viscosity (Pa s): of the fluid;  material (n,): numbers of the particles' fluids, None of one fluid;
+    properties (fluid, 2), lengths (n, 2): overwritten, see `bundles.Fluids`;  mass (n,) kg/m;  length (n,) m;
+    pressure (n,) Pa and record (n, 8), see `state.Layer`: overwritten;  cut: pressures below that of the air count as
+    none (particles of a free surface do not pull).
     """
-    density, sound, stiffness, exponent, printed, thinnest = row
-    if rho < thinnest:
-        rho = thinnest
-    if printed > 0.0:
-        p, speed_ratio2 = printed_gas(rho / density, stiffness, exponent)
-    else:
-        p, speed_ratio2 = tait(rho / density, stiffness, exponent)
-    if cut:
-        p = max(0.0, p)
-    speed2 = sound * sound * speed_ratio2
-    pressure[i] = p
-    record[i, RHO] = rho
-    record[i, P] = p
-    record[i, VOLUME] = mass[i] / rho
-    record[i, STIFF] = rho / speed2
+
+    number: Any
+    viscosity: Any
+    material: Any
+    properties: Any
+    lengths: Any
+    mass: Any
+    length: Any
+    pressure: Any
+    record: Any
+    cut: Any
+
+
+@inline
+def is_other(material, number, i):
+    """Whether particle i is of another fluid than that of the ``number``."""
+    if material is None:
+        return False
+    return material[i] != number
+
+
+@inline
+def store_properties(properties, i, number, viscosity):
+    """Overwrites row i of ``properties`` (fluid, 2), unless it is None."""
+    if properties is not None:
+        properties[i, 0] = number
+        properties[i, 1] = viscosity
+
+
+@inline
+def over_length2(lengths, length, i, speed2):
+    """c², m²/s², over h² of particle i where lengths vary, whose row of ``lengths`` it overwrites; c² elsewhere."""
+    if lengths is not None:
+        lengths[i, 0] = length[i]
+        speed2 /= length[i] * length[i]
     return speed2
 
 
-@parallel_kernel
-def kick_drift(
-    x, v, acceleration, smoothed, drift, density, rate, rate_before, predicted, mass, material, length, table, cut,
-    pressure, record, traits, girths, energy, half, step, ratio, lower, upper,
-):  # fmt: skip
-    """First half kick, drift and prediction of density for fluid particles; overwrites x, v, predicted.
-
-    v += half a;  x += step (v + smoothed + drift);  predicted = ρ + step {D + ratio (D - D_before)}.  half, step: s;
-    lower, upper (2,) m: surfaces of the walls.  The pressure of wall particles keeps water out of walls, but spray
-    carries none: a particle that reaches a surface is put on it and loses its speed into it, whose energy is added to
-    ``energy`` (fluid, 6) J/m, mass (n,) kg/m.  Does also what `pressurise` does, with the same arguments, unless
-    ``record`` is None.  Returns how often, and what `pressurise` does, or 0.
-
-    None: ``smoothed`` without XSPH, ``drift`` without shifting, ``energy`` without a book.
-    """
-    stopped = 0
-    pace = 0.0
-    if material is None:
-        row = row_of(table, 0)
-    for i in prange(density.shape[0]):
-        for axis in range(2):
-            speed = v[i, axis] + half * acceleration[i, axis]
-            carried = speed
-            if smoothed is not None:
-                carried += smoothed[i, axis]
-            if drift is not None:
-                carried += drift[i, axis]
-            at = x[i, axis] + step * carried
-            if at < lower[axis] or at > upper[axis]:
-                into = min(0.0, speed) if at < lower[axis] else max(0.0, speed)
-                at = lower[axis] if at < lower[axis] else upper[axis]
-                speed -= into
-                stopped += 1
-                if energy is not None:
-                    energy[i, STOPPED] += 0.5 * mass[i] * into**2
-            x[i, axis] = at
-            v[i, axis] = speed
-            if record is not None:
-                record[i, X + axis] = at
-                record[i, VX + axis] = speed
-        rho = density[i] + step * (rate[i] + ratio * (rate[i] - rate_before[i]))
-        predicted[i] = rho
-        if record is not None:
-            if material is not None:
-                row = row_of(table, material[i])
-                traits[i, 0] = material[i]
-                traits[i, 1] = table[material[i], VISCOSITY]
-            speed2 = show(i, rho, mass, row, cut, pressure, record)
-            if girths is not None:
-                girths[i, 0] = length[i]
-                speed2 /= length[i] * length[i]
-            pace = max(pace, speed2)
-    return stopped, pace if girths is not None else pace / (length[0] * length[0])
+@inline
+def over_common_length2(lengths, length, speed2):
+    """c², m²/s², over the h² that all have, where they have one."""
+    if lengths is None:
+        return speed2 / (length[0] * length[0])
+    return speed2
 
 
-@parallel_kernel
-def pressurise(x, v, mass, density, material, length, table, cut, pressure, record, traits, girths):
-    """Pressure (Pa) of fluid particles from ``density`` (fluid,); overwrites their ``pressure`` and ``record``.
+@inline
+def update_pressure(i, rho, to, law):
+    """Pressure (Pa) of particle i from its density ``rho`` by the numbers of a ``law`` (`eos`); overwrites all of it
+    that ``to``, a `Pressing`, holds but places and velocities.  Returns c²/h² or c², as of `over_length2`.
 
     The density of a step's end is extrapolated, for spray that hits a wall below zero: it stops at the fluid's least.
-    table (m, 9): the fluids;  material (n,), those of the particles, and ``traits``, overwritten as `rates` takes them:
-    None of one fluid;  length (n,): h, m, and ``girths``, overwritten, None unless it varies;  cut: pressures below
-    that of the air count as none (particles of a free surface do not pull).  Returns the largest (c/h)², 1/s²; a
-    maximum is exact in any order.
     """
-    pace = 0.0
-    if material is None:
-        row = row_of(table, 0)
-    for i in prange(density.shape[0]):
-        for axis in range(2):
-            record[i, X + axis] = x[i, axis]
-            record[i, VX + axis] = v[i, axis]
-        if material is not None:
-            row = row_of(table, material[i])
-            traits[i, 0] = material[i]
-            traits[i, 1] = table[material[i], VISCOSITY]
-        speed2 = show(i, density[i], mass, row, cut, pressure, record)
-        if girths is not None:
-            girths[i, 0] = length[i]
-            speed2 /= length[i] * length[i]
-        pace = max(pace, speed2)
-    return pace if girths is not None else pace / (length[0] * length[0])
+    if rho < law.least_density:
+        rho = law.least_density
+    p, speed_ratio2 = pressure_of(rho / law.density, law)
+    if to.cut:
+        p = max(0.0, p)
+    speed2 = law.sound_speed * law.sound_speed * speed_ratio2
+    to.pressure[i] = p
+    to.record[i, RHO] = rho
+    to.record[i, P] = p
+    to.record[i, VOLUME] = to.mass[i] / rho
+    to.record[i, COMPRESSIBILITY] = rho / speed2
+    store_properties(to.properties, i, to.number, to.viscosity)
+    return over_length2(to.lengths, to.length, i, speed2)
+
+
+@inline
+def store_place(record, i, axis, at, speed):
+    """Overwrites place (m) and velocity (m/s) of particle i along an axis in ``record`` (n, 8)."""
+    record[i, X + axis] = at
+    record[i, VX + axis] = speed
+
+
+@inline
+def added(carried, velocities, i, axis):
+    """A velocity (m/s) with that of row i of ``velocities`` (fluid, 2), unless these are None."""
+    if velocities is None:
+        return carried
+    return carried + velocities[i, axis]
+
+
+@inline
+def add_stopped(energy, i, mass, into):
+    """Adds the kinetic energy of a speed ``into`` a wall (m/s) to that stopped there, (fluid, 6) J/m, unless None."""
+    if energy is not None:
+        energy[i, STOPPED] += 0.5 * mass[i] * into**2
 
 
 @parallel_kernel
-def kick(v, acceleration, density, rate, material, length, girths, table, power, energy, half, step):
+def kick_drift(x, v, motion, densities, predicted, to, energy, step, ratio, bounds, together, law):
+    """First half kick, drift and prediction of density for particles of a fluid; overwrites x, v, predicted.
+
+    v += step/2 a;  x += step (v + smoothed + drift);  predicted = ρ + step {D + ratio (D - D_before)}.  motion,
+    densities, to: see `Motion`, `Densities`, `Pressing`;  step, s;  bounds (2, 2) m: lower and upper surfaces of the
+    walls.  The pressure of wall particles keeps water out of walls, but spray carries none: a particle that reaches a
+    surface is put on it and loses its speed into it, whose energy is added to ``energy`` (fluid, 6) J/m, None without
+    a budget.  Does also what `pressurise` does, unless ``together`` is None;  law: see there.  Returns how often
+    particles were stopped, and what `pressurise` does, or 0.
+    """
+    stopped = 0
+    fastest = 0.0
+    half = 0.5 * step
+    for i in prange(densities.density.shape[0]):
+        if is_other(to.material, to.number, i):
+            continue
+        for axis in range(2):
+            speed = v[i, axis] + half * motion.acceleration[i, axis]
+            carried = added(added(speed, motion.smoothed, i, axis), motion.drift, i, axis)
+            at = x[i, axis] + step * carried
+            if at < bounds[0, axis] or at > bounds[1, axis]:
+                into = min(0.0, speed) if at < bounds[0, axis] else max(0.0, speed)
+                at = bounds[0, axis] if at < bounds[0, axis] else bounds[1, axis]
+                speed -= into
+                stopped += 1
+                add_stopped(energy, i, to.mass, into)
+            x[i, axis] = at
+            v[i, axis] = speed
+            if together is not None:
+                store_place(to.record, i, axis, at, speed)
+        rate = densities.rate[i]
+        rho = densities.density[i] + step * (rate + ratio * (rate - densities.rate_before[i]))
+        predicted[i] = rho
+        if together is not None:
+            fastest = max(fastest, update_pressure(i, rho, to, law))
+    return stopped, over_common_length2(to.lengths, to.length, fastest)
+
+
+@parallel_kernel
+def pressurise(x, v, density, to, law):
+    """Pressure (Pa) of particles of a fluid from ``density`` (fluid,); overwrites what ``to`` holds, see `Pressing`.
+
+    law: numbers of the fluid's, see `eos`.  Returns the largest (c/h)², 1/s²; a maximum is exact in any order.
+    """
+    fastest = 0.0
+    for i in prange(density.shape[0]):
+        if is_other(to.material, to.number, i):
+            continue
+        for axis in range(2):
+            store_place(to.record, i, axis, x[i, axis], v[i, axis])
+        fastest = max(fastest, update_pressure(i, density[i], to, law))
+    return over_common_length2(to.lengths, to.length, fastest)
+
+
+@parallel_kernel
+def kick(v, acceleration, density, rate, material, length, lengths, table, power, energy, half, step):
     """Second half kick, density, smoothing length and energies; overwrites v, density, length, energy.
 
     Continuity follows a particle that leaves its neighbours down to the density of a cloud, below zero if they were
-    crowded: densities stop at the fluid's least.  Where there are ``girths`` h -= step h/(2ρ) dρ/dt, eq. 52 in two
-    dimensions.  energy (fluid, 6) J/m grows by step times ``power`` but for what was STOPPED; both None without a book.
-    material, length, girths, table: of `pressurise`.  Returns the largest |a|² (m²/s⁴) and |v|² (m²/s²), which limit
-    the next step and its shifting.
+    close: densities stop at the fluid's least.  Where there are ``lengths`` h -= step h/(2ρ) dρ/dt, eq. 52 in two
+    dimensions.  energy (fluid, 6) J/m grows by step times ``power`` but for what was STOPPED; both None without a
+    budget.  material, length, lengths: of `Pressing`;  table: the fluids.  Returns the largest |a|² (m²/s⁴) and |v|²
+    (m²/s²), which limit the next step and its shifting.
     """
-    hardest = 0.0
-    swiftest = 0.0
+    max_acceleration2 = 0.0
+    max_speed2 = 0.0
     for i in prange(density.shape[0]):
         kind = 0
         if material is not None:
@@ -145,12 +204,12 @@ def kick(v, acceleration, density, rate, material, length, girths, table, power,
         ay = acceleration[i, 1]
         v[i, 0] += half * ax
         v[i, 1] += half * ay
-        if girths is not None:
+        if lengths is not None:
             length[i] -= step * length[i] / (2.0 * density[i]) * rate[i]
-        density[i] = max(table[kind, THINNEST], density[i] + step * rate[i])
+        density[i] = max(table[kind, LEAST_DENSITY], density[i] + step * rate[i])
         if energy is not None:
             for k in range(STOPPED):
                 energy[i, k] += step * power[i, k]
-        hardest = max(hardest, ax * ax + ay * ay)
-        swiftest = max(swiftest, v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1])
-    return hardest, swiftest
+        max_acceleration2 = max(max_acceleration2, ax * ax + ay * ay)
+        max_speed2 = max(max_speed2, v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1])
+    return max_acceleration2, max_speed2

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-from continuum_sph.water.eos import Gas, Tait
+from continuum_sph.water.eos.law import StateLaw
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.smoothing import Smoothing
 from continuum_sph.water.viscosity import STIFFER
@@ -55,7 +55,7 @@ class Law:
     courant: float = 0.25
 
     @property
-    def state(self) -> Tait | Gas:
+    def state(self) -> StateLaw:
         """State law of the first fluid."""
         return self.fluids[0].state
 
@@ -100,17 +100,17 @@ class Law:
             0.25 * (lightest * h**3 / (2.0 * math.pi * self.tension)) ** 0.5 if self.tension > 0.0 else infinite,
         )
 
-    def limits(self, acceleration: float, pace: float) -> tuple[float, float, float, float]:
+    def limits(self, acceleration: float, sound_rate: float) -> tuple[float, float, float, float]:
         """Steps allowed by sound, acceleration (m/s²), viscosity and capillary waves, s: eq. 49, h²/ν in the third.
 
         0.25/max(c/h), 0.25 √(h/|a|), 0.125 h²/ν (of two fluids less, `viscosity.STIFFER`), 0.25 √(ρ h³/2πσ) (Brackbill,
-        Kothe & Zemach 1992);  ``pace``: the largest c/h, 1/s.  The diffusion of density goes by sound, too, and allows
-        2/(49 δ) in place of 0.25, less where δ > 0.163.
+        Kothe & Zemach 1992);  ``sound_rate``: the largest c/h, 1/s.  The diffusion of density goes by sound, too, and
+        allows 2/(49 δ) in place of 0.25, less where δ > 0.163.
         """
         courant, least, viscous, capillary = self.bounds
-        pace = max(pace, least)
+        sound_rate = max(sound_rate, least)
         return (
-            courant / pace if pace > 0.0 else math.inf,
+            courant / sound_rate if sound_rate > 0.0 else math.inf,
             self.courant * (self.smoothing.length / acceleration) ** 0.5 if acceleration > 0.0 else math.inf,
             viscous,
             capillary,

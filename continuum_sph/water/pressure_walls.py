@@ -10,34 +10,29 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.water.smoothing import kernel_value
+from continuum_sph.water.bundles import image
+from continuum_sph.water.smoothing import kernel_kind, kernel_value
 from continuum_sph.water.state import RHO, VOLUME, VX, VY, P, X, Y
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
-from porescale.common.neighbors.cells import minimum_image
 
 Floats = NDArray[np.float64]
 
 
 @inline
-def wall_row(
-    w, start, end, partner, x, v, record, pressure, kind, h, gx, gy, period_x, period_y
-):  # fmt: skip
-    """Pressure (Pa) and mean fluid velocity (m/s) at wall particle w from fluid partners ``start`` … ``end``-1.
+def wall_mean(w, near, x, v, record, pressure, gx, gy):
+    """Pressure (Pa) and mean fluid velocity (m/s) at wall particle w from its fluid partners.
 
     p_w = Σ (p_f + ρ_f g · (x_w - x_f)) W / Σ W.  Not below zero: a wall does not pull on a free surface's fluid.
     """
-    wraps = period_x > 0.0 or period_y > 0.0
+    kind, h = kernel_kind(near.kind), near.h
     weight = 0.0
     p = 0.0
     ux = 0.0
     uy = 0.0
-    for k in range(np.uint64(start), np.uint64(end)):
-        j = np.uint64(partner[k])
-        dx = x[w, 0] - record[j, X]
-        dy = x[w, 1] - record[j, Y]
-        if wraps:
-            dx = minimum_image(dx, period_x)
-            dy = minimum_image(dy, period_y)
+    for k in range(np.uint64(near.start[w]), np.uint64(near.split[w])):
+        j = np.uint64(near.partner[k])
+        dx = image(x[w, 0] - record[j, X], near.period_x)
+        dy = image(x[w, 1] - record[j, Y], near.period_y)
         value = kernel_value(kind, np.sqrt(dx * dx + dy * dy) / h, h)
         weight += value
         p += (pressure[j] + record[j, RHO] * (gx * dx + gy * dy)) * value
@@ -49,23 +44,19 @@ def wall_row(
 
 
 @parallel_kernel
-def load_walls(
-    fluid, start, split, partner, x, v, mass, record, pressure, ghost, kind, h, gx, gy, density0, period_x, period_y
-):  # fmt: skip
+def load_walls(fluid, near, x, v, mass, record, pressure, ghost, gx, gy, density0):
     """Give wall particles (rows ``fluid`` on) the pressure and velocity of the fluid before them.
 
     Overwrites the rows of ``record`` (n, 8) and ``ghost`` (n, 2) of those that have fluid for partners, and all of
     their ``pressure`` (n,);  ghost: 2 v_wall - mean fluid velocity: the average of fluid and ghost is then the wall's
     velocity at the wall;  None where no wall holds the fluid.  Their volume stays mass/density0, the square of the
-    spacing, as that of fluid at the start.
+    spacing, as that of fluid at the start.  near: see `bundles`.
     """
     for w in prange(fluid, x.shape[0]):
-        if start[w] == split[w]:
+        if near.start[w] == near.split[w]:
             pressure[w] = 0.0  # and no fluid reads the rest
             continue
-        p, ux, uy = wall_row(
-            w, start[w], split[w], partner, x, v, record, pressure, kind, h, gx, gy, period_x, period_y
-        )  # fmt: skip
+        p, ux, uy = wall_mean(w, near, x, v, record, pressure, gx, gy)
         pressure[w] = p
         record[w, X] = x[w, 0]
         record[w, Y] = x[w, 1]

@@ -13,21 +13,30 @@ A row of partners is taken several at a time (`porescale.common.compiled.simd`);
 of its own row and adds nothing, being at no distance from itself and moving as it does.  Factors that all partners
 share multiply the sums.
 
-What a scene does not ask for is None among the arguments.  The pass is compiled for what there is, and kept on disk,
-each kind by itself: it holds no branch, load or sum of anything else.
+What a scene has no use for is None in the bundles (`bundles`).  The pass is compiled for what there is, and kept on
+disk, each kind by itself: it holds no branch, load or sum of anything else.  Sums over partners in the fluids are in
+`rates_fluid`, over those in walls in `rates_walls`.
 """
 
 from __future__ import annotations
 
-from continuum_sph.water.artificial_viscosity import artificial
-from continuum_sph.water.density import HYDROSTATIC, LINEAR, haste_of, pace
-from continuum_sph.water.fluids import COHESION, SOUND, VISCOSITY, alike
-from continuum_sph.water.rates_walls import walls_push
-from continuum_sph.water.smoothing import WENDLAND, slope_scale, slope_shape, value_scale, value_shape
-from continuum_sph.water.state import BY_SHIFTING, BY_WALLS, DIFFUSIVE, RHO, STIFF, VISCOUS, VX, VY, P, X, Y
-from continuum_sph.water.viscosity import laminar, mutual
-from porescale.common.compiled.jit import parallel_kernel, prange
-from porescale.common.compiled.simd import LANES, nearest, nothing, root, take_four, take_rows, take_two, total
+from continuum_sph.water.bundles import plus, plus_scaled
+from continuum_sph.water.fluids import SOUND, fluid_number
+from continuum_sph.water.rates_fluid import fluid_sums
+from continuum_sph.water.rates_walls import wall_sums
+from continuum_sph.water.smoothing import kernel_kind, value_scale
+from continuum_sph.water.state import (
+    BY_SHIFTING,
+    BY_WALLS,
+    COMPRESSIBILITY,
+    DIFFUSIVE,
+    RHO,
+    VISCOUS,
+    VX,
+    VY,
+    P,
+)
+from porescale.common.compiled.jit import inline, parallel_kernel, prange
 
 
 @parallel_kernel
@@ -41,183 +50,82 @@ def split_rows(fluid, start, partner, split):
 
 
 @parallel_kernel
-def rates(
-    fluid, start, split, partner, record, traits, girths, ghost, facing, material, matrix, slant, drift, mass, table,
-    acceleration, rate, smoothed, power,
-    kind, h, gx, gy, alpha, beta, softening, delta, calm, noise, cohesive, smoothing, period_x, period_y, half,
-):  # fmt: skip
-    """Overwrites ``acceleration`` (fluid, 2) m/s², ``rate`` (fluid,) kg/(m³ s), ``smoothed`` (fluid, 2) m/s and the
-    columns of ``power`` (fluid, 6) W/m that are its own: BY_SHIFTING only if there is ``drift``.
+def rates(fluid, record, near, fluids, walls, gradients, choices, acceleration, rate, smoothed, power, half):
+    """Overwrites, of the particles of the fluids, ``acceleration`` (fluid, 2) m/s²;  ``rate`` (fluid,) of density,
+    kg/(m³ s);  ``smoothed`` (fluid, 2) m/s, None without XSPH;  ``power`` (fluid, 6) W/m, but for the columns
+    BY_TENSION, STOPPED and, without shifting, BY_SHIFTING: None without a budget.
 
-    start, split, partner: full pair list, wall partners of row i from ``split[i]`` on;  record: see Layer;  table
-    (m, 9): the fluids;  kind, h: smoothing;  gy gravity, m/s²;  alpha, softening: artificial viscosity;  delta 2 δ h of
-    the density diffusion, m, calm, m/s, of `haste_of`, and noise, what diffusion takes for noise;  half: of the step
-    that ends here, s.  None where a scene has no
-
-    second fluid: ``traits`` (fluid, 2), number of the fluid and μ, Pa s: two fluids rub along the line of centres, one
-    as eq. 34 has it (`viscosity`);  h of its own for each particle: ``girths`` (n, 2), h, m, in the first (eq. 7);
-    walls that hold: ``material`` (n,), 0 for wall particles that do, and ``ghost``, see Layer, which walls of the paper
-    need not;  walls of the paper: ``facing``, see Layer;  corrected gradients: ``matrix``, see Layer;  noise about a
-    linear field, nor shifting: ``slant`` of `surroundings`;  shifting: ``drift`` (fluid, 2) m/s, to whose place the
-    density belongs;  book: ``power`` and, without cohesion, ``mass`` (n,) kg/m;  cohesion: ``cohesive``;  XSPH:
-    ``smoothed`` and ``smoothing``, its ε, for Σ (m_j/ρ̄)(v_j - v_i) W (eq. 53 with the sign that smooths);  gravity
-    sideways: ``gx``, m/s²;  β of artificial viscosity: ``beta``;  periods: ``period_x`` and ``period_y``, m or 0.
-    ``kind`` is None for Wendland's kernel where that is to be compiled in.
+    record (n, 8): see `state.Layer`;  near, fluids, walls, gradients, choices: see `bundles`;  half: of the step that
+    ends here, s.  Two fluids have friction along the line of centres, one as eq. 34 has it (`viscosity`).
     """
-    form = WENDLAND
-    if kind is not None:
-        form = kind
-    linear = noise == LINEAR
-    haste, restless = haste_of(calm, h)
-    level = 0.5 if noise == HYDROSTATIC else 0.0
-    lift_x = level * gx if gx is not None else 0.0
-    lift_y = level * gy
-    turns_x = 0.0
-    turns_y = 0.0
-    if period_x is not None:
-        turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
-        turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
-    scale_h = slope_scale(form, h)
-    inverse_h = 1.0 / h
     for i in prange(fluid):
-        xi = record[i, X]
-        yi = record[i, Y]
-        vxi = record[i, VX]
-        vyi = record[i, VY]
+        fluid_a, friction_a, xsph, compression, noise = fluid_sums(i, record, near, fluids, gradients, choices)
+        push_x, push_y, held_x, held_y, wall_flux = wall_sums(i, record, near, fluids, walls, gradients)
         rho = record[i, RHO]
-        own = record[i, P]
-        stiff = record[i, STIFF]
-        specific = 1.0 / rho
-        own_material = 0
-        if traits is not None:
-            own_material = int(traits[i, 0])
-        viscosity = table[own_material, VISCOSITY]
-        sound = table[own_material, SOUND]
-        friction = laminar(viscosity, 1.0, specific, 1.0)
-        if cohesive is not None:
-            pull = 2.0 * table[own_material, COHESION] / (mass[i] * mass[i])
-        ax = nothing()
-        ay = nothing()
-        bx = nothing()
-        by = nothing()
-        sx = nothing()
-        sy = nothing()
-        change = nothing()
-        spread = nothing()
-        k = start[i]
-        while k < split[i]:
-            xj, yj, vxj, vyj, rho_j, pressure_j, volume, stiff_j = take_rows(record, partner, k, split[i], i)
-            dx = xi - xj
-            dy = yi - yj
-            if period_x is not None:
-                dx -= period_x * nearest(dx * turns_x)
-                dy -= period_y * nearest(dy * turns_y)
-            vx = vxi - vxj
-            vy = vyi - vyj
-            distance2 = dx * dx + dy * dy
-            if girths is not None:
-                girth, _ = take_two(girths, partner, k, split[i], i)
-                width = 0.5 * (girths[i, 0] + girth)
-                inverse = 1.0 / width
-                scale = slope_scale(form, width)
-            else:
-                width = h
-                inverse = inverse_h
-                scale = scale_h
-            q = root(distance2) * inverse
-            part = volume * scale * slope_shape(form, q)
-            approach = vx * dx + vy * dy
-            spreading = part * pace(approach, haste, restless)
-            if traits is not None:
-                material_j, viscosity_j = take_two(traits, partner, k, split[i], i)
-                same = alike(traits[i, 0], material_j)
-                spreading *= same
-            lift = lift_y * dy
-            if gx is not None:
-                lift += lift_x * dx
-            spread += (rho - rho_j - (stiff + stiff_j) * lift) * spreading
-            if slant is not None and linear:
-                sideways, up = take_two(slant, partner, k, split[i], i)
-                spread -= 0.5 * ((slant[i, 0] + sideways) * dx + (slant[i, 1] + up) * dy) * spreading
-            thrust = (own + pressure_j) * specific
-            if cohesive is not None:
-                if traits is not None:
-                    thrust -= pull * same * rho_j
-                else:
-                    thrust -= pull * rho_j
-            both = rho + rho_j
-            damp = artificial(alpha, beta, sound, width, softening, approach, distance2, both) * rho_j
-            if matrix is not None:
-                mxx, mxy, myy, _ = take_four(matrix, partner, k, split[i], i)
-                mxx = 0.5 * (matrix[i, 0] + mxx)
-                mxy = 0.5 * (matrix[i, 1] + mxy)
-                myy = 0.5 * (matrix[i, 2] + myy)
-                tx = mxx * dx + mxy * dy
-                ty = mxy * dx + myy * dy
-                change += (vx * tx + vy * ty) * part
-                thrust *= part
-                ax -= thrust * tx
-                ay -= thrust * ty
-                if power is not None:
-                    bx += thrust * tx
-                    by += thrust * ty
-                braking = 0.5 * (mxx + myy) * part
-                push = damp * part
-            else:
-                change += approach * part
-                braking = part
-                push = (thrust + damp) * part
-                if power is not None:
-                    thrust *= part
-                    bx += thrust * dx
-                    by += thrust * dy
-            if traits is not None:
-                rub = mutual(viscosity, viscosity_j, specific, approach, distance2) * braking
-                ax -= (push - rub) * dx
-                ay -= (push - rub) * dy
-            else:
-                brake = friction * braking
-                ax += brake * vx - push * dx
-                ay += brake * vy - push * dy
-            if smoothing is not None:
-                weight = rho_j * volume / both * value_shape(form, q)
-                if girths is not None:
-                    weight *= value_scale(form, width)
-                sx -= weight * vx
-                sy -= weight * vy
-            k += LANES
-        pushed_x, pushed_y, held_x, held_y, swept = walls_push(
-            i, split[i], start[i + 1], partner, record, traits, girths, ghost, facing, material, matrix, vxi, vyi, rho,
-            own, viscosity, form, h, scale_h, period_x, period_y,
-        )  # fmt: skip
-        diffused = delta * sound * total(spread)
-        acceleration[i, 0] = total(ax) + pushed_x + held_x
-        if gx is not None:
-            acceleration[i, 0] += gx
-        acceleration[i, 1] = total(ay) + pushed_y + held_y + gy
-        moved = 0.0
-        lifted = 0.0
-        if drift is not None:
-            moved = drift[i, 0] * slant[i, 0] + drift[i, 1] * slant[i, 1]
-            lifted = gy * drift[i, 1]
-            if gx is not None:
-                lifted += gx * drift[i, 0]
-        rate[i] = rho * total(change) + swept + moved + diffused
-        if smoothing is not None:
-            whole = 2.0 * smoothing
-            if girths is None:
-                whole *= value_scale(form, h)
-            smoothed[i, 0] = whole * total(sx)
-            smoothed[i, 1] = whole * total(sy)
-        if power is not None:
-            # What these do to speeds they do at the step's end, and what they do to densities at its middle.
-            vxi += half * acceleration[i, 0]
-            vyi += half * acceleration[i, 1]
-            work = mass[i] * specific * specific * (own - half * rho / stiff * rate[i])
-            rubbed_x = total(ax) + total(bx) + held_x  # all but pressures, whose sums are bx and by
-            rubbed_y = total(ay) + total(by) + held_y
-            power[i, VISCOUS] = -mass[i] * (rubbed_x * vxi + rubbed_y * vyi)
-            power[i, DIFFUSIVE] = -work * diffused
-            power[i, BY_WALLS] = work * swept + mass[i] * (pushed_x * vxi + pushed_y * vyi)
-            if drift is not None:
-                power[i, BY_SHIFTING] = work * moved - mass[i] * lifted
+        sound = fluids.table[fluid_number(fluids.properties, i), SOUND]
+        diffused = choices.diffusion * sound * noise
+        acceleration[i, 0] = plus(fluid_a[0] + push_x + held_x, choices.gravity_x)
+        acceleration[i, 1] = fluid_a[1] + push_y + held_y + choices.gravity_y
+        moved, lifted = carried(gradients.drift, gradients.density, choices, i)
+        rate[i] = rho * compression + wall_flux + moved + diffused
+        store_smoothed(smoothed, i, xsph, choices, near, fluids)
+        flux = (diffused, wall_flux, moved, lifted)
+        rubbed = (friction_a[0] + held_x, friction_a[1] + held_y)
+        given = (acceleration[i, 0], acceleration[i, 1], rate[i])
+        store_power(power, i, record, fluids.mass, given, half, rubbed, (push_x, push_y), flux, gradients.drift)
+
+
+@inline
+def carried(drift, gradient, choices, i):
+    """Rate of density, kg/(m³ s), and power of gravity per mass, W/kg, that shifting gives particle i: 0 without."""
+    if drift is None:
+        return 0.0, 0.0
+    lifted = plus_scaled(choices.gravity_y * drift[i, 1], choices.gravity_x, drift[i, 0])
+    return drift[i, 0] * gradient[i, 0] + drift[i, 1] * gradient[i, 1], lifted
+
+
+@inline
+def store_smoothed(smoothed, i, xsph, choices, near, fluids):
+    """Overwrites row i of ``smoothed`` (fluid, 2) m/s, unless it is None, with 2 ε times the sums ``xsph``."""
+    if smoothed is not None:
+        whole = 2.0 * choices.xsph * common_value_scale(fluids.lengths, kernel_kind(near.kind), near.h)
+        smoothed[i, 0] = whole * xsph[0]
+        smoothed[i, 1] = whole * xsph[1]
+
+
+@inline
+def common_value_scale(lengths, kind, h):
+    """What sums of kernel values are multiplied by as a whole: 1 where smoothing lengths vary."""
+    if lengths is None:
+        return value_scale(kind, h)
+    return 1.0
+
+
+@inline
+def store_power(power, i, record, mass, given, half, rubbed, pushed, flux, drift):
+    """Overwrites row i of ``power`` (fluid, 6) W/m, unless it is None.
+
+    given: acceleration (x, y), m/s², and rate of density;  rubbed, pushed: accelerations by all but pressures, and by
+    the pressure of walls, m/s²;  flux: rates of density by diffusion, walls and shifting, kg/(m³ s), and the power of
+    gravity by shifting, W/kg;  the rest: of `rates`.
+    What forces do to speeds they do at the end of the step, and what they do to densities at its middle.
+    """
+    if power is not None:
+        diffused, wall_flux, moved, lifted = flux
+        rho = record[i, RHO]
+        specific_volume = 1.0 / rho
+        vx = record[i, VX] + half * given[0]
+        vy = record[i, VY] + half * given[1]
+        mid_pressure = record[i, P] - half * rho / record[i, COMPRESSIBILITY] * given[2]
+        work = mass[i] * specific_volume * specific_volume * mid_pressure
+        power[i, VISCOUS] = -mass[i] * (rubbed[0] * vx + rubbed[1] * vy)
+        power[i, DIFFUSIVE] = -work * diffused
+        power[i, BY_WALLS] = work * wall_flux + mass[i] * (pushed[0] * vx + pushed[1] * vy)
+        store_shifting(power, drift, i, work * moved - mass[i] * lifted)
+
+
+@inline
+def store_shifting(power, drift, i, value):
+    """Overwrites the power of shifting of particle i, W/m, where there is a ``drift``."""
+    if drift is not None:
+        power[i, BY_SHIFTING] = value

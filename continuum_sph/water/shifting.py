@@ -1,4 +1,4 @@
-"""Shifting: particles drift from where they crowd to where they are rare, which keeps them evenly spread.
+"""Shifting: particles drift down the gradient of their concentration, which keeps them evenly spread.
 
 δu_i = -2 h s U Σ {1 + R (W/W(spacing))⁴} V_j ∇_i W, at most a quarter of U, the speed of the fastest particle; s is 1
 to 2.  Density changes by δu · ∇ρ, so that it stays that of the place (Sun et al., Comput. Methods Appl. Mech. Eng. 348
@@ -22,12 +22,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from continuum_sph.water.bundles import inverse_period, nearest_image
 from continuum_sph.water.fluids import LIQUID
 from continuum_sph.water.kernel_correction import TRACE
-from continuum_sph.water.smoothing import slope_scale, slope_shape
+from continuum_sph.water.smoothing import kernel_kind, slope_scale, slope_shape
 from continuum_sph.water.state import X, Y
 from porescale.common.compiled.jit import parallel_kernel, prange
-from porescale.common.compiled.simd import LANES, greater, nearest, nothing, root, take_four, take_rows, total
+from porescale.common.compiled.simd import LANES, gather_four, gather_rows, maximum, reduce_add, sqrt, zeros
 
 OPEN = 1.5  # trace of M: 1.95 on a lattice, 1.2 in the outermost row of a level surface, 0.9 in a corner
 MOST = 0.25  # of U
@@ -35,53 +36,44 @@ QUIET = 1.0 / 500.0  # of the speed of sound: a settling lattice stays below it,
 
 
 @parallel_kernel
-def shift(
-    fluid, start, split, partner, record, material, table, matrix, crowd, drift, kind, h, strength, most,
-    period_x, period_y,
-):  # fmt: skip
+def shift(fluid, record, near, material, table, matrix, concentration, drift, strength, most):
     """Overwrites ``drift`` (fluid, 2) m/s, the shifting velocity.
 
-    start, split, partner: full list, walls from ``split[i]`` on;  material, table: the particles' fluids;  matrix,
-    crowd: of `surroundings`;  strength 2 h s U, m²/s;  most: longest shifting velocity, m/s;  kind, h: smoothing;
-    periods, m or 0, or both None.
+    record: see `state.Layer`;  near: see `bundles`;  material, table: the particles' fluids;  matrix, concentration: of
+    `neighbourhood_moments`;  strength 2 h s U, m²/s;  most: longest shifting velocity, m/s.
     """
-    steep = slope_scale(kind, h)
-    inverse_h = 1.0 / h
-    turns_x = 0.0
-    turns_y = 0.0
-    if period_x is not None:
-        turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
-        turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
+    kind = kernel_kind(near.kind)
+    steep = slope_scale(kind, near.h)
+    inverse_h = 1.0 / near.h
+    turns_x = inverse_period(near.period_x)
+    turns_y = inverse_period(near.period_y)
     for i in prange(fluid):
         drift[i, 0] = 0.0
         drift[i, 1] = 0.0
         closed = matrix[i, TRACE]
         if closed < OPEN or table[material[i], LIQUID] == 0.0:
             continue
-        ux = -strength * crowd[i, 0]
-        uy = -strength * crowd[i, 1]
-        falls_x = nothing()
-        falls_y = nothing()
-        open_by = nothing()
-        k = start[i]
-        while k < split[i]:  # a particle stands for the missing end of its row: it is not open
-            xj, yj, _, _, _, _, volume, _ = take_rows(record, partner, k, split[i], i)
-            _, _, _, trace = take_four(matrix, partner, k, split[i], i)
+        ux = -strength * concentration[i, 0]
+        uy = -strength * concentration[i, 1]
+        falls_x = zeros()
+        falls_y = zeros()
+        open_by = zeros()
+        k = near.start[i]
+        while k < near.split[i]:  # a particle stands for the missing end of its row: it is not open
+            xj, yj, _, _, _, _, volume, _ = gather_rows(record, near.partner, k, near.split[i], i)
+            _, _, _, trace = gather_four(matrix, near.partner, k, near.split[i], i)
             k += LANES
-            dx = record[i, X] - xj
-            dy = record[i, Y] - yj
-            if period_x is not None:
-                dx -= period_x * nearest(dx * turns_x)
-                dy -= period_y * nearest(dy * turns_y)
-            part = volume * steep * slope_shape(kind, root(dx * dx + dy * dy) * inverse_h)
+            dx = nearest_image(record[i, X] - xj, near.period_x, turns_x)
+            dy = nearest_image(record[i, Y] - yj, near.period_y, turns_y)
+            part = volume * steep * slope_shape(kind, sqrt(dx * dx + dy * dy) * inverse_h)
             falls_x += part * (trace - closed) * dx
             falls_y += part * (trace - closed) * dy
-            open_by -= part * greater(OPEN - trace, 0.0)  # more than nothing where some neighbour is open
-        nx = total(falls_x)
-        ny = total(falls_y)
-        near = total(open_by) > 0.0
+            open_by -= part * maximum(OPEN - trace, 0.0)  # more than nothing where some neighbour is open
+        nx = reduce_add(falls_x)
+        ny = reduce_add(falls_y)
+        sees_open = reduce_add(open_by) > 0.0
         length = nx * nx + ny * ny
-        if near and length > 0.0:
+        if sees_open and length > 0.0:
             along = (ux * nx + uy * ny) / length
             ux -= along * nx
             uy -= along * ny

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-X, Y, VX, VY, RHO, P, VOLUME, STIFF = range(8)
+X, Y, VX, VY, RHO, P, VOLUME, COMPRESSIBILITY = range(8)
 """Columns of a record: m, m, m/s, m/s, kg/m³, Pa, m/ρ (m²), ρ/c² (kg s²/m⁵)."""
 VISCOUS, DIFFUSIVE, BY_WALLS, BY_TENSION, BY_SHIFTING, STOPPED = range(6)
 """Columns of energy turned over: by viscosity into heat, by density diffusion into nothing, given by walls, by
@@ -24,7 +24,7 @@ class Layer:
     x (n, 2) m;  v (n, 2) m/s, of walls the wall's own;  mass (n,) kg per metre of depth;
     density (fluid,) kg/m³;  material (n,) number of the particle's fluid, of a wall particle 1 where fluid slips past
     walls that else hold it;  the rest is made of these: pressure (n,) Pa and what the pass over pairs reads,
-    of which ghost, traits, girths, matrix and facing have no rows unless a flow asks for them.
+    of which ghost, properties, lengths, matrix and facing have no rows unless a flow asks for them.
     """
 
     fluid: int
@@ -43,13 +43,13 @@ class Layer:
     drift: Floats = field(init=False)  # (fluid, 2) m/s, what shifting adds
     ghost: Floats = field(init=False)  # (n, 2) m/s, velocity that makes fluid at a wall stick (rows of walls)
     length: Floats = field(init=False)  # (n,) m, smoothing lengths, set by the flow
-    traits: Floats = field(init=False)  # (fluid, 2) number and viscosity (Pa s) of the fluid, for pairs of several
-    girths: Floats = field(init=False)  # (n, 2) `length`, for pairs where it varies, and nothing
+    properties: Floats = field(init=False)  # (fluid, 2) number and viscosity (Pa s) of the fluid, for pairs of several
+    lengths: Floats = field(init=False)  # (n, 2) `length`, for pairs where it varies, and nothing
     matrix: Floats = field(init=False)  # (fluid, 4) xx, xy, yy of the gradient correction, how closed in: `correction`
     facing: Floats = field(init=False)  # (n, 4) of walls: nearest point of the surface, normal into the fluid
-    power: Floats = field(init=False)  # (fluid, 6) W/m, see VISCOUS, …, STOPPED; (0, 6) without `keep_book`
+    power: Floats = field(init=False)  # (fluid, 6) W/m, see VISCOUS, …, STOPPED; (0, 6) without `keep_budget`
     energy: Floats = field(init=False)  # the same summed over time, J/m
-    booked: bool = field(init=False, default=False)  # whether a book of them is kept
+    has_budget: bool = field(init=False, default=False)  # whether a budget of them is kept
 
     def __post_init__(self) -> None:
         n = len(self.x)
@@ -64,14 +64,14 @@ class Layer:
         self.rate, self.rate_before = np.zeros(self.fluid), np.zeros(self.fluid)
         self.predicted, self.pressure = np.zeros(self.fluid), np.zeros(n)
         self.record, self.length = np.zeros((n, 8)), np.zeros(n)
-        self.traits, self.girths = np.zeros((0, 2)), np.zeros((0, 2))
+        self.properties, self.lengths = np.zeros((0, 2)), np.zeros((0, 2))
         self.ghost, self.facing, self.matrix = np.zeros((0, 2)), np.zeros((0, 4)), np.zeros((0, 4))
         self.power, self.energy = np.zeros((0, 6)), np.zeros((0, 6))
 
-    def keep_book(self) -> None:
-        """Book from now on what energies become: kernels do so where ``power`` and ``energy`` have rows."""
+    def keep_budget(self) -> None:
+        """Add up from now on what energies become: kernels do so where ``power`` and ``energy`` have rows."""
         self.power, self.energy = np.zeros((self.fluid, 6)), np.zeros((self.fluid, 6))
-        self.booked = True
+        self.has_budget = True
 
     @property
     def count(self) -> int:
@@ -80,11 +80,11 @@ class Layer:
 
     KEPT = ("x", "v", "mass", "density", "acceleration", "rate", "rate_before", "smoothed", "drift", "pressure",
     "length")  # fmt: skip
-    BOOK = ("power", "energy")
+    BUDGET = ("power", "energy")
 
     def kept(self) -> tuple[str, ...]:
         """Names of the arrays that later steps depend on."""
-        return self.KEPT + (self.BOOK if self.booked else ())
+        return self.KEPT + (self.BUDGET if self.has_budget else ())
 
     def state(self) -> dict[str, Floats]:
         """Copies of the arrays that later steps depend on."""

@@ -24,12 +24,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from continuum_sph.water.bundles import Choices, Fluids, Gradients, Neighbours, Walls
 from continuum_sph.water.density import LINEAR
 from continuum_sph.water.density_filter import filtered
 from continuum_sph.water.fluids import table
-from continuum_sph.water.image_walls import facing, show_walls, wall_rates
-from continuum_sph.water.kernel_correction import surroundings
-from continuum_sph.water.leapfrog import kick, kick_drift, pressurise
+from continuum_sph.water.image_walls import WallDensities, facing, update_walls, wall_rates
+from continuum_sph.water.kernel_correction import neighbourhood_moments
+from continuum_sph.water.leapfrog import Densities, Motion, Pressing, kick, kick_drift, pressurise
 from continuum_sph.water.no_step import no_step
 from continuum_sph.water.parameters import RULES, Law
 from continuum_sph.water.pressure_walls import load_walls
@@ -71,7 +72,8 @@ class Flow:
         layer.length[:] = self.law.smoothing.length
         self.pairs.adaptive = True
         self.split, self.together = np.zeros(count, np.int64), False
-        self.lower, self.upper = np.full(2, -np.inf), np.full(2, np.inf)
+        self.bounds = np.array([[-np.inf, -np.inf], [np.inf, np.inf]])
+        self.lower, self.upper = self.bounds
         walls = count - layer.fluid
         self.wall_density = np.full(walls, self.law.state.density)
         self.wall_rate, self.wall_rate_before = np.zeros(walls), np.zeros(walls)
@@ -83,52 +85,82 @@ class Flow:
         self.table = table(law.fluids)
         several, shifted, xsph = len(law.fluids) > 1, law.shifting > 0.0, law.xsph > 0.0
         if several:
-            layer.traits = np.zeros((layer.fluid, 2))
+            layer.properties = np.zeros((layer.fluid, 2))
         if law.varied:
-            layer.girths = np.column_stack((layer.length, np.zeros(layer.count)))
+            layer.lengths = np.column_stack((layer.length, np.zeros(layer.count)))
         linear = law.noise == LINEAR and law.diffusion > 0.0
-        self.crowd, self.slant = (np.zeros((layer.fluid if it else 0, 2)) for it in (shifted, shifted or linear))
+        sizes = (layer.fluid if it else 0 for it in (shifted, shifted or linear))
+        self.concentration_gradient, self.density_gradient = (np.zeros((size, 2)) for size in sizes)
         self.normalised = np.zeros(layer.fluid if law.filter_every else 0)
         pulled = layer.fluid if law.tension > 0.0 else 0
-        self.beside, self.marked, self.told = np.zeros(pulled, np.int8), False, np.zeros(pulled, np.int64)
+        self.beside, self.marked = np.zeros(pulled, np.int8), False
+        self.marked_material = np.zeros(pulled, np.int64)
         self.colour, self.normal = np.zeros(pulled), np.zeros((pulled, 3))
         self.curvature, self.middle = np.zeros(pulled), np.zeros(pulled)
         self.surveyed = law.corrected or shifted or linear
-        around, along = self.pairs.period
-        wraps = max(around, along) > 0.0
-        self.period: tuple[float | None, float | None] = (around, along) if wraps else (None, None)
-        self.of_fluids = (layer.material if several else None, layer.length, self.table)
-        self.of_pairs = (layer.traits if several else None, layer.girths if law.varied else None)
-        self.moving = (layer.smoothed if xsph else None, layer.drift if shifted else None)
-        self.crowded = (self.crowd if shifted else None, self.slant if shifted or linear else None)
         held = law.sticky and not law.images
         layer.ghost = np.zeros((layer.count if held else 0, 2))
         layer.facing = np.zeros((layer.count if law.images else 0, 4))
         layer.matrix = np.zeros((layer.fluid if self.surveyed else 0, 4))
-        self.walled = (
-            layer.ghost if held else None,
-            layer.facing if law.images else None,
-            layer.material if law.sticky else None,
+        self.walls = Walls(
+            material=layer.material if law.sticky else None,
+            ghost=layer.ghost if held else None,
+            facing=layer.facing if law.images else None,
         )
+        self.gradients = Gradients(
+            matrix=layer.matrix if law.corrected else None,
+            density=self.density_gradient if shifted or linear else None,
+            drift=layer.drift if shifted else None,
+        )
+        self.smoothed = layer.smoothed if xsph else None
         self.count()
 
     def count(self) -> None:
         """The numbers that `rates` takes, of the law as it is: it may change on the way."""
-        law, h = self.law, self.law.smoothing.length
+        law, layer, h = self.law, self.layer, self.law.smoothing.length
         cohesive = True if any(fluid.cohesion for fluid in law.fluids) else None
-        self.counted, self.weighed = law, self.layer.mass if cohesive else None
+        self.counted = law
+        self.fluids = Fluids(
+            table=self.table,
+            properties=layer.properties if len(law.fluids) > 1 else None,
+            lengths=layer.lengths if law.varied else None,
+            mass=layer.mass if layer.has_budget or cohesive else None,
+        )
         # XSPH asks for the kernel twice a pair, and is 2 % faster with Wendland's compiled in (alone it is no faster).
-        kind = None if law.xsph > 0.0 and law.smoothing.kind == WENDLAND else law.smoothing.kind
-        self.numbers = (
-            kind, h, law.gravity[0] or None, law.gravity[1], law.alpha, law.beta or None, law.softening,
-            2.0 * law.diffusion * h, law.noise_speed, law.noise, cohesive, law.xsph or None, *self.period,
-        )  # fmt: skip
+        self.kind = None if law.xsph > 0.0 and law.smoothing.kind == WENDLAND else law.smoothing.kind
+        self.choices = Choices(
+            gravity_x=law.gravity[0] or None,
+            gravity_y=law.gravity[1],
+            alpha=law.alpha,
+            beta=law.beta or None,
+            softening=law.softening,
+            diffusion=2.0 * law.diffusion * h,
+            noise_speed=law.noise_speed,
+            noise=law.noise,
+            cohesive=cohesive,
+            xsph=law.xsph or None,
+        )
+
+    def near(self, kind: int | None) -> Neighbours:
+        """The list of pairs as kernels take it, with a ``kind`` of kernel."""
+        pairs = self.pairs
+        x, y = pairs.period
+        around, along = (x, y) if max(x, y) > 0.0 else (None, None)
+        return Neighbours(pairs.start, self.split, pairs.partner, around, along, kind, self.law.smoothing.length)
 
     @property
-    def book(self) -> tuple[Floats | None, Floats | None]:
-        """Power and energy, if a book is kept."""
+    def budget(self) -> tuple[Floats | None, Floats | None]:
+        """Power and energy, if a budget of energies is kept."""
         layer = self.layer
-        return (layer.power, layer.energy) if layer.booked else (None, None)
+        return (layer.power, layer.energy) if layer.has_budget else (None, None)
+
+    def pressing(self, number: int) -> Pressing:
+        """What makes pressures of the fluid of that ``number``."""
+        layer, fluids, law = self.layer, self.fluids, self.law
+        return Pressing(
+            number, law.fluids[number].viscosity, None if len(law.fluids) == 1 else layer.material, fluids.properties,
+            fluids.lengths, layer.mass, layer.length, layer.pressure, layer.record, law.cut,
+        )  # fmt: skip
 
     def start(self) -> None:
         """Rates of the initial state, from which the first step goes on."""
@@ -159,15 +191,18 @@ class Flow:
         layer = self.layer
         # Rates belong to mid-steps: distance from the last to this one over that between the last two.
         ratio = (step + self.last_steps[0]) / (self.last_steps[0] + self.last_steps[1])
-        stopped, pace = kick_drift(
-            layer.x, layer.v, layer.acceleration, *self.moving, layer.density, layer.rate, layer.rate_before,
-            layer.predicted, layer.mass, *self.of_fluids, self.law.cut, layer.pressure,
-            layer.record if self.together else None, *self.of_pairs, self.book[1], 0.5 * step, step, ratio,
-            self.lower, self.upper,
-        )  # fmt: skip
-        self.stopped += stopped
+        motion = Motion(layer.acceleration, self.smoothed, self.gradients.drift)
+        densities = Densities(layer.density, layer.rate, layer.rate_before)
+        fastest = 0.0
+        for number, fluid in enumerate(self.law.fluids):
+            stopped, sound2 = kick_drift(
+                layer.x, layer.v, motion, densities, layer.predicted, self.pressing(number), self.budget[1], step,
+                ratio, self.bounds, self.together or None, fluid.state.numbers,
+            )  # fmt: skip
+            self.stopped += stopped
+            fastest = max(fastest, float(sound2))
         if self.together:
-            self.sound_rate = float(pace) ** 0.5
+            self.sound_rate = fastest**0.5
         layer.rate, layer.rate_before = layer.rate_before, layer.rate
         return ratio
 
@@ -185,51 +220,53 @@ class Flow:
         """Accelerations and density rates at the predicted densities, a ``step`` (s) on;  ratio: as in `kick_drift`."""
         if not self.together:  # else the drift has done it
             self.pressurise(self.layer.predicted)
-        layer, law, pairs = self.layer, self.law, self.pairs
-        h, kind, fluid = law.smoothing.length, law.smoothing.kind, layer.fluid
+        layer, law = self.layer, self.law
+        h, fluid = law.smoothing.length, layer.fluid
         self.list_pairs()
-        self.show_walls(step, ratio)
-        where = (fluid, pairs.start, self.split, pairs.partner, layer.record)
+        self.update_walls(step, ratio)
+        near = self.near(law.smoothing.kind)
         if self.surveyed:
-            surroundings(
-                *where, self.of_pairs[0], layer.matrix, *self.crowded, kind, h, law.spacing, *self.period
+            concentration = self.concentration_gradient if law.shifting > 0.0 else None
+            neighbourhood_moments(
+                fluid, layer.record, near, self.fluids.properties, layer.matrix, concentration, self.gradients.density,
+                law.spacing,
             )  # fmt: skip
         self.sum_pairs(0.5 * step)
         if law.tension > 0.0:
             self.pull()
         if law.images:
             self.wall_rate, self.wall_rate_before = self.wall_rate_before, self.wall_rate
-            wall_rates(
-                *where, layer.facing, law.sticky, self.wall_density, self.wall_rate, step, kind, h, *pairs.period
-            )  # fmt: skip
+            wall_rates(fluid, layer.record, near, layer.facing, law.sticky, self.wall_density, self.wall_rate, step)
         if law.shifting > 0.0:
             quiet = QUIET * law.state.sound_speed if len(law.fluids) == 1 else 0.0
             urge = max(0.0, self.max_speed - quiet)
             shift(
-                *where, layer.material, self.table, layer.matrix, self.crowd, layer.drift, kind, h,
-                2.0 * h * law.shifting * urge, MOST * urge, *self.period,
+                fluid, layer.record, near, layer.material, self.table, layer.matrix, self.concentration_gradient,
+                layer.drift, 2.0 * h * law.shifting * urge, MOST * urge,
             )  # fmt: skip
+
+    @property
+    def wall_densities(self) -> WallDensities:
+        """Densities of image walls and their rates."""
+        return WallDensities(self.wall_density, self.wall_rate, self.wall_rate_before)
 
     def sum_pairs(self, half: float) -> None:
         """The pass over pairs from records as they are, at the end of a step of twice ``half`` (s)."""
-        layer, pairs = self.layer, self.pairs
-        if self.law is not self.counted:
+        layer = self.layer
+        if self.law is not self.counted or (layer.has_budget and self.fluids.mass is None):
             self.count()
         rates(
-            layer.fluid, pairs.start, self.split, pairs.partner, layer.record, *self.of_pairs, *self.walled,
-            layer.matrix if self.law.corrected else None, self.crowded[1], self.moving[1],
-            layer.mass if layer.booked else self.weighed, self.table, layer.acceleration, layer.rate, self.moving[0],
-            self.book[0], *self.numbers, half,
+            layer.fluid, layer.record, self.near(self.kind), self.fluids, self.walls, self.gradients, self.choices,
+            layer.acceleration, layer.rate, self.smoothed, self.budget[0], half,
         )  # fmt: skip
 
     def pressurise(self, density: Floats) -> None:
-        """Pressures of the fluid from a ``density`` (fluid,) kg/m³."""
-        layer = self.layer
-        pace = pressurise(
-            layer.x, layer.v, layer.mass, density, *self.of_fluids, self.law.cut, layer.pressure, layer.record,
-            *self.of_pairs,
-        )  # fmt: skip
-        self.sound_rate = float(pace) ** 0.5
+        """Pressures of the fluids from a ``density`` (fluid,) kg/m³."""
+        layer, fastest = self.layer, 0.0
+        for number, fluid in enumerate(self.law.fluids):
+            sound2 = pressurise(layer.x, layer.v, density, self.pressing(number), fluid.state.numbers)
+            fastest = max(fastest, float(sound2))
+        self.sound_rate = fastest**0.5
 
     def list_pairs(self) -> None:
         """Bring the list of pairs to where particles are."""
@@ -240,34 +277,35 @@ class Flow:
 
     def pull(self) -> None:
         """Surface tension between two fluids."""
-        layer, law, pairs = self.layer, self.law, self.pairs
-        where = (layer.fluid, pairs.start, self.split, pairs.partner, layer.record)
-        how = (law.smoothing.kind, law.smoothing.length, *pairs.period)
-        if not (self.marked and np.array_equal(self.told, layer.material[: layer.fluid])):
-            mark(*where[:4], layer.material, self.beside)
-            self.marked, self.told[:] = True, layer.material[: layer.fluid]
-        colours(*where, layer.material, self.beside, self.colour, *how)
-        normals(*where, self.beside, self.colour, self.normal, *how)
-        curvatures(*where, self.normal, self.curvature, *how)
-        middle_curvatures(*where, self.normal, self.curvature, self.middle, *how)
+        layer, law = self.layer, self.law
+        near = self.near(law.smoothing.kind)
+        where = (layer.fluid, layer.record, near)
+        if not (self.marked and np.array_equal(self.marked_material, layer.material[: layer.fluid])):
+            mark(layer.fluid, near, layer.material, self.beside)
+            self.marked, self.marked_material[:] = True, layer.material[: layer.fluid]
+        colours(*where, layer.material, self.beside, self.colour)
+        normals(*where, self.beside, self.colour, self.normal)
+        curvatures(*where, self.normal, self.curvature)
+        middle_curvatures(*where, self.normal, self.curvature, self.middle)
         pull_interface(
-            *where, layer.material, self.beside, self.middle, layer.matrix, law.corrected, law.tension,
-            layer.acceleration, layer.mass, layer.v, self.book[0], *how,
+            *where, layer.material, self.beside, self.middle, self.gradients.matrix, law.tension, layer.acceleration,
+            layer.mass, layer.v, self.budget[0],
         )  # fmt: skip
 
-    def show_walls(self, step: float, ratio: float) -> None:
-        """What fluid sees of walls, a ``step`` (s) on."""
+    def update_walls(self, step: float, ratio: float) -> None:
+        """What fluid reads of walls, a ``step`` (s) on."""
         layer, law = self.layer, self.law
         if law.images:
-            show_walls(
-                layer.fluid, layer.x, layer.v, layer.mass, self.wall_density, self.wall_rate, self.wall_rate_before,
-                step, ratio, self.table[0], law.cut, layer.record, layer.pressure,
+            update_walls(
+                layer.fluid, layer.x, layer.v, layer.mass, self.wall_densities, step, ratio, law.cut, layer.record,
+                layer.pressure, law.state.numbers,
             )  # fmt: skip
         else:
             self.take_pressure()
 
     def wet_walls(self) -> None:
-        """Start boundary particles with the pressure of the fluid before them: the paper starts at ρ0 everywhere."""
+        """Start boundary particles with the pressure of the fluid before them; Maeda & Sakai 2004 start
+        at ρ0 everywhere."""
         layer, law = self.layer, self.law
         self.list_pairs()
         self.pressurise(layer.density)
@@ -276,22 +314,22 @@ class Flow:
 
     def take_pressure(self) -> None:
         """Pressure and velocity of the fluid before walls, as their particles have it."""
-        layer, law, pairs = self.layer, self.law, self.pairs
+        layer, law = self.layer, self.law
         load_walls(
-            layer.fluid, pairs.start, self.split, pairs.partner, layer.x, layer.v, layer.mass, layer.record,
-            layer.pressure, self.walled[0], law.smoothing.kind, law.smoothing.length,
-            *law.gravity, law.state.density, *pairs.period,
+            layer.fluid, self.near(law.smoothing.kind), layer.x, layer.v, layer.mass, layer.record, layer.pressure,
+            self.walls.ghost, *law.gravity, law.state.density,
         )  # fmt: skip
 
     def finish(self, step: float) -> None:
         """Second half of a ``step`` (s), and length of the next from the largest |a| and c/h."""
         layer, law = self.layer, self.law
-        hardest, swiftest = kick(
-            layer.v, layer.acceleration, layer.density, layer.rate, *self.of_fluids[:2], self.of_pairs[1], self.table,
-            *self.book, 0.5 * step, step,
+        material = None if len(law.fluids) == 1 else layer.material
+        acceleration2, speed2 = kick(
+            layer.v, layer.acceleration, layer.density, layer.rate, material, layer.length, self.fluids.lengths,
+            self.table, *self.budget, 0.5 * step, step,
         )  # fmt: skip
-        self.max_speed = float(swiftest) ** 0.5
-        limits = law.limits(float(hardest) ** 0.5, self.sound_rate)
+        self.max_speed = float(speed2) ** 0.5
+        limits = law.limits(float(acceleration2) ** 0.5, self.sound_rate)
         self.next_step = min(limits)
         self.rule = limits.index(self.next_step)
         if not 0.0 < self.next_step < np.inf:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from porescale.build.initial.contact_laws import density_of, laws
+from porescale.build.initial.contact_laws import MaterialPlan
 from porescale.build.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema.sections import scene_as_dict, validate
@@ -34,7 +34,7 @@ HARD = 300.0
 
 
 def pressure_of(scene: Scene) -> float:
-    """The stress (Pa) that a scene's soil is asked about: as it says, as its packing is pressed, else as the weight of
+    """The stress (Pa) at which a scene's soil is measured: as given, as its packing is pressed, else as the weight of
     half the packing's height has it, buoyant where there is fluid."""
     asked, packing = asked_of(scene), packing_of(scene)
     if asked.pressure is not None:
@@ -42,7 +42,7 @@ def pressure_of(scene: Scene) -> float:
     if packing.pressure is not None:
         return packing.pressure
     lighter = scene.fluid.density if scene.fluid else 0.0
-    weight = (density_of(scene, packing.material) - lighter) * abs(scene.gravity[1])
+    weight = (MaterialPlan.of(scene).density(packing.material) - lighter) * abs(scene.gravity[1])
     return 0.5 * packing.packing_fraction * weight * packing.height
 
 
@@ -61,7 +61,7 @@ def packing_of(scene: Scene) -> Packing:
 def mean_mass(scene: Scene) -> float:
     """Mass (kg/m) of a grain of the packing's mean diameter."""
     packing = packing_of(scene)
-    return math.pi / 4.0 * packing.diameter**2 * density_of(scene, packing.material)
+    return math.pi / 4.0 * packing.diameter**2 * MaterialPlan.of(scene).density(packing.material)
 
 
 def judge(scene: Scene) -> None:
@@ -90,7 +90,7 @@ def judge(scene: Scene) -> None:
 
 def stiffness_over_pressure(scene: Scene) -> float:
     """Contact stiffness k (N/m a metre) over the pressure: E follows it, angles do not where it is large."""
-    law = laws(scene, mean_mass(scene))[0]
+    law = MaterialPlan.of(scene).law_and_others(packing_of(scene).material, mean_mass(scene))[0]
     assert isinstance(law, Linear)  # as judged
     return law.stiffness / pressure_of(scene)
 
@@ -106,7 +106,7 @@ def ramp_of(asked: Homogenise, packing: Packing) -> float:
 
 
 def side_of(asked: Homogenise, packing: Packing) -> float:
-    """Side (m) of the cell that holds the grains asked for."""
+    """Side (m) of the cell that holds the chosen number of grains."""
     return packing.diameter * math.sqrt(asked.grains * math.pi / 4.0 * (1.0 + packing.size_spread**2 / 3.0) / SOLID)
 
 

@@ -46,7 +46,7 @@ def system_of(scene: Scene) -> System:
     if scene.fluid:
         made.fluid = fluid_of(scene, derived)
     if derived.scales:
-        made.rectangles = on_the_lattice(scene, derived.scales)
+        made.rectangles = on_the_lattice(scene.rectangle, derived.scales)
     if made.fluid and made.grains:
         made.coupled = coupled_of(scene, derived, made.fluid, made.grains, made.rectangles)
     elif made.grains:

@@ -17,7 +17,7 @@ from porescale.build.checks.packing import check_compressed
 from porescale.build.checks.polygons_in_fluid import longest_step, too_few_cells, too_light
 from porescale.build.checks.regime import check_regime, expected_speed
 from porescale.build.initial.clumps import lightest
-from porescale.build.initial.contact_laws import density_of, laws
+from porescale.build.initial.contact_laws import MaterialPlan
 from porescale.build.initial.frames import Placed, lightest_frame, placed_frames, sizes_of
 from porescale.build.initial.packing import radii_of
 from porescale.build.initial.placed import by_hand, placed
@@ -72,12 +72,13 @@ def derive(scene: Scene) -> Derived:
     law = wall_law = limit = step = steps = None
     model_step, mean_mass = scales.step if scales else 0.0, 0.0
     if scene.grains and scene.contact and sizes:
-        least = min([density_of(scene, it.name) for it in scene.material] or [scene.grains.density])
+        plan, packing = MaterialPlan.of(scene), scene.grains.packing
+        least = min(plan.densities)
         smallest = math.pi / 4 * sizes[0] ** 2 * least, sizes[0] / 2
         mean_mass = math.pi / 4 * sizes[1] ** 2 * scene.grains.density
-        law, wall_law, every = laws(scene, mean_mass)
+        law, wall_law, every = plan.law_and_others(packing.material if packing else "", mean_mass)
         if scene.clump:
-            smallest = min(smallest[0], lightest(scene, every)), smallest[1]
+            smallest = min(smallest[0], lightest(scene.clump, plan, every)), smallest[1]
         if scene.rock and not faults:
             frames = [*frames, *rock_frames(scene, law)]
         if frames:

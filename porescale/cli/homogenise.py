@@ -142,7 +142,7 @@ def write(
     from porescale.analysis.biaxial import curves
     from porescale.analysis.homogenise import packing_of, pressure_of
     from porescale.analysis.material import NAME, UNITS, known, tables, text
-    from porescale.build.initial.contact_laws import density_of
+    from porescale.build.initial.contact_laws import MaterialPlan
     from porescale.cli.homogenise_picture import picture
     from porescale.common.evidence.files import write_files
     from porescale.common.record.series import read_series
@@ -157,7 +157,7 @@ def write(
     ]
     tests = [curves(read_series(ended.folder / "series.csv")) for ended in ends]
     made = about(scene, command, ends, rows, seeds)
-    whole = tables(found, density_of(scene, packing_of(scene).material), pressure_of(scene), made)
+    whole = tables(found, MaterialPlan.of(scene).density(packing_of(scene).material), pressure_of(scene), made)
     material = HEAD + toml(whole)
     write_files(folder, {"homogenise.csv": csv_text(lines), "homogenise.png": picture(tests, found), NAME: material})
     warned = [f"warning: {problem}" for problem in made["doubts"]]
@@ -169,7 +169,7 @@ def about(
 ) -> dict[str, Any]:
     """Where the numbers come from: [made] of the material file."""
     from porescale.analysis.homogenise import HARD, asked_of, packing_of, pressure_of, stiffness_over_pressure
-    from porescale.build.initial.contact_laws import density_of
+    from porescale.build.initial.contact_laws import MaterialPlan
     from porescale.common.core.machine import machine
 
     assert scene.grains
@@ -187,7 +187,8 @@ def about(
         "package": "porescale", "version": VERSION, "commit": str(commit.get("hash", "")),
         "sources": str(ends[0].card.get("sources", "")), "command": command, "machine": machine()["processor"],
         "seeds": list(seeds), "grains": asked.grains, "diameter": packing.diameter,
-        "grain_density": density_of(scene, packing.material), "settling_friction": packing.settling_friction,
+        "grain_density": MaterialPlan.of(scene).density(packing.material),
+        "settling_friction": packing.settling_friction,
         "pressure": pressure_of(scene), "stiffness_over_pressure": hard, "inertial_number": asked.inertial_number,
         "strain": asked.strain, "doubts": doubts,
     }  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from continuum_sph.water.density import HYDROSTATIC, LINEAR
-from continuum_sph.water.state import BY_SHIFTING, BY_WALLS, DIFFUSIVE, RHO, STIFF, VISCOUS, VOLUME, VX, X
+from continuum_sph.water.state import BY_SHIFTING, BY_WALLS, COMPRESSIBILITY, DIFFUSIVE, RHO, VISCOUS, VOLUME, VX, X
 from continuum_sph.water.state import P as PRESSURE
 
 
@@ -43,7 +43,7 @@ def pair_sums(flow, half):
         apart = record[i, X : X + 2] - record[:, X : X + 2]
         apart -= period * np.round(apart / np.where(period > 0.0, period, 1.0))
         h = (
-            0.5 * (layer.girths[i, 0] + layer.girths[:, 0])
+            0.5 * (layer.lengths[i, 0] + layer.lengths[:, 0])
             if law.varied
             else np.full(layer.count, law.smoothing.length)
         )
@@ -61,9 +61,9 @@ def pair_sums(flow, half):
         change = (rho * volume * (u * along).sum(axis=1) * slope).sum()
         wanted = np.zeros(len(j))
         if law.noise == HYDROSTATIC:
-            wanted = -0.5 * (record[i, STIFF] + record[j, STIFF]) * (dx @ g)
+            wanted = -0.5 * (record[i, COMPRESSIBILITY] + record[j, COMPRESSIBILITY]) * (dx @ g)
         elif law.noise == LINEAR:
-            wanted = -0.5 * ((flow.slant[i] + flow.slant[j]) * dx).sum(axis=1)
+            wanted = -0.5 * ((flow.density_gradient[i] + flow.density_gradient[j]) * dx).sum(axis=1)
         brisk = (
             np.minimum(1.0, np.abs(approach) / (law.smoothing.length * law.noise_speed))
             if law.noise_speed > 0.0
@@ -99,11 +99,11 @@ def pair_sums(flow, half):
             if several:
                 rubbing = (4.0 * (rubbing * dx).sum(axis=1) / r2)[:, None] * dx
             rubbed += brake @ rubbing
-        moved = layer.drift[i] @ flow.slant[i] if law.shifting > 0.0 else 0.0
+        moved = layer.drift[i] @ flow.density_gradient[i] if law.shifting > 0.0 else 0.0
         acceleration[i] = pushed + by_walls + rubbed + g
         rate[i] = change + swept + moved + spread
         v = record[i, VX : VX + 2] + half * acceleration[i]
-        work = layer.mass[i] / rho**2 * (p - half * rho / record[i, STIFF] * rate[i])
+        work = layer.mass[i] / rho**2 * (p - half * rho / record[i, COMPRESSIBILITY] * rate[i])
         power[i, VISCOUS], power[i, DIFFUSIVE] = -layer.mass[i] * (rubbed @ v), -work * spread
         power[i, BY_WALLS] = work * swept + layer.mass[i] * (by_walls @ v)
         power[i, BY_SHIFTING] = work * moved - (layer.mass[i] * (g @ layer.drift[i]) if law.shifting > 0.0 else 0.0)

@@ -23,8 +23,8 @@ def tolerance(name):
 def test_layers_of_full_density_consolidate_too_fast(monkeypatch):
     # Eq. 46 as printed, drag n ρ_f g/k between layers of full density: strong drag still makes soil press its water
     # out, but with the conductivity k/n.
-    monkeypatch.setattr(pores, "blend", lambda *_: None)
-    monkeypatch.setattr(pores, "part_forces", lambda *_: None)
+    monkeypatch.setattr(pores, "mix_fluxes", lambda *_: None)
+    monkeypatch.setattr(pores, "share_forces", lambda *_: None)
     monkeypatch.setattr(Resistance, "factor", LAYER.porosity / (1.0 - LAYER.porosity))
     middle, worst = consolidation.consolidation.__wrapped__(LAYER, (0.05,))
     assert worst > 10.0 * tolerance("continuum.consolidation")
@@ -67,8 +67,8 @@ def test_error_of_the_modulus_falls_with_resolution():
 @pytest.mark.slow
 def test_water_that_does_not_feel_the_grains_flows_too_fast(monkeypatch):
     # A layer of full density has the conductivity k/n and more: its drag is that of pores without grains.
-    monkeypatch.setattr(pores, "blend", lambda *_: None)
-    monkeypatch.setattr(pores, "part_forces", lambda *_: None)
+    monkeypatch.setattr(pores, "mix_fluxes", lambda *_: None)
+    monkeypatch.setattr(pores, "share_forces", lambda *_: None)
     found = permeameter.darcy.__wrapped__(1e-3, steps=400)
     assert abs(found - 1.0) > tolerance("continuum.permeameter")
 
@@ -81,7 +81,7 @@ def test_soil_starts_to_move_when_it_boils():
 
 @pytest.mark.slow
 def test_soil_that_feels_no_drag_does_not_boil_at_the_critical_gradient(monkeypatch):
-    monkeypatch.setattr(pores, "take", lambda *_: None)
+    monkeypatch.setattr(pores, "apply_reaction", lambda *_: None)
     found, _, _ = permeameter.boiling(replace(permeameter.BOILING, cover=0.035))
     assert abs(found - 1.0) > tolerance("continuum.boiling_gradient")
 
@@ -89,9 +89,9 @@ def test_soil_that_feels_no_drag_does_not_boil_at_the_critical_gradient(monkeypa
 @pytest.mark.slow
 def test_drag_in_explicit_steps_makes_energy_out_of_nothing(monkeypatch):
     # 1 - e^(-κT) → κT: unstable for T beyond 2/κ.
-    monkeypatch.setattr(exchange, "relaxed", lambda times: times)
+    monkeypatch.setattr(exchange, "relaxation", lambda times: times)
     monkeypatch.setattr(exchange, "drag", exchange.drag.py_func)
-    monkeypatch.setattr(pores, "brake", exchange.brake.py_func)
+    monkeypatch.setattr(pores, "apply_drag", exchange.apply_drag.py_func)
     with pytest.raises(ValueError, match="position"):
         saturated_box.growth_of_energy.__wrapped__(1e-7)
 

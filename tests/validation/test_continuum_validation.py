@@ -34,8 +34,8 @@ def test_a_slope_that_is_not_divided_by_the_distance_is_not_the_kernels():
 def test_water_between_walls_without_pressure_does_not_stay_at_rest(monkeypatch):
     load_walls = step.load_walls
 
-    def powerless(fluid, start, split, partner, x, v, mass, record, *rest):
-        load_walls(fluid, start, split, partner, x, v, mass, record, *rest)
+    def powerless(fluid, near, x, v, mass, record, *rest):
+        load_walls(fluid, near, x, v, mass, record, *rest)
         record[fluid:, P] = 0.0
 
     monkeypatch.setattr(step, "load_walls", powerless)
@@ -100,10 +100,10 @@ def test_a_book_of_speeds_at_mid_step_does_not_close_over_an_impact(monkeypatch)
     assert drift > tolerance("continuum.energy_balance_over_an_impact")
 
 
-def _kick_without_heat(v, acceleration, density, rate, material, length, girths, table, power, *rest, kick=step.kick):
+def _kick_without_heat(v, acceleration, density, rate, material, length, lengths, table, power, *rest, kick=step.kick):
     if power is not None:
         power[:, VISCOUS] = 0.0
-    return kick(v, acceleration, density, rate, material, length, girths, table, power, *rest)
+    return kick(v, acceleration, density, rate, material, length, lengths, table, power, *rest)
 
 
 def test_a_tenth_more_tension_is_told_apart():

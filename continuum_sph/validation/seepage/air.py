@@ -31,7 +31,8 @@ from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.validation.seepage.setups import COLUMNS, SKIN, WATER
 from continuum_sph.validation.soil.setups import RATIO
 from continuum_sph.water.density import LINEAR
-from continuum_sph.water.eos import Gas, Tait
+from continuum_sph.water.eos.adiabatic import AdiabaticGas
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.pressure_walls import tank_walls
@@ -57,7 +58,7 @@ class TrappedAir:
     permeability: float = 0.03
     sound_speed: float = 37.0
     porosity: float = 0.4
-    gas: Gas = field(default_factory=lambda: Gas(10.0, 5e3))
+    gas: AdiabaticGas = field(default_factory=lambda: AdiabaticGas(10.0, 5e3))
     viscosity: float = 1.81e-5
     chamber: float = 0.0
     filled: bool = True

@@ -17,7 +17,7 @@ from continuum_sph.seepage.reservoir import BERTH, berths
 from continuum_sph.validation.seepage.setups import WATER
 from continuum_sph.validation.soil.setups import SKIN
 from continuum_sph.water.density import LINEAR
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.pressure_walls import tank_walls

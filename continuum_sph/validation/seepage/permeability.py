@@ -10,7 +10,7 @@ from continuum_sph.seepage import Frame, PoreFlow, Resistance, Seepage
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.validation.seepage.setups import SKIN, WATER
 from continuum_sph.validation.soil.setups import RATIO
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import Smoothing

@@ -12,7 +12,7 @@ from continuum_sph.seepage import Drain, Frame, PoreFlow, Resistance, Seepage, s
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.soil import SoilFlow
 from continuum_sph.validation.soil.setups import RATIO
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.pressure_walls import tank_walls

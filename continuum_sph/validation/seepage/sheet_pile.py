@@ -14,11 +14,11 @@ from continuum_sph.build.sheet_pile import reach, sheet_pile, steepness
 from continuum_sph.scene.pile import SheetPileSection
 from continuum_sph.seepage import Drain, Frame, PoreFlow, Resistance, Seepage
 from continuum_sph.seepage.overlap import Overlap
-from continuum_sph.seepage.sheet_pile import PartedList, Pile
+from continuum_sph.seepage.sheet_pile import CutPairList, Pile
 from continuum_sph.validation.seepage.setups import WATER
 from continuum_sph.validation.soil.setups import RATIO, SKIN
 from continuum_sph.water.density import LINEAR
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.pressure_walls import tank_walls
@@ -79,7 +79,7 @@ def held_ground(
     layer = Layer(n, np.concatenate((at, walls)), np.zeros((len(mass), 2)), mass, np.full(n, WATER))
     pairs, overlap = PairList(layer.count, skin, *box, full=True), Overlap(n, n, smoothing.length, skin, *box)
     if pile:
-        pairs, overlap.pairs = PartedList(pairs, pile, n, side, layer.v), PartedList(overlap.pairs, pile)
+        pairs, overlap.pairs = CutPairList(pairs, pile, n, side, layer.v), CutPairList(overlap.pairs, pile)
     flow = PoreFlow(
         layer, rules, pairs, skeleton=frame.skeleton, overlap=overlap, resistance=Resistance(POROSITY)
     )  # fmt: skip

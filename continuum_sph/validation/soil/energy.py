@@ -3,7 +3,7 @@
 Kinetic and potential energy go into the work of stress on the soil (what it stores and what friction turns into heat),
 the damping of zig-zags and particles stopped at a wall's surface.  Two entries come from nowhere: `parting` moves
 particles without a force, up as well as down, and walls, which are images of the soil before them, do a little work.
-Volume that particles exchange is no energy: it only says whose share of the work comes next.  What is left is that of
+Volume that particles exchange is no energy: it only shifts the work of the next step.  What is left is that of
 the steps in time: (ω Δt)²/8 of what moves, ω up to 2 c/h, Δt 0.25 h/c.
 """
 
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from continuum_sph.build.soil import geostatic
 from continuum_sph.soil import Material, SoilFlow
-from continuum_sph.soil.momentum import accelerate
+from continuum_sph.soil.momentum import Choices, accelerate
 from continuum_sph.soil.state import GXX, GXY, GYX, GYY, VOLUME, XX, XY, YY
 from continuum_sph.validation.soil.setups import RATIO, in_tank, run_until
 from porescale.common.evidence.validations import Measured, Validations
@@ -55,7 +55,7 @@ class Book:
 
     def advance(self) -> None:
         """One step."""
-        flow, soil, law, pairs = self.flow, self.flow.soil, self.flow.law, self.flow.pairs
+        flow, soil, law = self.flow, self.flow.soil, self.flow.law
         n, step, lean = soil.soil, flow.next_step, np.array(law.gravity)
         mass, turned = soil.mass[:n], self.turned
         before = soil.stress[:n].copy()
@@ -67,9 +67,8 @@ class Book:
         flow.push()
         undamped = self.bare[0]
         accelerate(
-            n, pairs.start, flow.split, pairs.partner, soil.record, soil.facing, soil.force, soil.stress, *self.bare,
-            law.smoothing.kind, law.smoothing.length, *law.gravity, 0.0, False, law.diffusion, 0.0,
-            law.spacing_recovery, law.spacing, *pairs.period,
+            n, soil.record, soil.facing, soil.force, soil.stress, *self.bare, flow.near,
+            Choices(*law.gravity, 0.0, False, law.diffusion, 0.0, law.spacing_recovery, law.spacing),
         )  # fmt: skip
         turned["stress"] += step * self.taken(0.5 * (before + soil.stress[:n]))
         pushed = float((mass * (soil.v[:n] * (undamped - lean)).sum(axis=1)).sum())

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from continuum_sph.validation.water.kernels import SPREAD
 from continuum_sph.validation.water.setups import run_until
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.pressure_walls import tank_walls

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from continuum_sph.build.water import water_flow
 from continuum_sph.validation.water.kernels import LATTICE, SPREAD
 from continuum_sph.validation.water.setups import column_scene, kinetic_energy, run_until
-from continuum_sph.water.energy_budget import book
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.energy_budget import budget
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import Smoothing
@@ -151,14 +151,14 @@ def energy_growth(seconds: float, heat_kept: bool = False) -> tuple[float, float
     """
     scene = column_scene(0.05, tank=(4.0, 3.0), column=(1.0, 2.0), pressure="released")
     flow = water_flow(scene)
-    flow.layer.keep_book()
-    first = book(flow)
+    flow.layer.keep_budget()
+    first = budget(flow)
     scale, least, growth, drift = first["total energy"], np.inf, 0.0, 0.0
     while flow.time < seconds:
         flow.advance()
         if flow.step % 20:
             continue
-        now = book(flow)
+        now = budget(flow)
         energy = now["total energy"] + (2.0 * now["heat of viscosity"] if heat_kept else 0.0)
         least = min(least, energy)
         growth = max(growth, energy - least)

@@ -12,7 +12,7 @@ from continuum_sph.build.water import water_flow
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.water.drop_swing import drop_period, swing_period
 from continuum_sph.validation.water.setups import run_until
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import Smoothing
@@ -282,9 +282,9 @@ def rising(spacing: float, seconds: float) -> tuple[float, float, float]:
     while flow.time < seconds:
         flow.advance()
         if flow.step % 20 == 0:
-            said = inclusion_row(flow)
-            swiftest = max(swiftest, said["bubble rise (m/s)"])
-            flattest = min(flattest, said["bubble circularity ()"])
+            row = inclusion_row(flow)
+            swiftest = max(swiftest, row["bubble rise (m/s)"])
+            flattest = min(flattest, row["bubble circularity ()"])
     return swiftest, flattest, inclusion_row(flow)["bubble centre (m)"]
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from continuum_sph.build.water import water_flow
 from continuum_sph.validation.water.kernels import LATTICE
 from continuum_sph.validation.water.setups import column_scene, run_until
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from porescale.common.core.constants import GRAVITY
 from porescale.common.evidence.validations import Measured, Validations
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.scene.sections import Scene
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import Smoothing

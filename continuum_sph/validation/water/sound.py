@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from continuum_sph.validation.water.kernels import LATTICE, SPREAD
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import Smoothing

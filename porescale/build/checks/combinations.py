@@ -80,7 +80,7 @@ def check_sleep(scene: Scene) -> list[Fault]:
     others = {
         "clump": scene.clump, "segment": scene.segment, "polygon": scene.polygon, "container": scene.container,
         "bonds": scene.bonds, "rock": scene.rock, "control": scene.control, "wall": scene.wall, "cell": scene.cell,
-        "lubrication": scene.lubrication, "domain": moving_sides(scene),
+        "lubrication": scene.lubrication, "domain": moving_sides(scene.domain),
     }  # fmt: skip
     return [
         Fault("sleep", None, f"does not know [{name}]", repair="leave one of them out")
@@ -92,12 +92,15 @@ def check_sleep(scene: Scene) -> list[Fault]:
 def check_walls(scene: Scene) -> list[Fault]:
     """What is wrong with walls beside the rest of a scene."""
     faults = []
-    moving = [*(f"domain.{name}" for name in moving_sides(scene)), *(f"wall[{k}]" for k in range(len(scene.wall)))]
+    moving = [
+        *(f"domain.{name}" for name in moving_sides(scene.domain)),
+        *(f"wall[{k}]" for k in range(len(scene.wall))),
+    ]
     if moving and (scene.fluid or scene.grains is None):
         problem = "is for dry grains"
         repair = "leave [fluid] or it out" if scene.fluid else "add [grains] or leave it out"
         faults += [Fault(key, None, problem, repair=repair) for key in moving]
-    names = wall_names(scene)
+    names = wall_names(scene.wall)
     faults += [
         Fault(f"wall[{k}].name", name, "is taken", repair="give each its own")
         for k, name in enumerate(names)

@@ -21,6 +21,7 @@ from porescale.build.checks.limits import (
     thin,
 )
 from porescale.build.initial.clumps import least_density
+from porescale.build.initial.contact_laws import MaterialPlan
 from porescale.build.initial.fluid_options import collision_options, weight_of
 from porescale.build.initial.frames import Placed
 from porescale.build.initial.placed import by_hand
@@ -49,7 +50,7 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None, fra
     terminal speed of a grain if that is less, and for a packing that of the gravity current it can become,
     sqrt(g' H)/2 with g' = phi |s - 1| g (Benjamin 1968): grains that fall together fall faster than each alone.
     Fluid under a body force: the parabola between the walls across it, which grains in its way only slow down; under a
-    difference of pressure the same, or Bernoulli's speed if that is less.  What is told to move counts as told.
+    difference of pressure the same, or Bernoulli's speed if that is less.  Prescribed motion counts as it is.
     """
     g, speed = math.hypot(*scene.gravity), max(given_speed(scene), _framed_speed(scene, frames))
     if scene.grains and sizes:
@@ -99,7 +100,7 @@ def _pressed_speed(scene: Scene, scales: Scales) -> float:
 
 
 def _framed_speed(scene: Scene, frames: Sequence[Placed]) -> float:
-    """The largest speed that bodies of segments start or are told to move with, m/s."""
+    """The largest speed that bodies of segments start with or are prescribed to have, m/s."""
     speeds = [0.0]
     for it in frames:
         size = float(np.ptp(np.array(it.frame.corners), axis=0).max())
@@ -175,7 +176,9 @@ def check_regime(
     filled = packing.packing_fraction * ratio**2 if packing else 0.0
     found = [coarse(mean, *laws, scales.spacing, filled), slow(scales.relaxation_time, laws[0])]
     if scene.grains:
-        found.append(light(least_density(scene) / scales.density, smallest, *laws, scales.spacing))
+        found.append(
+            light(least_density(MaterialPlan.of(scene), scene.clump) / scales.density, smallest, *laws, scales.spacing)
+        )
     warnings += filter(None, found)
     if scene.grains is None or packing is None:
         return 0.0

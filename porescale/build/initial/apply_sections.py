@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from porescale.build.initial.clumps import add_clumps
-from porescale.build.initial.contact_laws import materials_of
+from porescale.build.initial.contact_laws import MaterialPlan
 from porescale.build.initial.control import add_controls
 from porescale.build.initial.frames import Placed
 from porescale.build.initial.placed import by_hand
@@ -16,9 +16,9 @@ from porescale.build.initial.walls import add_walls, moving_sides
 from porescale.dem.contact.law import BOOK
 from porescale.dem.grains import Grains
 from porescale.dem.motion.time_function import Schedule
-from porescale.scene.cell import RATES, STRESSES
+from porescale.scene.cell import RATES, STRESSES, Cell
 from porescale.scene.scene import Scene
-from porescale.scene.time_function import Course
+from porescale.scene.time_function import TimeFunction
 
 
 def apply_sections(scene: Scene, grains: Grains, mass: float, placed: Sequence[Placed] = ()) -> list[str]:
@@ -27,7 +27,7 @@ def apply_sections(scene: Scene, grains: Grains, mass: float, placed: Sequence[P
     mass (kg/m): of a mean grain, whose restitution is meant where a material gives one;  placed: its frames, whose
     corners come last.  Returns the names of the bodies that are recorded.
     """
-    materials = materials_of(scene, mass)
+    materials = MaterialPlan.of(scene).laws(mass) if scene.grains else None
     if scene.output.energy:
         grains.book = np.zeros((grains.discs.count, BOOK))
     if materials:
@@ -42,10 +42,10 @@ def apply_sections(scene: Scene, grains: Grains, mass: float, placed: Sequence[P
     if scene.clump or placed:
         add_clumps(scene, grains, placed)
     recorded = add_controls(scene, grains, placed) if scene.control or placed else []
-    if scene.wall or moving_sides(scene):
-        add_walls(scene, grains)
+    if scene.wall or moving_sides(scene.domain):
+        add_walls(scene.domain, scene.wall, grains)
     if scene.cell:
-        strain(scene, grains)
+        strain(scene.cell, grains)
     return recorded
 
 
@@ -59,16 +59,14 @@ def names_of(scene: Scene, count: int) -> list[str]:
     return [packing.material if packing else ""] * packed + placed + held
 
 
-def strain(scene: Scene, grains: Grains) -> None:
-    """Strain the cell of ``grains`` as the scene says."""
-    it = scene.cell
-    assert it
+def strain(it: Cell, grains: Grains) -> None:
+    """Strain the cell of ``grains`` at the rates, or by the stresses, of the section."""
 
-    def told(name: str) -> Schedule | None:
-        """The course of a rate or stress over time; None where the scene names none."""
-        course: Course | None = getattr(it, name)
-        return schedule_of(course) if course else None
+    def prescribed(name: str) -> Schedule | None:
+        """A rate or stress over time; None where the section names none."""
+        function: TimeFunction | None = getattr(it, name)
+        return schedule_of(function) if function else None
 
-    xx, yy, xy = (told(name) for name in RATES)
-    along, up, shear = (told(name) for name in STRESSES)
+    xx, yy, xy = (prescribed(name) for name in RATES)
+    along, up, shear = (prescribed(name) for name in STRESSES)
     grains.steering.strain_cell(xx, yy, xy, pressure=(along, up), shear_stress=shear, limit=it.fastest or 0.0)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from porescale.build.initial.contact_laws import density_of
+from porescale.build.initial.contact_laws import MaterialPlan
 from porescale.build.initial.frames import Placed, bind_frames
 from porescale.build.initial.placed import members
 from porescale.dem.bodies.clumps import Body
@@ -20,29 +20,28 @@ from porescale.scene.bodies.clump import Clump
 from porescale.scene.scene import Scene
 
 
-def least_density(scene: Scene) -> float:
+def least_density(plan: MaterialPlan, clumps: Iterable[Clump]) -> float:
     """Density (kg/m^3) of the lightest grain or clump of a scene with grains, of what it displaces."""
-    assert scene.grains
-    found = [density_of(scene, it.name) for it in scene.material] or [scene.grains.density]
-    for it in scene.clump:
+    found = plan.densities
+    for it in clumps:
         discs = np.array(it.discs)
         area = outline(discs[:, :2], discs[:, 2]).area
-        found.append(it.mass / area if it.mass else it.density or density_of(scene, it.material))
+        found.append(it.mass / area if it.mass else it.density or plan.density(it.material))
     return min(found)
 
 
-def lightest(scene: Scene, every: list[Law]) -> float:
-    """Mass (kg/m) of the disc that answers as fast as the fastest clump of a scene that has some.
+def lightest(clumps: Iterable[Clump], plan: MaterialPlan, every: list[Law]) -> float:
+    """Mass (kg/m) of the disc that answers as fast as the fastest clump , at least one.
 
     Raises InputError at a clump that no rigid body can be.
     """
-    first = [replace_at(it) for it in scene.clump]
+    first = [replace_at(it) for it in clumps]
     discs = [disc for it in first for disc in it.discs]
     made = make_discs([disc[:2] for disc in discs], np.array([disc[2] for disc in discs]), 1.0)
     box = Box((-1.0, -1.0), (1.0, 1.0), *["open"] * 4)
     grains = Grains(made, every[0], box)
     ends = np.cumsum([0, *(len(it.discs) for it in first)])
-    _bind(grains, first, [np.arange(*ends[k : k + 2]) for k in range(len(first))], scene)
+    grains.steering.bind(*_bodies(first, [np.arange(*ends[k : k + 2]) for k in range(len(first))], plan))
     return grains.steering.lightest(every)
 
 
@@ -51,26 +50,24 @@ def replace_at(clump: Clump) -> Clump:
     return clump.model_copy(update={"at": ((0.0, 0.0),), "angle": ()})
 
 
-def _bind(grains: Grains, clumps: Iterable[Clump], numbers: list[Any], scene: Scene) -> None:
-    """Make the copies of ``clumps`` of the discs with these ``numbers``, copy by copy."""
-    grains.steering.bind(*_bodies(clumps, numbers, scene))
-
-
-def _bodies(clumps: Iterable[Clump], numbers: list[Any], scene: Scene) -> tuple[list[Any], list[float], list[Any]]:
+def _bodies(
+    clumps: Iterable[Clump], numbers: list[Any], plan: MaterialPlan
+) -> tuple[list[Any], list[float], list[Any]]:
     """Disc numbers, density (kg/m^3) and mass by hand of the copies of ``clumps``."""
     copies = [(it, copy) for it in clumps for copy in range(len(it.at))]
-    density = [it.density or density_of(scene, it.material) for it, _ in copies]
+    density = [it.density or plan.density(it.material) for it, _ in copies]
     return numbers, density, [_body(it, copy) for it, copy in copies]
 
 
 def add_clumps(scene: Scene, grains: Grains, placed: Sequence[Placed] = ()) -> None:
     """Bind the discs of clumps, which come after all other free grains and before those that are held, and frames of
     the corners that come last."""
+    plan = MaterialPlan.of(scene)
     sizes = [len(body) for body in members(scene)]
     corners = sum(len(it.frame.corners) for it in placed)
     first = grains.discs.count - corners - len(scene.disc) - sum(sizes)
     ends = first + np.cumsum([0, *sizes])
-    clumps = _bodies(scene.clump, [np.arange(*ends[k : k + 2]) for k in range(len(sizes))], scene)
+    clumps = _bodies(scene.clump, [np.arange(*ends[k : k + 2]) for k in range(len(sizes))], plan)
     if placed:
         bind_frames(grains, placed, clumps)
     else:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from porescale.dem.contact.hertz import Hertz
 from porescale.dem.contact.linear import Linear, damping_from_restitution
 from porescale.dem.contact.materials import Law, Materials
 from porescale.dem.contact.restitution import ratio_from_restitution
-from porescale.scene.contact import DAMPED, Contact, Touch
+from porescale.scene.contact import DAMPED, Contact, Material, Touch
 from porescale.scene.scene import Scene
 
 
@@ -63,43 +63,72 @@ def overridden(law: Law, numbers: dict[str, float], mass: float) -> Law:
     return replace(law, **given)  # type: ignore[arg-type]
 
 
-def density_of(scene: Scene, material: str = "") -> float:
-    """Density of a material by name, "" for the first, kg/m^3."""
-    assert scene.grains
-    for it in scene.material:
-        if it.name == (material or scene.material[0].name):
-            return scene.grains.density if it.density is None else it.density
-    return scene.grains.density
+@dataclass(frozen=True)
+class MaterialPlan:
+    """Laws and densities of the grains of a scene, by the names of materials; "" is the first.
 
-
-def materials_of(scene: Scene, mass: float) -> Materials | None:
-    """The materials of a scene, None where it has none; mass (kg/m): of a mean grain at the density of [grains]."""
-    if not (scene.material and scene.contact and scene.grains):
-        return None
-    contact = scene.contact
-    heavy = {it.name: mass * density_of(scene, it.name) / scene.grains.density for it in scene.material}
-    laws = {it.name: law_of(merged(contact, it), contact, heavy[it.name]) for it in scene.material}
-    mixing, between = Materials(laws), {}
-    for pair in contact.pair:
-        one, other = pair.materials
-        both = heavy[one] * heavy[other] / (heavy[one] + heavy[other])
-        between[one, other] = overridden(mixing.law(one, other), pair.numbers(), both)
-    return Materials(laws, between, contact.wall_material or None)
-
-
-def laws(scene: Scene, mass: float) -> tuple[Law, Law, list[Law]]:
-    """Contact law of the packing, or of the first material, with itself, at walls, and all laws that there are.
-
-    mass (kg/m): of a grain of mean diameter, whose restitution is meant where one is given.
+    density_of_grains : kg/m³, of a material that states none.
     """
-    assert scene.contact
-    assert scene.grains
-    materials = materials_of(scene, mass)
-    if materials:
-        packing = scene.grains.packing
-        name = (packing.material if packing else "") or materials.names[0]
-        return materials.law(name, name), materials.law(materials.wall, name), materials.all()
-    contact = scene.contact
-    law = law_of(contact.numbers(), contact, mass)
-    wall = law.with_friction(contact.friction if contact.wall_friction is None else contact.wall_friction)
-    return law, wall, [law, wall]
+
+    contact: Contact | None
+    materials: tuple[Material, ...]
+    density_of_grains: float
+
+    @classmethod
+    def of(cls, scene: Scene) -> MaterialPlan:
+        """Of a scene with [grains]."""
+        assert scene.grains
+        return cls(scene.contact, scene.material, scene.grains.density)
+
+    @property
+    def of_walls(self) -> str:
+        """Name of the material of walls and of what is held."""
+        return self.contact.wall_material if self.contact else ""
+
+    def density(self, name: str = "") -> float:
+        """kg/m³."""
+        for it in self.materials:
+            if it.name == (name or self.materials[0].name):
+                return self.density_of_grains if it.density is None else it.density
+        return self.density_of_grains
+
+    @property
+    def densities(self) -> list[float]:
+        """kg/m³, of all materials; that of the grains where there are none."""
+        return [self.density(it.name) for it in self.materials] or [self.density_of_grains]
+
+    def number(self, name: str, *, wall: bool = False) -> int:
+        """Number of a material, "" for the first, or that of the walls; of one that is not there, 0."""
+        names = [it.name for it in self.materials]
+        wanted = name or (self.of_walls if wall else "")
+        return names.index(wanted) if wanted in names else 0
+
+    def laws(self, mass: float) -> Materials | None:
+        """The laws of the materials, None where there are none; mass (kg/m): of a mean grain at the density of
+        [grains]."""
+        if not (self.materials and self.contact):
+            return None
+        contact = self.contact
+        heavy = {it.name: mass * self.density(it.name) / self.density_of_grains for it in self.materials}
+        laws = {it.name: law_of(merged(contact, it), contact, heavy[it.name]) for it in self.materials}
+        mixing, between = Materials(laws), {}
+        for pair in contact.pair:
+            one, other = pair.materials
+            both = heavy[one] * heavy[other] / (heavy[one] + heavy[other])
+            between[one, other] = overridden(mixing.law(one, other), pair.numbers(), both)
+        return Materials(laws, between, contact.wall_material or None)
+
+    def law_and_others(self, material: str, mass: float) -> tuple[Law, Law, list[Law]]:
+        """Contact law of a material with itself, its law at walls, and all laws that there are.
+
+        mass (kg/m): of a grain of mean diameter, whose restitution is meant where one is given.
+        """
+        contact = self.contact
+        assert contact
+        materials = self.laws(mass)
+        if materials:
+            name = material or materials.names[0]
+            return materials.law(name, name), materials.law(materials.wall, name), materials.all()
+        law = law_of(contact.numbers(), contact, mass)
+        wall = law.with_friction(contact.friction if contact.wall_friction is None else contact.wall_friction)
+        return law, wall, [law, wall]

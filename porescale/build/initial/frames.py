@@ -13,7 +13,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.build.initial.contact_laws import density_of
+from porescale.build.initial.contact_laws import MaterialPlan
 from porescale.build.initial.random_polygons import copies_of
 from porescale.build.initial.time_functions import control_of
 from porescale.common.core.errors import Fault, InputError
@@ -34,16 +34,16 @@ Array = NDArray[np.float64]
 Kind = Literal["segment", "polygon", "container", "rock", "plate"]
 
 
-Told = tuple[Control | None, Control | None, Control | None]
+Prescribed = tuple[Control | None, Control | None, Control | None]
 
 
 PLATES = ("first plate", "second plate")
 
 
-FREE: Told = (None, None, None)
+FREE: Prescribed = (None, None, None)
 
 
-HELD: Told = (Moved(), Moved(), Moved())
+HELD: Prescribed = (Moved(), Moved(), Moved())
 
 
 ROD = 1e-3
@@ -52,19 +52,19 @@ ROD = 1e-3
 
 @dataclass(frozen=True)
 class Placed:
-    """A frame of a scene: ``key`` of its section, what it is, and what its components are told."""
+    """A frame of a scene: ``key`` of its section, what it is, and how its components are prescribed to move."""
 
     key: str
     kind: Kind
     frame: Frame
-    told: Told = FREE
+    prescribed: Prescribed = FREE
     name: str = ""
     record: bool = False
 
     @property
     def free(self) -> bool:
         """Whether forces move it: it is one of the grains."""
-        return self.kind not in ("container", "plate") and not all(isinstance(it, Moved) for it in self.told)
+        return self.kind not in ("container", "plate") and not all(isinstance(it, Moved) for it in self.prescribed)
 
 
 def any_frames(scene: Scene) -> bool:
@@ -78,7 +78,7 @@ def placed_frames(scene: Scene) -> list[Placed]:
     faults: list[Fault] = []
     for key, kind, section in _sections(scene):
         try:
-            found += _made(scene, key, kind, section)
+            found += _made(MaterialPlan.of(scene), key, kind, section)
         except InputError as error:
             faults += [_of_section(fault, key) for fault in error.faults]
     if faults:
@@ -108,26 +108,26 @@ def _of_section(fault: Fault, key: str) -> Fault:
     return replace(fault, key=f"{key}.{name}", value=value, repair=repair)
 
 
-def _made(scene: Scene, key: str, kind: Kind, section: SegmentBody | PolygonBody | Container) -> list[Placed]:
+def _made(plan: MaterialPlan, key: str, kind: Kind, section: SegmentBody | PolygonBody | Container) -> list[Placed]:
     """The copies of one section."""
-    number = material_number(scene, section.material, kind == "container")
+    number = plan.number(section.material, wall=kind == "container")
     more: dict[str, Any] = {"material": number}
     if isinstance(section, Container):
         name = section.name or key.replace("[", " ").removesuffix("]")
-        return [Placed(key, kind, _container(scene, section, more), _prescribed(section), name, section.record)]
-    density = section.density or density_of(scene, section.material)
+        return [Placed(key, kind, _container(plan, section, more), _prescribed(section), name, section.record)]
+    density = section.density or plan.density(section.material)
     more |= {"velocity": section.velocity, "spin": section.spin}
-    told, made = HELD if section.held else FREE, []
+    motion, made = HELD if section.held else FREE, []
     for at, angle, size in copies_of(section):
         if isinstance(section, PolygonBody):
             frame = polygon(_turned(section.points, at, angle, size), section.thickness, density, **more)
         else:
             frame = _lines(section, at, angle, density, more | {"width": section.width, "long": section.long})
-        made.append(Placed(key, kind, frame, told))
+        made.append(Placed(key, kind, frame, motion))
     return made
 
 
-def _prescribed(section: Container) -> Told:
+def _prescribed(section: Container) -> Prescribed:
     """How each component of a container moves: it stands where none is prescribed."""
     stands = Moved()
     x, y, rotation = (control_of(it) or stands for it in (section.x, section.y, section.rotation))
@@ -145,11 +145,11 @@ def _lines(section: SegmentBody | Container, at: Any, angle: float, density: flo
     return from_ends(ends.reshape(-1, 2, 2), section.thickness, density, **more)
 
 
-def _container(scene: Scene, section: Container, more: dict[str, Any]) -> Frame:
+def _container(plan: MaterialPlan, section: Container, more: dict[str, Any]) -> Frame:
     """The frame of a container, with its pivot for a centroid."""
     points = np.array(section.chain or section.ends).reshape(-1, 2)
     width = max(2.0 * section.thickness, ROD * float(np.ptp(points, axis=0).max()))
-    density = density_of(scene, section.material or (scene.contact.wall_material if scene.contact else ""))
+    density = plan.density(section.material or plan.of_walls)
     frame = _lines(section, (0.0, 0.0), 0.0, density, more | {"width": width, "long": True})
     if section.pivot is None:
         return frame
@@ -167,13 +167,6 @@ def _turned(points: Any, at: Any, angle: float, size: float = 1.0) -> Array:
     return turned
 
 
-def material_number(scene: Scene, name: str, wall: bool = False) -> int:
-    """Number of a material by name, "" for the first, or that of the walls; of one that is not there, 0."""
-    names = [it.name for it in scene.material]
-    wanted = name or (scene.contact.wall_material if wall and scene.contact else "")
-    return names.index(wanted) if wanted in names else 0
-
-
 def disc_count(grains: Grains) -> int:
     """Number of discs of a system that are no corners of frames."""
     return grains.discs.count if grains.segments is None else int(np.sum(~grains.segments.is_corner))
@@ -188,7 +181,7 @@ def with_corners(grains: Grains, placed: Sequence[Placed]) -> Grains:
 def bind_frames(
     grains: Grains, placed: Sequence[Placed], clumps: tuple[list[Any], list[float], list[Body | None]]
 ) -> None:
-    """Make frames of the last discs, beside clumps (numbers, densities, bodies); tell and watch nothing so far.
+    """Make frames of the last discs, beside clumps (numbers, densities, bodies); no motion is prescribed so far.
 
     Raises InputError by the keys of sections.
     """
@@ -213,11 +206,11 @@ def _of_clump(fault: Fault, placed: Sequence[Placed], before: int) -> Fault:
 
 
 def prescribe_motion(grains: Grains, placed: Sequence[Placed]) -> list[ClumpNumber]:
-    """Tell frames what they are told; returns those that are recorded of themselves, in their order."""
+    """Prescribe the motion of frames; returns those that are recorded of themselves, in their order."""
     first = grains.steering.clumps.count - len(placed)
     for k, it in enumerate(placed):
-        if it.told != FREE:
-            grains.steering.control(ClumpNumber(first + k), *it.told)
+        if it.prescribed != FREE:
+            grains.steering.control(ClumpNumber(first + k), *it.prescribed)
     return [ClumpNumber(first + k) for k, it in enumerate(placed) if it.record]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -12,7 +13,7 @@ from porescale.build.checks.grain_places import require_apart
 from porescale.build.checks.rectangle_places import require_free_of_rectangles
 from porescale.build.derive import Derived, grain_count
 from porescale.build.initial.apply_sections import apply_sections
-from porescale.build.initial.contact_laws import density_of
+from porescale.build.initial.contact_laws import MaterialPlan
 from porescale.build.initial.frames import Placed, placed_frames, with_corners
 from porescale.build.initial.packing import compressed, radii_of
 from porescale.build.initial.placed import by_hand, placed
@@ -26,6 +27,7 @@ from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.prepare.merge import joined, together
 from porescale.dem.prepare.settle import Pile, prepare
+from porescale.scene.bodies.disc import Disc
 from porescale.scene.domain import Domain
 from porescale.scene.packing import Packing
 from porescale.scene.scene import Scene
@@ -60,27 +62,27 @@ def grains_of(scene: Scene, derived: Derived, frames: list[Placed]) -> tuple[Gra
     )
     packing = scene.grains.packing if scene.grains else None
     parts = [_by_hand(scene)] if by_hand(scene) else []
-    parts += [_held(scene)] if scene.disc else []
+    parts += [_held(scene.disc, scene.fluid.density if scene.fluid else 1000.0)] if scene.disc else []
     if scene.rock:
         of_rock = rock_discs(scene, law)
         parts = [of_rock, *parts] if of_rock else parts
         grains = Grains(together(*parts) if parts else NO_DISCS, law, box, wall_law=wall_law)
     elif packing and packing.settle:
-        grains = prepared(scene, packing, box, derived, [*plates, *stand_ins(scene, packing)])
+        grains = prepared(scene, packing, box, derived, [*plates, *stand_ins(scene.rectangle, packing)])
         if parts:
             grains = joined(grains, together(*parts))
-    elif packing and packing.compress:
-        grains = compressed(scene, packing, law).grains
+    elif scene.grains and packing and packing.compress:
+        grains = compressed(packing, scene.grains.density, scene.domain.periodic, law).grains
         grains = joined(grains, together(*parts)) if parts else grains
         grains.set_law(law, wall_law)
     else:
-        parts = [_placed(scene, packing), *parts] if packing else parts
+        parts = [_placed(packing, MaterialPlan.of(scene).density(packing.material)), *parts] if packing else parts
         grains = Grains(together(*parts) if parts else NO_DISCS, law, box, wall_law=wall_law, plates=plates)
         if grains.discs.count:  # where bodies of segments are all there is they come with lists of their own
             grains.refresh()  # contacts count from the first row of the series on
     if scene.rectangle:
-        take_over(scene, grains)
-        require_free_of_rectangles(scene, grains.discs)
+        take_over(scene.rectangle, grains)
+        require_free_of_rectangles(scene.rectangle, grains.discs)
     discs = grains.discs
     grains = with_corners(grains, frames) if frames else grains
     if scene.disc:
@@ -94,12 +96,11 @@ def grains_of(scene: Scene, derived: Derived, frames: list[Placed]) -> tuple[Gra
     return grains, recorded
 
 
-def _held(scene: Scene) -> Discs:
-    """The discs that move as told; their mass moves nothing."""
-    density = scene.fluid.density if scene.fluid else 1000.0
+def _held(discs: Sequence[Disc], density: float) -> Discs:
+    """The discs whose motion is prescribed; their mass has no effect."""
     return make_discs(
-        [(it.x, it.y) for it in scene.disc], np.array([it.diameter / 2 for it in scene.disc]), density,
-        np.array([it.velocity for it in scene.disc]), np.array([it.spin for it in scene.disc]),
+        [(it.x, it.y) for it in discs], np.array([it.diameter / 2 for it in discs]), density,
+        np.array([it.velocity for it in discs]), np.array([it.spin for it in discs]),
     )  # fmt: skip
 
 
@@ -110,7 +111,7 @@ def prepared(scene: Scene, packing: Packing, box: Box, derived: Derived, plates:
     placed, radii = len(by_hand(scene)) + len(scene.disc), radii_of(packing)
     pile = Pile(
         corner=(packing.left, packing.bottom), width=packing.width, count=grain_count(scene) - placed,
-        diameter=packing.diameter, density=density_of(scene, packing.material), spread=packing.size_spread,
+        diameter=packing.diameter, density=MaterialPlan.of(scene).density(packing.material), spread=packing.size_spread,
         friction=packing.settling_friction, seed=packing.seed, gravity=-scene.gravity[1],
         given=() if radii is None else tuple(radii.tolist()),
     )  # fmt: skip
@@ -120,8 +121,7 @@ def prepared(scene: Scene, packing: Packing, box: Box, derived: Derived, plates:
     )
 
 
-def _placed(scene: Scene, packing: Packing) -> Discs:
-    assert scene.grains
+def _placed(packing: Packing, density: float) -> Discs:
     radii = radii_of(packing)
     sizes: dict[str, Any] = (
         {"diameter": packing.diameter, "spread": packing.size_spread, "packing_fraction": packing.packing_fraction}
@@ -134,13 +134,13 @@ def _placed(scene: Scene, packing: Packing) -> Discs:
         )  # fmt: skip
     except InputError as error:
         raise InputError([replace(fault, key=f"grains.packing.{fault.key}") for fault in error.faults]) from None
-    return make_discs(placed.position, placed.radius, density_of(scene, packing.material))
+    return make_discs(placed.position, placed.radius, density)
 
 
 def _by_hand(scene: Scene) -> Discs:
-    grains = by_hand(scene)
+    grains, plan = by_hand(scene), MaterialPlan.of(scene)
     return make_discs(
         [(g.x, g.y) for g in grains], np.array([g.diameter / 2 for g in grains]),
-        np.array([density_of(scene, g.material) for g in grains]),
+        np.array([plan.density(g.material) for g in grains]),
         np.array([g.velocity for g in grains]), np.array([g.spin for g in grains]),
     )  # fmt: skip

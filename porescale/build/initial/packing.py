@@ -13,7 +13,6 @@ from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Law
 from porescale.dem.prepare.compaction import Compressed, Press, kept
 from porescale.scene.packing import Packing
-from porescale.scene.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -36,15 +35,14 @@ def radii_of(packing: Packing) -> Array | None:
     return None
 
 
-def compressed(scene: Scene, packing: Packing, law: Law) -> Compressed:
-    """The packing of a scene, pressed to its pressure or fraction; keys of faults are those of the scene."""
-    assert scene.grains
+def compressed(packing: Packing, density: float, periodic: tuple[bool, bool], law: Law) -> Compressed:
+    """The packing pressed to its pressure or fraction; density: of the grains, kg/m³;  periodic: the sides of its
+    rectangle.  Keys of faults are those of the scene."""
     assert isinstance(law, Linear)  # check_compressed has made sure
     radius = radii_of(packing)
     assert radius is not None
     box = (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height)
-    periodic = (False, False) if scene.rock else scene.domain.periodic
-    press = Press(*box, law, periodic, packing.settling_friction, scene.grains.density, packing.seed)
+    press = Press(*box, law, periodic, packing.settling_friction, density, packing.seed)
     try:
         return kept(press, radius, packing.pressure)
     except InputError as error:

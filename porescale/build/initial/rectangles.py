@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from porescale.coupling.coverage.rectangle import Rectangle as LatticeRectangle
@@ -11,21 +13,20 @@ from porescale.dem.grains import Grains
 from porescale.lbm.scales import Scales
 from porescale.scene.bodies.rectangle import Rectangle
 from porescale.scene.packing import Packing
-from porescale.scene.scene import Scene
 
 
-def on_the_lattice(scene: Scene, scales: Scales) -> list[LatticeRectangle]:
+def on_the_lattice(sections: Sequence[Rectangle], scales: Scales) -> list[LatticeRectangle]:
     """The rectangles as the fluid sees them, at rest at the start: they set off in the first step."""
     h = scales.spacing
-    return [LatticeRectangle(np.array(it.lower) / h, np.array(it.upper) / h) for it in scene.rectangle]
+    return [LatticeRectangle(np.array(it.lower) / h, np.array(it.upper) / h) for it in sections]
 
 
-def stand_ins(scene: Scene, packing: Packing) -> list[Plate]:
+def stand_ins(sections: Sequence[Rectangle], packing: Packing) -> list[Plate]:
     """Plates on the upright faces between which a packing settles: on those next to it, at its height."""
     edges = packing.left, packing.left + packing.width
     return [
         Plate(x, it.lower[1], it.upper[1], friction=it.friction, name=f"rectangle {k} {side}")
-        for k, it in enumerate(scene.rectangle)
+        for k, it in enumerate(sections)
         for side, x, edge in (("left", it.lower[0], edges[1]), ("right", it.upper[0], edges[0]))
         if holds(it, packing) and abs(x - edge) < packing.diameter
     ]
@@ -36,19 +37,19 @@ def holds(it: Rectangle, packing: Packing) -> bool:
     return it.lower[1] < packing.bottom + packing.height and it.upper[1] > packing.bottom
 
 
-def beside(scene: Scene, packing: Packing) -> tuple[bool, bool]:
+def beside(sections: Sequence[Rectangle], packing: Packing) -> tuple[bool, bool]:
     """Whether a face holds the packing on its left, and on its right, while it settles."""
-    names = [plate.name for plate in stand_ins(scene, packing)]
+    names = [plate.name for plate in stand_ins(sections, packing)]
     return any(name.endswith("right") for name in names), any(name.endswith("left") for name in names)
 
 
-def take_over(scene: Scene, grains: Grains) -> None:
+def take_over(sections: Sequence[Rectangle], grains: Grains) -> None:
     """Rectangles instead of the plates that stood in for them, with the springs that those had; if there were any."""
     grains.set_rectangles(
         [GrainRectangle(it.lower, it.upper, friction=it.friction, name=f"rectangle[{k}]")
-         for k, it in enumerate(scene.rectangle)]
+         for k, it in enumerate(sections)]
     )  # fmt: skip
-    for k in range(len(scene.rectangle)):
+    for k in range(len(sections)):
         for name in (f"rectangle {k} left", f"rectangle {k} right"):
             if name in grains.plate_names:
                 grains.rectangle_spring[k] += grains.plate_spring[grains.plate(name)]

@@ -10,17 +10,17 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.build.initial.contact_laws import density_of
-from porescale.build.initial.frames import FREE, HELD, PLATES, Placed, material_number
+from porescale.build.initial.contact_laws import MaterialPlan
+from porescale.build.initial.frames import FREE, HELD, PLATES, Placed
 from porescale.build.initial.packing import compressed
 from porescale.build.initial.time_functions import schedule_of
 from porescale.dem.bodies.frames import chain, polygon
-from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Law
 from porescale.dem.discs import Discs, make_discs
 from porescale.dem.motion.control import Placed as PlacedControl
 from porescale.dem.motion.time_function import Constant, Schedule, Sine, Table
 from porescale.dem.prepare.tessellate import delaunay, shrunk, voronoi
+from porescale.scene.packing import Packing
 from porescale.scene.scene import Scene
 
 Array = NDArray[np.float64]
@@ -41,8 +41,9 @@ def rock_discs(scene: Scene, law: Law) -> Discs | None:
     assert scene.grains.packing
     if scene.rock.polygons:
         return None
-    at, radius = _packing(scene, law)
-    return make_discs(at, radius, density_of(scene, scene.grains.packing.material))
+    plan, packing = MaterialPlan.of(scene), scene.grains.packing
+    at, radius = _pressed(packing, plan.density_of_grains, law)
+    return make_discs(at, radius, plan.density(packing.material))
 
 
 def rock_frames(scene: Scene, law: Law) -> list[Placed]:
@@ -51,11 +52,11 @@ def rock_frames(scene: Scene, law: Law) -> list[Placed]:
     assert scene.rock
     assert scene.grains
     assert scene.grains.packing
-    rock, packing = scene.rock, scene.grains.packing
-    at, radius = _packing(scene, law)
+    rock, packing, plan = scene.rock, scene.grains.packing, MaterialPlan.of(scene)
+    at, radius = _pressed(packing, plan.density_of_grains, law)
     lower = (packing.left, packing.bottom)
     upper = (packing.left + packing.width, packing.bottom + packing.height)
-    density, material = density_of(scene, packing.material), material_number(scene, packing.material)
+    density, material = plan.density(packing.material), plan.number(packing.material)
     made: list[Placed] = []
     thickness = off = 0.5 * float(radius.mean())
     if rock.polygons:
@@ -77,12 +78,12 @@ def rock_frames(scene: Scene, law: Law) -> list[Placed]:
         points = ends if axis == 0 else [(x, y) for y, x in ends]
         frame = chain(
             points, thickness, density, width=2.0 * max(thickness, off), long=True,
-            material=material_number(scene, "", True),
+            material=plan.number("", wall=True),
         )  # fmt: skip
-        told = list(HELD)
+        motion = list(HELD)
         if name == PLATES[1]:
-            told[axis] = moves
-        made.append(Placed("rock", "plate", frame, (told[0], told[1], told[2]), name))
+            motion[axis] = moves
+        made.append(Placed("rock", "plate", frame, (motion[0], motion[1], motion[2]), name))
     return made
 
 
@@ -95,30 +96,8 @@ def _times(schedule: Schedule, factor: float) -> Schedule:
     return Constant(factor * (schedule.value if isinstance(schedule, Constant) else schedule))
 
 
-def _packing(scene: Scene, law: Law) -> tuple[Array, Array]:
-    """Centres (n, 2) m and radii (n,) m of the packing pressed in its rectangle."""
-    assert isinstance(law, Linear)
-    return _pressed(_Asked(scene, law))
-
-
-class _Asked:
-    """A scene and a law, equal where they press the same packing."""
-
-    def __init__(self, scene: Scene, law: Linear) -> None:
-        assert scene.grains
-        self.scene, self.law = scene, law
-        self.key = scene.grains.packing, scene.grains.density, law
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Asked) and self.key == other.key
-
-    def __hash__(self) -> int:
-        return hash(self.key)
-
-
 @lru_cache(maxsize=2)
-def _pressed(asked: _Asked) -> tuple[Array, Array]:
-    assert asked.scene.grains
-    assert asked.scene.grains.packing
-    discs = compressed(asked.scene, asked.scene.grains.packing, asked.law).grains.discs
+def _pressed(packing: Packing, density: float, law: Law) -> tuple[Array, Array]:
+    """Centres (n, 2) m and radii (n,) m of the packing pressed in its rectangle."""
+    discs = compressed(packing, density, (False, False), law).grains.discs
     return discs.position.copy(), discs.radius.copy()

@@ -3,44 +3,45 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 from porescale.build.initial.time_functions import schedule_of, schedule_or_zero
 from porescale.dem.forces.walls import NX, NY, PX, PY
 from porescale.dem.grains import Grains
-from porescale.scene.domain import SIDES
-from porescale.scene.scene import Scene
+from porescale.scene.bodies.wall import Wall
+from porescale.scene.domain import SIDES, Domain
 from porescale.scene.servo import Pressed
 
 ACROSS = {"left": ("bottom", "top"), "right": ("bottom", "top"), "bottom": ("left", "right"), "top": ("left", "right")}
 """The two sides between which a stress on a side acts."""
 
 
-def wall_names(scene: Scene) -> list[str]:
+def wall_names(walls: Sequence[Wall]) -> list[str]:
     """Names of the free walls."""
-    return [it.name or f"wall {k}" for k, it in enumerate(scene.wall)]
+    return [it.name or f"wall {k}" for k, it in enumerate(walls)]
 
 
-def moving_sides(scene: Scene) -> list[str]:
-    """Sides that move, as told or by a servo."""
-    return [name for name, it in scene.domain.sides.items()
+def moving_sides(domain: Domain) -> list[str]:
+    """Sides that move, at a velocity or by a servo."""
+    return [name for name, it in domain.sides.items()
             if it.kind == "wall" and (it.velocity is not None or it.stress or it.force)]  # fmt: skip
 
 
-def add_walls(scene: Scene, grains: Grains) -> None:
+def add_walls(domain: Domain, walls: Sequence[Wall], grains: Grains) -> None:
     """Put the free walls there and set all in motion that move."""
-    for name, it in zip(wall_names(scene), scene.wall, strict=True):
+    for name, it in zip(wall_names(walls), walls, strict=True):
         grains.add_wall(name, (it.x, it.y), it.normal, it.friction)
         if it.moves:
             grains.steering.move_wall(
                 name, schedule_or_zero(it.velocity_x), schedule_or_zero(it.velocity_y), schedule_or_zero(it.turning)
             )
         _press(grains, name, it, {"length": it.length} if it.stress else {})
-    for name in moving_sides(scene):
-        side = scene.domain.sides[name]
+    for name in moving_sides(domain):
+        side = domain.sides[name]
         if side.velocity is not None:
             grains.steering.move_wall(name, *side.velocity)
-        width = scene.domain.width if name in ("bottom", "top") else scene.domain.height
+        width = domain.width if name in ("bottom", "top") else domain.height
         ends = ACROSS[name]
         _press(grains, name, side, {"between": ends} if set(ends) <= set(grains.wall_names) else {"length": width})
 
@@ -68,8 +69,8 @@ def middles(grains: Grains) -> list[tuple[float, float]]:
 class WallPlaces:
     """Where the walls of a scene are that move: columns of forces.csv."""
 
-    def __init__(self, scene: Scene) -> None:
-        self.sides, self.walls = moving_sides(scene), dict(zip(wall_names(scene), scene.wall, strict=True))
+    def __init__(self, domain: Domain, walls: Sequence[Wall]) -> None:
+        self.sides, self.walls = moving_sides(domain), dict(zip(wall_names(walls), walls, strict=True))
 
     def row(self, grains: Grains) -> dict[str, float]:
         """Places, m, and the direction of those that turn, rad."""

@@ -55,7 +55,7 @@ class GrainInstruments(Part):
     def __init__(self, clock: Clock, grains: Grains, placed: Sequence[Placed], scene: Scene) -> None:
         """``placed`` : bodies of segments."""
         self.clock, self.grains, self.placed = clock, grains, placed
-        self.walls = WallPlaces(scene) if scene.output.forces else None
+        self.walls = WallPlaces(scene.domain, scene.wall) if scene.output.forces else None
         self.contacts, self.coarse_graining = scene.output.contacts, scene.coarse_graining
         self.regions = [(it.name or f"region {k}", Region(it.lower, it.upper)) for k, it in enumerate(scene.region)]
         self.held = np.arange(grains.discs.count) >= grains.discs.count - len(scene.disc)

@@ -8,11 +8,9 @@ import pytest
 from continuum_sph.build.report import report
 from continuum_sph.build.simulation import Simulation
 from continuum_sph.validation.water import setups as trials
-from continuum_sph.water import kernel_correction as correction
-from continuum_sph.water import rates, shifting, step
-from continuum_sph.water.eos import Tait
-from continuum_sph.water.fluids import Fluid, table
-from continuum_sph.water.leapfrog import pressurise
+from continuum_sph.water.eos.liquid import Tait
+from continuum_sph.water.fluids import Fluid
+from continuum_sph.water.leapfrog import Pressing, pressurise
 from continuum_sph.water.pressure_walls import tank_walls
 from continuum_sph.water.state import RHO, VOLUME
 from porescale.common.compiled.jit import set_threads
@@ -21,6 +19,7 @@ from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
 from porescale.common.record.model import Model
 from porescale.common.schema.sections import validate
 from tests.reference.memory import growth
+from tests.reference.uncompiled import WATER, uncompile
 
 
 def scene(**numerics):
@@ -232,21 +231,7 @@ def test_pass_over_pairs_as_plain_python(monkeypatch):
         return Simulation(validate(type(scene()), table))
 
     compiled, plain = made(), made()
-    for name in ("kick_drift", "pressurise", "kick", "load_walls", "rates", "split_rows", "surroundings", "shift"):
-        monkeypatch.setattr(step, name, getattr(step, name).py_func)
-    for module in (correction, rates, shifting):  # compiled, they take vectors from kernels only
-        for name in (
-            "artificial",
-            "haste_of",
-            "kernel_value",
-            "laminar",
-            "pace",
-            "slope_scale",
-            "slope_shape",
-            "value_shape",
-        ):
-            if hasattr(module, name):
-                monkeypatch.setattr(module, name, getattr(module, name).py_func)
+    uncompile(monkeypatch, *WATER)
     plain.advance(2)
     monkeypatch.undo()
     compiled.advance(2)
@@ -262,14 +247,15 @@ def test_a_density_extrapolated_below_zero_stops_at_the_least():
     fluid = Fluid(Tait(1000.0, 44.0))
     rho = np.array([1000.0, 800.0 - 3.0 * 7e6 * 5e-5])
     pressure, record, places = np.zeros(2), np.zeros((2, 8)), np.zeros((2, 2))
-    pace = pressurise.py_func(
-        places, places, np.full(2, 0.1), rho, None, np.full(2, 0.013), table((fluid,)), False, pressure, record,
-        None, None,
+    to = Pressing(
+        number=0, viscosity=0.0, material=None, properties=None, lengths=None, mass=np.full(2, 0.1),
+        length=np.full(2, 0.013), pressure=pressure, record=record, cut=False,
     )  # fmt: skip
+    fastest = pressurise.py_func(places, places, rho, to, fluid.state.numbers)
     assert record[1, RHO] == 800.0
     assert record[1, VOLUME] == 0.1 / 800.0
     assert pressure[1] == pytest.approx(float(fluid.state.pressure(np.array(800.0))), rel=1e-14)
-    assert pace == pytest.approx((44.0 / 0.013) ** 2, rel=1e-14)
+    assert fastest == pytest.approx((44.0 / 0.013) ** 2, rel=1e-14)
     assert 0.1 / rho[1] < 0.0  # the twin that must fail: a volume of less than nothing
 
 

@@ -12,7 +12,9 @@ from continuum_sph.build.seepage_report import seepage_report
 from continuum_sph.build.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.seepage.air import TrappedAir
-from continuum_sph.water.eos import Gas, Tait
+from continuum_sph.water.eos.adiabatic import AdiabaticGas
+from continuum_sph.water.eos.liquid import Tait
+from continuum_sph.water.eos.printed import PrintedGas
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import Smoothing
@@ -36,7 +38,7 @@ def scene(**changes):
 
 def test_air_resists_as_much_less_as_it_is_thinner():
     law = Law(Smoothing("wendland", 0.01), 0.01, (Fluid(Tait(1000.0, 40.0), 1e-3),), (0.0, -9.8))
-    both = with_air(law, Fluid(Gas(1.2, 1e5), 2e-5))
+    both = with_air(law, Fluid(AdiabaticGas(1.2, 1e5), 2e-5))
     found = specific_weights(np.array([0, AIR]), both, GRAVITY)
     # β = n² μ/κ with one κ for both: that of water is ρ g n²/k
     assert found == pytest.approx([1000.0 * GRAVITY, 0.02 * 1000.0 * GRAVITY], rel=1e-15)
@@ -50,8 +52,8 @@ def test_air_is_in_pores_that_no_water_covers():
 
 def test_gas_follows_the_law_of_its_section():
     air = scene().air
-    assert air_fluid(air).state == Gas(10.0, 5e3, 1.403, printed=False)
-    assert air_fluid(air.model_copy(update={"law": "printed"})).state.printed
+    assert air_fluid(air).state == AdiabaticGas(10.0, 5e3, 1.403)
+    assert isinstance(air_fluid(air.model_copy(update={"law": "printed"})).state, PrintedGas)
 
 
 @pytest.mark.parametrize(

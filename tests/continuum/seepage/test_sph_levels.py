@@ -11,7 +11,7 @@ from continuum_sph.build.simulation import Simulation
 from continuum_sph.scene.instruments import LevelSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import Reservoir, Supply
-from continuum_sph.seepage.reservoir import berths, moor, sound_out
+from continuum_sph.seepage.reservoir import berths, measure_strip, park_waiting
 from continuum_sph.water.state import Layer
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError
@@ -53,13 +53,13 @@ def test_a_lattice_in_a_strip_weighs_what_stands_there_wherever_its_columns_are(
             SPACING,
             0.5,
         )
-        held, highest = sound_out(*where, strip.tops)
+        held, highest = measure_strip(*where, strip.tops)
         # the trapezoidal rule over cosine ramps of 3 spacings: its first harmonic, 1/{π (2·3)² - …} of a spacing a ramp
         assert held / (1000.0 * strip.width) == pytest.approx(0.4, abs=0.4 * 2 * 0.02 / (strip.width / SPACING))
         assert layer.x[highest, 1] == pytest.approx(0.35)
         np.testing.assert_allclose(strip.tops, 0.35)
         slow = np.zeros_like(strip.tops)
-        assert sound_out.py_func(*where, slow) == (pytest.approx(held, rel=1e-14), highest)
+        assert measure_strip.py_func(*where, slow) == (pytest.approx(held, rel=1e-14), highest)
         assert np.array_equal(slow, strip.tops)
 
 
@@ -121,7 +121,7 @@ def test_water_that_waits_stays_where_it_is():
     given = supply(pool(0.4))
     layer = given.layer
     layer.x[-3:], layer.v[-3:] = 0.5, 1.0
-    moor.py_func(
+    park_waiting.py_func(
         layer.fluid, layer.x, layer.v, layer.mass, layer.density, layer.predicted, given.berth, 1000.0
     )  # fmt: skip
     assert np.array_equal(layer.x[-3:], given.berth[-3:])

@@ -8,7 +8,7 @@ from continuum_sph.build.sheet_pile import NAME, beside, sheet_pile
 from continuum_sph.build.simulation import Simulation
 from continuum_sph.scene.pile import SheetPileSection
 from continuum_sph.scene.sections import Scene
-from continuum_sph.seepage.sheet_pile import FREE, LEFT, RIGHT, UNDER, PartedList, hold_back, part, side_of
+from continuum_sph.seepage.sheet_pile import FREE, LEFT, RIGHT, UNDER, CutPairList, cut_pairs, keep_out, side_of
 from continuum_sph.water.smoothing import CUBIC, kernel_value
 from porescale.common.neighbors import PairList, square_lattice
 
@@ -28,7 +28,9 @@ def listed(x, partner_of):
     places, _, side = PILE.particles(3, 1.0)
     at = np.concatenate((x, places))
     reach = np.full(len(at), 1.3 * SPACING)
-    pairs = PartedList(PairList(len(at), 0.0, (0.0, 0.0), (1.5, 1.3), full=True), PILE, len(x), side, np.zeros_like(at))
+    pairs = CutPairList(
+        PairList(len(at), 0.0, (0.0, 0.0), (1.5, 1.3), full=True), PILE, len(x), side, np.zeros_like(at)
+    )
     pairs.update(at, reach)
     return at, pairs.partner[pairs.start[partner_of] : pairs.start[partner_of + 1]]
 
@@ -76,7 +78,7 @@ def test_without_the_pile_in_the_list_both_sides_are_seen_at_once():  # the twin
 def test_pairs_pass_below_the_tip_only():
     x = np.array([[0.65, 0.45], [0.85, 0.45], [0.65, 0.55], [0.85, 0.55]])
     start, partner = np.array([0, 3, 6, 9, 12]), np.array([1, 2, 3, 0, 2, 3, 0, 1, 3, 0, 1, 2], np.int32)
-    left = part.py_func(x, np.full(4, FREE), start, partner, PILE.x, PILE.bottom)
+    left = cut_pairs.py_func(x, np.full(4, FREE), start, partner, PILE.x, PILE.bottom)
     assert left == 10
     assert partner[start[2] : start[3]].tolist() == [0, 1]
     assert partner[start[3] : start[4]].tolist() == [0, 1]
@@ -87,7 +89,7 @@ def test_what_enters_it_is_put_back_where_it_came_from():
     last = np.array([[0.69, 0.8], [0.81, 0.8], [0.75, 0.49], [0.6, 0.8]])
     x = np.array([[0.72, 0.8], [0.79, 0.8], [0.75, 0.51], [0.61, 0.8]])
     v = np.array([[1.0, 2.0], [-1.0, 2.0], [1.0, 2.0], [1.0, 2.0]])
-    assert hold_back.py_func(x, v, last, PILE.x, PILE.bottom, half) == 3
+    assert keep_out.py_func(x, v, last, PILE.x, PILE.bottom, half) == 3
     assert np.allclose(x, [[0.7, 0.8], [0.8, 0.8], [0.75, 0.5], [0.61, 0.8]])
     assert v.tolist() == [[0.0, 2.0], [0.0, 2.0], [1.0, 0.0], [1.0, 2.0]]
     assert np.array_equal(last, x)
@@ -95,7 +97,7 @@ def test_what_enters_it_is_put_back_where_it_came_from():
 
 def test_what_is_put_elsewhere_has_not_crossed_it():
     x, last = np.array([[0.2, 0.8]]), np.array([[1.2, 0.8]])
-    assert hold_back.py_func(x, np.ones((1, 2)), last, PILE.x, PILE.bottom, 0.5 * SPACING) == 0
+    assert keep_out.py_func(x, np.ones((1, 2)), last, PILE.x, PILE.bottom, 0.5 * SPACING) == 0
     assert x.tolist() == last.tolist() == [[0.2, 0.8]]
 
 
@@ -110,7 +112,7 @@ def test_below_the_tip_sides_are_one():
 def test_a_list_goes_on_from_its_state():
     x = np.array([[0.65, 0.8], [0.85, 0.8]])
     v, reach = np.zeros((2, 2)), np.full(2, 0.13)
-    first, second = (PartedList(PairList(2, 0.01, (0.0, 0.0), (1.5, 1.0), full=True), PILE, 2, v=v) for _ in range(2))
+    first, second = (CutPairList(PairList(2, 0.01, (0.0, 0.0), (1.5, 1.0), full=True), PILE, 2, v=v) for _ in range(2))
     first.update(x, reach)
     second.restore(first.state())
     x[0, 0] = 0.72

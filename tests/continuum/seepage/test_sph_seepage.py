@@ -8,12 +8,23 @@ from reference import seepage as slow
 
 from continuum_sph.seepage import Frame, Resistance, exchange, mixture
 from continuum_sph.seepage import overlap as overlaps
-from continuum_sph.seepage.exchange import against_soil, brake, relaxed, take
-from continuum_sph.seepage.mixture import LINES, POROSITY, PULL_X, SLIP_X, SLIP_Y, bear, blend, meet, part_forces
-from continuum_sph.seepage.overlap import Overlap, closeness, overlap_weights
+from continuum_sph.seepage.exchange import apply_drag, apply_reaction, relative_to_soil, relaxation
+from continuum_sph.seepage.mixture import (
+    LINES,
+    POROSITY,
+    PULL_X,
+    SLIP_X,
+    SLIP_Y,
+    gather_soil,
+    load_soil,
+    mix_fluxes,
+    share_forces,
+)
+from continuum_sph.seepage.overlap import Overlap, Reach, overlap_kernel, overlap_weights
 from continuum_sph.seepage.pressure_face import drain_walls
 from continuum_sph.seepage.resistance import drag
 from continuum_sph.seepage.skeleton import show_soil, weigh
+from continuum_sph.water.bundles import Neighbours
 from continuum_sph.water.smoothing import WENDLAND, kernel_value
 from continuum_sph.water.state import RHO, VOLUME, VX, VY, P, X, Y
 from porescale.common.compiled.simd import LANES
@@ -28,9 +39,9 @@ def plain():
     """Compiled functions take vectors only from kernels: here they are plain."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(overlaps, "kernel_value", kernel_value.py_func)
-        patch.setattr(overlaps, "closeness", closeness.py_func)
-        patch.setattr(mixture, "closeness", closeness.py_func)
-        patch.setattr(exchange, "relaxed", relaxed.py_func)
+        patch.setattr(overlaps, "closeness", overlap_kernel.py_func)
+        patch.setattr(mixture, "closeness", overlap_kernel.py_func)
+        patch.setattr(exchange, "relaxed", relaxation.py_func)
         patch.setattr(exchange, "drag", drag.py_func)
         yield
 
@@ -65,17 +76,17 @@ def anew(place):
 
 
 def blended(place, k=1e-3):
-    """Record and pores after `meet` and `blend`, which make the water's weights."""
+    """Record and pores after `gather_soil` and `mix_fluxes`, which make the water's weights."""
     n, rows, shown = len(place["x"]), anew(place), np.zeros((len(place["soil_x"]), 8))
     show_soil.py_func(place["soil_x"], place["soil_v"], place["soil_mass"], place["grains"], place["grains"] / k, shown)
     record = np.zeros((n, 8))
     record[:, [X, Y]], record[:, [VX, VY]] = place["x"], place["v"]
     record[:, RHO], record[:, P], record[:, VOLUME] = place["rho"], place["p"], place["mass"] / place["rho"]
     pores, none = np.ones((LINES, n + LANES)), np.zeros(n + 1, np.int64)
-    meet.py_func(
-        n, *rows, record, place["mass"], shown, Resistance(POROUS).gravity, np.zeros(0), pores, H, 1.0, 1.0
+    gather_soil.py_func(
+        n, *rows, record, place["mass"], shown, Resistance(POROUS).gravity, np.zeros(0), pores, Reach(H, 1.0, 1.0)
     )  # fmt: skip
-    blend.py_func(n, none, none[:n], np.zeros(0, np.int32), record, place["x"], pores, H, 1.0, 1.0)
+    mix_fluxes.py_func(n, none, none[:n], np.zeros(0, np.int32), record, place["x"], pores, H, 1.0, 1.0)
     np.testing.assert_array_equal(rows[2][: rows[0][n]], place["rows"][2][: rows[0][n]])
     return record, pores
 
@@ -97,8 +108,8 @@ def test_porosity_flux_and_shared_forces_are_those_of_the_dense_sums(place):
     thrust, found, rows = np.zeros((n, 4)), np.zeros((n, 2)), anew(place)
     thrust[:, :2] = place["x"]
     falling = acceleration + np.array([0.0, -GRAVITY])
-    part_forces.py_func(n, place["mass"], falling, 0.0, -GRAVITY, pores, given, power, thrust)
-    bear.py_func(n, *rows, place["soil_x"], place["grains"], thrust, found, H, 1.0, 1.0)
+    share_forces.py_func(n, place["mass"], falling, 0.0, -GRAVITY, pores, given, power, thrust)
+    load_soil.py_func(n, *rows, place["soil_x"], place["grains"], thrust, found, H, 1.0, 1.0)
     first, last = rows[0][n], rows[0][-1]
     np.testing.assert_array_equal(rows[2][first:last], place["rows"][2][first:last])
     np.testing.assert_allclose(given, rate, rtol=10 * eps)
@@ -121,13 +132,13 @@ def braked(place, seconds, pores):
     heat, law, resisting, shown = np.zeros(2 * n), Resistance(POROUS), place["grains"] / k, np.zeros((n, 2))
     weigh.py_func(resisting, soil_v, shown)
     slip = pores[[SLIP_X, SLIP_Y]].copy()
-    against_soil.py_func(n, *place["rows"], shown, v, pores, SLIP_X)
-    # `meet` has them from velocities weighted in another order: a few roundings of sums of 25 terms
+    relative_to_soil.py_func(n, *place["rows"], shown, v, pores, SLIP_X)
+    # `gather_soil` has them from velocities weighted in another order: a few roundings of sums of 25 terms
     np.testing.assert_allclose(pores[[SLIP_X, SLIP_Y], :n], slip[:, :n], atol=100 * eps)
     weigh.py_func(resisting, place["soil_a"], shown)
-    against_soil.py_func(n, *place["rows"], shown, place["a"], pores, PULL_X)
-    brake.py_func(n, pores, v, law.number, law.factor, seconds, np.zeros((4, n + LANES)), push, heat)
-    take.py_func(n, *place["rows"], push, resisting, place["soil_mass"], soil_v, seconds, borne, heat)
+    relative_to_soil.py_func(n, *place["rows"], shown, place["a"], pores, PULL_X)
+    apply_drag.py_func(n, pores, v, law.number, law.factor, seconds, np.zeros((4, n + LANES)), push, heat)
+    apply_reaction.py_func(n, *place["rows"], push, resisting, place["soil_mass"], soil_v, seconds, borne, heat)
     return v, soil_v, heat.sum(), borne
 
 
@@ -165,8 +176,8 @@ def test_drag_that_is_not_given_to_the_soil_loses_momentum(place):  # the twin t
 def test_relaxation_is_exact_for_the_shortest_and_the_longest_times():
     times = np.concatenate((10.0 ** np.linspace(-300.0, 4.0, 2000), np.linspace(0.0, 60.0, 2001)))
     # 12 terms with two roundings each, all but the first few scaled down by y <= 0.69, and two for each doubling
-    np.testing.assert_allclose(relaxed.py_func(times), -np.expm1(-times), rtol=16 * eps)
-    half = 1.0 - np.sqrt(1.0 - relaxed.py_func(times[-2000:-1800]))  # of half the time: the twin that must fail
+    np.testing.assert_allclose(relaxation.py_func(times), -np.expm1(-times), rtol=16 * eps)
+    half = 1.0 - np.sqrt(1.0 - relaxation.py_func(times[-2000:-1800]))  # of half the time: the twin that must fail
     assert np.abs(half + np.expm1(-times[-2000:-1800])).max() > 0.1
 
 
@@ -192,9 +203,8 @@ def test_a_drained_face_holds_a_linear_pressure():
     pressure = np.zeros(7)
     start, split = np.array([0, 0, 0, 0, 0, 4, 8, 8]), np.array([0, 0, 0, 0, 4, 8, 8])
     partner = np.array([0, 1, 2, 3, 0, 1, 2, 3], np.int32)
-    drain_walls.py_func(
-        rows, np.full(3, 300.0), start, split, partner, x, record, pressure, 0.0, 0.0, 0.0, 1.0, WENDLAND, H, 0.0, 0.0
-    )
+    near = Neighbours(start, split, partner, None, None, WENDLAND, H)
+    drain_walls.py_func(rows, np.full(3, 300.0), near, x, record, pressure, 0.0, 0.0, 0.0, 1.0)
     np.testing.assert_allclose(pressure[4:6], 300.0 + 50.0 * x[4:6, 1], rtol=10 * eps)
     assert pressure[6] == 300.0  # no water near
     np.testing.assert_allclose(record[4:6, VY], 0.2, rtol=10 * eps)

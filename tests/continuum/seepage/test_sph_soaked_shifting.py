@@ -23,7 +23,7 @@ def soaked():
     layer.x[:n] += np.random.default_rng(3).uniform(-0.02, 0.02, (n, 2))
     flow.law = replace(flow.law, shifting=1.0, gravity=(0.0, -GRAVITY))
     layer.density[:] = flow.law.state.settled_density(1.0 - layer.x[:n, 1], GRAVITY)
-    layer.keep_book()
+    layer.keep_budget()
     both.start()
     layer.predicted[:] = layer.density
     flow.max_speed = 1.0
@@ -38,7 +38,7 @@ def soaked():
 
 def test_density_changes_by_what_drift_meets(soaked):
     flow, shifted, still, _ = soaked
-    met = (flow.layer.drift * flow.slant).sum(axis=1)
+    met = (flow.layer.drift * flow.density_gradient).sum(axis=1)
     assert flow.porosity.max() < 0.7
     # sums of some 30 terms, of ρ each, as quick as diffusion at the pace of sound
     allowed = 100 * 30 * eps * max(np.abs(still).max(), np.abs(shifted).max())

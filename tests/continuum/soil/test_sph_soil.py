@@ -12,17 +12,22 @@ from continuum_sph.build.soil import geostatic, soil_law
 from continuum_sph.build.soil_report import soil_report
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.soil import Body
-from continuum_sph.soil import Material, gradient, porosity
-from continuum_sph.soil import momentum as divergence
+from continuum_sph.soil import Material, porosity
+from continuum_sph.soil import gradient as soil_gradient
+from continuum_sph.soil import material as soil_material
+from continuum_sph.soil import momentum as soil_momentum
+from continuum_sph.soil import plasticity as soil_plasticity
+from continuum_sph.soil import stress as soil_stress
 from continuum_sph.soil.gradient import inverse, velocity_gradients
-from continuum_sph.soil.momentum import accelerate
+from continuum_sph.soil.momentum import Choices, accelerate
 from continuum_sph.soil.plasticity import returned
 from continuum_sph.soil.state import MASS, VOLUME, XX, YY, X
-from continuum_sph.soil.stress import deform
-from continuum_sph.soil.tension import hold_apart
+from continuum_sph.soil.stress import Straining, deform
+from continuum_sph.soil.tension import repel_under_tension
 from continuum_sph.validation.soil.element import Element
 from continuum_sph.validation.soil.setups import body, in_tank
-from continuum_sph.water.smoothing import slope_shape
+from continuum_sph.water import bundles, smoothing
+from continuum_sph.water.bundles import Neighbours
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.errors import InputError, Unstable
 from porescale.common.neighbors import square_lattice
@@ -30,6 +35,7 @@ from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
 from porescale.common.record.model import Model
 from porescale.common.schema.sections import validate
 from tests.reference.memory import growth
+from tests.reference.uncompiled import uncompile
 
 ELASTIC = Material(1e7, 1600.0, yields=False)
 SAND = Material(1e6, 1600.0)
@@ -81,30 +87,37 @@ def test_plain_gradients_miss_linear_fields_at_surfaces():  # the twin that must
 
 
 def test_kernels_run_as_plain_python(monkeypatch):
-    for module in (gradient, divergence):  # compiled functions take vectors only from kernels
-        monkeypatch.setattr(module, "slope_shape", slope_shape.py_func)
-    flow, law = block(), None
-    soil, pairs, law = flow.soil, flow.pairs, flow.law
+    flow = block()
+    soil, law = flow.soil, flow.law
     soil.v[:] = 0.01 * np.sin(soil.x)
     flow.begin(1e-4)
-    where = (soil.soil, pairs.start, flow.split, pairs.partner, soil.record, soil.facing)
-    how = (law.smoothing.kind, law.smoothing.length)
-    first = soil.record.copy()
-    velocity_gradients.py_func(*where, soil.matrix, True, 1e-4, *how, 0.0, 0.0)
-    slow = soil.record.copy()
-    soil.record[:] = first
-    velocity_gradients(*where, soil.matrix, True, 1e-4, *how, 0.0, 0.0)
+    kernels = velocity_gradients, deform, accelerate
+    arrays = ("record", "matrix", "density", "stress", "separation_strain", "plastic_shear", "acceleration")
+    first = {name: getattr(soil, name).copy() for name in arrays}
+    made = (soil.force, soil.stress, soil.acceleration, soil.spread, soil.drift)
+    choices = Choices(0.0, -9.8, 1.0, False, 100.0, 0.0, 4.0, law.spacing)
+
+    def found(gradients, strain, push):
+        """Records after gradients, and accelerations after all three, from the same start."""
+        for name, values in first.items():
+            getattr(soil, name)[:] = values
+        gradients(soil.soil, soil.record, soil.facing, soil.matrix, flow.near, True, 1e-4)
+        record = soil.record.copy()
+        strain(
+            soil.density, soil.stress, soil.material, flow.table, soil.matrix, soil.spread, soil.separation_strain,
+            soil.plastic_shear, soil.record, Straining(1e-4, 1e-4, 1.0, law.most),
+        )  # fmt: skip
+        push(soil.soil, soil.record, soil.facing, *made, flow.near, choices)
+        return record, soil.acceleration.copy()
+
+    record, pushed = found(*kernels)
+    uncompile(
+        monkeypatch, bundles, smoothing, soil_gradient, soil_material, soil_momentum, soil_plasticity, soil_stress
+    )
+    slow, slowly = found(*(it.py_func for it in kernels))
     # Rates of 0.1 1/s; the compiler may add in another order
-    np.testing.assert_allclose(soil.record, slow, rtol=0, atol=1e-12)
-    deform.py_func(
-        soil.density, soil.stress, soil.material, flow.table, soil.matrix, soil.spread,
-        soil.separation_strain, soil.plastic_shear, soil.record, 1e-4, 1e-4, 1.0, law.most,
-    )  # fmt: skip
-    rest = (*how, 0.0, -9.8, 1.0, False, 100.0, 0.0, 4.0, law.spacing, 0.0, 0.0)
-    accelerate.py_func(*where, soil.force, soil.stress, soil.acceleration, soil.spread, soil.drift, *rest)
-    pushed = soil.acceleration.copy()
-    accelerate(*where, soil.force, soil.stress, soil.acceleration, soil.spread, soil.drift, *rest)
-    np.testing.assert_allclose(soil.acceleration, pushed, rtol=1e-12, atol=1e-9)
+    np.testing.assert_allclose(record, slow, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(pushed, slowly, rtol=1e-12, atol=1e-9)
 
 
 def test_the_correction_is_the_inverse_where_moments_are_good_and_none_where_they_are_not():
@@ -302,7 +315,8 @@ def pair(apart, pull):
     stress = np.tile([0.0, -pull, 0.0, 0.0], (2, 1))
     acceleration = np.zeros((2, 2))
     start, split, partner = np.array([0, 1, 2]), np.array([1, 2]), np.array([1, 0])
-    hold_apart.py_func(2, start, split, partner, record, stress, acceleration, 1, 0.13, 0.1, 10.0, 0.0, 0.0)
+    near = Neighbours(start, split, partner, None, None, 1, 0.13)
+    repel_under_tension.py_func(2, record, stress, acceleration, near, 0.1, 10.0)
     return acceleration
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
 from continuum_sph.soil import flow as flow_module
-from continuum_sph.soil.state import GROWN, GXX, SHEARING, VOLUME, YY
-from continuum_sph.soil.stress import deform
+from continuum_sph.soil.state import GROWN, GXX, SHEAR_RATE, VOLUME, YY
+from continuum_sph.soil.stress import Straining, deform
 from continuum_sph.validation.soil.setups import RATIO, body
 from continuum_sph.water.smoothing import Smoothing, kernel_slope
 from porescale.common.core.errors import InputError
@@ -42,7 +42,7 @@ def test_volumes_diffuse_where_soil_is_sheared_and_their_sum_stays():
         for j in range(60):
             if i != j:
                 r = float(np.hypot(*(soil.x[i] - soil.x[j])))
-                rate = 0.5 * (soil.record[i, SHEARING] + soil.record[j, SHEARING])
+                rate = 0.5 * (soil.record[i, SHEAR_RATE] + soil.record[j, SHEAR_RATE])
                 slope = kernel_slope(law.smoothing.kind, r / law.smoothing.length, law.smoothing.length)
                 pace = law.diffusion * law.smoothing.length**2 * rate * law.spacing**2
                 wanted[i] -= pace * slope * (volume[j] - volume[i])
@@ -54,7 +54,7 @@ def test_volumes_diffuse_where_soil_is_sheared_and_their_sum_stays():
     mass = soil.mass[: soil.soil]
     deform(
         soil.density, soil.stress, soil.material, flow.table, soil.matrix, soil.spread,
-        soil.separation_strain, soil.plastic_shear, soil.record, 1e-3, 1e-3, 1.0, law.most,
+        soil.separation_strain, soil.plastic_shear, soil.record, Straining(1e-3, 1e-3, 1.0, law.most),
     )  # fmt: skip
     np.testing.assert_allclose(mass / soil.density, volume + 1e-3 * grown, rtol=4 * np.finfo(float).eps)
 
@@ -101,7 +101,7 @@ def exchanged(crowd, seed=3):
     flow.begin(0.0)
     flow.strain(step)
     flow.push()
-    assert soil.record[:, SHEARING].max() == pytest.approx(flow.law.most / step, rel=1e-15)
+    assert soil.record[:, SHEAR_RATE].max() == pytest.approx(flow.law.most / step, rel=1e-15)
     before = soil.record[: soil.soil, VOLUME].copy()
     return before, before + step * soil.spread[:, GROWN]
 
@@ -183,7 +183,7 @@ def test_even_strain_changes_volume_exactly_also_where_two_kinds_of_soil_meet(mo
     flow = two_kinds()
     found, exact = density_after(flow, monkeypatch)
     assert exact < 0.99
-    assert flow.soil.record[:, SHEARING].min() > 10.0  # volume would be exchanged if there were any difference
+    assert flow.soil.record[:, SHEAR_RATE].min() > 10.0  # volume would be exchanged if there were any difference
     assert np.ptp(flow.soil.spread[:, YY]) > 1e3  # as stress is
     np.testing.assert_allclose(found, exact, rtol=ROUNDED)
 

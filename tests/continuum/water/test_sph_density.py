@@ -10,8 +10,8 @@ from continuum_sph.build.simulation import Simulation
 from continuum_sph.build.water import water_flow
 from continuum_sph.validation.water.setups import column_scene
 from continuum_sph.water import parameters as laws
-from continuum_sph.water.density import HYDROSTATIC, PLAIN, haste_of, pace
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.density import HYDROSTATIC, PLAIN, diffusion_share, noise_scale
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import CUBIC, WENDLAND, Smoothing, kernel_slope
@@ -130,7 +130,7 @@ def test_water_flies_off_at_the_step_of_sound_alone(monkeypatch):  # the twin th
 
 def share(approach, calm):
     """Pace of a pair over that of sound."""
-    return float(pace.py_func(approach, *haste_of.py_func(calm, H)))
+    return float(diffusion_share.py_func(approach, *noise_scale.py_func(calm, H)))
 
 
 def test_densities_diffuse_at_the_pace_at_which_pairs_close():

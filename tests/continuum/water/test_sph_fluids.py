@@ -11,7 +11,7 @@ from continuum_sph.build.simulation import Simulation
 from continuum_sph.cli import scene_type
 from continuum_sph.validation.water import fluids as trials_fluids
 from continuum_sph.validation.water.fluids import TENSION
-from continuum_sph.water.energy_budget import book
+from continuum_sph.water.energy_budget import budget
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
 
@@ -68,11 +68,11 @@ def test_tension_swaps_sides_with_the_numbers_of_the_fluids():
 
 def test_the_book_of_a_drop_at_rest_closes_with_the_work_of_its_tension():
     flow = trials_fluids.drop(20, 0.25, stretch=1.2)
-    flow.layer.keep_book()
-    first = book(flow)
+    flow.layer.keep_budget()
+    first = budget(flow)
     for _ in range(200):
         flow.advance()
-    last = book(flow)
+    last = budget(flow)
     moved = abs(last["work of surface tension"])
     assert moved > 0.1 * last["kinetic energy"] > 0.0
     # steps miss (Δt c/h)²/2 = 3 % of what is turned over; shifting moves 2 % of the energy with its particles

@@ -24,7 +24,7 @@ ALONG, ACROSS_IT = RATE * np.array([[1.0, 0.0], [0.0, -1.0]]), RATE * np.array([
 def moved(velocity):
     """A disc in another fluid with a ``velocity`` that is linear in the place about its middle, evaluated."""
     flow = trials_fluids.drop(ACROSS, RADIUS, viscosity=THICK, outer_viscosity=THIN)
-    flow.layer.keep_book()
+    flow.layer.keep_budget()
     flow.layer.v[:] = (flow.layer.x - 0.5) @ velocity.T
     flow.evaluate(0.0, 0.0)
     return flow

@@ -9,8 +9,7 @@ from continuum_sph.build.initial_pressure import released_pressure
 from continuum_sph.validation.water.channels import couette, poiseuille
 from continuum_sph.validation.water.drop_swing import drop_period
 from continuum_sph.validation.water.kernels import LATTICE
-from continuum_sph.water.artificial_viscosity import artificial
-from continuum_sph.water.eos import Tait, tait, tait_density
+from continuum_sph.water.eos.liquid import Tait, tait, tait_density
 from continuum_sph.water.smoothing import (
     CUBIC,
     WENDLAND,
@@ -20,7 +19,7 @@ from continuum_sph.water.smoothing import (
     value_scale,
     value_shape,
 )
-from continuum_sph.water.viscosity import laminar
+from continuum_sph.water.viscosity import artificial, laminar
 
 eps = np.finfo(float).eps
 

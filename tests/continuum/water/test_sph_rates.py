@@ -11,13 +11,12 @@ from continuum_sph.build.water import water_flow
 from continuum_sph.validation.water import channels as trials
 from continuum_sph.validation.water.fluids import drop
 from continuum_sph.validation.water.setups import column_scene, open_box
-from continuum_sph.water import rates, rates_walls
-from continuum_sph.water import step as steps
 from continuum_sph.water.density import LINEAR, PLAIN
-from continuum_sph.water.eos import Tait
+from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
 from porescale.common.schema.sections import validate
 from tests.reference.sph_rates import pair_sums
+from tests.reference.uncompiled import WATER, uncompile
 
 eps = np.finfo(float).eps
 HALF = 1e-3  # s
@@ -70,7 +69,7 @@ def evolved(flow, steps=20, least=1e-4):
     layer = flow.layer
     lengths = layer.length[: layer.fluid]
     assert np.ptp(lengths) > least * lengths.max()
-    assert np.abs(lengths - layer.girths[: layer.fluid, 0]).max() > 1e-9 * lengths.max()
+    assert np.abs(lengths - layer.lengths[: layer.fluid, 0]).max() > 1e-9 * lengths.max()
     return flow
 
 
@@ -104,7 +103,7 @@ FLOWS = {
     "two fluids": lambda: mixed(corrected=False, shifting=0.0),
     "two fluids, corrected": lambda: mixed(noise=LINEAR, gravity=(1.0, -2.0)),
     "two fluids, all": lambda: mixed(varied=True, xsph=0.2, beta=1.0, noise=PLAIN),
-    "two fluids that do not rub": lambda: mixed(
+    "two fluids without friction": lambda: mixed(
         fluids=(Fluid(Tait(0.1, 30.0), 0.0, 1e-7), Fluid(Tait(1.0, 10.0))), corrected=False
     ),
     "two fluids between walls": two_fluids_between_walls,
@@ -115,7 +114,7 @@ def found(flow, *, booked=True):
     """(acceleration, rate, smoothed, power) by the step's own call of the pass, from records as they are."""
     layer = flow.layer
     if booked:
-        layer.keep_book()
+        layer.keep_budget()
     for name in ("acceleration", "rate", "smoothed"):
         getattr(layer, name)[:] = 0.0
     flow.sum_pairs(HALF)
@@ -141,18 +140,14 @@ def test_sums_are_those_of_the_equations(name):
 @pytest.mark.parametrize("name", ["stick", "all", "images that hold", "two fluids, all"])
 def test_sums_as_plain_python(name, monkeypatch):
     flow = FLOWS[name]()
-    for module in (rates, rates_walls):  # compiled functions take vectors only from kernels
-        for given, it in list(vars(module).items()):
-            if hasattr(it, "py_func") and given != "rates":
-                monkeypatch.setattr(module, given, it.py_func)
-    monkeypatch.setattr(steps, "rates", rates.rates.py_func)
+    uncompile(monkeypatch, *WATER)
     assert max(told_apart(found(flow), pair_sums(flow, HALF))) <= 1.0
 
 
 @pytest.mark.parametrize("name", ["slip", "all", "two fluids, corrected"])
 def test_a_book_changes_no_bit_of_the_flow(name):
     flow = FLOWS[name]()
-    flow.layer.booked = False
+    flow.layer.has_budget = False
     without = found(flow, booked=False)
     for a, b in zip(found(flow)[:3], without[:3], strict=True):
         np.testing.assert_array_equal(a, b)

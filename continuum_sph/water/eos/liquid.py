@@ -1,0 +1,123 @@
+"""Liquid: p = B {(ρ/ρ0)^γ - 1}, B = ρ0 c0²/γ.
+
+Source: Tait's equation in the form of Cole 1948 and Monaghan 1994, eq. 41 of Maeda & Sakai 2004.  There B is the
+pressure of the air p0 = 100 kPa, which makes water as soft as c0 = √(γ p0/ρ0) = 26 m/s; here B follows from the speed
+of sound c0, which must exceed ten times the fastest flow for a Mach number below 0.1 and density changes below 1 %.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from continuum_sph.water.eos.law import Given, pressure_of
+from porescale.common.compiled.jit import inline
+
+Floats = NDArray[np.float64]
+
+EXPONENT = 7.0
+FLOOR = 0.8  # of ρ0: least density, far below any that water at Mach 0.1 has
+
+
+class TaitNumbers(NamedTuple):
+    """ρ0 kg/m³, c0 m/s, least density kg/m³, B Pa, γ."""
+
+    density: float
+    sound_speed: float
+    least_density: float
+    stiffness: float
+    exponent: float
+
+
+@inline
+def tait(ratio, stiffness, exponent):
+    """Pressure (Pa) and (ρ/ρ0)^(γ-1), which is (c/c0)², at ``ratio`` ρ/ρ0;  ``stiffness`` B, Pa."""
+    if exponent == 7.0:
+        square = ratio * ratio
+        power = square * square * square
+    else:
+        power = ratio ** (exponent - 1.0)
+    return stiffness * (power * ratio - 1.0), power
+
+
+@pressure_of.of(TaitNumbers)
+def pressure_of_tait(ratio, law):
+    """See `tait`."""
+    return tait(ratio, law.stiffness, law.exponent)
+
+
+@inline
+def tait_density(pressure, stiffness, exponent, density):
+    """Density (kg/m³) at ``pressure`` (Pa, above -B): ρ0 (1 + p/B)^(1/γ)."""
+    return density * (1.0 + pressure / stiffness) ** (1.0 / exponent)
+
+
+@dataclass(frozen=True)
+class Tait:
+    """density : ρ0, kg/m³;  sound_speed : c0, m/s, at ρ0;  exponent : γ."""
+
+    gas: ClassVar[bool] = False
+
+    density: float
+    sound_speed: float
+    exponent: float = EXPONENT
+
+    @classmethod
+    def of(cls, given: Given) -> Self:
+        """As stiff as the water where no speed of sound is given."""
+        exponent = given.exponent or EXPONENT
+        as_stiff = (given.stiffness * exponent / given.density) ** 0.5
+        return cls(given.density, given.sound_speed or as_stiff, exponent)
+
+    @property
+    def stiffness(self) -> float:
+        """B, Pa."""
+        return self.density * self.sound_speed**2 / self.exponent
+
+    @property
+    def least_density(self) -> float:
+        """kg/m³."""
+        return FLOOR * self.density
+
+    @property
+    def numbers(self) -> TaitNumbers:
+        """What kernels take."""
+        return TaitNumbers(self.density, self.sound_speed, self.least_density, self.stiffness, self.exponent)
+
+    def pressure(self, density: Floats) -> Floats:
+        """Pressure above that of the air, Pa."""
+        return self.stiffness * ((density / self.density) ** self.exponent - 1.0)
+
+    def density_at(self, pressure: Floats) -> Floats:
+        """Density (kg/m³) at a pressure (Pa) above that of the air."""
+        return self.density * (1.0 + pressure / self.stiffness) ** (1.0 / self.exponent)
+
+    def sound_speed_at(self, density: Floats) -> Floats:
+        """c0 (ρ/ρ0)^((γ-1)/2), m/s."""
+        speed: Floats = self.sound_speed * np.maximum(density / self.density, 0.0) ** (0.5 * (self.exponent - 1.0))
+        return speed
+
+    def energy(self, density: Floats) -> Floats:
+        """Work of compression per mass from ρ0 on, ∫ p/ρ² dρ, J/kg: B/{ρ0(γ-1)} {r^(γ-1) + (γ-1)/r - γ}."""
+        ratio, more = density / self.density, self.exponent - 1.0
+        work: Floats = self.stiffness / (self.density * more) * (ratio**more + more / ratio - self.exponent)
+        return work
+
+    def hydrostatic_density(self, depth: Floats, gravity: float) -> Floats:
+        """Density (kg/m³) of water at rest, ρ0 (1 + ρ0 g depth/B)^(1/γ).
+
+        It takes the pressure as ρ0 g depth, without the weight of what the compression adds (a part
+        g depth/2c0² of it, 0.25 % at c0 = 10 √(2 g depth)).
+        """
+        return self.density_at(self.density * gravity * depth)
+
+    def settled_density(self, depth: Floats, gravity: float) -> Floats:
+        """Density (kg/m³) at rest exactly: dp = ρ g d(depth) integrates to ρ0 (1 + (γ-1) g depth/c0²)^(1/(γ-1))."""
+        base = 1.0 + (self.exponent - 1.0) * gravity * depth / self.sound_speed**2
+        return self.density * base ** (1.0 / (self.exponent - 1.0))
+
+
+LAW = Tait

@@ -1,0 +1,34 @@
+"""The API of the package: what its docstring says, and no more."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import continuum_sph
+from porescale.common.core.errors import InputError
+from porescale.common.record.model import Model
+
+CASE = Path(__file__).resolve().parents[3] / "cases" / "collapsing_water_column"
+
+
+def test_the_api_does_what_the_package_says(tmp_path):
+    from continuum_sph import Simulation, load, open_run
+
+    assert "from continuum_sph import Simulation, load, open_run" in (continuum_sph.__doc__ or "")
+    simulation = Simulation(load(CASE, quality="draft", settings=["numerics.gradient=plain", "numerics.shifting=0"]))
+    assert isinstance(simulation, Model)
+    assert isinstance(simulation.scene, continuum_sph.Scene)
+    simulation.advance(3)
+    assert simulation.step == 3
+    assert simulation.time > 0.0
+    with pytest.raises(InputError, match="no run here"):
+        open_run(tmp_path)
+
+
+def test_every_name_of_the_api_is_there_and_no_other():
+    for name in continuum_sph.__all__:
+        assert getattr(continuum_sph, name) is not None
+    with pytest.raises(AttributeError, match="continuum_sph has no 'sails'; it has Scene, Simulation"):
+        continuum_sph.sails  # noqa: B018
