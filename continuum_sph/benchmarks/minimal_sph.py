@@ -17,7 +17,7 @@ from continuum_sph.water.smoothing import WENDLAND
 from continuum_sph.water.state import COMPRESSIBILITY, RHO, VOLUME, VX, VY, P, X, Y
 from continuum_sph.water.step import Flow
 from porescale.common.compiled.jit import parallel_kernel, prange
-from porescale.common.compiled.simd import LANES, greater, lesser, nothing, root, take_rows, total
+from porescale.common.compiled.simd import LANES, gather_rows, maximum, minimum, reduce_add, sqrt, zeros
 from porescale.common.neighbors import PairList
 
 Floats = NDArray[np.float64]
@@ -97,23 +97,23 @@ def plain_pairs(
         rho, own, stiff = record[i, RHO], record[i, P], record[i, COMPRESSIBILITY]
         specific = 1.0 / rho
         friction = 2.0 * mu * specific
-        ax, ay, change, spread, sx, sy = nothing(), nothing(), nothing(), nothing(), nothing(), nothing()
+        ax, ay, change, spread, sx, sy = zeros(), zeros(), zeros(), zeros(), zeros(), zeros()
         k = start[i]
         while k < split[i]:
-            xj, yj, vxj, vyj, rho_j, pressure_j, volume, stiff_j = take_rows(record, partner, k, split[i], i)
+            xj, yj, vxj, vyj, rho_j, pressure_j, volume, stiff_j = gather_rows(record, partner, k, split[i], i)
             k += LANES
             dx, dy, vx, vy = xi - xj, yi - yj, vxi - vxj, vyi - vyj
             distance2 = dx * dx + dy * dy
-            q = root(distance2) * inverse
-            rest = greater(1.0 - 0.5 * q, 0.0)
+            q = sqrt(distance2) * inverse
+            rest = maximum(1.0 - 0.5 * q, 0.0)
             cube = rest * rest * rest
             part = volume * scale * cube
             approach = vx * dx + vy * dy
-            hasty = lesser(sound_share + inverse_noise_speed * greater(approach, -approach), 1.0)
+            hasty = minimum(sound_share + inverse_noise_speed * maximum(approach, -approach), 1.0)
             spread += (rho - rho_j + (stiff + stiff_j) * (half_g * dy)) * (part * hasty)
             change += approach * part
             both = rho + rho_j
-            damp = -2.0 * alpha * sound * h * lesser(approach, 0.0) / ((distance2 + soft) * both) * rho_j
+            damp = -2.0 * alpha * sound * h * minimum(approach, 0.0) / ((distance2 + soft) * both) * rho_j
             push = ((own + pressure_j) * specific + damp) * part
             brake = friction * part
             ax += brake * vx - push * dx
@@ -132,12 +132,12 @@ def plain_pairs(
             push = (own + record[j, P]) * specific * part
             wx -= push * dx
             wy -= push * dy
-        acceleration[i, 0] = total(ax) + wx
-        acceleration[i, 1] = total(ay) + wy - g
-        rate[i] = rho * (total(change) + swept) + delta * sound * total(spread)
+        acceleration[i, 0] = reduce_add(ax) + wx
+        acceleration[i, 1] = reduce_add(ay) + wy - g
+        rate[i] = rho * (reduce_add(change) + swept) + delta * sound * reduce_add(spread)
         if smoothed is not None:
-            smoothed[i, 0] = strength * total(sx)
-            smoothed[i, 1] = strength * total(sy)
+            smoothed[i, 0] = strength * reduce_add(sx)
+            smoothed[i, 1] = strength * reduce_add(sy)
 
 
 @parallel_kernel
