@@ -28,7 +28,7 @@ def __getattr__(name: str) -> Any:
 
         return Scene
     if name == "Simulation":
-        from continuum_sph.build.simulation import Simulation
+        from continuum_sph.builders.simulation import Simulation
 
         return Simulation
     if name == "open_run":

@@ -36,7 +36,7 @@ def template() -> str:
 
 def build(scene: Scene) -> Model:
     """The simulation of a scene that `report` does not refuse."""
-    from continuum_sph.build.simulation import Simulation
+    from continuum_sph.builders.simulation import Simulation
 
     return Simulation(scene)
 
@@ -81,7 +81,7 @@ def check_resume(folder: Path, card: dict[str, Any]) -> None:
 
 def report(scene: Scene) -> Report:
     """Every derived number of a scene; raises InputError with all refusals."""
-    from continuum_sph.build.report import report as scene_report
+    from continuum_sph.builders.report import report as scene_report
 
     return scene_report(scene)
 
@@ -90,7 +90,7 @@ def show(folder: Path) -> list[Path]:
     """Write pictures and film of the run in ``folder``; returns their paths."""
     from dataclasses import replace
 
-    from continuum_sph.build.phreatic import NAME, line_of
+    from continuum_sph.builders.phreatic import NAME, line_of
     from porescale.common.pictures.film import film
     from porescale.common.pictures.look import Look
     from porescale.common.pictures.picture import paint_last, pictures

@@ -7,7 +7,6 @@ simulation.advance(100)
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
 
 from porescale.common.core.version import VERSION
@@ -19,17 +18,19 @@ __all__ = ["Scene", "Simulation", "__version__", "build", "load", "open_run"]
 def __getattr__(name: str) -> Any:
     """The API of a handful of names, imported when first asked for: --help must not wait for a compiler."""
     if name == "load":
-        from porescale.build.build import load_scene
+        from porescale.builders.build import load_scene
 
         return load_scene
     if name == "build":
-        return import_module("porescale.build")
+        from porescale.builders.build import build
+
+        return build
     if name == "Scene":
-        from porescale.build.scene import Scene
+        from porescale.builders.scene import Scene
 
         return Scene
     if name == "Simulation":
-        from porescale.build.simulation import Simulation
+        from porescale.builders.simulation import Simulation
 
         return Simulation
     if name == "open_run":

@@ -6,7 +6,7 @@ import argparse
 
 import numpy as np
 
-from continuum_sph.build.water import wall_layers, water_flow
+from continuum_sph.builders.water import wall_layers, water_flow
 from continuum_sph.validation.water import dam_break as verify
 from continuum_sph.validation.water import setups as trials
 from continuum_sph.water.state import Layer

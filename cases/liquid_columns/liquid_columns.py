@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from continuum_sph.build.simulation import Simulation
+from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from porescale.common.schema.sections import validate
 from porescale.output.case import conclude, options, stage

@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from continuum_sph.build.simulation import Simulation
-from continuum_sph.build.soil import soil_section
+from continuum_sph.builders.simulation import Simulation
+from continuum_sph.builders.soil import soil_section
 from continuum_sph.scene.material_file import speed
 from continuum_sph.scene.sections import Scene as SoilScene
 from continuum_sph.scene.soil import SoilSection

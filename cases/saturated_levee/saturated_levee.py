@@ -12,8 +12,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from continuum_sph.build.simulation import Simulation
-from continuum_sph.build.soil import SoilPart
+from continuum_sph.builders.simulation import Simulation
+from continuum_sph.builders.soil import SoilPart
 from continuum_sph.validation.seepage.levee import FAR, OVER, PARTS, Levee
 from porescale.common.pictures.film import write_film
 from porescale.output.case import conclude, draw, options

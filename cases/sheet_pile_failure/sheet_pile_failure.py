@@ -12,8 +12,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from continuum_sph.build.simulation import Simulation
-from continuum_sph.build.soil import SoilPart
+from continuum_sph.builders.simulation import Simulation
+from continuum_sph.builders.soil import SoilPart
 from continuum_sph.validation.seepage.heave import BOUNDS, FREELY, Heave
 from continuum_sph.validation.seepage.setups import WATER
 from porescale.common.core.constants import GRAVITY

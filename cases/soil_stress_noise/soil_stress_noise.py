@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from continuum_sph.build.soil import geostatic
+from continuum_sph.builders.soil import geostatic
 from continuum_sph.soil import Material, SoilFlow
 from continuum_sph.soil.state import XX, YY
 from continuum_sph.validation.soil.setups import in_tank, run_until

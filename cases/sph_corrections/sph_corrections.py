@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.build.water import water_flow
+from continuum_sph.builders.water import water_flow
 from continuum_sph.validation.water import channels, flows, setups
 from continuum_sph.validation.water.channels import poiseuille
 from continuum_sph.water.eos.liquid import Tait

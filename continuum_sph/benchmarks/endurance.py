@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from continuum_sph.build.simulation import Simulation
+from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.water.setups import open_box
 from continuum_sph.water.step import Flow

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from continuum_sph.build.sanity import Now, advance_one
+from continuum_sph.builders.sanity import Now, advance_one
 from continuum_sph.soil import SoilFlow
 from continuum_sph.validation.seepage.saturated_box import energies, saturated_box
 from porescale.common.evidence.extremes import Extreme, Extremes

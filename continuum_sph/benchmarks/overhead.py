@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from continuum_sph.benchmarks.minimal_sph import PlainColumn
-from continuum_sph.build.simulation import Simulation
+from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from porescale.common.evidence.overhead import SMALLEST, BuiltScene, SceneKind, SceneKinds
 from porescale.common.schema.sections import validate

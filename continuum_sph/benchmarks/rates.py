@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from continuum_sph.build.soil import geostatic
-from continuum_sph.build.water import water_flow
+from continuum_sph.builders.soil import geostatic
+from continuum_sph.builders.water import water_flow
 from continuum_sph.soil import Material
 from continuum_sph.validation.seepage.saturated_box import saturated_box
 from continuum_sph.validation.soil.setups import in_tank

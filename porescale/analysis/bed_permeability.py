@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from porescale.analysis.permeability import Measured, gebart, kozeny_carman, measure
-from porescale.build.derive import fluid_scales
-from porescale.build.initial.fluid_options import collision_options, solid_options
-from porescale.build.scene import Scene
+from porescale.builders.derive import fluid_scales
+from porescale.builders.initial.fluid_options import collision_options, solid_options
+from porescale.builders.scene import Scene
 from porescale.common.core.atomic import write_bytes
 from porescale.common.record.model import Cloud
 from porescale.common.schema.sections import validate

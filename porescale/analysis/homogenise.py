@@ -11,8 +11,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from porescale.build.initial.contact_laws import MaterialPlan
-from porescale.build.scene import Scene
+from porescale.builders.initial.contact_laws import MaterialPlan
+from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.dem.contact.linear import Linear

@@ -6,8 +6,8 @@ from typing import Any
 
 from porescale.benchmarks.lbm import bytes_of
 from porescale.benchmarks.psm import plain
-from porescale.build.build import build
-from porescale.build.scene import Scene
+from porescale.builders.build import build
+from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.evidence.benchmarks import PLAIN, Benchmarks, Dtype, Work
 from porescale.common.schema.sections import validate

@@ -10,10 +10,10 @@ import numpy as np
 
 from porescale.benchmarks.minimal_dem import PlainDiscs
 from porescale.benchmarks.minimal_lbm import PlainWater
-from porescale.build.build import build
-from porescale.build.kinds import SECTIONS
-from porescale.build.scene import Scene
-from porescale.build.simulation import Simulation
+from porescale.builders.build import build
+from porescale.builders.kinds import SECTIONS
+from porescale.builders.scene import Scene
+from porescale.builders.simulation import Simulation
 from porescale.common.evidence.overhead import SMALLEST, BuiltScene, SceneKind, SceneKinds
 from porescale.common.schema.sections import validate
 

@@ -15,9 +15,9 @@ import numpy as np
 from porescale.benchmarks.minimal_lbm import largest_of_rows
 from porescale.benchmarks.minimal_psm import PlainWet
 from porescale.benchmarks.overhead import Table, built, nothing_moves, parts_of, scene, water, without
-from porescale.build.build import build
-from porescale.build.scene import Scene
-from porescale.build.simulation import Simulation
+from porescale.builders.build import build
+from porescale.builders.scene import Scene
+from porescale.builders.simulation import Simulation
 from porescale.common.evidence.overhead import SMALLEST, BuiltScene, SceneKind, SceneKinds
 
 PILE = (0.03, 0.02)

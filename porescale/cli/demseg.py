@@ -167,7 +167,7 @@ def _refuse_what_scenes_refuse(text: str) -> None:
     """InputError where the scene of a deck is beyond what scenes allow."""
     from tempfile import TemporaryDirectory
 
-    from porescale.build.scene import Scene
+    from porescale.builders.scene import Scene
     from porescale.common.schema.sections import load
 
     with TemporaryDirectory() as place:

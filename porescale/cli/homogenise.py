@@ -16,7 +16,7 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.version import VERSION
 
 if TYPE_CHECKING:
-    from porescale.build.scene import Scene as Tables
+    from porescale.builders.scene import Scene as Tables
     from porescale.common.studies.runner import Campaign, Ended
 
 SPECIMEN, PORES = "specimen.toml", "permeability.json"
@@ -47,7 +47,7 @@ def homogenise(
     """
     require_scene(scene)
     from porescale.analysis.homogenise import asked_of, specimen
-    from porescale.build.scene import Scene as SceneType
+    from porescale.builders.scene import Scene as SceneType
     from porescale.common.schema.sections import open_scene
     from porescale.common.studies.parameter_table import Point
     from porescale.common.studies.runner import Campaign
@@ -142,7 +142,7 @@ def write(
     from porescale.analysis.biaxial import curves
     from porescale.analysis.homogenise import packing_of, pressure_of
     from porescale.analysis.material import NAME, UNITS, known, tables, text
-    from porescale.build.initial.contact_laws import MaterialPlan
+    from porescale.builders.initial.contact_laws import MaterialPlan
     from porescale.cli.homogenise_picture import picture
     from porescale.common.evidence.files import write_files
     from porescale.common.record.series import read_series
@@ -169,7 +169,7 @@ def about(
 ) -> dict[str, Any]:
     """Where the numbers come from: [made] of the material file."""
     from porescale.analysis.homogenise import HARD, asked_of, packing_of, pressure_of, stiffness_over_pressure
-    from porescale.build.initial.contact_laws import MaterialPlan
+    from porescale.builders.initial.contact_laws import MaterialPlan
     from porescale.common.core.machine import machine
 
     assert scene.grains

@@ -7,22 +7,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from porescale.build.scene import Scene
-    from porescale.build.simulation import Simulation
+    from porescale.builders.scene import Scene
+    from porescale.builders.simulation import Simulation
     from porescale.common.record.drive import Outcome
     from porescale.common.record.model import Array
 
 
 def scene_type() -> type[Scene]:
     """The type of a porescale scene."""
-    from porescale.build.scene import Scene
+    from porescale.builders.scene import Scene
 
     return Scene
 
 
 def build(scene: Scene) -> Simulation:
     """The simulation of a scene."""
-    from porescale.build.build import build as build_scene
+    from porescale.builders.build import build as build_scene
 
     return build_scene(scene)
 
@@ -39,7 +39,7 @@ def drive(
 ) -> Outcome:
     """Run the model to the scene's end, write the run folder, and note how fast this machine is."""
     from porescale.analysis.bed_permeability import write_permeability
-    from porescale.build.cost import remember
+    from porescale.builders.cost import remember
     from porescale.cli.show import show
     from porescale.common.record.drive import drive as drive_model
     from porescale.common.record.open_run import open_run

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from porescale.build.initial.frames import Placed, disc_count
+from porescale.builders.initial.frames import Placed, disc_count
 from porescale.common.record.model import Array, Cloud
 from porescale.dem.bodies.frames import cells_of
 from porescale.dem.grains import Grains

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from porescale.build.parts.grain_instruments import CONTACTS, FIELDS
+from porescale.builders.parts.grain_instruments import CONTACTS, FIELDS
 from porescale.common.core.atomic import save
 from porescale.common.pictures.look import Look, length_unit, time_text
 from porescale.common.pictures.picture import paint_last

@@ -33,7 +33,7 @@ class Circles(Section):
     """
 
     read: ClassVar[Callable[[Circles, Path | None], list[dict[str, float | str]]] | None] = None
-    """Entries of [[grains.grain]] from the file in a folder; registered by build/scene.py, since pictures
+    """Entries of [[grains.grain]] from the file in a folder; registered by builders/scene.py, since pictures
     need readers of their own.  Raises InputError with keys of [grains]."""
 
     file: str = pydantic.Field(description="file, beside the scene")

@@ -24,7 +24,7 @@ DAMPED = ("damping", "damping_ratio", "restitution")
 
 
 LAWS: list[str] = []
-"""Names of contact laws: the register, put here by build/scene.py."""
+"""Names of contact laws: the register, put here by builders/scene.py."""
 
 
 class Touch(Section):

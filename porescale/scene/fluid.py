@@ -14,7 +14,7 @@ from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
 from porescale.lbm.scales import NAMES
 
 CHOICES: dict[str, Collection[str]] = {}
-"""Keys of the section that name a law, and the names there are: the registers, put here by build/scene.py."""
+"""Keys of the section that name a law, and the names there are: the registers, put here by builders/scene.py."""
 
 
 class Fluid(Section):

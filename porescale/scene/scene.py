@@ -86,7 +86,7 @@ class Scene(Section):
     def _checked(cls, table: Any) -> Any:
         """No scene without the checks between its sections."""
         if not cls.checks:
-            raise RuntimeError("checks between sections are registered by porescale.build.scene: import it")
+            raise RuntimeError("checks between sections are registered by porescale.builders.scene: import it")
         return table
 
     @pydantic.field_validator("fluid")

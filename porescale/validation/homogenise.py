@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from porescale.analysis import biaxial
 from porescale.analysis.homogenise import specimen
 from porescale.analysis.soil_pores import flow_numbers
-from porescale.build.build import build
-from porescale.build.scene import Scene
+from porescale.builders.build import build
+from porescale.builders.scene import Scene
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.record.model import Array
 from porescale.common.schema.sections import validate

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from porescale import Scene
 from porescale.analysis.detect_circles import _peaks, circles_in
-from porescale.build.build import build
+from porescale.builders.build import build
 from porescale.common.core.errors import InputError
 from porescale.common.neighbors.placement import place
 from porescale.common.schema.sections import scene_as_dict, validate

@@ -31,7 +31,7 @@ def test_there_is_something_to_check(tree: Tree) -> None:
 
 KERNEL = "from porescale.common.compiled.jit import kernel\n@kernel\ndef f(x):\n    return x\n"
 MANY = ", ".join(f"a{k}" for k in range(13))
-UP = "def f():\n    from porescale.build import build"
+UP = "def f():\n    from porescale.builders import build"
 TYPE_CHECKING = "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from porescale.dem.a import A"
 BODY_ELSEWHERE = "from porescale.dem.grains import force\n@force.of(A)\ndef body(x, law): ..."
 BODY_OF_LAW = "from porescale.dem.law import force\n@force.of(A)\ndef body(x): ..."
@@ -41,7 +41,7 @@ WRONG = [
     (rules.rule_1_common_stands_alone, {"continuum_sph.water.step": "from porescale.lbm import fluid"}),
     (rules.rule_1_common_stands_alone, {"porescale.cli.main": "import continuum_sph.water.step"}),
     (rules.rule_2_evidence_apart, {"porescale.lbm.fluid": "from porescale.validation.lbm import channels"}),
-    (rules.rule_2_evidence_apart, {"porescale.build.build": "from porescale.benchmarks import lbm"}),
+    (rules.rule_2_evidence_apart, {"porescale.builders.build": "from porescale.benchmarks import lbm"}),
     (rules.rule_2_evidence_apart, {"porescale.lbm.fluid": "from porescale.dem import grains"}),
     (rules.rule_2_evidence_apart, {"porescale.dem.grains": "from porescale.coupling import step"}),
     (rules.rule_2_evidence_apart, {"porescale.dem.grains": "from porescale.common.record import drive"}),
@@ -50,7 +50,7 @@ WRONG = [
     (rules.rule_3_sections_hold_no_kernel, {"porescale.scene.fluid": KERNEL}),
     (
         rules.rule_3_sections_hold_no_kernel,
-        {"porescale.scene.fluid": "from porescale.build import build", "porescale.build.build": KERNEL},
+        {"porescale.scene.fluid": "from porescale.builders import build", "porescale.builders.build": KERNEL},
     ),
     (rules.rule_4_no_circles, {"porescale.dem.a": "from porescale.dem import b", "porescale.dem.b": TYPE_CHECKING}),
     (
@@ -74,14 +74,14 @@ WRONG = [
         rules.rule_6_kernels_stand_on_kernels,
         {
             "porescale.dem.step": "from porescale.dem.other import X\n" + KERNEL,
-            "porescale.dem.other": "from porescale.build.report import X",
-            "porescale.build.report": "X = 1",
+            "porescale.dem.other": "from porescale.builders.report import X",
+            "porescale.builders.report": "X = 1",
         },
     ),
     (rules.rule_8_stubs_are_contracts, {"porescale.dem.step": BODY_ELSEWHERE}),
 ]
 PRESENT = (
-    "porescale.common.compiled.jit", "porescale.lbm.fluid", "porescale.build.build", "porescale.benchmarks.lbm",
+    "porescale.common.compiled.jit", "porescale.lbm.fluid", "porescale.builders.build", "porescale.benchmarks.lbm",
     "porescale.validation.lbm.channels", "porescale.dem.grains", "porescale.coupling.step", "porescale.scene.fluid",
     "porescale.common.record.drive", "continuum_sph.water.step", "continuum_sph.soil.flow",
 )  # fmt: skip

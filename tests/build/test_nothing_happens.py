@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from porescale import Scene
-from porescale.build.build import build
-from porescale.build.parts.gate import GatePart
+from porescale.builders.build import build
+from porescale.builders.parts.gate import GatePart
 from porescale.common.schema.sections import validate
 from porescale.coupling.psm import Saturated
 from porescale.lbm.fluid import Fluid

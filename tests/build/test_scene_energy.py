@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from porescale.build.build import build
+from porescale.builders.build import build
 from tests.reference.scenes import grain
 from tests.reference.scenes_of_grains import loose
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from porescale.build.build import build
+from porescale.builders.build import build
 from porescale.common.core.errors import InputError
 from porescale.common.record.drive import drive
 from porescale.common.record.open_run import open_run

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from porescale import Scene
-from porescale.build.build import build
-from porescale.build.derive import derive
+from porescale.builders.build import build
+from porescale.builders.derive import derive
 from porescale.common.core.constants import GRAVITY
 from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.dem.contact.hertz import Hertz

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from porescale.analysis.permeability import gebart, kozeny_carman, measure
-from porescale.build.build import build
-from porescale.build.parts.flow_fields import vorticity
+from porescale.builders.build import build
+from porescale.builders.parts.flow_fields import vorticity
 from porescale.common.core.errors import InputError
 from porescale.common.record.drive import drive
 from porescale.common.record.open_run import open_run
@@ -110,7 +110,7 @@ def test_an_absent_instrument_writes_no_table(left_out, tables):
 
 
 def test_without_instruments_nothing_is_measured(monkeypatch):
-    from porescale.build.parts import flow_fields, flow_instruments
+    from porescale.builders.parts import flow_fields, flow_instruments
 
     def refuse(*args: Any, **options: Any) -> None:
         raise AssertionError("measured")

@@ -8,11 +8,11 @@ import math
 import numpy as np
 import pytest
 
-from porescale.build import cost
-from porescale.build.build import build
-from porescale.build.checks.regime import terminal_speed
-from porescale.build.derive import derive
-from porescale.build.parts.flow_fields import fluid_row
+from porescale.builders import cost
+from porescale.builders.build import build
+from porescale.builders.checks.regime import terminal_speed
+from porescale.builders.derive import derive
+from porescale.builders.parts.flow_fields import fluid_row
 from porescale.lbm.scales import Scales
 from porescale.output.surface import surface
 from tests.reference.scenes import column, dry, grain, water

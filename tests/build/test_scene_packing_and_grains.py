@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from porescale.build.build import build, load_scene
-from porescale.build.report import report
+from porescale.builders.build import build, load_scene
+from porescale.builders.report import report
 from porescale.common.core.errors import InputError
 from porescale.dem.measures.survey import elastic_energy
 from tests.reference.scenes import dry, grain

@@ -13,20 +13,20 @@ from typing import Any, NoReturn
 import numpy as np
 import pytest
 
-import porescale.build.build
+import porescale.builders.build
 import porescale.common.neighbors.pair_list
 import porescale.coupling.psm
 import porescale.coupling.step
 import porescale.dem.grains
 import porescale.lbm.boundary.thin_plate
 import porescale.lbm.fluid
-from porescale.build.parts.gate import GatePart
-from porescale.build.simulation import Simulation
+from porescale.builders.parts.gate import GatePart
+from porescale.builders.simulation import Simulation
 from tests.reference.same_run import leaves
 from tests.reference.scenes import column, dry, grain, table, water
 
 pytestmark = pytest.mark.usefixtures("one_thread")
-build = porescale.build.build.build
+build = porescale.builders.build.build
 ROOT = Path(__file__).resolve().parents[2]
 STEPS = 60
 """Past the opening of the gate, a rebuild of the list and an odd and even step."""
@@ -135,7 +135,7 @@ import sys
 from porescale import Scene, build
 from tests.reference import scenes
 build(getattr(scenes, sys.argv[1])(**eval(sys.argv[2])))
-print(*sorted(it.rpartition(".")[2] for it in sys.modules if it.startswith("porescale.build.parts.")))
+print(*sorted(it.rpartition(".")[2] for it in sys.modules if it.startswith("porescale.builders.parts.")))
 """
 HAND = {"grains": {"density": 2500, "grain": [grain(0.004, 0.002)]}, "gravity": [0.0, 0.0]}
 ALL_OF_WATER = {"flow_fields", "flow_series", "fluid"}

@@ -6,8 +6,8 @@ import math
 
 import pytest
 
-from porescale.build.checks.regime import column_height, fall, terminal_speed
-from porescale.build.derive import derive
+from porescale.builders.checks.regime import column_height, fall, terminal_speed
+from porescale.builders.derive import derive
 from tests.reference.scenes import column, dry, grain, water
 
 ONE = {"grains": {"density": 2500, "hydraulic_radius_ratio": 1.0, "grain": [grain(0.003, 0.002)]}, "gate": None}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from porescale import Scene
-from porescale.build.build import build
+from porescale.builders.build import build
 from porescale.cli import demseg
 from porescale.cli.main import commands
 from porescale.common.cli.application import main

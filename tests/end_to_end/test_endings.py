@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from porescale import build, load, open_run
-from porescale.build.simulation import Simulation
+from porescale.builders.simulation import Simulation
 from porescale.common.core.errors import Unstable
 from porescale.common.record.checkpoint import read_checkpoint
 from porescale.lbm.sanity import SOUND, WORST_MACH

@@ -170,7 +170,7 @@ def test_two_threads_give_the_bits_of_one(folder, scene, porescale, tmp_path):
 
 def test_a_state_that_differs_in_one_bit_ends_differently(folder, scene, porescale, tmp_path, monkeypatch):
     # The twin that must fail: the comparison sees a run whose first grain starts one rounding error to the right.
-    import porescale.build.initial.grains as module
+    import porescale.builders.initial.grains as module
 
     out, prepared = tmp_path / "nudged", module.prepared
 

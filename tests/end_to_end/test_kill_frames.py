@@ -18,7 +18,7 @@ from tests.reference.waiting import done
 CHILD = """
 import os, signal, sys
 from porescale.cli.main import main
-from porescale.build.simulation import Simulation
+from porescale.builders.simulation import Simulation
 
 last, advance = int(sys.argv.pop(1)), Simulation.advance
 

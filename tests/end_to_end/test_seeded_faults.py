@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from continuum_sph.build.simulation import Simulation as Continuum
+from continuum_sph.builders.simulation import Simulation as Continuum
 from continuum_sph.scene.sections import Scene as Tank
 from porescale import build
-from porescale.build.simulation import Simulation
+from porescale.builders.simulation import Simulation
 from porescale.common.schema.sections import validate
 from tests.reference.scenes import column
 from tests.reference.seeded import INF, NAN, Running, put, running, times

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from porescale import Scene, build
-from porescale.build.simulation import Simulation
+from porescale.builders.simulation import Simulation
 from porescale.common.schema.sections import validate
 from tests.reference.killing import ASLEEP
 from tests.reference.scenes import column, grain

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from continuum_sph.build.simulation import Simulation
+from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from tests.reference.programs import SOIL
 from tests.reference.seeded import INF, NAN, Running, crowd, put, running, step, times

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
-from porescale.build.build import build
+from porescale.builders.build import build
 from porescale.common.pictures.look import Look
 from porescale.common.record.model import Cloud, Snapshot
 from porescale.output.grain_pictures import branches, chains, numbers, rose_of, write_chains, write_grain_pictures

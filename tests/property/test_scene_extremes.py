@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from porescale import Scene
-from porescale.build.report import report
+from porescale.builders.report import report
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
 from tests.reference.scenes import COLUMN, table

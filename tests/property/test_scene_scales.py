@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from porescale import Scene
-from porescale.build.derive import fluid_scales
+from porescale.builders.derive import fluid_scales
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.lbm.scales import AGREEMENT, NAMES, implied

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from continuum_sph.build.soil_report import soil_report
+from continuum_sph.builders.soil_report import soil_report
 from continuum_sph.scene.material_file import DENSITY, VISCOSITY
 from continuum_sph.scene.sections import Scene
 from continuum_sph.scene.water import WaterSection

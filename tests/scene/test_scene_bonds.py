@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from porescale import Scene
-from porescale.build.build import build
-from porescale.build.derive import derive
-from porescale.build.initial.rock import rock_discs
+from porescale.builders.build import build
+from porescale.builders.derive import derive
+from porescale.builders.initial.rock import rock_discs
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.dem.prepare.rock import rock as made_by_hand

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from porescale import Scene
-from porescale.build.build import build
-from porescale.build.derive import derive
-from porescale.build.initial.frames import placed_frames
-from porescale.build.report import report
+from porescale.builders.build import build
+from porescale.builders.derive import derive
+from porescale.builders.initial.frames import placed_frames
+from porescale.builders.report import report
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import scene_as_dict, validate
@@ -267,7 +267,7 @@ def test_vtk_sees_the_polygon_and_the_floor(tmp_path):
 
 
 def test_breaks_are_written_by_time_with_place_and_bodies(tmp_path):
-    from porescale.build.parts.bonds import BondsPart
+    from porescale.builders.parts.bonds import BondsPart
     from porescale.output.breaks import write_breaks
 
     pull = {"velocity": 1e-3}  # a tenth of the strength in a period of these springs: in rest all the while
@@ -302,7 +302,7 @@ def test_breaks_are_written_by_time_with_place_and_bodies(tmp_path):
 
 
 def test_a_region_sees_the_exact_area_of_polygons_and_whom_they_touch(resting):
-    from porescale.build.parts.frame_measures import clipped_area, solid_in
+    from porescale.builders.parts.frame_measures import clipped_area, solid_in
     from porescale.dem.measures.region import Region
 
     frames, grains = resting.frames, resting.grains

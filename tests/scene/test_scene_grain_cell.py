@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from porescale import Scene
-from porescale.build.build import build
+from porescale.builders.build import build
 from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.output.grain_pictures import branches
 from tests.reference.scenes import grain

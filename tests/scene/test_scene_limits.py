@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from porescale import Scene
-from porescale.build.derive import derive
+from porescale.builders.derive import derive
 from porescale.common.evidence.stability import RIGHT, Row
 from porescale.coupling import limits
 from porescale.coupling.solid.choose import SOLID_OPERATORS

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from porescale import Scene
-from porescale.build.build import build
-from porescale.build.derive import derive
+from porescale.builders.build import build
+from porescale.builders.derive import derive
 from porescale.common.core.errors import InputError
 from porescale.common.neighbors.grading import percent_finer
 from porescale.common.schema.sections import scene_as_dict, validate

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.build.build import build
-from porescale.build.checks.polygons_in_fluid import too_few_cells, widths
-from porescale.build.derive import derive
+from porescale.builders.build import build
+from porescale.builders.checks.polygons_in_fluid import too_few_cells, widths
+from porescale.builders.derive import derive
 from porescale.common.core.errors import InputError
 from tests.reference.scenes import column, grain
 

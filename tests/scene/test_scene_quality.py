@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from porescale import Scene
-from porescale.build.build import load_scene
-from porescale.build.derive import derive
-from porescale.build.report import report
+from porescale.builders.build import load_scene
+from porescale.builders.derive import derive
+from porescale.builders.report import report
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import LEVELS, scene_as_dict, validate
 from tests.reference.folders import CASES

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from porescale import Scene
-from porescale.build.build import build
-from porescale.build.checks.rectangle_places import Body, first_meeting, nearest
-from porescale.build.derive import derive
-from porescale.build.parts import rectangles
-from porescale.build.report import report
+from porescale.builders.build import build
+from porescale.builders.checks.rectangle_places import Body, first_meeting, nearest
+from porescale.builders.derive import derive
+from porescale.builders.parts import rectangles
+from porescale.builders.report import report
 from porescale.common.core.errors import InputError, Unstable
 from porescale.common.record.checkpoint import read_checkpoint, write_checkpoint
 from porescale.common.schema.sections import scene_as_dict, validate

@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from porescale import Scene
-from porescale.build import cost
-from porescale.build.build import build, load_scene
-from porescale.build.derive import derive
-from porescale.build.report import report
+from porescale.builders import cost
+from porescale.builders.build import build, load_scene
+from porescale.builders.derive import derive
+from porescale.builders.report import report
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
 from tests.reference.folders import ROOT

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from porescale import Scene
-from porescale.build.build import build
-from porescale.build.derive import derive
-from porescale.build.initial.fluid import lattice_sides
-from porescale.build.report import report
+from porescale.builders.build import build
+from porescale.builders.derive import derive
+from porescale.builders.initial.fluid import lattice_sides
+from porescale.builders.report import report
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import scene_as_dict, validate
 from tests.reference.scenes import column, dry, grain, water

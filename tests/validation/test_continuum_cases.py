@@ -6,7 +6,7 @@ from functools import partial
 
 import pytest
 
-from continuum_sph.build.simulation import Simulation
+from continuum_sph.builders.simulation import Simulation
 from tests.reference import continuum_cases
 from tests.reference.continuum_cases import missed
 

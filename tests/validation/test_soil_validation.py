@@ -7,7 +7,7 @@ from functools import partial
 
 import pytest
 
-from continuum_sph.build.simulation import Simulation
+from continuum_sph.builders.simulation import Simulation
 from continuum_sph.cli import PACKAGE
 from continuum_sph.soil import Material
 from continuum_sph.validation.soil import bodies, element, energy, setups, slopes

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from continuum_sph.build.simulation import Simulation
+from continuum_sph.builders.simulation import Simulation
 from continuum_sph.cli import PACKAGE
 from continuum_sph.validation.seepage import permeability, wet_slopes
 from continuum_sph.validation.seepage.wet_slopes import SEEPING, STILL, WetSlope

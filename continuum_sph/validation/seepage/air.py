@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from continuum_sph.build.air import AIR, specific_weights
+from continuum_sph.builders.air import AIR, specific_weights
 from continuum_sph.seepage import Frame, PoreFlow, Resistance, Seepage
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.validation.seepage.setups import COLUMNS, SKIN, WATER

@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.build.instruments import MeasuredWater, surface_height
+from continuum_sph.builders.instruments import MeasuredWater, surface_height
 from continuum_sph.scene.instruments import LevelSection
 from continuum_sph.seepage import Frame, PoreFlow, Reservoir, Resistance, Seepage, Supply
 from continuum_sph.seepage.overlap import Overlap

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.build.sheet_pile import NAME
-from continuum_sph.build.simulation import Simulation
-from continuum_sph.build.soil import SoilPart
+from continuum_sph.builders.sheet_pile import NAME
+from continuum_sph.builders.simulation import Simulation
+from continuum_sph.builders.soil import SoilPart
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.seepage.setups import GRAINS, WATER
 from porescale.common.core.constants import GRAVITY

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.build.simulation import Simulation
-from continuum_sph.build.soil import SoilPart
+from continuum_sph.builders.simulation import Simulation
+from continuum_sph.builders.soil import SoilPart
 from continuum_sph.scene.sections import Scene
 from porescale.common.evidence.validations import Measured, Validations
 

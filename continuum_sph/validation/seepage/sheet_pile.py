@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ellipk
 
-from continuum_sph.build.sheet_pile import reach, sheet_pile, steepness
+from continuum_sph.builders.sheet_pile import reach, sheet_pile, steepness
 from continuum_sph.scene.pile import SheetPileSection
 from continuum_sph.seepage import Drain, Frame, PoreFlow, Resistance, Seepage
 from continuum_sph.seepage.overlap import Overlap

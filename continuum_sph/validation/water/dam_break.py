@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.build.water import water_flow
+from continuum_sph.builders.water import water_flow
 from continuum_sph.validation.water.setups import column_scene
 from porescale.common.core.constants import GRAVITY
 from porescale.common.evidence.validations import Measured, Validations

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.build.water import water_flow
+from continuum_sph.builders.water import water_flow
 from continuum_sph.validation.water.kernels import LATTICE, SPREAD
 from continuum_sph.validation.water.setups import column_scene, kinetic_energy, run_until
 from continuum_sph.water.energy_budget import budget

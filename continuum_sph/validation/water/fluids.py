@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from continuum_sph.build.inclusion import inclusion_row
-from continuum_sph.build.water import water_flow
+from continuum_sph.builders.inclusion import inclusion_row
+from continuum_sph.builders.water import water_flow
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.water.drop_swing import drop_period, swing_period
 from continuum_sph.validation.water.setups import run_until

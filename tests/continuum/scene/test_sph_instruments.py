@@ -7,8 +7,8 @@ import csv
 import numpy as np
 import pytest
 
-from continuum_sph.build.instruments import MeasuredWater, interpolate, level_row, surface_height
-from continuum_sph.build.simulation import Simulation
+from continuum_sph.builders.instruments import MeasuredWater, interpolate, level_row, surface_height
+from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.instruments import LevelSection
 from continuum_sph.scene.sections import Scene
 from porescale.common.neighbors import square_lattice

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.build.report import report
-from continuum_sph.build.simulation import Simulation
+from continuum_sph.builders.report import report
+from continuum_sph.builders.simulation import Simulation
 from continuum_sph.validation.water import setups as trials
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.build.initial_pressure import lattice_pressure, released_pressure
+from continuum_sph.builders.initial_pressure import lattice_pressure, released_pressure
 from porescale.common.core.constants import GRAVITY
 from porescale.common.neighbors import square_lattice
 

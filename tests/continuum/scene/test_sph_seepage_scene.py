@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.build import pore_water
-from continuum_sph.build.mixture import DRY, WET
-from continuum_sph.build.seepage_report import seepage_report
-from continuum_sph.build.sheet_pile import NAME
-from continuum_sph.build.simulation import Simulation
+from continuum_sph.builders import pore_water
+from continuum_sph.builders.mixture import DRY, WET
+from continuum_sph.builders.seepage_report import seepage_report
+from continuum_sph.builders.sheet_pile import NAME
+from continuum_sph.builders.simulation import Simulation
 from continuum_sph.cli import PACKAGE
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import Seepage

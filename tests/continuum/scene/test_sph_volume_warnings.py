@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from continuum_sph.build.report import report
+from continuum_sph.builders.report import report
 from continuum_sph.validation.water import setups as trials
 
 

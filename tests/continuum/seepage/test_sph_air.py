@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.build.air import AIR, air_fluid, dry_pores, specific_weights, with_air
-from continuum_sph.build.seepage_report import seepage_report
-from continuum_sph.build.simulation import Simulation
+from continuum_sph.builders.air import AIR, air_fluid, dry_pores, specific_weights, with_air
+from continuum_sph.builders.seepage_report import seepage_report
+from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.seepage.air import TrappedAir
 from continuum_sph.water.eos.adiabatic import AdiabaticGas

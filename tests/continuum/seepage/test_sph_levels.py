@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.build.instruments import MeasuredWater, discharge
-from continuum_sph.build.seepage_report import seepage_report
-from continuum_sph.build.simulation import Simulation
+from continuum_sph.builders.instruments import MeasuredWater, discharge
+from continuum_sph.builders.seepage_report import seepage_report
+from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.instruments import LevelSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import Reservoir, Supply

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from continuum_sph.build.sheet_pile import NAME, beside, sheet_pile
-from continuum_sph.build.simulation import Simulation
+from continuum_sph.builders.sheet_pile import NAME, beside, sheet_pile
+from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.pile import SheetPileSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.sheet_pile import FREE, LEFT, RIGHT, UNDER, CutPairList, cut_pairs, keep_out, side_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.build.simulation import Simulation
+from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from porescale.common.core.errors import InputError
 from porescale.common.evidence.overhead import bytes_of

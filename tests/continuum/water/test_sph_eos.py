@@ -69,7 +69,7 @@ LAW = Linear
 
 RUNS = """
 from continuum_sph import Scene, Simulation
-from continuum_sph.build.report import report
+from continuum_sph.builders.report import report
 from porescale.common.schema.sections import validate
 
 scene = validate(Scene, {

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.build.inclusion import inclusion_row, pieces
-from continuum_sph.build.report import report
-from continuum_sph.build.simulation import Simulation
+from continuum_sph.builders.inclusion import inclusion_row, pieces
+from continuum_sph.builders.report import report
+from continuum_sph.builders.simulation import Simulation
 from continuum_sph.cli import scene_type
 from continuum_sph.validation.water import fluids as trials_fluids
 from continuum_sph.validation.water.fluids import TENSION

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuum_sph.build.initial_pressure import released_pressure
+from continuum_sph.builders.initial_pressure import released_pressure
 from continuum_sph.validation.water.channels import couette, poiseuille
 from continuum_sph.validation.water.drop_swing import drop_period
 from continuum_sph.validation.water.kernels import LATTICE

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.build.parts.grain_instruments import _moving
+from porescale.builders.parts.grain_instruments import _moving
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
 from porescale.dem.measures.coarse_graining import CoarseGrained, Raster

@@ -1,0 +1,166 @@
+"""Soil with water in its pores: what both layers together say of themselves, and when they make no sense any more."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from continuum_sph.builders.air import AIR as GAS
+from continuum_sph.builders.air import AirPart
+from continuum_sph.builders.assembly import Assembly
+from continuum_sph.builders.instruments import MeasuredWater, discharge, level_row, probe_row
+from continuum_sph.builders.phreatic import NAME, phreatic_row
+from continuum_sph.builders.pore_water import seepage_flow
+from continuum_sph.builders.reservoirs import ReservoirPart
+from continuum_sph.builders.sanity import Now, require_finite, require_step
+from continuum_sph.builders.sheet_pile import ExitGradientPart, sheet_pile
+from continuum_sph.builders.soil import SoilPart
+from continuum_sph.builders.water import REPAIR, WaterPart
+from continuum_sph.scene.sections import Scene
+from continuum_sph.seepage import PoreFlow, Seepage
+from continuum_sph.soil import SoilFlow
+from porescale.common.core.errors import Unstable
+from porescale.common.record.model import Cloud, Snapshot
+from porescale.common.record.part import Part
+
+WATER, DRY, WET, AIR = range(4)
+"""Values of "layer" in a snapshot's particles: water, soil whose pores are less than half full, other soil, air."""
+
+
+class PoreWaterPart(WaterPart):
+    """The water, as of a tank without soil; `MixturePart` shows it."""
+
+    key = "water"
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Nothing: see `MixturePart.show`."""
+
+
+class WetSoilPart(SoilPart):
+    """The soil, as of a tank without water, whose columns begin with "soil: "; `MixturePart` shows it."""
+
+    key = "soil"
+
+    def row(self) -> dict[str, float]:
+        """As of soil alone."""
+        return {f"soil: {name}": value for name, value in super().row().items()}
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Nothing: see `MixturePart.show`."""
+
+
+class MixturePart(Part):
+    """What water and soil of a ``flow`` have together."""
+
+    def __init__(self, flow: Seepage, water: PoreWaterPart, soil: WetSoilPart, *, air: bool) -> None:
+        self.flow, self.water, self.soil, self.air = flow, water, soil, air
+
+    def check(self) -> None:
+        """Raise Unstable when the pores have left what makes sense, or the next step is longer than it may be."""
+        both, flow, layer = self.flow, self.flow.water, self.flow.water.layer
+        now = Now(both.step, both.time, REPAIR)
+        recorded = {"porosity about": ("", flow.porosity), "room about": ("", flow.room),
+                    "heat of drag": ("J/m", flow.heat), "seepage": ("m/s", flow.slip)}  # fmt: skip
+        require_finite(recorded, now)
+        wrong = np.flatnonzero((flow.porosity <= 0.0) | (flow.porosity > 1.0))
+        if wrong.size:
+            at = int(wrong[0])
+            raise Unstable(f"particle {at}", "porosity about", float(flow.porosity[at]), "", *now)
+        limits, rules = (flow.next_step, both.ground.next_step, both.bound), ("water", "soil", "sound of both")
+        require_step(both.next_step, limits, rules, layer.x, layer.acceleration, layer.density, now)
+
+    def row(self) -> dict[str, float]:
+        """Seepage, and the work of drag."""
+        flow = self.flow.water
+        slip, inside = np.hypot(flow.slip[:, 0], flow.slip[:, 1]), flow.porosity < 1.0
+        return {
+            "fastest seepage (m/s)": float((flow.porosity * slip)[inside].max(initial=0.0)),
+            "heat of drag (J/m)": float(flow.heat.sum()),
+        }
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Water, air and soil as a cloud each, and all as one to look at, soil over the others: layer, velocity,
+        pressure (of soil mean effective stress), porosity."""
+        flow = self.flow.water
+        water, soil, layer = self.water.cloud(), self.soil.cloud(), flow.layer
+        water.data["porosity"] = flow.porosity.copy()
+        there, gas = layer.mass[: layer.fluid] > 0.0, layer.material[: layer.fluid] == GAS
+        air, water = chosen(water, there & gas), chosen(water, there & ~gas)
+        soil.data["saturation"] = flow.saturation()
+        kind = np.where(soil.data["saturation"] < 0.5, DRY, WET)
+        parts = (
+            ("layer", np.full(len(water.position), WATER), np.full(len(air.position), AIR), kind),
+            *((key, water.data[key], air.data[key], soil.data[key]) for key in ("velocity", "porosity")),
+            ("pressure", water.data["pressure"], air.data["pressure"], soil.data["mean_stress"]),
+        )
+        data = {name: np.concatenate(values) for name, *values in parts}
+        units = {"velocity": "m/s", "pressure": "Pa"}
+        whole = Cloud(np.concatenate((water.position, air.position, soil.position)), data, units)
+        snapshot.clouds |= {"particles": whole, "water": water, "soil": soil} | ({"air": air} if self.air else {})
+
+    def state(self) -> dict[str, Any]:
+        """The step that both take."""
+        return {"next_step": self.flow.next_step}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go on with that step."""
+        self.flow.next_step = float(state["next_step"])
+
+
+class PoreInstruments(Part):
+    """Water in pores, phreatic.csv, and probes.csv and levels.csv where a scene wants them: of the water, its surface
+    in soil too, and its flow to the right through each strip."""
+
+    def __init__(self, scene: Scene, flow: PoreFlow) -> None:
+        self.probes, self.levels, self.flow, self.width = scene.probe, scene.level, flow, scene.inner[0]
+
+    def row(self) -> dict[str, float]:
+        """Mass of the water in pores."""
+        flow, n = self.flow, self.flow.layer.fluid
+        inside = (flow.porosity < 1.0) & (flow.layer.material[:n] == 0)
+        return {"water in pores (kg/m)": float(flow.layer.mass[:n][inside].sum())}
+
+    def tables(self) -> dict[str, dict[str, float]]:
+        """A row of each table."""
+        flow, layer, law, n = self.flow, self.flow.layer, self.flow.law, self.flow.layer.fluid
+        there = (layer.mass[:n] > 0.0) & (layer.material[:n] != GAS)
+        volume = layer.mass[:n] / (flow.porosity * layer.density)
+        cloud = MeasuredWater(
+            layer.x[:n][there], volume[there], layer.pressure[:n][there], layer.v[:n][there], law.smoothing.length,
+            law.spacing, self.width,
+        )  # fmt: skip
+        found: dict[str, dict[str, float]] = {}
+        if self.probes:
+            found["probes"] = probe_row(self.probes, cloud)
+        if self.levels:
+            found["levels"] = level_row(self.levels, cloud)
+        found[NAME] = phreatic_row(cloud)
+        for number, level in enumerate(self.levels):
+            through = discharge(level, cloud, flow.porosity[there])
+            found["levels"][f"{level.name or f'level {number}'} discharge (m2/s)"] = through
+        return found
+
+
+def chosen(cloud: Cloud, rows: NDArray[np.bool_]) -> Cloud:
+    """The points of a cloud in ``rows`` (n,)."""
+    return Cloud(cloud.position[rows], {key: values[rows] for key, values in cloud.data.items()}, cloud.units)
+
+
+def assemble(scene: Scene) -> Assembly:
+    """Soil with water in its pores, and all that a scene has besides."""
+    both = seepage_flow(scene)
+    assert isinstance(both.ground, SoilFlow)
+    water, soil = PoreWaterPart(scene, both.water), WetSoilPart(scene, both.ground)
+    water.jumps.strips = [(it.left, it.right) for it in scene.reservoir]
+    parts: list[Part] = [water, soil, MixturePart(both, water, soil, air=scene.air is not None)]
+    if both.supply:
+        parts.append(ReservoirPart(both.supply, both, scene.tank.height))
+    if scene.pile and scene.gravity > 0.0:
+        pile = sheet_pile(scene.pile, scene.numerics.spacing)
+        parts.append(ExitGradientPart(pile, both.water, scene.water.density * scene.gravity))
+    parts.append(PoreInstruments(scene, both.water))
+    if scene.air:
+        parts.append(AirPart(both.water))
+    return Assembly(both, parts, REPAIR)

@@ -1,0 +1,144 @@
+"""Soil and the water in its pores: both layers of particles, ready to move together."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from continuum_sph.builders.air import AIR, air_fluid, dry_pores, specific_weights, with_air
+from continuum_sph.builders.reservoirs import reservoir, spare
+from continuum_sph.builders.sheet_pile import sheet_pile
+from continuum_sph.builders.soil import material_of, soil_flow, soil_section
+from continuum_sph.builders.water import wall_layers, water_law, water_particles, water_state
+from continuum_sph.scene.sections import Scene
+from continuum_sph.seepage import PoreFlow, Resistance, Seepage, Supply, skeleton_of
+from continuum_sph.seepage.overlap import Overlap
+from continuum_sph.seepage.reservoir import BERTH, berths
+from continuum_sph.seepage.sheet_pile import CutPairList
+from continuum_sph.soil import SoilFlow
+from continuum_sph.water.density import LINEAR
+from continuum_sph.water.parameters import Law
+from continuum_sph.water.pressure_walls import tank_walls
+from continuum_sph.water.state import Layer
+from porescale.common.neighbors import PairList
+
+Floats = NDArray[np.float64]
+
+
+def pore_law(scene: Scene) -> Law:
+    """What the water of a scene with soil obeys.
+
+    Gradients are corrected, as those of the soil are: total stress is in balance where pressure and effective stress
+    cancel, and would not by 2.6 % of both.  Density diffusion takes departures from linear fields only: any other lets
+    water through that the soil keeps back; it is as much less as pores are smaller than the whole.
+    """
+    law = water_law(scene)
+    strength = 0.5 * law.diffusion * soil_section(scene).porosity
+    law = replace(law, corrected=True, noise=LINEAR, diffusion=strength)
+    return with_air(law, air_fluid(scene.air)) if scene.air else law
+
+
+def wet_height(scene: Scene, x: Floats) -> Floats:
+    """Height of water at the start above each of ``x`` (n, 2) m, that within soil included, (n,) m."""
+    found = np.zeros(len(x))
+    for column in scene.water.column:
+        over = (x[:, 0] > column.left) & (x[:, 0] < column.left + column.width)
+        top = column.bottom + column.height
+        found = np.where(over & (x[:, 1] < top), np.maximum(found, top - np.maximum(x[:, 1], column.bottom)), found)
+    return found
+
+
+def submerge(scene: Scene, ground: SoilFlow) -> None:
+    """Take the buoyancy of the grains off the stress of soil that is at rest under its dry weight."""
+    section, soil = soil_section(scene), ground.soil
+    if section.stress == "none":
+        return
+    n = soil.soil
+    x = soil.x[:n]
+    top = np.max([body.top(x[:, 0]) for body in section.body], axis=0)
+    above = np.column_stack((x[:, 0], np.minimum(top, scene.inner[1])))
+    wet = wet_height(scene, x) - wet_height(scene, above)
+    grains = top - x[:, 1] if section.saturated else wet  # of the soil above a particle, what is wet
+    lost = (1.0 - section.porosity) * scene.water.density * scene.gravity * np.maximum(grains, 0.0)
+    upright = np.maximum(soil.stress[:n, 1], 1e-300)
+    soil.stress[:n] *= (1.0 - np.minimum(1.0, lost / upright))[:, None]
+
+
+def saturate(scene: Scene, law: Law, soil: Floats, x: Floats, v: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
+    """Places, velocities (n, 2) and densities (n,) of water with that in all pores of ``soil`` (s, 2) m that have none:
+    at rest, under the surface of the ground."""
+    pores = dry_pores(scene.water.column, soil)
+    top = np.max([body.top(pores[:, 0]) for body in soil_section(scene).body], axis=0)
+    more = water_state(scene).settled_density(top - pores[:, 1], scene.gravity)
+    return np.concatenate((x, pores)), np.concatenate((v, np.zeros_like(pores))), np.concatenate((rho, more))
+
+
+def seepage_flow(scene: Scene) -> Seepage:
+    """Soil and water of a scene, ready for their first step."""
+    section, law, spacing = soil_section(scene), pore_law(scene), scene.numerics.spacing
+    ground = soil_flow(scene)
+    submerge(scene, ground)
+    skeleton = skeleton_of(ground, section.density / (1.0 - section.porosity), section.permeability)
+    x, v, rho = water_particles(scene, law)
+    if section.saturated:
+        x, v, rho = saturate(scene, law, ground.soil.x[: ground.soil.soil], x, v, rho)
+    pile = sheet_pile(scene.pile, spacing) if scene.pile else None
+    if pile:
+        x, v, rho = (values[~pile.holds(x)] for values in (x, v, rho))
+    layers, (width, height), area = wall_layers(law, spacing), scene.inner, spacing * spacing
+    margin, skin = layers * spacing, scene.numerics.skin * law.smoothing.length
+    wet = len(x)
+    if scene.air:
+        pores = dry_pores(scene.water.column, ground.soil.x[: ground.soil.soil])
+        x, v = np.concatenate((x, pores)), np.concatenate((v, np.zeros_like(pores)))
+        rho = np.concatenate((rho, np.full(len(pores), scene.air.density)))
+    present, top = len(x), height + margin
+    waiting = spare(scene, x[:wet])
+    berth = berths(present + waiting, width, top, BERTH * law.smoothing.support)
+    if waiting:
+        x, v = np.concatenate((x, berth[present:])), np.concatenate((v, np.zeros((waiting, 2))))
+        rho = np.concatenate((rho, np.full(waiting, law.state.density)))
+        top = float(berth[-1, 1]) + BERTH * law.smoothing.support
+    walls, side = tank_walls(width, height, spacing, layers, lid=scene.tank.lid), np.zeros(0, np.int64)
+    if pile:
+        piled, _, side = pile.particles(layers, height)
+        walls = np.concatenate((walls, piled))
+    mass = np.concatenate((rho * area, np.full(len(walls), law.state.density * area)))
+    mass[present : len(x)] = 0.0
+    layer = Layer(len(x), np.concatenate((x, walls)), np.concatenate((v, np.zeros_like(walls))), mass, rho)
+    layer.material[wet:present] = AIR if scene.air else 0
+    if scene.output.energy:
+        layer.keep_budget()
+    box = (-margin, -margin), (width + margin, top)
+    overlap = Overlap(len(x), skeleton.count, law.smoothing.length, skin, *box)
+    pairs = PairList(layer.count, skin, *box, full=True)
+    if pile:
+        pairs, overlap.pairs = CutPairList(pairs, pile, len(x), side, layer.v), CutPairList(overlap.pairs, pile)
+    flow = PoreFlow(
+        layer, law, pairs, skeleton=skeleton, overlap=overlap,
+        resistance=Resistance(section.porosity, section.permeability_law),
+    )  # fmt: skip
+    if scene.air:
+        flow.specific_weight = specific_weights(layer.material[: len(x)], law, flow.resistance.gravity)
+    flow.lower[:] = 0.0
+    flow.upper[:] = width, height if scene.tank.lid and not waiting else np.inf
+    both = Seepage(flow, ground, largest_modulus(scene), section.porosity * scene.water.density + section.density)
+    both.start()
+    layer.mass[:present] = (flow.porosity * rho * area)[:present]
+    if waiting:
+        stiff = law.state.density * law.state.sound_speed**2
+        kept = [reservoir(it, str(number), width) for number, it in enumerate(scene.reservoir)]
+        both.supply = Supply(layer, kept, berth, spacing, law.state.density, stiff, scene.gravity)
+        both.supply.keep(0.0)
+    both.start()
+    return both
+
+
+def largest_modulus(scene: Scene) -> float:
+    """Modulus (Pa) of a column of the scene's soil under the largest mean stress that its dry weight makes."""
+    section = soil_section(scene)
+    material = material_of(section)
+    pressure = 0.5 * material.density * scene.gravity * section.height * (1.0 + material.rest)
+    return material.column_modulus * material.stiffness_at(pressure) / material.stiffness

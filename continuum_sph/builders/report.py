@@ -1,0 +1,16 @@
+"""What `check` says about a scene before it runs."""
+
+from __future__ import annotations
+
+from continuum_sph.builders.seepage_report import seepage_report
+from continuum_sph.builders.soil_report import soil_report
+from continuum_sph.builders.water_report import water_report
+from continuum_sph.scene.sections import Scene
+from porescale.common.cli.report import Report
+
+
+def report(scene: Scene) -> Report:
+    """Every derived number of a scene; raises InputError with all refusals."""
+    if scene.soil is None:
+        return water_report(scene)
+    return soil_report(scene) if scene.dry else seepage_report(scene)

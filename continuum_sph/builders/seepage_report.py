@@ -1,0 +1,89 @@
+"""What `check` says about a scene of soil and water before it runs."""
+
+from __future__ import annotations
+
+from continuum_sph.builders.air import air_report, dry_pores
+from continuum_sph.builders.pore_water import largest_modulus, pore_law
+from continuum_sph.builders.soil import soil_law, soil_particles, soil_section
+from continuum_sph.builders.soil_report import report_origin
+from continuum_sph.builders.water import water_state
+from continuum_sph.builders.water_report import water_report
+from continuum_sph.scene.sections import Scene
+from continuum_sph.seepage.mixture import LEAST_POROSITY
+from continuum_sph.seepage.step import SHARE
+from porescale.common.cli.report import Report
+from porescale.common.core.errors import Fault, InputError
+
+RATE = 4e5  # particle-steps of both layers per second and thread, on a busy two-core machine, rounded down
+REACH = 1.05  # h over the distance of water's particles in pores: with less a front misses its next row
+STIFF = 10.0  # K_w/(n M): water below this is what consolidation waits for
+
+
+def seepage_report(scene: Scene) -> Report:
+    """The water's report, and how the two layers stand to each other; InputError for what they cannot have together."""
+    if scene.inclusion is not None:
+        raise InputError(Fault("inclusion", "given", "cannot be with soil", repair="take out [inclusion] or [soil]"))
+    if scene.tank.wall_particles == "images":
+        raise InputError(Fault("tank.wall_particles", "images", "cannot be with soil", repair='use "pressure"'))
+    section = soil_section(scene)
+    if section.porosity < LEAST_POROSITY:
+        least = f">= {LEAST_POROSITY:g} with water"
+        raise InputError(Fault("soil.porosity", section.porosity, "leaves water no room", "", least, "raise it"))
+    out = water_report(scene)
+    law, state, modulus = pore_law(scene), water_state(scene), largest_modulus(scene)
+    soil, _ = soil_particles(scene)
+    out.heading("soil")
+    out.row("soil particles", len(soil))
+    out.row("modulus of a column at the floor", modulus, "Pa")
+    out.row("longest step for its sound", min(soil_law(scene).limits(0.0, (modulus / section.density) ** 0.5
+            / law.smoothing.length, float("inf"))), "s")  # fmt: skip
+    out.heading("soil and water")
+    porosity, density, gravity = section.porosity, scene.water.density, scene.gravity
+    stiff = state.density * state.sound_speed**2
+    ratio = stiff / (porosity * modulus)
+    whole = porosity * density + section.density
+    out.row("stiffness of the water K_w/(n M)", ratio, "", f"at least {STIFF:g}: what soil squeezes out is not stored")
+    out.row("critical gradient", (section.density / density - (1.0 - porosity)), "", "(G_s - 1)(1 - n)")
+    if gravity > 0.0:
+        drag = section.permeability / (porosity * gravity)
+        out.row("time in which drag stops water in pores", drag, "s", "integrated exactly: no bound on the step")
+        spread = section.permeability * modulus / (density * gravity)
+        out.row("consolidation coefficient", spread, "m2/s")
+        out.row("time to consolidate", section.height**2 / spread, "s", "of the soil's height, drained at one face")
+    if scene.air:
+        air_report(out, scene, law, len(dry_pores(scene.water.column, soil)))
+    step = SHARE * law.smoothing.length / ((modulus + stiff / porosity) / whole) ** 0.5
+    out.row("longest step for sound in both together", step, "s")
+    step = min(step, law.limits(0.0, 0.0)[0])  # of air beside water
+    out.row("expected time", scene.time.end / step * (len(soil) + len(soil)) / RATE, "s", "of both layers, about")
+    report_origin(out, section.origin)
+    if scene.reservoir:
+        levels(scene, out)
+    if ratio < STIFF:
+        speed = (STIFF * porosity * modulus / density) ** 0.5
+        out.warn(
+            f"water is {ratio:.2g} times as stiff as n M: pore pressures are late by {100.0 / (1.0 + ratio):.2g} %; "
+            f"raise water.sound_speed to {speed:.4g} m/s or lower soil.stiffness"
+        )
+    return out
+
+
+def levels(scene: Scene, out: Report) -> None:
+    """Rows on prescribed levels, and warnings about what keeps water from moving into soil as it should."""
+    numerics, porosity = scene.numerics, soil_section(scene).porosity
+    out.heading("prescribed levels")
+    for number, it in enumerate(scene.reservoir):
+        breadth = (it.right - it.left) / numerics.spacing
+        out.row(it.name or f"reservoir {number}", it.table[-1][1], "m", f"{breadth:.3g} spacings broad, in the end")
+    reach = numerics.smoothing_ratio * porosity**0.5
+    out.row("smoothing length over distances in pores", reach, "", f"at least {REACH:g}")
+    if reach < REACH:
+        out.warn(
+            f"particles of water part by 1/sqrt(n) where they enter soil: kernels reach {reach:.2g} of their distance, "
+            f"fronts are up to 10 % late; numerics.smoothing_ratio {REACH / porosity**0.5:.2g} mends it"
+        )
+    if numerics.shifting > 0.0:
+        out.warn(
+            "shifting goes by the fastest water anywhere, and crowds what rests beside it: levels and discharges are "
+            "5 % low; numerics.shifting = 0 mends it"
+        )

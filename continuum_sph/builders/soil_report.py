@@ -1,0 +1,72 @@
+"""What `check` says about a scene of soil before it runs."""
+
+from __future__ import annotations
+
+import math
+
+from continuum_sph.builders.soil import material_of, soil_law, soil_particles, soil_section
+from continuum_sph.scene.material_file import Origin
+from continuum_sph.scene.sections import Scene
+from continuum_sph.soil.parameters import RULES
+from porescale.common.cli.report import Report
+
+RATE = 1.5e6  # particle-steps per second and thread, measured on the two-core machine of the benchmarks, rounded down
+BYTES = 900  # per particle: state, record, and about 27 partners in two lists
+SOFTEST = 1e-3
+"""Strain under its own weight above which soil is so soft that its shape is not the scene's."""
+
+
+def soil_report(scene: Scene) -> Report:
+    """Resolution, stiffness, strength, steps and cost; warns of soil too soft for its weight."""
+    section, law = soil_section(scene), soil_law(scene)
+    material, spacing = material_of(section), law.spacing
+    count = len(soil_particles(scene)[0])
+    out = Report(scene.title or "soil in a tank")
+    out.heading("resolution")
+    out.row("soil particles", count)
+    out.row("particles in the soil's height", section.height / spacing)
+    out.row("smoothing length", law.smoothing.length, "m", law.smoothing.name)
+    out.heading("stiffness")
+    pressure = 0.5 * material.density * scene.gravity * section.height * (1.0 + material.rest)
+    stiffest = material.stiffness_at(pressure)
+    column = material.column_modulus * stiffest / material.stiffness
+    out.row("Young's modulus at the floor", stiffest, "Pa", f"mean stress {pressure:.4g} Pa")
+    out.row("modulus of a column, B + G", column, "Pa", f"area modulus B: {material.modulus}")
+    out.row("stress ratio at rest K0", material.rest, "", "as a column settles that cannot widen")
+    strain = material.density * scene.gravity * section.height / column
+    out.row("strain under its own weight at the floor", strain)
+    sound = math.sqrt(column / material.density)
+    out.row("sound speed at the floor", sound, "m/s")
+    out.heading("strength")
+    phi, psi = section.friction_angle, section.dilatancy_angle
+    if section.elastic:
+        out.row("never yields", 0.0)
+    else:
+        out.row("stress ratio at failure", (1.0 + math.sin(phi)) / (1.0 - math.sin(phi)), "", "without cohesion")
+        limit = math.atan(math.sin(phi) * math.cos(psi) / (1.0 - math.sin(phi) * math.sin(psi)))
+        out.row("angle at which an endless slope shears", math.degrees(limit), "degrees", "without cohesion")
+    out.heading("steps")
+    limits = law.limits(2.0 * scene.gravity, sound / law.smoothing.length, math.inf)
+    step = min(limits)
+    out.row("longest step", step, "s", f"limited by {RULES[limits.index(step)]}")
+    steps = scene.time.end / step
+    out.row("steps", round(steps))
+    out.row("memory", BYTES * count / 2**20, "MiB")
+    out.row("expected time", steps * count / RATE, "s", f"at {RATE:.2g} particle-steps/s, one thread")
+    report_origin(out, section.origin)
+    if strain > 10.0 * SOFTEST:
+        out.warn(f"the soil's weight strains it by {100.0 * strain:.2g} %: raise soil.stiffness")
+    return out
+
+
+def report_origin(out: Report, origin: Origin | None) -> None:
+    """Add to a report what a scene's soil was measured with, and how well."""
+    if origin is None:
+        return
+    out.heading("measured on grains")
+    out.row("file", origin.file, "", f"SHA-256 {origin.sha256[:12]}")
+    for name, (mean, error) in origin.measured.items():
+        out.row(name.replace("_", " "), mean, "", f"± {error:.2g} (standard error)")
+    for key in ("command", "version", "lambda", "cells", "pressure"):
+        if isinstance(value := origin.made.get(key), str | int | float):
+            out.row(key, value)

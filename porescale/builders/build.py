@@ -1,0 +1,54 @@
+"""From a scene to a simulation: fluid and grains at time 0, then each part of which the scene has the section."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from porescale.builders.cost import require_memory
+from porescale.builders.derive import derive
+from porescale.builders.initial.fluid import coupled_of, fluid_of
+from porescale.builders.initial.frames import any_frames
+from porescale.builders.initial.grains import frames_of, grains_of
+from porescale.builders.initial.rectangles import on_the_lattice
+from porescale.builders.kinds import parts_of
+from porescale.builders.part import Clock
+from porescale.builders.scene import Scene
+from porescale.builders.simulation import Simulation
+from porescale.builders.system import System
+from porescale.common.schema.sections import load
+from porescale.coupling.step import buoyant_weight
+
+
+def load_scene(path: str | Path, *, quality: str | None = None, settings: Sequence[str] = ()) -> Scene:
+    """The scene at ``path`` (a TOML file or a folder with scene.toml), with ``section.key=value`` settings."""
+    return load(path, Scene, quality=quality, overrides=settings)
+
+
+def build(scene: Scene) -> Simulation:
+    """The simulation of ``scene`` at time 0; raises InputError for what the scene must not ask.
+
+    A packing is settled first, or read from the cache; that can take seconds.
+    """
+    system = system_of(scene)
+    return Simulation(system, *parts_of(system))
+
+
+def system_of(scene: Scene) -> System:
+    """Fluid and grains of ``scene`` at time 0; raises InputError."""
+    derived = derive(scene)
+    require_memory(derived)
+    made = System(scene, derived, Clock(derived.model_step))
+    if any_frames(scene):
+        made.frames = frames_of(scene, derived)
+    if scene.grains or scene.disc or scene.rectangle:
+        made.grains, made.recorded = grains_of(scene, derived, made.frames)
+    if scene.fluid:
+        made.fluid = fluid_of(scene, derived)
+    if derived.scales:
+        made.rectangles = on_the_lattice(scene.rectangle, derived.scales)
+    if made.fluid and made.grains:
+        made.coupled = coupled_of(scene, derived, made.fluid, made.grains, made.rectangles)
+    elif made.grains:
+        made.weight = buoyant_weight(made.grains, 0.0, scene.gravity)
+    return made

@@ -1,0 +1,93 @@
+"""Contact laws: every number belongs to its law, and nothing is missing."""
+
+from __future__ import annotations
+
+from porescale.builders.initial.contact_laws import merged
+from porescale.common.core.errors import Fault
+from porescale.dem.contact.choose import LAWS
+from porescale.dem.contact.materials import MOST
+from porescale.scene.contact import DAMPED, Contact, Pair, Touch
+from porescale.scene.scene import Scene
+
+
+def check_contact(scene: Scene) -> list[Fault]:
+    """What is wrong with the laws of a scene that has [contact]."""
+    contact = scene.contact
+    assert contact
+    faults = []
+    for k, material in enumerate(scene.material):
+        if material.name in (it.name for it in scene.material[:k]):
+            faults.append(Fault(f"material[{k}].name", material.name, "is taken", repair="give each its own"))
+    if len(scene.material) > MOST:
+        faults.append(Fault("material", len(scene.material), "are too many", allowed=f"<= {MOST}"))
+    faults += _check_names(scene, contact)
+    sections: list[tuple[str, Touch]] = [("contact", contact)]
+    sections += [(f"material[{k}]", it) for k, it in enumerate(scene.material)]
+    sections += [(f"contact.pair[{k}]", it) for k, it in enumerate(contact.pair)]
+    for key, section in sections:
+        faults += _check_kind(key, section, contact.law)
+    if faults:
+        return faults
+    for key, section in sections[1 : 1 + len(scene.material)] or sections[:1]:
+        faults += _check_complete(key, merged(contact, section), contact)
+    return faults
+
+
+def _check_names(scene: Scene, contact: Contact) -> list[Fault]:
+    """Materials that are named must be there."""
+    known = [it.name for it in scene.material]
+    asked = [("contact.wall_material", contact.wall_material)]
+    asked += [(f"contact.pair[{k}].materials", name) for k, it in enumerate(contact.pair) for name in it.materials]
+    asked += [(f"disc[{k}].material", it.material) for k, it in enumerate(scene.disc)]
+    asked += [(f"clump[{k}].material", it.material) for k, it in enumerate(scene.clump)]
+    if scene.grains:
+        asked += [(f"grains.grain[{k}].material", it.material) for k, it in enumerate(scene.grains.grain)]
+        if scene.grains.packing:
+            asked.append(("grains.packing.material", scene.grains.packing.material))
+    allowed = ", ".join(known) or "none: there is no [[material]]"
+    faults = [Fault(key, name, "no such material", "", allowed) for key, name in asked if name and name not in known]
+    if known and contact.wall_friction is not None:
+        problem = "friction at walls follows from their material"
+        repair = "give wall_material, or a [[contact.pair]] with it"
+        faults.append(Fault("contact.wall_friction", contact.wall_friction, problem, repair=repair))
+    return faults
+
+
+def _check_kind(key: str, section: Touch, name: str) -> list[Fault]:
+    """Every number belongs to the law."""
+    law = LAWS[name]
+    plain = Contact.model_construct() if isinstance(section, Contact) else None
+    faults = []
+    for other in LAWS.values():
+        for number in other.keys:
+            value = None if number in law.keys else getattr(section, number)
+            if value is not None and not (plain and value == getattr(plain, number)):
+                problem = f'belongs to law = "{other.name}", this is "{name}"'
+                repair = f'leave it out, or write law = "{other.name}"'
+                faults.append(Fault(f"{key}.{number}", value, problem, repair=repair))
+    if isinstance(section, Pair):
+        for number in {it: None for each in LAWS.values() for it in each.of_materials}:
+            if getattr(section, number) is not None:
+                problem = "follows from the two materials"
+                faults.append(Fault(f"{key}.{number}", getattr(section, number), problem, repair="leave it out"))
+        if sum(getattr(section, number) is not None for number in DAMPED) > 1:
+            problem = "at most one of the two is needed"
+            faults.append(Fault(f"{key}.{', '.join(law.damping_keys)}", None, problem, repair="give one"))
+    return faults
+
+
+def _check_complete(key: str, numbers: dict[str, float], contact: Contact) -> list[Fault]:
+    """What a law needs is there, and what it says has an effect."""
+    law, faults = LAWS[contact.law], []
+    needed, unit = law.required
+    if needed not in numbers:
+        faults.append(Fault(f"{key}.{needed}", None, "is missing", unit, "> 0", "add it"))
+    ways = law.damping_keys
+    if sum(way in numbers for way in ways) != 1:
+        problem, repair = "exactly one of the two is needed", "give one, leave the other out"
+        faults.append(Fault(f"{key}.{', '.join(ways)}", None, problem, repair=repair))
+    wrong = law.rolling_problem(numbers)
+    if wrong:
+        one, problem, repair = wrong
+        faults.append(Fault(f"{key}.{one}", None, problem, "", "> 0", repair))
+    return faults

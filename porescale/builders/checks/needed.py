@@ -1,0 +1,107 @@
+"""Sections that others need, or that need others, and what must lie in the box."""
+
+from __future__ import annotations
+
+from porescale.builders.checks.combinations import (
+    check_bonds,
+    check_cell,
+    check_frame_sections,
+    check_rock,
+    check_sleep,
+    check_walls,
+)
+from porescale.builders.checks.contact import check_contact
+from porescale.builders.initial.placed import by_hand
+from porescale.common.core.errors import Fault
+from porescale.scene.scene import Scene
+
+EDGE = 1e-9
+"""Relative slack of places at the edge of the box."""
+
+
+def check_needed(scene: Scene) -> list[Fault]:
+    """Sections that others need, or that need others."""
+    faults = []
+    if scene.fluid is None and scene.grains is None:
+        faults.append(Fault("fluid, grains", None, "nothing to simulate", repair="add [fluid], [grains] or both"))
+    if scene.grains is not None and scene.contact is None:
+        repair = "add [contact] with stiffness and restitution"
+        faults.append(Fault("contact", None, "grains need a contact law", repair=repair))
+    if scene.grains is None and scene.contact is not None:
+        faults.append(Fault("contact", None, "there are no grains to touch", repair="add [grains] or remove [contact]"))
+    if scene.fluid and scene.grains and scene.grains.hydraulic_radius_ratio is None:
+        faults.append(
+            Fault("grains.hydraulic_radius_ratio", None, "every scene with grains in fluid states it",
+                  allowed=">= 0.01 and <= 1",
+                  repair="0.8 opens the pores of a dense bed; 1 seals a bed at rest, since pores in two "
+                         "dimensions do not connect; 1 is right for single grains")
+        )  # fmt: skip
+    if scene.fluid is None:
+        given = {"probe": scene.probe, "line": scene.line, "flux": scene.flux, "loads": scene.loads,
+                 "permeability": scene.permeability, "output.fields": scene.output.fields}  # fmt: skip
+        faults += [Fault(name, None, "there is no fluid to measure", repair="add [fluid] or leave it out")
+                   for name, section in given.items() if section]  # fmt: skip
+    if scene.grains is None:
+        asked = {"region": scene.region, "coarse_graining": scene.coarse_graining,
+                 "output.contacts": scene.output.contacts, "output.forces": scene.output.forces,
+                 "output.energy": scene.output.energy}  # fmt: skip
+        faults += [Fault(name, None, "there are no grains to measure", repair="add [grains] or leave it out")
+                   for name, section in asked.items() if section]  # fmt: skip
+    if scene.grains and scene.grains.packing is None and not (by_hand(scene) or scene.segment or scene.polygon):
+        faults.append(Fault("grains", None, "holds no grain", repair="add [grains.packing] or [[grains.grain]]"))
+    of_grains = {"material": scene.material, "clump": scene.clump, "control": scene.control}
+    if scene.grains is None:
+        faults += [Fault(name, None, "there are no grains", repair="add [grains] or leave it out")
+                   for name, section in of_grains.items() if section]  # fmt: skip
+    if scene.grains and scene.contact:
+        faults += check_contact(scene)
+    faults += [
+        *check_walls(scene),
+        *check_cell(scene),
+        *check_frame_sections(scene),
+        *check_bonds(scene),
+        *check_rock(scene),
+    ]
+    faults += check_sleep(scene)
+    if scene.lubrication and not (scene.fluid and (scene.grains or scene.disc)):
+        faults.append(Fault("lubrication", None, "there are no grains in fluid", repair="leave it out"))
+    if scene.permeability and scene.fluid and scene.grains is None:
+        faults.append(Fault("permeability", None, "there is no bed", repair="add [grains] or leave it out"))
+    packing = scene.grains.packing if scene.grains else None
+    if scene.permeability and scene.grains and packing is None and scene.permeability.window is None:
+        repair = "add [permeability.window] with left, bottom, width, height"
+        faults.append(Fault("permeability.window", None, "is needed where there is no packing", repair=repair))
+    return faults
+
+
+def check_places(scene: Scene) -> list[Fault]:
+    """What must lie in the box, and numbers of bodies that must exist."""
+    box = scene.domain.width, scene.domain.height
+    points = [(f"probe[{k}]", (it.x, it.y)) for k, it in enumerate(scene.probe)]
+    for name, sections in (("line", scene.line), ("flux", scene.flux)):
+        points += [(f"{name}[{k}].{end}", getattr(it, end)) for k, it in enumerate(sections)
+                   for end in ("start", "end")]  # fmt: skip
+    for k, region in enumerate(scene.region):
+        corners = ("lower", region.lower), ("upper", region.upper)
+        points += [(f"region[{k}].{end}", at) for end, at in corners if not any(scene.domain.periodic)]
+    if scene.permeability and (window := scene.permeability.window):
+        points.append(("permeability.window", (window.left, window.bottom)))
+        points.append(("permeability.window", (window.left + window.width, window.bottom + window.height)))
+    faults = [
+        Fault(key, f"({at[0]:g}, {at[1]:g})", "is outside the box", "m", repair="move it inside")
+        for key, at in points
+        if not all(-EDGE * size <= value <= (1 + EDGE) * size for value, size in zip(at, box, strict=True))
+    ]
+    if scene.gate is not None and not scene.gate.x < scene.domain.width:
+        faults.append(
+            Fault("gate.x", scene.gate.x, "is outside the box", "m", f"< {scene.domain.width:g}", "move it inside")
+        )
+    for number in scene.loads.discs if scene.loads else ():
+        if not 0 <= number < len(scene.disc):
+            allowed = f"0 to {len(scene.disc) - 1}" if scene.disc else "none: there is no [[disc]]"
+            faults.append(Fault("loads.discs", number, "there is no such disc", "", allowed))
+    for number in scene.loads.rectangles if scene.loads else ():
+        if not 0 <= number < len(scene.rectangle):
+            allowed = f"0 to {len(scene.rectangle) - 1}" if scene.rectangle else "none: there is no [[rectangle]]"
+            faults.append(Fault("loads.rectangles", number, "there is no such rectangle", "", allowed))
+    return faults

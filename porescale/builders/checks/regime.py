@@ -1,0 +1,262 @@
+"""The regime of a scene: the largest speed to expect, and what Mach, pore pressure and resolution then mean."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from porescale.builders.checks.limits import (
+    CELLS_THICK,
+    DENSITY_REFUSE,
+    DENSITY_WARN,
+    MACH_REFUSE,
+    MACH_WARN,
+    SINGLE_PRECISION,
+    coarse,
+    light,
+    slow,
+    thin,
+)
+from porescale.builders.initial.clumps import least_density
+from porescale.builders.initial.contact_laws import MaterialPlan
+from porescale.builders.initial.fluid_options import collision_options, weight_of
+from porescale.builders.initial.frames import Placed
+from porescale.builders.initial.placed import by_hand
+from porescale.common.core.errors import Fault
+from porescale.coupling.limits import HELD_ONLY
+from porescale.lbm.collision.choose import choose
+from porescale.lbm.scales import Scales
+from porescale.scene.scene import Scene
+
+BLUNT = 1.2
+"""Drag coefficient of a cylinder in cross flow at Reynolds numbers of 10² to 10⁵."""
+
+
+UNIT: dict[str, Any] = {"relaxation_time": 1.0, "force": (0.0, 0.0), "dtype": "float64"}
+"""Numbers for a law that is only looked at."""
+
+
+Sizes = tuple[float, float, float]
+
+
+def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None, frames: Sequence[Placed] = ()) -> float:
+    """The largest speed to expect, m/s: an upper estimate from energy, drag and what the scene starts with.
+
+    Grains: free fall over the distance they can fall along gravity (rise against it, where they are lighter than the
+    fluid), reduced by buoyancy; over a periodic side, which has no end, for as long as the run lasts.  In fluid the
+    terminal speed of a grain if that is less, and for a packing that of the gravity current it can become,
+    sqrt(g' H)/2 with g' = phi |s - 1| g (Benjamin 1968): grains that fall together fall faster than each alone.
+    Fluid under a body force: the parabola between the walls across it, which grains in its way only slow down; under a
+    difference of pressure the same, or Bernoulli's speed if that is less.  Prescribed motion counts as it is.
+    """
+    g, speed = math.hypot(*scene.gravity), max(given_speed(scene), _framed_speed(scene, frames))
+    if scene.grains and sizes:
+        for grain in by_hand(scene):
+            speed = max(speed, math.hypot(*grain.velocity) + abs(grain.spin) * grain.diameter / 2)
+        packing = scene.grains.packing
+        lighter = 1 - scales.density / scene.grains.density if scales else 1.0
+        reach, unending = fall(scene, -1.0 if lighter < 0 else 1.0, frames)
+        free = abs(lighter) * g * scene.time.end if unending else math.sqrt(2 * abs(lighter) * g * reach)
+        if scales:
+            driving = abs(scene.grains.density / scales.density - 1) * g
+            free = min(free, terminal_speed(sizes[2], driving, scales.viscosity))
+            if packing:
+                free = max(free, 0.5 * math.sqrt(packing.packing_fraction * driving * column_height(scene)))
+        speed = max(speed, free)
+    if scene.fluid and scales:
+        push = math.hypot(*scene.fluid.body_force) / scales.density
+        across = min(scene.domain.width, scene.domain.height)
+        speed = max(speed, push * across**2 / (8 * scales.viscosity))
+        speed = max(speed, _pressed_speed(scene, scales))
+    return speed
+
+
+def given_speed(scene: Scene) -> float:
+    """The largest speed that the scene itself states, m/s: of sides, of the fluid at the start, of what is towed or
+    controlled."""
+    speeds = [side.peak for side in scene.domain.sides.values()]
+    speeds += [disc.fastest for disc in scene.disc] + [it.fastest for it in scene.rectangle]
+    speeds += [math.hypot(it.x.fastest, it.y.fastest) for it in scene.control]
+    if scene.fluid:
+        speeds.append(math.hypot(*scene.fluid.velocity))
+    if scene.gate and scene.gate.lift_speed:
+        speeds.append(scene.gate.lift_speed)
+    return max(speeds)
+
+
+def _pressed_speed(scene: Scene, scales: Scales) -> float:
+    """Speed (m/s) that the largest difference of pressure between sides can drive."""
+    sides = scene.domain.sides.items()
+    held = {name: side.pressure or 0.0 for name, side in sides if "pressure" in side.boundary.numbers}
+    if len(held) < 2:
+        return 0.0
+    d, drop = scene.domain, max(held.values()) - min(held.values())
+    along, across = (d.width, d.height) if {"left", "right"} <= set(held) else (d.height, d.width)
+    parabola = drop / along / scales.density * across**2 / (8 * scales.viscosity)
+    return min(parabola, math.sqrt(2 * drop / scales.density))
+
+
+def _framed_speed(scene: Scene, frames: Sequence[Placed]) -> float:
+    """The largest speed that bodies of segments start with or are prescribed to have, m/s."""
+    speeds = [0.0]
+    for it in frames:
+        size = float(np.ptp(np.array(it.frame.corners), axis=0).max())
+        speeds.append(math.hypot(*it.frame.velocity) + abs(it.frame.spin) * size)
+    for one in scene.container:
+        size = float(np.ptp(np.array(one.chain or one.ends).reshape(-1, 2), axis=0).max())
+        speeds.append(math.hypot(one.x.fastest, one.y.fastest) + one.rotation.fastest * size)
+    return max(speeds)
+
+
+def fall(scene: Scene, sense: float, frames: Sequence[Placed] = ()) -> tuple[float, bool]:
+    """How far (m) a grain can go along gravity (``sense`` 1) or against it (-1), and whether a periodic side makes
+    that endless.  From a grain's centre, or the far edge of the packing, to the last corner of the box.
+    """
+    g = math.hypot(*scene.gravity)
+    if g == 0 or scene.grains is None:
+        return 0.0, False
+    along = [sense * component / g for component in scene.gravity]
+    d = scene.domain
+    unending = any(component != 0 and endless for component, endless in zip(along, d.periodic, strict=True))
+    starts = [(grain.x, grain.y) for grain in by_hand(scene)]
+    starts += [corner for it in frames if it.free for corner in it.frame.corners]
+    if packing := scene.grains.packing:
+        right, top = packing.left + packing.width, packing.bottom + packing.height
+        starts += [(x, y) for x in (packing.left, right) for y in (packing.bottom, top)]
+    last = sum(max(0.0, component * size) for component, size in zip(along, (d.width, d.height), strict=True))
+    return max([0.0, *(last - (along[0] * x + along[1] * y) for x, y in starts)]), unending
+
+
+def column_height(scene: Scene) -> float:
+    """Extent of the packing along gravity, m; 0 without one."""
+    packing, g = scene.grains.packing if scene.grains else None, math.hypot(*scene.gravity)
+    if packing is None or g == 0:
+        return 0.0
+    return (abs(scene.gravity[0]) * packing.width + abs(scene.gravity[1]) * packing.height) / g
+
+
+def terminal_speed(diameter: float, reduced_gravity: float, viscosity: float) -> float:
+    """Terminal speed (m/s) of a disc of ``diameter`` (m) in unbounded fluid of ``viscosity`` (m²/s); by bisection.
+
+    reduced_gravity : |s - 1| g, m/s².  Balance  |s - 1| g pi d²/4 = C_D d U²/2  with C_D the sum of Lamb's
+    8 pi/(Re (1/2 - 0.5772 - ln(Re/8))) (1911, for Re < 1, its logarithm held there) and 1.2: an estimate to some 20 %.
+    """
+    low, high = 0.0, math.sqrt(math.pi * reduced_gravity * diameter / (2 * BLUNT))
+    for _ in range(60):
+        mid = 0.5 * (low + high)
+        reynolds = max(mid * diameter / viscosity, 1e-12)
+        lamb = 8 * math.pi / (reynolds * (0.5 - 0.5772 - math.log(min(reynolds, 1.0) / 8)))
+        if (lamb + BLUNT) * mid**2 / 2 < reduced_gravity * math.pi / 4 * diameter:
+            low = mid
+        else:
+            high = mid
+    return high
+
+
+def check_regime(
+    scene: Scene, scales: Scales, speed: float, sizes: Sizes | None, faults: list[Fault], warnings: list[str]
+) -> float:
+    """Judge Mach, pore pressure, relaxation time and resolution; returns the relative density variation.
+
+    Adds refusals to ``faults`` and doubts to ``warnings``, each with its repair.
+    """
+    _check_mach(scales, speed, faults, warnings)
+    _check_operator(scene, scales, speed, sizes, warnings)
+    _check_thickness(scene, scales, warnings)
+    if sizes is None:
+        return 0.0
+    assert scene.fluid
+    laws = scene.fluid.solid_operator, weight_of(scene.fluid)
+    packing = scene.grains.packing if scene.grains else None
+    ratio = (scene.grains.hydraulic_radius_ratio or 1.0) if scene.grains else 1.0
+    smallest, mean = (size * ratio / scales.spacing for size in sizes[:2])
+    filled = packing.packing_fraction * ratio**2 if packing else 0.0
+    found = [coarse(mean, *laws, scales.spacing, filled), slow(scales.relaxation_time, laws[0])]
+    if scene.grains:
+        found.append(
+            light(least_density(MaterialPlan.of(scene), scene.clump) / scales.density, smallest, *laws, scales.spacing)
+        )
+    warnings += filter(None, found)
+    if scene.grains is None or packing is None:
+        return 0.0
+    if ratio == 1:
+        warnings.append(
+            "hydraulic_radius_ratio = 1 seals a two-dimensional bed at rest, since its pores do not connect: "
+            "it breaches at a rate set by numerical leak; 0.7 to 0.9 opens them"
+        )
+    return _check_pore_pressure(scene, scales, faults, warnings)
+
+
+def _check_operator(scene: Scene, scales: Scales, speed: float, sizes: Sizes | None, warnings: list[str]) -> None:
+    """Where the operators that the scene names are known to ring, to blow up or to be beside their purpose."""
+    assert scene.fluid
+    fluid, lid = scene.fluid, any(side.speed for side in scene.domain.sides.values())
+    doubt = thin(scales, speed, fluid.operator, eddies=fluid.smagorinsky is not None, lid=lid)
+    if doubt:
+        warnings.append(doubt)
+    if (
+        fluid.magic != type(fluid).model_fields["magic"].default
+        and "magic" not in choose(**collision_options(fluid), **UNIT)._fields
+    ):
+        warnings.append(
+            f"fluid.magic = {fluid.magic:g} is not used: the operator {fluid.operator!r} has no such parameter"
+        )
+    default = type(fluid).model_fields["solid_operator"].default
+    if sizes is None and not scene.rectangle and (fluid.solid_operator != default or fluid.weighting):
+        warnings.append("fluid.solid_operator and fluid.weighting are not used: there is nothing solid in the fluid")
+    if fluid.solid_operator in HELD_ONLY and scene.grains is not None:
+        warnings.append(
+            f"fluid.solid_operator = {fluid.solid_operator!r}: free grains ran away with it in every trial; it is for"
+            " held discs"
+        )
+    slowness = speed / scales.velocity
+    if fluid.precision == "float32" and 0 < slowness < SINGLE_PRECISION:
+        warnings.append(
+            f"fluid.precision = 'float32': speeds of {slowness:.2g} cells a step are near its round-off; take float64 "
+            "or longer steps"
+        )
+
+
+def _check_thickness(scene: Scene, scales: Scales, warnings: list[str]) -> None:
+    """Rectangles that may fill no cell wholly."""
+    for k, it in enumerate(scene.rectangle):
+        thinnest = min(it.upper[a] - it.lower[a] for a in range(2))
+        if thinnest < CELLS_THICK * scales.spacing * (1 - 1e-9):
+            warnings.append(
+                f"rectangle {k} is {thinnest / scales.spacing:.3g} cells thick: below {CELLS_THICK:g} it may fill no"
+                f" cell and lets fluid through; a spacing of {thinnest / CELLS_THICK:.2g} m fills some"
+            )
+
+
+def _check_mach(scales: Scales, speed: float, faults: list[Fault], warnings: list[str]) -> None:
+    mach = speed / scales.sound_speed
+    if mach <= MACH_WARN:
+        return
+    problem = f"a speed of {speed:.3g} m/s is to be expected, Mach {mach:.2g}"
+    repair = f"a step of {scales.step * 0.9 * MACH_WARN / mach:.2g} s keeps it below {MACH_WARN}"
+    if mach > MACH_REFUSE:
+        faults.append(Fault("fluid.step", scales.step, problem, "s", repair=repair))
+    else:
+        warnings.append(f"{problem}: errors grow as its square; {repair}")
+
+
+def _check_pore_pressure(scene: Scene, scales: Scales, faults: list[Fault], warnings: list[str]) -> float:
+    """Density variation 3 |rho_s - rho0| g phi H/(rho0 c²) when pore water takes the column's weight, c = h/dt."""
+    assert scene.grains is not None
+    packing = scene.grains.packing
+    assert packing is not None
+    weight = abs(scene.grains.density - scales.density) * math.hypot(*scene.gravity) * packing.packing_fraction
+    variation = 3 * weight * column_height(scene) / (scales.density * scales.velocity**2)
+    if variation <= DENSITY_WARN:
+        return variation
+    problem = f"pore pressure under the packing can change the fluid's density by {variation:.2g}"
+    step = scales.step * math.sqrt(0.9 * DENSITY_WARN / variation)
+    repair = f"a step of {step:.2g} s keeps it below {DENSITY_WARN}"
+    if variation > DENSITY_REFUSE:
+        faults.append(Fault("fluid.step", scales.step, problem, "s", repair=repair))
+    else:
+        warnings.append(f"{problem}; {repair}")
+    return variation

@@ -1,0 +1,87 @@
+"""What a run will cost: memory, and a time from this machine's last runs."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+import os
+from pathlib import Path
+
+from porescale.builders.derive import Derived
+from porescale.common.compiled.cache import cache_root
+from porescale.common.core.atomic import write_bytes
+from porescale.common.core.errors import Fault, InputError
+
+CELLS_PER_SECOND, DISCS_PER_SECOND = 150e6, 15e6
+"""Rates that a run is first reckoned with (two cores, float64); how this machine differs is learnt from its runs."""
+CALLS, COUPLED_CALLS = 5e-6, 45e-6
+"""Seconds of a step that do not depend on its size, without and with coupling (measured on 2400 cells, 31 grains):
+without them a run of a small scene would make every machine look slow."""
+
+
+SIDE = 10
+"""What a side of a polygon costs, in discs, at the most (verify measures it)."""
+
+
+def memory(derived: Derived) -> float:
+    """Bytes that the simulation's arrays will take: populations, solid fields, patches, grains; an estimate."""
+    total = 400.0 * derived.grain_count
+    if derived.cells:
+        nx, ny = derived.cells
+        total += 9 * 8 * (nx + 2) * (ny + 2)
+        if derived.grain_count:
+            total += 3 * 8 * nx * ny
+    if derived.diameters and derived.scales:
+        total += 8 * derived.grain_count * (math.ceil(derived.diameters[2] / derived.scales.spacing) + 2) ** 2
+    return total
+
+
+def step_seconds(derived: Derived) -> float:
+    """Wall-clock seconds of a model step at the nominal rates."""
+    cells = derived.cells[0] * derived.cells[1] if derived.cells else 0
+    discs = derived.grain_count + SIDE * derived.corners
+    calls = COUPLED_CALLS if cells and derived.grain_count else CALLS
+    return calls + cells / CELLS_PER_SECOND + discs * (derived.contact_steps or 0) / DISCS_PER_SECOND
+
+
+def expected_seconds(derived: Derived, steps: int) -> tuple[float, bool]:
+    """Wall-clock seconds of ``steps`` steps, and whether this machine has been measured."""
+    slowness = _slowness()
+    return steps * step_seconds(derived) * (slowness or 1.0), slowness is not None
+
+
+def remember(derived: Derived, steps_per_second: float) -> None:
+    """Note how this machine compares to the nominal rates, for the next ``check``, if the cache can be written."""
+    if steps_per_second > 0:
+        slowness = 1 / (steps_per_second * step_seconds(derived))
+        with contextlib.suppress(OSError):  # no room or no right to write: the next check guesses again
+            write_bytes(_file(), json.dumps({"slowness": slowness}).encode())
+
+
+def require_memory(derived: Derived) -> None:
+    """Raise InputError when the arrays would not fit into this machine's memory."""
+    have = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    need = memory(derived)
+    if need <= 0.9 * have:
+        return
+    problem = f"needs {need / 2**30:.1f} of {have / 2**30:.1f} GiB"
+    if derived.scales:
+        coarser = derived.scales.spacing * math.sqrt(need / (0.5 * have))
+        repair = f"a spacing of {coarser:.2g} m takes half of the memory"
+        raise InputError(Fault("fluid.spacing", derived.scales.spacing, problem, "m", repair=repair))
+    raise InputError(
+        Fault("grains", None, f"{derived.grain_count:.3g} of them: {problem}", repair="take fewer or larger ones")
+    )
+
+
+def _file() -> Path:
+    return cache_root() / "rate.json"
+
+
+def _slowness() -> float | None:
+    try:
+        value = float(json.loads(_file().read_text())["slowness"])
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return None
+    return value if math.isfinite(value) and value > 0 else None

@@ -1,0 +1,230 @@
+"""What a scene implies before anything is built: lattice, contact step, regime numbers; and what it must not imply.
+
+Refusals are faults with a repair; whatever merely deserves a thought is a warning.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from porescale.builders.checks.frame_places import check_frames, strays, thin_for
+from porescale.builders.checks.grain_places import check_grain_places
+from porescale.builders.checks.numbers import check_controls
+from porescale.builders.checks.packing import check_compressed
+from porescale.builders.checks.polygons_in_fluid import longest_step, too_few_cells, too_light
+from porescale.builders.checks.regime import check_regime, expected_speed
+from porescale.builders.initial.clumps import lightest
+from porescale.builders.initial.contact_laws import MaterialPlan
+from porescale.builders.initial.frames import Placed, lightest_frame, placed_frames, sizes_of
+from porescale.builders.initial.packing import radii_of
+from porescale.builders.initial.placed import by_hand, placed
+from porescale.builders.initial.rock import rock_frames
+from porescale.builders.scene import Scene
+from porescale.common.core.errors import Fault, InputError
+from porescale.dem.contact.materials import Law
+from porescale.dem.discs import make_discs
+from porescale.dem.timestep import packing_limit, stable_step
+from porescale.lbm.scales import NAMES, Scales, implied
+from porescale.scene.contact import Contact
+from porescale.scene.fluid import Fluid
+from porescale.scene.lattice import is_whole
+
+MANY = 1e6
+"""Contact steps in a step of the fluid beyond which somebody slipped in a unit."""
+
+
+@dataclass(frozen=True)
+class Derived:
+    """Numbers that follow from a scene.  None where the scene has no such part."""
+
+    scales: Scales | None = None
+    cells: tuple[int, int] | None = None
+    gate_column: int | None = None
+    law: Law | None = None  # of the packing, or the first material, with itself
+    wall_law: Law | None = None
+    contact_limit: float | None = None  # s, stability limit in a packing
+    contact_step: float | None = None  # s
+    contact_steps: int | None = None  # per model step
+    model_step: float = 0.0  # s
+    grain_count: int = 0
+    diameters: tuple[float, float, float] | None = None  # smallest, mean, largest, m
+    mean_mass: float = 0.0  # kg/m, of a grain of mean diameter
+    speed: float = 0.0  # m/s, the largest to expect
+    density_variation: float = 0.0
+    warnings: tuple[str, ...] = field(default=())
+    corners: int = 0  # of bodies of segments
+
+
+def derive(scene: Scene) -> Derived:
+    """All of the above; raises InputError with every refusal, each with its repair."""
+    faults: list[Fault] = []
+    warnings: list[str] = []
+    scales, cells, column = _lattice(scene, faults) if scene.fluid else (None, None, None)
+    if scene.gate and any(scene.domain.periodic):
+        faults.append(Fault("gate", None, "stands in a periodic box", repair="give the box walls"))
+    check_compressed(scene, faults)
+    check_grain_places(scene, diameters(scene), faults)
+    frames = _frames(scene, faults)
+    sizes = diameters(scene, held=False) or diameters(scene) or _equal(sizes_of(frames))
+    law = wall_law = limit = step = steps = None
+    model_step, mean_mass = scales.step if scales else 0.0, 0.0
+    if scene.grains and scene.contact and sizes:
+        plan, packing = MaterialPlan.of(scene), scene.grains.packing
+        least = min(plan.densities)
+        smallest = math.pi / 4 * sizes[0] ** 2 * least, sizes[0] / 2
+        mean_mass = math.pi / 4 * sizes[1] ** 2 * scene.grains.density
+        law, wall_law, every = plan.law_and_others(packing.material if packing else "", mean_mass)
+        if scene.clump:
+            smallest = min(smallest[0], lightest(scene.clump, plan, every)), smallest[1]
+        if scene.rock and not faults:
+            frames = [*frames, *rock_frames(scene, law)]
+        if frames:
+            smallest = _with_frames(scene, smallest, frames, every)
+        limit = min(packing_limit(it, *smallest) for it in every)
+        safe = stable_step(every, *smallest)
+        if frames and scales:
+            safe = min(safe, longest_step(frames, expected_speed(scene, scales, sizes, frames)))
+        step, steps = _contact_step(scene.contact, safe, limit, scales, faults)
+        model_step = scales.step if scales else step
+    speed = expected_speed(scene, scales, sizes, frames)
+    if frames and law:
+        warnings += filter(None, [thin_for(frames, speed, mean_mass, law)])
+    warnings += strays(scene, frames)
+    variation = 0.0
+    if scales:
+        light = too_light(frames, scales.spacing, scales.density)
+        warnings += filter(None, [too_few_cells(frames, scales.spacing), light])
+        variation = check_regime(scene, scales, speed, sizes, faults, warnings)
+    _loads(scene, faults)
+    check_controls(scene, grain_count(scene) - len(scene.disc), faults)
+    if faults:
+        raise InputError(faults)
+    return Derived(
+        scales, cells, column, law, wall_law, limit, step, steps, model_step, grain_count(scene), sizes,
+        mean_mass, speed, variation, tuple(warnings), sum(len(it.frame.corners) for it in frames),
+    )  # fmt: skip
+
+
+def _frames(scene: Scene, faults: list[Fault]) -> list[Placed]:
+    """The frames placed by hand, and faults of them and of where they are; none where they are at fault."""
+    if not (scene.segment or scene.polygon or scene.container):
+        return []
+    try:
+        frames = placed_frames(scene)
+    except InputError as error:
+        faults += error.faults
+        return []
+    names, x, r = placed(scene)
+    faults += check_frames(scene, frames, make_discs(x, r, np.ones(len(r))), names)
+    return frames
+
+
+def _equal(sizes: list[float]) -> tuple[float, float, float] | None:
+    """Smallest, mean and largest of some diameters, None without any."""
+    return (min(sizes), sum(sizes) / len(sizes), max(sizes)) if sizes else None
+
+
+def _with_frames(
+    scene: Scene, smallest: tuple[float, float], frames: list[Placed], every: list[Law]
+) -> tuple[float, float]:
+    """Mass (kg/m) and radius (m) of the disc that answers as fast as the fastest of discs and frames."""
+    radius = smallest[1] if grain_count(scene) else None
+    light = lightest_frame(frames, every, radius)
+    if light is None:
+        return smallest
+    return (light if radius is None else min(smallest[0], light)), smallest[1]
+
+
+def _loads(scene: Scene, faults: list[Fault]) -> None:
+    """Grains whose loads are asked for must exist."""
+    count = grain_count(scene) - len(scene.disc)
+    for number in scene.loads.grains if scene.loads else ():
+        if not 0 <= number < count:
+            allowed = f"0 to {count - 1}" if count else "none: there are no grains"
+            faults.append(Fault("loads.grains", number, "there is no such grain", "", allowed))
+
+
+def fluid_scales(fluid: Fluid) -> Scales:
+    """The lattice's scales from the three or four numbers given."""
+    given = {name: getattr(fluid, name) for name in NAMES if getattr(fluid, name) is not None}
+    full = {**implied(**given), **given}
+    return Scales(full["spacing"], full["step"], full["relaxation_time"], fluid.density)
+
+
+def grain_count(scene: Scene) -> int:
+    """Number of grains and discs that are held."""
+    placed = len(scene.disc) + len(by_hand(scene))
+    packing = scene.grains.packing if scene.grains else None
+    if packing is None or (scene.rock and scene.rock.polygons):
+        return placed
+    radii = radii_of(packing)
+    if radii is not None:
+        return placed + len(radii)
+    area = math.pi / 4 * packing.diameter**2 * (1 + packing.size_spread**2 / 3)
+    return placed + max(1, round(packing.packing_fraction * packing.width * packing.height / area))
+
+
+def diameters(scene: Scene, *, held: bool = True) -> tuple[float, float, float] | None:
+    """Smallest, mean and largest diameter, m, of grains and, if ``held``, of discs that are held; None without any.
+
+    The mean is that of a packing where there is one.
+    """
+    packing = scene.grains.packing if scene.grains else None
+    sizes = [grain.diameter for grain in by_hand(scene)]
+    sizes += [disc.diameter for disc in scene.disc] if held else []
+    if packing is None and not sizes:
+        return None
+    mean = packing.diameter if packing else sum(sizes) / len(sizes)
+    radii = radii_of(packing) if packing else None
+    if radii is not None:
+        sizes += [2 * float(radii.min()), 2 * float(radii.max())]
+    elif packing:
+        sizes += [packing.diameter * (1 - packing.size_spread), packing.diameter * (1 + packing.size_spread)]
+    return min(sizes), mean, max(sizes)
+
+
+def _lattice(scene: Scene, faults: list[Fault]) -> tuple[Scales, tuple[int, int], int | None]:
+    assert scene.fluid is not None
+    scales = fluid_scales(scene.fluid)
+    h = scales.spacing
+    for key, length in (("domain.width", scene.domain.width), ("domain.height", scene.domain.height)):
+        _whole(key, length, h, faults)
+    column = None
+    if scene.gate:
+        _whole("gate.x", scene.gate.x, h, faults)
+        column = round(scene.gate.x / h)
+    return scales, (round(scene.domain.width / h), round(scene.domain.height / h)), column
+
+
+def _whole(key: str, length: float, spacing: float, faults: list[Fault]) -> None:
+    cells = length / spacing
+    if not is_whole(length, spacing):
+        better = length / max(1, round(cells))
+        faults.append(
+            Fault(key, length, f"is {cells:.6g} cells of {spacing:.6g} m, not a whole number", "m",
+                  repair=f"a spacing of {better:.9g} m divides it")
+        )  # fmt: skip
+
+
+def _contact_step(
+    contact: Contact, safe: float, limit: float, scales: Scales | None, faults: list[Fault]
+) -> tuple[float, int]:
+    """Contact step (s) and their number per model step."""
+    wanted = contact.step or safe
+    steps = 1 if scales is None else max(1, math.ceil(scales.step / wanted * (1 - 1e-9)))
+    step = wanted if scales is None else scales.step / steps
+    if steps > MANY:
+        problem = f"takes {steps:.3g} contact steps of {wanted:.3g} s"
+        repair = "lower contact.stiffness, give the grains a size in metres, or shorten the step of the fluid"
+        key, unit = ("stiffness", "N/m") if contact.law == "linear" else ("young", "Pa")
+        what = getattr(contact, key)
+        faults.append(Fault(f"contact.{key}", what, f"{problem} in a step of the fluid", unit, repair=repair))
+    if step > limit:
+        faults.append(
+            Fault("contact.step", step, "is beyond the stability limit of a packing", "s", f"< {limit:.3g}",
+                  f"leave it out (it would be {safe:.3g} s), or lower the stiffness")
+        )  # fmt: skip
+    return step, steps

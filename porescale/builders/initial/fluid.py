@@ -1,0 +1,71 @@
+"""The lattice of a scene, and its coupling with grains."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from porescale.builders.derive import Derived
+from porescale.builders.initial.fluid_options import collision_options, solid_options
+from porescale.builders.initial.frames import disc_count
+from porescale.coupling.coverage.rectangle import Rectangle
+from porescale.coupling.step import Coupled
+from porescale.dem.grains import Grains
+from porescale.lbm.boundary.sides import Sides
+from porescale.lbm.fluid import Fluid
+from porescale.lbm.scales import Scales
+from porescale.scene.domain import Domain
+from porescale.scene.scene import Scene
+
+
+def fluid_of(scene: Scene, derived: Derived) -> Fluid:
+    """The lattice at the start."""
+    assert scene.fluid
+    assert derived.cells
+    assert derived.scales
+    unit = derived.scales.body_force
+    fx, fy = (component / unit for component in scene.fluid.body_force)
+    fluid = Fluid(
+        *derived.cells, derived.scales.relaxation_time, **collision_options(scene.fluid), force=(fx, fy),
+        sides=lattice_sides(scene.domain, derived.scales, derived.cells), dtype=scene.fluid.precision,
+    )  # fmt: skip
+    if scene.fluid.velocity != (0.0, 0.0):
+        fluid.set_flow(*(component / derived.scales.velocity for component in scene.fluid.velocity))
+    return fluid
+
+
+def lattice_sides(domain: Domain, scales: Scales, cells: tuple[int, int]) -> Sides:
+    """The sides in lattice units: speeds of walls, velocity in every cell of an inlet, density of a pressure."""
+    values: dict[str, Any] = {}
+    for name, side in domain.sides.items():
+        values[name] = side.kind
+        if side.speed:
+            values[f"{name}_speed"] = side.speed / scales.velocity
+        if side.velocity is not None:
+            count = cells[1] if name in ("left", "right") else cells[0]
+            along = np.arange(count) + 0.5  # halves: the parabola is symmetric to the last bit
+            shape = 6 * along * (count - along) / count**2 if side.profile == "parabola" else np.ones(count)
+            values[f"{name}_velocity"] = shape[:, None] * np.asarray(side.velocity) / scales.velocity
+        if "pressure" in side.boundary.numbers:
+            values[f"{name}_density"] = 1 + (side.pressure or 0.0) / scales.pressure
+    return Sides(**values)
+
+
+def coupled_of(
+    scene: Scene, derived: Derived, fluid: Fluid, grains: Grains, rectangles: Sequence[Rectangle]
+) -> Coupled:
+    """Fluid and grains, each as large to the other as the scene says: grains by lambda, held discs as they are."""
+    assert scene.fluid
+    assert derived.scales
+    ratio = np.ones(grains.discs.count)
+    if scene.grains and scene.grains.hydraulic_radius_ratio:
+        ratio[: disc_count(grains) - len(scene.disc)] = scene.grains.hydraulic_radius_ratio
+    size: Any = ratio
+    films = scene.lubrication
+    return Coupled(
+        fluid, grains, derived.scales, hydraulic_ratio=size, contact_steps=derived.contact_steps or 1,
+        acceleration=scene.gravity, **solid_options(scene.fluid),
+        lubrication=films is not None, film_gap=films.gap if films else 1.0, rectangles=rectangles,
+    )  # fmt: skip

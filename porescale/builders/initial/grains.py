@@ -1,0 +1,146 @@
+"""All discs of a scene in their order."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from porescale.builders.checks.frame_places import require_frames_apart
+from porescale.builders.checks.grain_places import require_apart
+from porescale.builders.checks.rectangle_places import require_free_of_rectangles
+from porescale.builders.derive import Derived, grain_count
+from porescale.builders.initial.apply_sections import apply_sections
+from porescale.builders.initial.contact_laws import MaterialPlan
+from porescale.builders.initial.frames import Placed, placed_frames, with_corners
+from porescale.builders.initial.packing import compressed, radii_of
+from porescale.builders.initial.placed import by_hand, placed
+from porescale.builders.initial.rectangles import stand_ins, take_over
+from porescale.builders.initial.rock import rock_discs, rock_frames
+from porescale.common.core.errors import InputError
+from porescale.common.neighbors.placement import place
+from porescale.dem.contact.linear import Linear
+from porescale.dem.discs import Discs, make_discs
+from porescale.dem.forces.walls import Box, Plate
+from porescale.dem.grains import Grains
+from porescale.dem.prepare.merge import joined, together
+from porescale.dem.prepare.settle import Pile, prepare
+from porescale.scene.bodies.disc import Disc
+from porescale.scene.domain import Domain
+from porescale.scene.packing import Packing
+from porescale.scene.scene import Scene
+
+GATE = "gate"
+
+
+UNTOUCHED = Linear(1.0, 0.0)
+"""Contact law where all discs are held: nothing comes of it."""
+
+
+NO_DISCS = make_discs(np.zeros((0, 2)), np.zeros(0), np.zeros(0))
+
+
+def _box(domain: Domain) -> Box:
+    kinds = {name: "periodic" if side.boundary.periodic else "solid" for name, side in domain.sides.items()}
+    return Box((0.0, 0.0), (domain.width, domain.height), **kinds)
+
+
+def frames_of(scene: Scene, derived: Derived) -> list[Placed]:
+    """All bodies of segments, a rock's last."""
+    rock = rock_frames(scene, derived.law) if scene.rock and derived.law else []
+    return [*placed_frames(scene), *rock]
+
+
+def grains_of(scene: Scene, derived: Derived, frames: list[Placed]) -> tuple[Grains, list[str]]:
+    """All discs in their order: the packing's, those placed by hand, those that are held, corners of frames; and names
+    of the bodies that are recorded."""
+    box, law, wall_law = _box(scene.domain), derived.law or UNTOUCHED, derived.wall_law
+    plates = (
+        [Plate(scene.gate.x, 0.0, scene.domain.height, friction=scene.gate.friction, name=GATE)] if scene.gate else []
+    )
+    packing = scene.grains.packing if scene.grains else None
+    parts = [_by_hand(scene)] if by_hand(scene) else []
+    parts += [_held(scene.disc, scene.fluid.density if scene.fluid else 1000.0)] if scene.disc else []
+    if scene.rock:
+        of_rock = rock_discs(scene, law)
+        parts = [of_rock, *parts] if of_rock else parts
+        grains = Grains(together(*parts) if parts else NO_DISCS, law, box, wall_law=wall_law)
+    elif packing and packing.settle:
+        grains = prepared(scene, packing, box, derived, [*plates, *stand_ins(scene.rectangle, packing)])
+        if parts:
+            grains = joined(grains, together(*parts))
+    elif scene.grains and packing and packing.compress:
+        grains = compressed(packing, scene.grains.density, scene.domain.periodic, law).grains
+        grains = joined(grains, together(*parts)) if parts else grains
+        grains.set_law(law, wall_law)
+    else:
+        parts = [_placed(packing, MaterialPlan.of(scene).density(packing.material)), *parts] if packing else parts
+        grains = Grains(together(*parts) if parts else NO_DISCS, law, box, wall_law=wall_law, plates=plates)
+        if grains.discs.count:  # where bodies of segments are all there is they come with lists of their own
+            grains.refresh()  # contacts count from the first row of the series on
+    if scene.rectangle:
+        take_over(scene.rectangle, grains)
+        require_free_of_rectangles(scene.rectangle, grains.discs)
+    discs = grains.discs
+    grains = with_corners(grains, frames) if frames else grains
+    if scene.disc:
+        grains.hold(slice(discs.count - len(scene.disc), discs.count))
+    recorded = apply_sections(scene, grains, derived.mean_mass, frames)
+    added = len(scene.disc) + len(by_hand(scene))
+    if added:
+        require_apart(discs, scene, discs.count - added)
+    if frames and packing and not scene.rock:
+        require_frames_apart(scene, frames, discs, placed(scene)[0])
+    return grains, recorded
+
+
+def _held(discs: Sequence[Disc], density: float) -> Discs:
+    """The discs whose motion is prescribed; their mass has no effect."""
+    return make_discs(
+        [(it.x, it.y) for it in discs], np.array([it.diameter / 2 for it in discs]), density,
+        np.array([it.velocity for it in discs]), np.array([it.spin for it in discs]),
+    )  # fmt: skip
+
+
+def prepared(scene: Scene, packing: Packing, box: Box, derived: Derived, plates: list[Plate]) -> Grains:
+    """The packing settled dry, then at rest under the run's contact law and its weight in the fluid."""
+    assert scene.grains
+    assert derived.law
+    placed, radii = len(by_hand(scene)) + len(scene.disc), radii_of(packing)
+    pile = Pile(
+        corner=(packing.left, packing.bottom), width=packing.width, count=grain_count(scene) - placed,
+        diameter=packing.diameter, density=MaterialPlan.of(scene).density(packing.material), spread=packing.size_spread,
+        friction=packing.settling_friction, seed=packing.seed, gravity=-scene.gravity[1],
+        given=() if radii is None else tuple(radii.tolist()),
+    )  # fmt: skip
+    lighter = scene.fluid.density if scene.fluid else 0.0
+    return prepare(
+        pile, box, derived.law, wall_law=derived.wall_law, plates=plates, weight_density=pile.density - lighter
+    )
+
+
+def _placed(packing: Packing, density: float) -> Discs:
+    radii = radii_of(packing)
+    sizes: dict[str, Any] = (
+        {"diameter": packing.diameter, "spread": packing.size_spread, "packing_fraction": packing.packing_fraction}
+        if radii is None else {"radii": radii}
+    )  # fmt: skip
+    try:
+        placed = place(
+            (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height),
+            seed=packing.seed, **sizes,
+        )  # fmt: skip
+    except InputError as error:
+        raise InputError([replace(fault, key=f"grains.packing.{fault.key}") for fault in error.faults]) from None
+    return make_discs(placed.position, placed.radius, density)
+
+
+def _by_hand(scene: Scene) -> Discs:
+    grains, plan = by_hand(scene), MaterialPlan.of(scene)
+    return make_discs(
+        [(g.x, g.y) for g in grains], np.array([g.diameter / 2 for g in grains]),
+        np.array([plan.density(g.material) for g in grains]),
+        np.array([g.velocity for g in grains]), np.array([g.spin for g in grains]),
+    )  # fmt: skip

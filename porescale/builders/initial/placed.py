@@ -1,0 +1,67 @@
+"""What is placed by hand and free: grains, and the discs of clumps; who is who by number."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.builders.initial.random_polygons import copies_of
+from porescale.scene.bodies.disc import Disc
+from porescale.scene.grains import Grain
+from porescale.scene.scene import Scene
+
+
+@dataclass(frozen=True)
+class Member:
+    """One disc of a clump, where it is; fields as of a grain placed by hand."""
+
+    x: float
+    y: float
+    diameter: float
+    velocity: tuple[float, float]
+    spin: float
+    material: str
+
+
+def members(scene: Scene) -> list[list[Member]]:
+    """The discs of every clump of a scene, copy by copy."""
+    return [
+        [Member(*it.turned(copy, disc[:2]), 2 * disc[2], it.velocity, it.spin, it.material) for disc in it.discs]
+        for it in scene.clump
+        for copy in range(len(it.at))
+    ]
+
+
+def by_hand(scene: Scene) -> list[Grain | Member]:
+    """All that is placed by hand and free: grains, then the discs of clumps."""
+    grains = scene.grains.grain if scene.grains else ()
+    return [*grains, *(disc for body in members(scene) for disc in body)]
+
+
+def hand_names(scene: Scene) -> tuple[list[str], list[int]]:
+    """Key of the section of each of ``by_hand``, and the number of its clump, -1 for none."""
+    count = len(scene.grains.grain) if scene.grains else 0
+    names, groups, number = [f"grains.grain[{k}]" for k in range(count)], [-1] * count, 0
+    for k, it in enumerate(scene.clump):
+        for _ in it.at:
+            names += [f"clump[{k}]"] * len(it.discs)
+            groups += [number] * len(it.discs)
+            number += 1
+    return names, groups
+
+
+def counted(scene: Scene, kind: str) -> int:
+    """How many clumps, bodies of segments or polygons a scene has."""
+    if kind == "clump":
+        return sum(len(it.at) for it in scene.clump)
+    return sum(len(copies_of(it)) for it in (scene.segment if kind == "segment" else scene.polygon))
+
+
+def placed(scene: Scene) -> tuple[list[str], NDArray[np.float64], NDArray[np.float64]]:
+    """Keys, centres (n, 2) m and radii (n,) m of what is placed by hand: grains, clumps, then discs that are held."""
+    names = hand_names(scene)[0] + [f"disc[{k}]" for k in range(len(scene.disc))]
+    bodies: list[Grain | Member | Disc] = [*by_hand(scene), *scene.disc]
+    x = np.array([(it.x, it.y) for it in bodies]).reshape(-1, 2)
+    return names, x, np.array([it.diameter / 2 for it in bodies])

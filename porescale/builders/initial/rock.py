@@ -1,0 +1,103 @@
+"""A rock: the packing pressed, its discs or polygons with its centres as seeds, and the plates.
+
+Source: Matsushima, DEMseg tutorial II-4; see dem/prepare/rock.py, dem/prepare/tessellate.py.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.builders.initial.contact_laws import MaterialPlan
+from porescale.builders.initial.frames import FREE, HELD, PLATES, Placed
+from porescale.builders.initial.packing import compressed
+from porescale.builders.initial.time_functions import schedule_of
+from porescale.dem.bodies.frames import chain, polygon
+from porescale.dem.contact.materials import Law
+from porescale.dem.discs import Discs, make_discs
+from porescale.dem.motion.control import Placed as PlacedControl
+from porescale.dem.motion.time_function import Constant, Schedule, Sine, Table
+from porescale.dem.prepare.tessellate import delaunay, shrunk, voronoi
+from porescale.scene.packing import Packing
+from porescale.scene.scene import Scene
+
+Array = NDArray[np.float64]
+
+BEYOND = 0.1
+"""Of the length of a plate's side of the sample: how far it stands out at both ends."""
+
+
+def has_plates(scene: Scene) -> bool:
+    """Whether a scene has a rock between plates."""
+    return scene.rock is not None and scene.rock.plates != "none"
+
+
+def rock_discs(scene: Scene, law: Law) -> Discs | None:
+    """The discs of a rock of discs, at rest; None of polygons."""
+    assert scene.rock
+    assert scene.grains
+    assert scene.grains.packing
+    if scene.rock.polygons:
+        return None
+    plan, packing = MaterialPlan.of(scene), scene.grains.packing
+    at, radius = _pressed(packing, plan.density_of_grains, law)
+    return make_discs(at, radius, plan.density(packing.material))
+
+
+def rock_frames(scene: Scene, law: Law) -> list[Placed]:
+    """Polygons of a rock and its plates, the first plate before the second.  The packing is read from the cache, or
+    pressed, which takes seconds."""
+    assert scene.rock
+    assert scene.grains
+    assert scene.grains.packing
+    rock, packing, plan = scene.rock, scene.grains.packing, MaterialPlan.of(scene)
+    at, radius = _pressed(packing, plan.density_of_grains, law)
+    lower = (packing.left, packing.bottom)
+    upper = (packing.left + packing.width, packing.bottom + packing.height)
+    density, material = plan.density(packing.material), plan.number(packing.material)
+    made: list[Placed] = []
+    thickness = off = 0.5 * float(radius.mean())
+    if rock.polygons:
+        assert rock.gap
+        assert rock.pressed
+        thickness, off = 0.5 * (rock.gap + rock.pressed), 0.5 * rock.gap
+        for part in (voronoi if rock.kind == "cells" else delaunay)(at, lower, upper):
+            # A side shorter than the gap would be hidden behind the thickness of its neighbours.
+            left = shrunk(part, 0.5 * rock.gap, shortest=rock.gap)
+            if left is not None:
+                made.append(Placed("rock", "rock", polygon(left, thickness, density, material=material), FREE))
+    if rock.plates == "none":
+        return made
+    axis = 0 if rock.plates == "x" else 1
+    out = BEYOND * (upper[1 - axis] - lower[1 - axis])
+    moves = PlacedControl(_times(schedule_of(rock.strain), upper[axis] - lower[axis])) if rock.strain else HELD[axis]
+    for name, place in zip(PLATES, (lower[axis] - off, upper[axis] + off), strict=True):
+        ends = [(place, lower[1 - axis] - out), (place, upper[1 - axis] + out)]
+        points = ends if axis == 0 else [(x, y) for y, x in ends]
+        frame = chain(
+            points, thickness, density, width=2.0 * max(thickness, off), long=True,
+            material=plan.number("", wall=True),
+        )  # fmt: skip
+        motion = list(HELD)
+        if name == PLATES[1]:
+            motion[axis] = moves
+        made.append(Placed("rock", "plate", frame, (motion[0], motion[1], motion[2]), name))
+    return made
+
+
+def _times(schedule: Schedule, factor: float) -> Schedule:
+    """A schedule with its values multiplied."""
+    if isinstance(schedule, Table):
+        return Table(schedule.times, [factor * value for value in schedule.values])
+    if isinstance(schedule, Sine):
+        return Sine(factor * schedule.amplitude, schedule.frequency, schedule.phase, factor * schedule.mean)
+    return Constant(factor * (schedule.value if isinstance(schedule, Constant) else schedule))
+
+
+@lru_cache(maxsize=2)
+def _pressed(packing: Packing, density: float, law: Law) -> tuple[Array, Array]:
+    """Centres (n, 2) m and radii (n,) m of the packing pressed in its rectangle."""
+    discs = compressed(packing, density, (False, False), law).grains.discs
+    return discs.position.copy(), discs.radius.copy()

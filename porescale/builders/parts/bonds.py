@@ -1,0 +1,177 @@
+"""Bonds of a scene: made at their times between chosen bodies, counted, and located when they break."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.builders.initial.frames import Placed, disc_count
+from porescale.builders.part import Clock, Part, Row
+from porescale.builders.system import System
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.record.model import Cloud, Snapshot
+from porescale.dem.bodies.bonding import bond, segments_now
+from porescale.dem.bodies.rigid import as_bodies
+from porescale.dem.forces.bonds import BondList, touched
+from porescale.dem.grains import Grains
+from porescale.dem.motion.drivers import Clump as ClumpNumber
+from porescale.output.frame_clouds import BONDS
+from porescale.scene.bodies.bonds import KINDS, Bonds
+
+Body = tuple[int, int]
+
+
+class Bodies:
+    """What the bodies of a system are called: kind and number of every disc's."""
+
+    def __init__(self, grains: Grains, placed: Sequence[Placed], held: int) -> None:
+        """``held`` : discs that are no bodies, the last ones before corners."""
+        discs, self.clumps = disc_count(grains), grains.steering.clumps if grains.steered else None
+        self.placed = placed
+        self.kind, self.number = np.zeros(grains.discs.count, np.int32), np.arange(grains.discs.count, dtype=np.int32)
+        first = 0 if self.clumps is None else self.clumps.count - len(placed)
+        counts: dict[str, int] = {}
+        self.named: dict[Body, int | ClumpNumber] = {(0, i): i for i in range(discs - held)}
+        for c in range(0 if self.clumps is None else self.clumps.count):
+            kind = "clump" if c < first else placed[c - first].kind
+            number = counts[kind] = counts.get(kind, -1) + 1
+            assert self.clumps is not None
+            own = self.clumps.discs_of(c)
+            self.kind[own], self.number[own] = KINDS.index(kind), number
+            for i in own:
+                self.named.pop((0, int(i)), None)
+            self.named[KINDS.index(kind), number] = ClumpNumber(c)
+
+    def chosen(self, words: tuple[str, ...], key: str) -> list[Body]:
+        """The bodies that words name; raises InputError at one that is not there."""
+        found: list[Body] = []
+        for k, word in enumerate(words):
+            kind, _, number = word.partition(" ")
+            of_kind = [body for body in self.named if body[0] == KINDS.index(kind)]
+            one = [body for body in of_kind if not number or body[1] == int(number)]
+            if not one:
+                there = ", ".join(sorted({KINDS[body[0]] for body in self.named}))
+                raise InputError(Fault(f"{key}.bodies[{k}]", word, "there is no such body", "", f"of {there}"))
+            found += one
+        return found or list(self.named)
+
+
+class BondsPart(Part):
+    """Makes the bonds of a scene at their times.  made : how many sections have been."""
+
+    def __init__(self, clock: Clock, sections: Sequence[tuple[str, Bonds]], grains: Grains, bodies: Bodies) -> None:
+        """``sections`` : each with its key."""
+        self.clock, self.grains, self.bodies = clock, grains, bodies
+        self.sections = sorted(sections, key=lambda it: it[1].at)
+        self.chosen = [self.bodies.chosen(it.bodies, key) for key, it in self.sections]
+        self.made = 0
+        self.before()  # what is bonded at time 0 is there in the first record
+
+    @classmethod
+    def build(cls, system: System) -> BondsPart:
+        """Of a scene with [bonds] or [rock], whose pieces are all bonded at the start."""
+        scene = system.scene
+        assert system.grains
+        whole = [("rock", Bonds(bodies=(), known=()))] if scene.rock else []
+        own = [(f"bonds[{k}]", it) for k, it in enumerate(scene.bonds)]
+        bodies = Bodies(system.grains, system.frames, system.held)
+        return cls(system.clock, [*whole, *own], system.grains, bodies)
+
+    def before(self) -> None:
+        """Bond what is to be bonded in the step that begins nearest to its time."""
+        time, step = self.clock.time, self.clock.seconds
+        while self.made < len(self.sections) and time >= self.sections[self.made][1].at - 0.5 * step:
+            key, section = self.sections[self.made]
+            if section.known:
+                self._join(key, section)
+                self.made += 1
+                continue
+            bodies = self._within(self.chosen[self.made], section)
+            before = 0 if self.grains.bonds is None else len(self.grains.bonds.back)
+            count = bond(self.grains, [self.bodies.named[body] for body in bodies])
+            if not count and section.at == 0.0:
+                problem, repair = "nothing touches, so there is nothing to bond", "bond later, or place bodies closer"
+                raise InputError(Fault(f"{key}.at", section.at, problem, "s", repair=repair))
+            bonds = self.grains.bonds
+            assert bonds is not None
+            own = bonds.back[before:]
+            factor = section.factor if section.tension is None else section.tension / float(np.mean(own[own > 0.0]))
+            if count and factor != 1.0:
+                own *= factor
+            self.made += 1
+
+    def _join(self, key: str, section: Bonds) -> None:
+        """The bonds that a section gives by number; raises InputError at a number that there is not."""
+        grains = self.grains
+        ends = np.array([row[:3] for row in section.known], np.int64)
+        segments = 0 if grains.segments is None else len(grains.segments.ends)
+        most = np.where(ends[:, 2] == 1, segments, grains.discs.count)
+        bad = np.flatnonzero((ends < 0).any(axis=1) | (ends[:, 0] >= grains.discs.count) | (ends[:, 1] >= most))
+        if len(bad):
+            problem = f"there are {grains.discs.count} discs and corners, and {segments} segments"
+            raise InputError(Fault(f"{key}.known[{bad[0]}]", None, problem, repair="number them from 0"))
+        made = BondList(ends, np.array([row[3] for row in section.known]))
+        grains.bonds = made if grains.bonds is None else grains.bonds.joined(made)
+
+    def _within(self, bodies: list[Body], section: Bonds) -> list[Body]:
+        """Those with their centre in the rectangle of a section."""
+        if section.within is None:
+            return bodies
+        left, bottom, right, top = section.within
+        at, clumps = as_bodies(self.grains).position, self.bodies.clumps
+
+        def inside(body: Body) -> bool:
+            """Whether a body's centre lies there; a clump's is its first disc's."""
+            name = self.bodies.named[body]
+            if isinstance(name, ClumpNumber):
+                assert clumps is not None
+                name = int(clumps.discs_of(name.number)[0])
+            return bool(left <= at[name, 0] <= right and bottom <= at[name, 1] <= top)
+
+        return [body for body in bodies if inside(body)]
+
+    def row(self) -> Row:
+        """Columns of the series."""
+        bonds = self.grains.bonds
+        there = 0 if bonds is None else int(np.sum(bonds.back > 0.0))
+        whole = 0 if bonds is None else bonds.count
+        return {"bonds ()": float(whole), "broken bonds ()": float(there - whole)}
+
+    def show(self, snapshot: Snapshot) -> None:
+        """The cloud of bonds."""
+        snapshot.clouds[BONDS] = self.cloud()
+
+    def state(self) -> dict[str, Any]:
+        """How many sections have been; the bonds are of the grains."""
+        return {"bonds_made": self.made}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state."""
+        self.made = int(state["bonds_made"])
+
+    def cloud(self) -> Cloud:
+        """Bonds as lines between what they hold: two points each, with whether it is whole, its back tension, when and
+        where it broke, and the kind (see KINDS) and number of both bodies."""
+        bonds = self.grains.bonds or BondList(np.zeros((0, 3), np.int64), np.zeros(0))
+        shown = bonds.back > 0.0
+        ends = np.ascontiguousarray(bonds.ends[shown])
+        way, far, other = np.zeros((len(ends), 2)), np.zeros((len(ends), 2)), np.zeros(len(ends), np.int64)
+        known = segments_now(self.grains)
+        at = self.grains.discs.position
+        if known is not None:
+            touched(at, ends, known, self.grains.cell, way, far, other)
+        points = np.repeat(at[ends[:, 0]], 2, axis=0)
+        points[1::2] += way
+        broken = bonds.broken[shown]
+        data: dict[str, NDArray[Any]] = {
+            "whole": bonds.whole[shown], "back_tension": bonds.back[shown], "broken_time": broken[:, 0],
+            "first_kind": self.bodies.kind[ends[:, 0]], "first_number": self.bodies.number[ends[:, 0]],
+            "second_kind": self.bodies.kind[other], "second_number": self.bodies.number[other],
+        }  # fmt: skip
+        data = {name: np.repeat(values, 2) for name, values in data.items()}
+        data["broken_place"] = np.repeat(np.column_stack((broken[:, 1:], np.zeros(len(ends)))), 2, axis=0)
+        units = {"back_tension": "N/m", "broken_time": "s", "broken_place": "m"}
+        return Cloud(points, data, units, lines=np.arange(len(points)).reshape(-1, 2))

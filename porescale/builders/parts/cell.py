@@ -1,0 +1,66 @@
+"""The strained cell of a dry scene: its strain, and what it says in series.csv."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.builders.part import Clock, Part, Row
+from porescale.builders.system import System
+from porescale.dem.bodies.rigid import areas
+from porescale.dem.grains import Grains
+
+Array = NDArray[np.float64]
+
+
+class CellPart(Part):
+    """Follows the strain of a cell; shear: the integral of its rate, since the tilt starts anew at half a width."""
+
+    def __init__(self, clock: Clock, grains: Grains) -> None:
+        self.clock, self.grains = clock, grains
+        self.shear = 0.0
+
+    @classmethod
+    def build(cls, system: System) -> CellPart:
+        """Of a scene with [cell]."""
+        assert system.grains
+        return cls(system.clock, system.grains)
+
+    def after(self) -> None:
+        """Add the shear of the step: its rates stay till the next."""
+        self.shear += self.clock.seconds * float(self.grains.steering.gradient()[0, 1])
+
+    def state(self) -> dict[str, Any]:
+        """The shear; the cell itself is of the grains."""
+        return {"shear": self.shear}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state."""
+        self.shear = float(state["shear"])
+
+    def row(self) -> Row:
+        """Columns of the series: strain (logarithms of the stretch of the edges; shear), the stress of the last step
+        (compression positive, shear of the sign of the strain that it drives), and the cell."""
+        grains = self.grains
+        (width, _), (tilt, height) = grains.steering.edges()
+        xx, xy, yy = grains.steering.cell_pressure()
+        return {
+            "strain xx ()": math.log(width / grains.box.period[0]),
+            "strain yy ()": math.log(height / grains.box.period[1]), "strain xy ()": self.shear,
+            "stress xx (Pa)": float(xx), "stress yy (Pa)": float(yy), "shear stress (Pa)": -float(xy),
+            "cell width (m)": width, "cell height (m)": height, "cell tilt (m)": tilt,
+            "solid fraction ()": float(areas(grains).sum()) / (width * height),
+        }  # fmt: skip
+
+    def seen(self) -> tuple[Array, Array]:
+        """Positions (n, 2) m of the discs within width and height of the cell; velocities (n, 2) with the cell's."""
+        steering, discs = self.grains.steering, self.grains.discs
+        (width, _), (tilt, height) = steering.edges()
+        position = discs.position.copy()
+        turns = np.floor(position[:, 1] / height)
+        position -= turns[:, None] * np.array([tilt, height])
+        position[:, 0] -= width * np.floor(position[:, 0] / width)
+        return position, discs.velocity + position @ steering.gradient().T

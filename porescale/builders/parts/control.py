@@ -1,0 +1,40 @@
+"""Bodies whose motion is recorded: control.csv."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from porescale.builders.initial.rock import has_plates
+from porescale.builders.part import Clock, Part, Row
+from porescale.builders.system import System
+from porescale.dem.grains import Grains
+
+
+class ControlPart(Part):
+    """recorded : names of the first bodies that are watched."""
+
+    def __init__(self, clock: Clock, grains: Grains, recorded: Sequence[str]) -> None:
+        self.clock, self.grains, self.recorded = clock, grains, recorded
+
+    @classmethod
+    def build(cls, system: System) -> ControlPart:
+        """Of a system in which bodies are recorded, the plates of a rock not counted."""
+        assert system.grains
+        return cls(system.clock, system.grains, system.recorded[: -2 if has_plates(system.scene) else None])
+
+    def tables(self) -> dict[str, Row]:
+        """control.csv: displacement since the start, forces of contacts and of the control.
+
+        Forces are means over the last step of the model.
+        """
+        row: Row = {"time (s)": self.clock.time}
+        for name, line in zip(self.recorded, self.grains.steering.record(), strict=False):
+            for what, values, units in (
+                ("displacement", line.displacement, ("m", "m", "rad")),
+                ("contact", line.contact, ("N/m", "N/m", "N m/m")),
+                ("control", line.supply, ("N/m", "N/m", "N m/m")),
+            ):
+                kinds = ("x", "y", "rotation") if what == "displacement" else ("force x", "force y", "moment")
+                row |= {f"{name} {what} {kind} ({unit})": value
+                        for kind, value, unit in zip(kinds, values, units, strict=True)}  # fmt: skip
+        return {"control": row}

@@ -1,0 +1,58 @@
+"""Fluid and grains together."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from porescale.builders.part import Clock, Fields
+from porescale.builders.parts.fluid import FluidPart
+from porescale.builders.system import System
+from porescale.common.core.errors import Unstable
+from porescale.common.record.model import Array
+from porescale.coupling.divergence_check import DivergenceCheck
+from porescale.lbm.fluid import Fluid
+from porescale.lbm.scales import Scales
+
+
+class CoupledPart(FluidPart):
+    """A step of the fluid, with as many contact steps of the grains as go into it."""
+
+    def __init__(self, clock: Clock, fluid: Fluid, scales: Scales, sense: DivergenceCheck, system: System) -> None:
+        """``system`` : with both."""
+        super().__init__(clock, fluid, scales, sense, system)
+        assert system.coupled
+        self.coupled = system.coupled
+
+    def advance(self) -> None:
+        """A step of both."""
+        self.coupled.advance()
+
+    def fields(self) -> Fields:
+        """Of the fluid between the grains."""
+        return self.coupled.fields()
+
+    def check(self) -> None:
+        """Raise Unstable where fluid or grains are beyond sense; of both, the fluid is named."""
+        fault = None
+        try:
+            self.coupled.grains.check()
+        except Unstable as error:
+            fault = self.clock.in_steps(error)
+        super().check()
+        if fault:
+            raise fault
+
+    def _solid(self, solid: Array) -> dict[str, Array]:
+        """The solid fraction."""
+        return {"solid_fraction": solid.astype(np.float32)}
+
+    def state(self) -> dict[str, Any]:
+        """Both, and the mass of the lattice at the start."""
+        return {"mass": self.mass, "coupled": self.coupled.state()}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state."""
+        self.mass = float(state["mass"])
+        self.coupled.restore(state["coupled"])

@@ -1,0 +1,28 @@
+"""The energy budget of the grains, as columns of series.csv."""
+
+from __future__ import annotations
+
+from porescale.builders.part import Part, Row
+from porescale.builders.system import System
+from porescale.dem.grains import Grains
+from porescale.dem.measures.energy import energy_book
+
+RESIDUAL = "residual (J/m)"
+
+
+class EnergyPart(Part):
+    """The budget since the first step.  acceleration : of free fall, m/s², whose work is the potential energy."""
+
+    def __init__(self, grains: Grains, acceleration: tuple[float, float]) -> None:
+        self.grains, self.acceleration = grains, acceleration
+
+    @classmethod
+    def build(cls, system: System) -> EnergyPart:
+        """Of a system with grains."""
+        assert system.grains
+        return cls(system.grains, system.scene.gravity)
+
+    def row(self) -> Row:
+        """Columns of the series, J/m, the residual last."""
+        book = energy_book(self.grains, self.acceleration)
+        return {**{name: value for name, value in book.items() if name != RESIDUAL}, RESIDUAL: book[RESIDUAL]}

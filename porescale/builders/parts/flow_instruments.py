@@ -1,0 +1,135 @@
+"""What probes, flux sections and load cells of a scene read: rows of probes.csv, flux.csv and loads.csv."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from numpy.typing import NDArray
+
+from porescale.builders.part import Clock, Fields, Part, Row
+from porescale.builders.parts.flow_fields import LAMBDA, total_pressure
+from porescale.builders.parts.fluid import FluidPart
+from porescale.builders.system import System
+from porescale.coupling.step import Coupled
+from porescale.output.sample import Sampler, midpoints
+from porescale.scene.measures.line import Flux
+from porescale.scene.measures.loads import Loads
+
+Array = NDArray[Any]
+
+
+class FlowInstruments(Part):
+    """The measuring sections of a scene with fluid."""
+
+    def __init__(self, clock: Clock, fluid: FluidPart, system: System) -> None:
+        """``system`` : with fluid, and [[probe]], [[flux]] or [loads]."""
+        scene, derived = system.scene, system.derived
+        assert derived.cells
+        self.clock, self.fluid, self.gravity = clock, fluid, scene.gravity
+        grid = derived.cells, fluid.scales.spacing, scene.domain.periodic
+        self.probes = Sampler([(it.x, it.y) for it in scene.probe], *grid) if scene.probe else None
+        self.probe_names = [it.name or f"probe {k}" for k, it in enumerate(scene.probe)]
+        self.fluxes = [_Section(it, k, fluid.scales.spacing, grid) for k, it in enumerate(scene.flux)]
+        self.solid = bool(scene.grains or scene.disc or scene.rectangle)
+        self.loads = Loading(scene.loads, system.coupled, system.held) if scene.loads and system.coupled else None
+        ratio = scene.grains.hydraulic_radius_ratio if scene.grains else None
+        self.first: Row = {LAMBDA: ratio} if ratio else {}
+
+    @classmethod
+    def build(cls, system: System, fluid: FluidPart) -> FlowInstruments:
+        """Of a system with fluid that is measured."""
+        return cls(system.clock, fluid, system)
+
+    def tables(self) -> dict[str, Row]:
+        """A row of every table that the scene has a section for."""
+        first, fields, tables = {"time (s)": self.clock.time} | self.first, self.fluid.fields(), {}
+        if self.probes:
+            tables["probes"] = first | self._probe_row(self.probes, fields)
+        if self.fluxes:
+            tables["flux"] = first | self._flux_row(fields)
+        if self.loads:
+            tables["loads"] = first | self.loads.row()
+        return tables
+
+    def _probe_row(self, probes: Sampler, fields: Fields) -> Row:
+        excess, ux, uy, solid = fields
+        p, u, v = (
+            probes.in_fluid(total_pressure(self.gravity, self.fluid.scales, excess), solid),
+            probes.of(ux),
+            probes.of(uy),
+        )
+        row = {}
+        for k, name in enumerate(self.probe_names):
+            row[f"{name} pressure (Pa)"] = float(p[k])
+            row[f"{name} velocity x (m/s)"] = float(u[k])
+            row[f"{name} velocity y (m/s)"] = float(v[k])
+        return row
+
+    def _flux_row(self, fields: Fields) -> Row:
+        _, ux, uy, solid = fields
+        row = {}
+        for section in self.fluxes:
+            name = section.name
+            row[f"{name} volume flux (m²/s)"] = section.integral(ux, uy)
+            if self.solid:
+                row[f"{name} flux of solid (m²/s)"] = section.integral(ux * solid, uy * solid)
+        return row
+
+
+class _Section:
+    """Integral of what crosses a straight section: the midpoint rule, a point a cell, exact for whole cells."""
+
+    def __init__(self, section: Flux, number: int, spacing: float, grid: Any) -> None:
+        self.name = section.name or f"section {number}"
+        (x0, y0), (x1, y1) = section.start, section.end
+        self.length = math.hypot(x1 - x0, y1 - y0)
+        self.normal = (y1 - y0) / self.length, (x0 - x1) / self.length
+        self.at = Sampler(midpoints(section.start, section.end, max(1, round(self.length / spacing))), *grid)
+
+    def integral(self, ux: Array, uy: Array) -> float:
+        """Of a flow (ny, nx) through the section, m²/s."""
+        across = self.normal[0] * self.at.of(ux) + self.normal[1] * self.at.of(uy)
+        return float(across.mean()) * self.length
+
+
+class Loading:
+    """Loads of the fluid on chosen bodies.  held : discs that are held, the last ones."""
+
+    def __init__(self, loads: Loads, coupled: Coupled, held: int) -> None:
+        self.loads, self.coupled, self.held = loads, coupled, held
+
+    def row(self) -> Row:
+        """Force (N/m) and torque (N m/m) of the fluid on every chosen body, and coefficients by a reference.
+
+        The load of the last step, that of the fluid inside taken back; buoyancy by gravity is not in it (the lattice
+        solves for the reduced pressure).
+        """
+        loads, coupled = self.loads, self.coupled
+        grains = coupled.grains.discs.count - self.held
+        row: Row = {}
+        bodies = [(f"disc {k}", grains + k) for k in loads.discs] + [(f"grain {k}", k) for k in loads.grains]
+        length = math.hypot(*loads.direction)
+        ex, ey = loads.direction[0] / length, loads.direction[1] / length
+        for name, k in bodies:
+            fx, fy = (float(value) for value in coupled.fluid_force[k])
+            row[f"{name} force x (N/m)"] = fx
+            row[f"{name} force y (N/m)"] = fy
+            row[f"{name} torque (N m/m)"] = float(coupled.fluid_torque[k])
+            if loads.speed and loads.length:
+                unit = 0.5 * coupled.scales.density * loads.speed**2 * loads.length
+                row[f"{name} drag coefficient ()"] = (fx * ex + fy * ey) / unit
+                row[f"{name} lift coefficient ()"] = (fy * ex - fx * ey) / unit
+        return row | rectangle_loads(loads.rectangles, coupled)
+
+
+def rectangle_loads(numbers: Sequence[int], coupled: Coupled) -> Row:
+    """Forces of the fluid and of the grains on rectangles by number, columns of loads.csv."""
+    row: Row = {}
+    for k in numbers:
+        fluid, grains = coupled.rectangle_force[k], coupled.grains.rectangle_force[k]
+        for a, axis in enumerate("xy"):
+            row[f"rectangle {k} force {axis} (N/m)"] = float(fluid[a])
+            row[f"rectangle {k} force of grains {axis} (N/m)"] = float(grains[a])
+    return row

@@ -1,0 +1,84 @@
+"""The fluid of a scene without grains: its steps, its fields in snapshots, and whether it still makes sense."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from porescale.builders.initial.fluid_options import weight_of
+from porescale.builders.part import Clock, Fields, Stepper
+from porescale.builders.parts.flow_fields import UNITS, derived_fields, total_pressure
+from porescale.builders.system import System
+from porescale.common.core.errors import Unstable
+from porescale.common.record.model import Array, Grid, Snapshot
+from porescale.coupling.divergence_check import DivergenceCheck
+from porescale.lbm.fluid import Fluid
+from porescale.lbm.scales import Scales
+
+
+class FluidPart(Stepper):
+    """Fluid alone.  mass : excess of the lattice's mass at the start, lattice units."""
+
+    def __init__(self, clock: Clock, fluid: Fluid, scales: Scales, sense: DivergenceCheck, system: System) -> None:
+        """``system`` : gravity and the fields that snapshots have."""
+        self.clock, self.fluid, self.scales, self.sense = clock, fluid, scales, sense
+        self.gravity, self.names = system.scene.gravity, system.scene.output.fields
+        self.mass = fluid.mass_excess()
+
+    @classmethod
+    def build(cls, system: System) -> FluidPart:
+        """Of a system with fluid."""
+        fluid, scales, section = system.fluid, system.derived.scales, system.scene.fluid
+        assert fluid
+        assert scales
+        assert section
+        sense = DivergenceCheck(
+            fluid, scales, system.coupled, operator=section.operator, eddies=bool(section.smagorinsky),
+            solid_operator=section.solid_operator, weighting=weight_of(section),
+        )  # fmt: skip
+        return cls(system.clock, fluid, scales, sense, system)
+
+    def advance(self) -> None:
+        """A step of the lattice."""
+        self.fluid.advance()
+
+    def explained(self, error: Unstable) -> Unstable:
+        """Where both are beyond sense the lattice is named: it throws the grains, not they it."""
+        self.sense.check(self.clock.step, self.clock.time)
+        return self.clock.in_steps(error)
+
+    def fields(self) -> Fields:
+        """Density excess, velocity, and nothing solid."""
+        rho, ux, uy = self.fluid.fields()
+        s = self.scales
+        return (rho - 1) * s.density, ux * s.velocity, uy * s.velocity, np.zeros_like(rho)
+
+    def check(self) -> None:
+        """Raise Unstable where the fluid is beyond sense."""
+        self.sense.check(self.clock.step, self.clock.time)
+
+    def show(self, snapshot: Snapshot) -> None:
+        """The grid of fields."""
+        excess, ux, uy, solid = self.fields()
+        velocity = np.zeros((*ux.shape, 3), np.float32)
+        velocity[..., 0], velocity[..., 1] = ux, uy
+        pressure = total_pressure(self.gravity, self.scales, excess).astype(np.float32)
+        cells: dict[str, Array] = {"velocity": velocity, "pressure": pressure, **self._solid(solid)}
+        cells |= derived_fields(self.names, self.fluid, ux, uy, self.scales)
+        units = {"velocity": "m/s", "pressure": "Pa", **UNITS}
+        units = {name: unit for name, unit in units.items() if name in cells}
+        snapshot.grids["fields"] = Grid((0.0, 0.0), (self.scales.spacing, self.scales.spacing), cells, units)
+
+    def _solid(self, solid: Array) -> dict[str, Array]:
+        """Fields of what is solid in cells."""
+        return {}
+
+    def state(self) -> dict[str, Any]:
+        """The lattice, and its mass at the start."""
+        return {"mass": self.mass, "fluid": self.fluid.state()}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state."""
+        self.mass = float(state["mass"])
+        self.fluid.restore(state["fluid"])

@@ -1,0 +1,86 @@
+"""What measures of grains need of bodies of segments: their exact area in a region, and which bodies touch."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.builders.initial.frames import Placed, disc_count, free_rows
+from porescale.dem.bodies.frames import polygon_moments
+from porescale.dem.bodies.rigid import body_of
+from porescale.dem.grains import Grains
+from porescale.dem.measures.contact_list import nearest_image
+from porescale.dem.measures.region import Region
+
+Array = NDArray[np.float64]
+
+
+def coordination_of_bodies(grains: Grains, placed: Sequence[Placed], held: int) -> float:
+    """Mean number of other bodies that touch a grain, clump, polygon or segment that forces move.
+
+    Two faces that touch at several points are one neighbour; walls are none, containers and held discs are.
+    """
+    number = body_of(grains)
+    near = np.unique(np.sort(number[touching(grains)], axis=1), axis=0)
+    free = np.unique(number[free_rows(grains, placed, held)])
+    return float(np.isin(near, free).sum() / len(free)) if len(free) else 0.0
+
+
+def touching(grains: Grains) -> NDArray[np.int64]:
+    """Pairs of discs (c, 2) that touch, a segment as the disc at its first end; corners by the segments there."""
+    d, pairs = grains.discs, grains.current_pairs()
+    i, j = np.repeat(np.arange(d.count), np.diff(pairs.start)), pairs.partner.astype(np.int64)
+    apart = np.hypot(*nearest_image(d.position[j] - d.position[i], grains.period).T)
+    near = apart < d.radius[i] + d.radius[j]
+    found = [np.column_stack((i[near], j[near]))]
+    if grains.segments is not None:
+        point, segment = grains.segments.near.T
+        a, b = grains.segments.ends[segment].T
+        way = d.position[b] - d.position[a]
+        gone = nearest_image(d.position[point] - d.position[a], grains.period)
+        share = np.clip(np.sum(gone * way, axis=1) / np.sum(way * way, axis=1), 0.0, 1.0)
+        near = np.hypot(*(gone - share[:, None] * way).T) < d.radius[point] + d.radius[a]
+        found.append(np.column_stack((point[near], a[near])))
+    return np.concatenate(found)
+
+
+def solid_in(grains: Grains, placed: Sequence[Placed], region: Region) -> float:
+    """Area (m^2) of all frames in a region: polygons exactly, rods at the share of their ends in it.
+
+    Their thickness is not counted, as it has no mass.  Not of images through periodic sides.
+    """
+    first, total = disc_count(grains), 0.0
+    for it in placed:
+        at = grains.discs.position[first : first + len(it.frame.corners)]
+        first += len(it.frame.corners)
+        area = it.frame.mass_properties().area or 0.0
+        if it.frame.closed and it.kind != "container":
+            total += clipped_area(at[it.frame.loop], region)
+        elif it.free:
+            total += area * float(np.mean(np.all((at >= region.lower) & (at <= region.upper), axis=1)))
+    return total
+
+
+def clipped_area(corners: Array, region: Region) -> float:
+    """Area (m^2) of a polygon (k, 2) m within a region: cut by its four sides, one after the other.
+
+    Source: Sutherland & Hodgman 1974; parts of one that is not convex are joined by lines without area.
+    """
+    left = corners
+    for axis in range(2):
+        for side, sense in ((region.lower[axis], 1.0), (region.upper[axis], -1.0)):
+            depth = sense * (left[:, axis] - side)
+            kept = []
+            for k in range(len(left)):
+                if (depth[k - 1] > 0.0) != (depth[k] > 0.0):
+                    share = depth[k - 1] / (depth[k - 1] - depth[k])
+                    kept.append(left[k - 1] + share * (left[k] - left[k - 1]))
+                if depth[k] > 0.0:
+                    kept.append(left[k])
+            if len(kept) < 3:
+                return 0.0
+            left = np.array(kept)
+    area, _, _ = polygon_moments(left)
+    return area

@@ -1,0 +1,73 @@
+"""The gate, for fluid and grains alike: it opens at its time, at once or upward with a speed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from porescale.builders.initial.grains import GATE
+from porescale.builders.part import Clock, Part
+from porescale.builders.system import System
+from porescale.dem.grains import Grains
+from porescale.lbm.boundary.thin_plate import Plate
+from porescale.lbm.fluid import Fluid
+from porescale.scene.bodies.gate import Gate
+
+
+class GatePart(Part):
+    """Opens the gate.  plate : as the fluid has it;  spacing : of the lattice, m;  open : whether it has opened."""
+
+    def __init__(
+        self, clock: Clock, section: Gate, fluid: Fluid | None, plate: Plate | None, spacing: float,
+        grains: Grains | None,
+    ) -> None:  # fmt: skip
+        self.clock, self.opens_at, self.lift_speed = clock, section.opens_at, section.lift_speed
+        self.fluid, self.plate, self.spacing, self.grains = fluid, plate, spacing, grains
+        self.open = False
+
+    @classmethod
+    def build(cls, system: System) -> GatePart:
+        """Of a scene with [gate]; puts its plate into the fluid, while the grains have theirs."""
+        derived, fluid = system.derived, system.fluid
+        assert system.scene.gate
+        plate = fluid.add_plate(derived.gate_column or 0) if fluid else None
+        spacing = derived.scales.spacing if derived.scales else 1.0
+        return cls(system.clock, system.scene.gate, fluid, plate, spacing, system.grains)
+
+    @property
+    def idle(self) -> bool:
+        """Once it has vanished."""
+        return self.open and self.lift_speed is None
+
+    def before(self) -> None:
+        """Open it in the step that begins nearest to its time, and lift it."""
+        if not self.open and self.clock.time >= self.opens_at - 0.5 * self.clock.seconds:
+            self.open = True
+            if self.lift_speed is None:
+                self._vanish()
+            else:
+                self._lift(self.lift_speed)
+        if self.plate:
+            self.plate.lower_edge += self.plate.speed
+
+    def _vanish(self) -> None:
+        if self.fluid and self.plate in self.fluid.plates:
+            self.fluid.plates.remove(self.plate)
+        if self.grains:
+            self.grains.remove_plate(GATE)
+
+    def _lift(self, speed: float) -> None:
+        if self.plate:
+            self.plate.speed = speed * self.clock.seconds / self.spacing
+        if self.grains:
+            self.grains.move_plate(GATE, speed)
+
+    def state(self) -> dict[str, Any]:
+        """Whether it has opened; the edges of its plates belong to fluid and grains."""
+        return {"gate_open": self.open}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state, before fluid and grains do."""
+        if bool(state["gate_open"]):
+            self.open = True
+            if self.lift_speed is None and self.fluid:
+                self.fluid.plates.clear()

@@ -1,0 +1,246 @@
+"""What a scene measures on its grains: rows of regions.csv and forces.csv, contacts and coarse-grained fields.
+
+A scene that asks for none of it computes none of it.  Everything is taken from the list of contacts that the next
+contact step would use, and changes nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.builders.initial.frames import Placed, disc_count, free_rows
+from porescale.builders.initial.walls import WallPlaces, middles
+from porescale.builders.part import Clock, Part, Row
+from porescale.builders.parts.frame_measures import solid_in
+from porescale.builders.system import System
+from porescale.common.record.model import Cloud, Grid, Snapshot
+from porescale.dem.bodies.rigid import areas, as_bodies, body_of
+from porescale.dem.forces.rectangle import BOTTOM, RIGHT, TOP
+from porescale.dem.forces.rectangle import LEFT as LEFT_FACE
+from porescale.dem.forces.walls import HIGH, LOW, SIDES, X
+from porescale.dem.grains import Grains
+from porescale.dem.measures.coarse_graining import CoarseGrained, Raster
+from porescale.dem.measures.contact_list import Contacts
+from porescale.dem.measures.contacts import contacts
+from porescale.dem.measures.fabric import LEAST_WITH_FRICTION, LEAST_WITHOUT, contact_numbers, loads, rattlers
+from porescale.dem.measures.fabric import coordination as coordination_of
+from porescale.dem.measures.fabric import fabric as fabric_of
+from porescale.dem.measures.loads import on_discs, on_surface
+from porescale.dem.measures.motion import Motion, motion
+from porescale.dem.measures.porosity import disc_areas, void_ratio
+from porescale.dem.measures.region import Region
+from porescale.dem.measures.stress import contact_stress, kinetic_stress, principal
+from porescale.dem.motion.periodic_cell import Straining
+from porescale.scene.measures.coarse_graining import CoarseGraining
+from porescale.scene.scene import Scene
+
+Array = NDArray[Any]
+
+
+KERNEL_WIDTH = 2.5
+"""Width of the kernel in mean diameters where a scene gives none: some twenty grains are felt at a point."""
+
+
+FIELDS, CONTACTS = "grain_fields", "contacts"
+"""Names of the grid and of the cloud in snapshots."""
+
+
+class GrainInstruments(Part):
+    """The regions, the wall forces, the contacts and the coarse graining of a scene."""
+
+    def __init__(self, clock: Clock, grains: Grains, placed: Sequence[Placed], scene: Scene) -> None:
+        """``placed`` : bodies of segments."""
+        self.clock, self.grains, self.placed = clock, grains, placed
+        self.walls = WallPlaces(scene.domain, scene.wall) if scene.output.forces else None
+        self.contacts, self.coarse_graining = scene.output.contacts, scene.coarse_graining
+        self.regions = [(it.name or f"region {k}", Region(it.lower, it.upper)) for k, it in enumerate(scene.region)]
+        self.held = np.arange(grains.discs.count) >= grains.discs.count - len(scene.disc)
+        if grains.segments is not None:
+            self.held = ~np.isin(np.arange(grains.discs.count), free_rows(grains, placed, len(scene.disc)))
+        friction = max(law.friction for law in grains.laws)
+        self.least = LEAST_WITH_FRICTION if friction > 0.0 else LEAST_WITHOUT
+
+    @classmethod
+    def build(cls, system: System) -> GrainInstruments:
+        """Of a system with grains that are measured."""
+        assert system.grains
+        return cls(system.clock, system.grains, system.frames, system.scene)
+
+    def tables(self) -> dict[str, Row]:
+        """A row of regions.csv and of forces.csv, where the scene asks for them."""
+        tables: dict[str, Row] = {}
+        if not (self.regions or self.walls):
+            return tables
+        found, time = contacts(self.grains), self.clock.time
+        if self.regions:
+            loose = self.rattling(found)
+            tables["regions"] = {"time (s)": time}
+            for name, region in self.regions:
+                row = region_row(self.grains, found, region, loose, self.held, self.placed)
+                tables["regions"] |= {f"{name} {column}": value for column, value in row.items()}
+        if self.walls:
+            tables["forces"] = {"time (s)": time} | self._forces(found, self.walls)
+        return tables
+
+    def rattling(self, found: Contacts) -> NDArray[np.bool_]:
+        """Which discs carry nothing, (n,): all of a clump or none."""
+        number = body_of(self.grains)
+        loose: NDArray[np.bool_] = rattlers(found.of_bodies(number), len(number), self.least, self.held)[number]
+        return loose
+
+    def _forces(self, found: Contacts, walls: WallPlaces) -> Row:
+        """Force of the grains on every wall, plate and rectangle with its moment about the middle of it (a free wall:
+        about its point), where walls are that move, and of all contacts on every held disc, about its centre."""
+        grains = self.grains
+        row: Row = {}
+        points = middles(grains)
+        points += [(float(it[X]), 0.5 * float(it[LOW] + it[HIGH])) for it in grains.plates]
+        points += [
+            (0.5 * float(it[LEFT_FACE] + it[RIGHT]), 0.5 * float(it[BOTTOM] + it[TOP])) for it in grains.rectangles
+        ]
+        for name, middle in zip(found.names, points, strict=True):
+            shown = f"{name} wall" if name in SIDES else name
+            fx, fy, moment = on_surface(found, name, middle)
+            row |= {f"{shown} force x (N/m)": fx, f"{shown} force y (N/m)": fy, f"{shown} moment (N m/m)": moment}
+        row |= walls.row(grains)
+        discs = np.flatnonzero(self.held[: disc_count(grains)]).tolist()
+        for k, (fx, fy, moment) in enumerate(on_discs(found, grains.discs, discs)):
+            row |= {f"disc {k} force x (N/m)": float(fx), f"disc {k} force y (N/m)": float(fy),
+                    f"disc {k} moment (N m/m)": float(moment)}  # fmt: skip
+        return row
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Contacts, what they say of each grain, and fields, where the scene asks for them."""
+        if not (self.contacts or self.coarse_graining):
+            return
+        found = contacts(self.grains)
+        if self.contacts:
+            snapshot.clouds[CONTACTS] = contact_cloud(found, self.grains)
+            split, number = disc_count(self.grains), body_of(self.grains)
+            touching = contact_numbers(found.of_bodies(number), len(number))[number]
+            loose = self.rattling(found)
+            for name, rows in (("grains", slice(split)), ("frames", slice(split, None))):
+                if name in snapshot.clouds:
+                    snapshot.clouds[name].data["contact_number"] = touching[rows].astype(np.int32)
+                    snapshot.clouds[name].data["rattler"] = loose[rows]
+        if self.coarse_graining:
+            snapshot.grids[FIELDS] = self._fields(found, self.coarse_graining)
+
+    def _fields(self, found: Contacts, asked: CoarseGraining) -> Grid:
+        """The coarse-grained fields of a snapshot."""
+        grains = self.grains
+        width = asked.width or max(2.0 * KERNEL_WIDTH * float(grains.discs.radius.mean()), asked.spacing)
+        cell = grains.cell if isinstance(grains.cell, Straining) else None
+        periodic = grains.box.periodic if cell is None else (False, False)
+        raster = Raster.over(grains.box.lower, grains.box.upper, asked.spacing, width, periodic)
+        fields = CoarseGrained(raster, grains.discs, found, conserve=cell is None, cell=cell, area=areas(grains))
+        cells: dict[str, Array] = {}
+        units: dict[str, str] = {}
+        for name in asked.fields:
+            value = getattr(fields, "contact_stress" if name == "stress" else name)
+            if value.ndim == 2:
+                cells[name] = value.astype(np.float32)
+            elif value.ndim == 3:
+                cells[name] = np.zeros((*value.shape[:2], 3), np.float32)
+                cells[name][..., :2] = value
+            else:
+                cells |= _components(name, value)
+            units |= {key: UNITS[name] for key in cells if key not in units}
+        return Grid(raster.lower, raster.spacing, cells, units)
+
+
+UNITS = {"density": "kg/m^3", "solid_fraction": "", "velocity": "m/s", "strain_rate": "1/s", "stress": "Pa",
+         "kinetic_stress": "Pa"}  # fmt: skip
+"""Units of the fields."""
+
+
+def _components(name: str, value: Array) -> dict[str, Array]:
+    """A tensor (rows, columns, 2, 2) by component, and its two invariants: mean and largest shear."""
+    parts = {f"{name}_{a}{b}": value[..., i, j] for i, a in enumerate("xy") for j, b in enumerate("xy")}
+    if name == "strain_rate":
+        del parts[f"{name}_yx"]  # symmetric by definition
+    half, mixed = 0.5 * (value[..., 0, 0] - value[..., 1, 1]), 0.5 * (value[..., 0, 1] + value[..., 1, 0])
+    parts[f"{name}_mean"] = 0.5 * (value[..., 0, 0] + value[..., 1, 1])
+    parts[f"{name}_shear"] = np.hypot(half, mixed)
+    return {key: part.astype(np.float32) for key, part in parts.items()}
+
+
+def contact_cloud(found: Contacts, grains: Grains) -> Cloud:
+    """Contacts as points with their bodies, geometry and forces: a table, and lines along ``branch`` as glyphs.
+
+    second is -1 at a surface, whose number is then in ``surface`` (order: walls, plates, rectangles).
+    """
+    names = "normal_force", "tangential_force", "overlap", "spring"
+    data: dict[str, Array] = {
+        "first": found.first.astype(np.int32), "second": found.second.astype(np.int32),
+        "surface": found.surface.astype(np.int32), "sliding": found.sliding,
+        **{name: getattr(found, name) for name in names},
+    }  # fmt: skip
+    for name in ("normal", "branch", "force"):
+        data[name] = np.zeros((found.count, 3))
+        data[name][:, :2] = getattr(found, name)
+    units = dict(zip((*names, "branch", "force"), ("N/m", "N/m", "m", "m", "m", "N/m"), strict=True))
+    point = Region(grains.box.lower, grains.box.upper).near(found.point, grains.period)
+    return Cloud(point, data, units)
+
+
+def _moving(grains: Grains, region: Region, weight: Array) -> Motion:
+    """The affine motion of the discs of a region, (n,) weights, in a strained cell too."""
+    at, velocity = region.about(grains.discs.position, grains.period), grains.discs.velocity
+    if isinstance(grains.cell, Straining):
+        velocity = velocity + at @ grains.steering.gradient().T
+    return motion(at, velocity, weight)
+
+
+def region_row(
+    grains: Grains, found: Contacts, region: Region, loose: Array, held: Array, placed: Sequence[Placed] = ()
+) -> Row:
+    """What is known of a region, by column with unit.
+
+    A region stays where it is, also in a strained cell, whose images are measured wherever they reach into it.
+    Porosity and velocities weigh discs by their area and mass inside, members of clumps by their share of it; polygons
+    (``placed``) take their exact area, and move with their corners;
+    coordination and rattlers are of discs and clumps whose centre is inside, held ones left out; fabric and forces of
+    contacts whose point is inside.
+    """
+    d, period = grains.discs, grains.period
+    bodies, number = as_bodies(grains), body_of(grains)
+    others = held | (number != np.arange(d.count))
+    discs = disc_count(grains)
+    share = disc_areas(region, d.position, d.radius, period) / np.where(d.area > 0.0, d.area, 1.0)
+    share = np.where(d.area > 0.0, share, region.holds(d.position, period))
+    solid = float(share[:discs] @ areas(grains)[:discs]) + solid_in(grains, placed, region)
+    pores = 1.0 - solid / region.area
+    stress, kinetic = contact_stress(region, found, period), kinetic_stress(region, bodies, period)
+    mean, deviator, angle = principal(stress)
+    inside = region.holds(bodies.position, period) & ~others
+    here = found.chosen(region.holds(found.point, period) & loads(found))
+    fabric, force = fabric_of(found, region, period), here.normal_force
+    moving = _moving(grains, region, d.mass * share)
+    neighbours = coordination_of(found.of_bodies(number), region, bodies.position, period, loose, others)
+    nan = float("nan")
+    return {
+        "porosity ()": pores,
+        "void ratio ()": void_ratio(pores),
+        "stress xx (Pa)": float(stress[0, 0]), "stress yy (Pa)": float(stress[1, 1]),
+        "stress xy (Pa)": float(stress[0, 1]), "stress yx (Pa)": float(stress[1, 0]),
+        "mean stress (Pa)": mean, "deviator stress (Pa)": deviator, "major stress direction (rad)": angle,
+        "kinetic stress xx (Pa)": float(kinetic[0, 0]), "kinetic stress yy (Pa)": float(kinetic[1, 1]),
+        "kinetic stress xy (Pa)": float(kinetic[0, 1]),
+        "coordination number ()": neighbours,
+        "share of rattlers ()": float(loose[inside].mean()) if inside.any() else nan,
+        "contacts ()": float(fabric.contacts),
+        "fabric anisotropy ()": fabric.anisotropy, "fabric direction (rad)": fabric.angle,
+        "mean normal force (N/m)": float(force.mean()) if here.count else nan,
+        "largest over mean normal force ()": float(force.max() / force.mean()) if here.count else nan,
+        "share of sliding contacts ()": float(here.sliding.mean()) if here.count else nan,
+        "velocity x (m/s)": float(moving.velocity[0]), "velocity y (m/s)": float(moving.velocity[1]),
+        "strain rate xx (1/s)": float(moving.strain_rate[0, 0]),
+        "strain rate yy (1/s)": float(moving.strain_rate[1, 1]),
+        "strain rate xy (1/s)": float(moving.strain_rate[0, 1]),
+        "rotation (rad/s)": moving.rotation,
+    }  # fmt: skip

@@ -1,0 +1,81 @@
+"""What a collapse is measured by: front, run-out, centre of mass, energies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.builders.initial.frames import Placed, free_rows
+from porescale.builders.part import Part, Row
+from porescale.builders.parts.frame_measures import coordination_of_bodies
+from porescale.builders.system import System
+from porescale.dem.discs import FIELDS, Discs
+from porescale.dem.grains import Grains
+from porescale.dem.measures.survey import centre_of_mass, coordination, kinetic_energy, max_overlap
+
+
+class GrainSeries(Part):
+    """Follows the grains from where they start.
+
+    The front is the foremost edge of any grain on the side to which the packing can flow: left if it starts right of
+    the middle of the box, right otherwise.  Run-out is how far the front has come since the start.  Discs that are held
+    come after the grains and are none of them, nor are frames whose motion is prescribed (``placed``).
+    """
+
+    def __init__(self, grains: Grains, placed: Sequence[Placed], held: int, width: float) -> None:
+        """``held`` : discs that are held;  ``width`` : of the box, m."""
+        self.grains, self.held, self.placed = grains, held, placed
+        self.rows: slice | NDArray[np.int64] = slice(grains.discs.count - held)
+        if placed:
+            self.rows = free_rows(grains, placed, held)
+        middle = 0.5 * width
+        self.leftward = bool(centre_of_mass(self.free())[0] > middle)
+        self.start = self.front()
+
+    @classmethod
+    def build(cls, system: System) -> GrainSeries:
+        """Of a system with grains that are free."""
+        assert system.grains
+        return cls(system.grains, system.frames, system.held, system.scene.domain.width)
+
+    def free(self) -> Discs:
+        """The grains without the discs that are held; views where there are no frames."""
+        return Discs(*(getattr(self.grains.discs, name)[self.rows] for name in FIELDS))
+
+    def front(self) -> float:
+        """Position of the front, m."""
+        x, r = self.grains.discs.position[self.rows, 0], self.grains.discs.radius[self.rows]
+        return float((x - r).min() if self.leftward else (x + r).max())
+
+    def row(self) -> Row:
+        """Columns of the series."""
+        discs, front = self.free(), self.front()
+        x, y = centre_of_mass(discs)
+        return {
+            "front (m)": front,
+            "run-out (m)": self.start - front if self.leftward else front - self.start,
+            "centre of mass x (m)": float(x),
+            "centre of mass y (m)": float(y),
+            "highest grain (m)": float((discs.position[:, 1] + discs.radius).max()),
+            "kinetic energy of grains (J/m)": kinetic_energy(discs),
+            "largest grain speed (m/s)": float(np.hypot(*discs.velocity.T).max()),
+            "largest overlap over diameter ()": 0.5 * max_overlap(self.grains).share,
+            "coordination number ()": self.coordination(),
+        }
+
+    def coordination(self) -> float:
+        """Mean number of other bodies that touch one."""
+        if not self.placed:
+            return coordination(self.grains)
+        return coordination_of_bodies(self.grains, self.placed, self.held)
+
+    def state(self) -> dict[str, Any]:
+        """Where the front started."""
+        return {"watch": {"start": self.start, "leftward": self.leftward}}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state."""
+        self.start, self.leftward = float(state["watch"]["start"]), bool(state["watch"]["leftward"])

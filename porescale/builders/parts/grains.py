@@ -1,0 +1,60 @@
+"""Dry grains: their steps, and whether they still make sense."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from porescale.builders.part import Array, Clock, Stepper
+from porescale.builders.system import System
+from porescale.common.core.errors import Unstable
+from porescale.dem.grains import Grains
+
+
+class GrainsPart(Stepper):
+    """Grains without fluid.  weight : (n, 2) N/m."""
+
+    def __init__(self, clock: Clock, grains: Grains, weight: Array | None) -> None:
+        self.clock, self.grains, self.weight = clock, grains, weight
+
+    @classmethod
+    def build(cls, system: System) -> GrainsPart:
+        """Of a system of grains alone."""
+        assert system.grains
+        return cls(system.clock, system.grains, system.weight)
+
+    def advance(self) -> None:
+        """A contact step."""
+        self.grains.step(self.clock.seconds, self.weight)
+
+    @property
+    def takes_many(self) -> bool:
+        """Unless a load is a mean over a call."""
+        grains = self.grains
+        return not (grains.sleep or grains.steered or len(grains.held))
+
+    def advance_many(self, steps: int) -> None:
+        """All in one call; where a grain gets lost the clock stands at the step in which it did."""
+        before = self.grains.steps - self.clock.step
+        try:
+            self.grains.step(self.clock.seconds, self.weight, count=steps)
+        finally:
+            self.clock.put(self.grains.steps - before)
+
+    def explained(self, error: Unstable) -> Unstable:
+        """In steps of the simulation."""
+        return self.clock.in_steps(error)
+
+    def check(self) -> None:
+        """Raise Unstable where a grain is beyond sense."""
+        try:
+            self.grains.check()
+        except Unstable as error:
+            raise self.clock.in_steps(error) from None
+
+    def state(self) -> dict[str, Any]:
+        """The grains; ``mass``, of the fluid, is that of none."""
+        return {"mass": 0.0, "grains": self.grains.state()}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state."""
+        self.grains.restore(state["grains"])

@@ -1,0 +1,86 @@
+"""Rectangles in motion, for fluid and grains alike."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from porescale.builders.part import Clock, Part, Row
+from porescale.builders.system import System
+from porescale.coupling.coverage.rectangle import Rectangle as LatticeRectangle
+from porescale.coupling.step import Coupled
+from porescale.dem.forces.rectangle import LEFT, RIGHT, VELOCITY_X
+from porescale.dem.grains import Grains
+from porescale.scene.bodies.rectangle import Rectangle
+
+MAKE_GOOD = 64
+"""Steps after which what left with rectangles is made good: even, and too few for a density to change that is seen."""
+
+
+class RectanglesPart(Part):
+    """Moves the rectangles.  made_good : fluid taken out again of what came in with them, cells."""
+
+    def __init__(
+        self, clock: Clock, sections: Sequence[Rectangle], lattice: Sequence[LatticeRectangle], grains: Grains | None,
+        coupled: Coupled | None, *, make_good: bool,
+    ) -> None:  # fmt: skip
+        """``lattice`` : as the fluid has them, none without fluid;  ``make_good`` : whether the fluid's mass is."""
+        self.clock, self.sections, self.lattice, self.grains = clock, sections, list(lattice), grains
+        self.coupled, self.scales = coupled, coupled.scales if coupled else None
+        self.make_good = make_good
+        self.made_good = 0.0
+
+    @classmethod
+    def build(cls, system: System) -> RectanglesPart:
+        """Of a scene with [[rectangle]]."""
+        sections, domain = system.scene.rectangle, system.scene.domain
+        closed = not any(side.open for side in domain.sides.values())
+        wanted = [it.make_good for it in sections if it.make_good is not None]
+        return cls(
+            system.clock, sections, system.rectangles, system.grains, system.coupled,
+            make_good=wanted[0] if wanted else closed,
+        )  # fmt: skip
+
+    def after(self) -> None:
+        """Put all where they are now."""
+        for k, section in enumerate(self.sections):
+            here = section.travelled(self.clock.step * self.clock.seconds)
+            for a in range(2):
+                if self.scales:
+                    self.lattice[k].lower[a] = (section.lower[a] + here[a]) / self.scales.spacing
+                if self.grains:
+                    self.grains.rectangles[k, LEFT + a] = section.lower[a] + here[a]
+                    self.grains.rectangles[k, RIGHT + a] = section.upper[a] + here[a]
+
+    def before(self) -> None:
+        """Give all the velocity that takes them through the step, and now and then make the fluid's mass good."""
+        step, step_seconds, coupled = self.clock.step, self.clock.seconds, self.coupled
+        time = step * step_seconds
+        for k, section in enumerate(self.sections):
+            here, there = section.travelled(time), section.travelled(time + step_seconds)
+            for a in range(2):
+                speed = (there[a] - here[a]) / step_seconds
+                if self.scales:
+                    self.lattice[k].velocity[a] = speed / self.scales.velocity
+                if self.grains:
+                    self.grains.rectangles[k, VELOCITY_X + a] = speed
+        if coupled and self.make_good and step % MAKE_GOOD == 0:
+            self.made_good += coupled.saturated.restore_mass(coupled.fluid)
+
+    def row(self) -> Row:
+        """Columns of the series, in fluid."""
+        coupled = self.coupled
+        if coupled is None:
+            return {}
+        area = coupled.scales.spacing**2
+        through = self.made_good + coupled.saturated.mass_through_sides
+        return {"fluid in with rectangles (m²)": through * area, "of it taken out again (m²)": self.made_good * area}
+
+    def state(self) -> dict[str, Any]:
+        """What was made good; where they are follows from the time."""
+        return {"made_good": self.made_good}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state."""
+        self.made_good = float(state["made_good"])
+        self.after()

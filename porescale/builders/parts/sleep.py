@@ -1,0 +1,35 @@
+"""Grains that sleep."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from porescale.builders.part import Part, Row
+from porescale.builders.system import System
+from porescale.coupling.step import buoyant_weight
+from porescale.dem.resting.sleep import Sleep as Sleepers
+
+
+class SleepPart(Part):
+    """How many grains sleep, and what energy was taken."""
+
+    def __init__(self, sleepers: Sleepers) -> None:
+        self.sleepers = sleepers
+
+    @classmethod
+    def build(cls, system: System) -> SleepPart:
+        """Of a scene with [sleep]: lets the grains sleep, by their weight less lift."""
+        grains, section = system.grains, system.scene.sleep
+        assert grains
+        assert section
+        weight = system.coupled.weight if system.coupled else buoyant_weight(grains, 0.0, system.scene.gravity)
+        size = np.hypot(weight[:, 0], weight[:, 1]).astype(float)
+        grains.sleep = Sleepers(grains, size, section.share, section.after)
+        return cls(grains.sleep)
+
+    def row(self) -> Row:
+        """Columns of the series."""
+        return {
+            "grains asleep ()": float(self.sleepers.count),
+            "energy taken by sleep (J/m)": float(self.sleepers.removed.sum()),
+        }

@@ -1,0 +1,195 @@
+"""What ``check`` says of a scene: every derived number, the regime, the parts that will be built, and the cost."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from porescale.analysis.permeability import gebart, kozeny_carman
+from porescale.builders.cost import expected_seconds, memory, require_memory
+from porescale.builders.derive import Derived, derive
+from porescale.builders.initial.fluid_options import has_soft_rim, weight_of
+from porescale.builders.initial.random_polygons import copies_of
+from porescale.builders.kinds import SECTIONS
+from porescale.common.cli.report import Report
+from porescale.coupling.solid.choose import SOLID_OPERATORS
+from porescale.coupling.weighting.choose import WEIGHTINGS
+from porescale.lbm.collision.choose import OPERATORS
+from porescale.scene.bodies.segments import PolygonBody, SegmentBody
+from porescale.scene.scene import Scene
+
+WEEK = 7 * 86400.0
+"""s."""
+
+
+def report(scene: Scene) -> Report:
+    """All of the above; raises InputError with every refusal."""
+    derived = derive(scene)
+    require_memory(derived)
+    out = Report(scene.title or "scene")
+    _parts(scene, out)
+    if derived.scales:
+        _lattice(scene, derived, out)
+    if scene.fluid:
+        _operators(scene, out)
+    if scene.disc:
+        _discs(scene, derived, out)
+    if scene.grains:
+        _grains(scene, derived, out)
+        _contact(derived, out)
+    if derived.corners:
+        _frames(scene, derived, out)
+    if scene.fluid and scene.grains:
+        _regime(scene, derived, out)
+    _cost(scene, derived, out)
+    for warning in derived.warnings:
+        out.warn(warning)
+    return out
+
+
+def _parts(scene: Scene, out: Report) -> None:
+    out.heading("Parts")
+    out.row("built", ", ".join(name for name in SECTIONS if getattr(scene, name)))
+    out.row("absent, not built", ", ".join(name for name in SECTIONS if not getattr(scene, name)) or "none")
+    out.row("sides", ", ".join(f"{name} {side.text()}" for name, side in scene.domain.sides.items()))
+
+
+def _lattice(scene: Scene, derived: Derived, out: Report) -> None:
+    s, cells = derived.scales, derived.cells
+    assert s is not None
+    assert cells is not None
+    out.heading("Lattice")
+    out.row("cells", f"{cells[0]} x {cells[1]}")
+    out.row("spacing", s.spacing, "m")
+    out.row("step", s.step, "s")
+    out.row("relaxation time", s.relaxation_time, "", "0.52 to 1 is best")
+    out.row("viscosity", s.viscosity, "m²/s")
+    out.row("speed of sound", s.sound_speed, "m/s")
+    out.row("largest speed to expect", derived.speed, "m/s", "an estimate from energy and drag")
+    out.row("Mach number", derived.speed / s.sound_speed, "", "below 0.1")
+
+
+def _operators(scene: Scene, out: Report) -> None:
+    """The laws that were chosen, with a word on each."""
+    fluid = scene.fluid
+    assert fluid is not None
+    out.heading("Operators")
+    out.row("collision", fluid.operator, "", OPERATORS[fluid.operator].purpose)
+    out.row("magic parameter", fluid.magic, "", "3/16: walls half-way between nodes")
+    out.row("Smagorinsky constant", fluid.smagorinsky or "none")
+    if scene.grains or scene.disc or scene.rectangle:
+        out.row("solid", fluid.solid_operator, "", SOLID_OPERATORS[fluid.solid_operator].purpose)
+        out.row("rim", "soft" if has_soft_rim(fluid) else "sharp", "", "soft: for grains that the fluid passes fast")
+        out.row("weight", weight_of(fluid), "", WEIGHTINGS[weight_of(fluid)].purpose)
+    out.row("precision", fluid.precision)
+
+
+def _discs(scene: Scene, derived: Derived, out: Report) -> None:
+    out.heading("Held discs")
+    out.row("number", len(scene.disc), "", f"{sum(it.fastest > 0 for it in scene.disc)} of them towed or turned")
+    out.row("fastest", max(it.fastest for it in scene.disc), "m/s")
+    if derived.scales:
+        least = min(it.diameter for it in scene.disc)
+        out.row("cells per diameter", least / derived.scales.spacing, "", "of the smallest")
+        speed = max([derived.speed, *(it.fastest for it in scene.disc)])
+        out.row("Reynolds number", speed * max(it.diameter for it in scene.disc) / derived.scales.viscosity, "",
+                "U d/nu of the largest at the largest speed to expect")  # fmt: skip
+
+
+def _grains(scene: Scene, derived: Derived, out: Report) -> None:
+    assert scene.grains is not None
+    assert derived.diameters is not None
+    out.heading("Grains")
+    out.row("number", derived.grain_count - len(scene.disc))
+    low, mean, high = derived.diameters
+    out.row("diameter", f"{low:.4g} … {high:.4g}, mean {mean:.4g}", "m")
+    if derived.scales:
+        ratio = scene.grains.hydraulic_radius_ratio or 1.0
+        out.row("cells per diameter", mean / derived.scales.spacing)
+        out.row("hydraulic radius ratio", ratio, "", "lambda; 1 seals a 2-D bed at rest")
+        out.row("cells per hydraulic diameter", ratio * mean / derived.scales.spacing)
+        packing = scene.grains.packing
+        if packing:
+            _bed(packing.packing_fraction * ratio**2, (0.5 * ratio * mean) ** 2, out)
+
+
+def _frames(scene: Scene, derived: Derived, out: Report) -> None:
+    """Bodies of segments, and what thickness they have."""
+    many: dict[str, Sequence[SegmentBody | PolygonBody]] = {"segments": scene.segment, "polygons": scene.polygon}
+    out.heading("Bodies of segments")
+    for name, sections in many.items():
+        out.row(name, sum(len(copies_of(it)) for it in sections))
+    out.row("containers", len(scene.container), "", "kept out of the cells")
+    out.row("corners", derived.corners, "", "a side costs up to ten discs")
+    thin = [it.thickness for it in (*scene.segment, *scene.polygon)] + [it.thickness for it in scene.container]
+    if thin:
+        out.row("thickness", f"{min(thin):.4g} … {max(thin):.4g}", "m", "half of what a segment measures across")
+    if scene.rock:
+        out.row("rock", scene.rock.kind, "", "bonded when the run begins")
+
+
+def _bed(solid_fraction: float, square: float, out: Report) -> None:
+    """What regular arrays of that solid fraction let through; square : hydraulic radius squared, m²."""
+    out.row("hydraulic solid fraction", solid_fraction, "", "lambda² times the packing fraction")
+    out.row("permeability, hexagonal array", gebart(solid_fraction, hexagonal=True) * square, "m²", "Gebart 1992")
+    out.row("permeability, Kozeny-Carman", kozeny_carman(solid_fraction) * square, "m²",
+            "measured by [permeability]")  # fmt: skip
+
+
+def _contact(derived: Derived, out: Report) -> None:
+    law, wall = derived.law, derived.wall_law
+    assert law is not None
+    assert wall is not None
+    assert derived.diameters is not None
+    assert derived.contact_limit is not None
+    assert derived.contact_step is not None
+    out.heading("Contact")
+    mass = derived.mean_mass / 2
+    lasts, remark = law.contact_report(mass, derived.diameters[1] / 4)  # reduced radius of two mean grains
+    out.row("damping ratio of a pair", law.ratio_of_damping(mass))
+    out.row("contact time of a pair", lasts, "s", remark)
+    out.row("restitution of a pair", law.restitution(mass))
+    out.row("stability limit in a packing", derived.contact_limit, "s")
+    out.row("contact step", derived.contact_step, "s")
+    out.row("contact steps per model step", derived.contact_steps or 1)
+
+
+def _regime(scene: Scene, derived: Derived, out: Report) -> None:
+    s = derived.scales
+    assert s is not None
+    assert scene.grains is not None
+    assert derived.diameters is not None
+    d, ratio = derived.diameters[1], scene.grains.density / s.density
+    reynolds = derived.speed * d / s.viscosity
+    out.heading("Regime")
+    out.row("density ratio", ratio, "", "grains over fluid")
+    out.row(
+        "Archimedes number", abs(ratio - 1) * math.hypot(*scene.gravity) * d**3 / s.viscosity**2, "", "(s - 1) g d³/nu²"
+    )
+    out.row("Reynolds number", reynolds, "", "U d/nu at the largest speed to expect")
+    out.row("Stokes number", ratio * reynolds / 18, "", "s Re/18: viscous below 1, inertial above 10")
+    if derived.density_variation:
+        out.row(
+            "density variation by pore pressure",
+            derived.density_variation,
+            "",
+            "3 (rho_s - rho) g phi H/(rho c²), below 0.05",
+        )
+
+
+def _cost(scene: Scene, derived: Derived, out: Report) -> None:
+    steps = max(1, round(scene.time.end / derived.model_step))
+    seconds, measured = expected_seconds(derived, steps)
+    out.heading("Cost")
+    out.row("steps", steps, "", f"of {derived.model_step:.3g} s")
+    out.row("memory", memory(derived) / 2**20, "MiB")
+    out.row(
+        "time", seconds, "s", "by this machine's last run" if measured else "a guess until this machine has done a run"
+    )
+    if seconds > WEEK:
+        out.warn(
+            f"the run is expected to take {seconds / 86400:.3g} days, more than a week; a coarser spacing, "
+            "longer steps, softer contacts or an earlier end shorten it"
+        )
+    snapshots = scene.time.end / scene.output.snapshot_interval
+    out.row("snapshots", math.floor(snapshots + 1e-9) + 1)

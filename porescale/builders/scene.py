@@ -1,0 +1,29 @@
+"""`Scene` with all that its sections must not import: checks between them, names of operators, readers of files.
+
+Whoever reads a scene takes it from here; without its checks it refuses.
+"""
+
+from __future__ import annotations
+
+from porescale.builders.checks.fluid import check_solid_options
+from porescale.builders.checks.needed import check_needed, check_places
+from porescale.builders.initial.circles import grains_of
+from porescale.builders.initial.random_polygons import check_random_places
+from porescale.coupling.solid.choose import SOLID_OPERATORS
+from porescale.coupling.weighting.choose import WEIGHTINGS
+from porescale.dem.contact.choose import LAWS
+from porescale.lbm.collision.choose import OPERATORS
+from porescale.scene import contact
+from porescale.scene.bodies.segments import PolygonBody
+from porescale.scene.circles import Circles
+from porescale.scene.fluid import CHOICES, Fluid
+from porescale.scene.scene import Scene
+
+__all__ = ["Scene"]
+
+Scene.checks += [check_needed, check_places]
+Fluid.checks.append(check_solid_options)
+PolygonBody.checks.append(check_random_places)
+Circles.read = grains_of
+contact.LAWS += LAWS
+CHOICES.update(operator=OPERATORS, solid_operator=SOLID_OPERATORS, weighting=WEIGHTINGS)

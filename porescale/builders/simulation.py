@@ -1,0 +1,118 @@
+"""A simulation: the parts that a scene has sections for, driven through time.  A `Model` of `common.record`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, TypeVar
+
+from porescale.builders.part import Fields, Part, Stepper, overrides
+from porescale.builders.system import System
+from porescale.common.core.errors import Unstable
+from porescale.common.record.model import Snapshot
+
+P = TypeVar("P", bound=Part)
+
+
+class Simulation:
+    """A scene in motion.
+
+    step : model steps done (fluid steps, or contact steps without fluid);  step_seconds : s;  time : s.
+    parts : the stepper first;  scene, derived : what it was built from.
+    fluid, grains, coupled, weight (n, 2) N/m of dry grains : None where the scene has no such thing;  frames : bodies
+    of segments.
+    """
+
+    def __init__(self, system: System, stepper: Stepper, others: Sequence[Part]) -> None:
+        """``others`` : in the order of their columns, tables, arrays and state."""
+        self.scene, self.derived, self.clock = system.scene, system.derived, system.clock
+        self.fluid, self.grains, self.coupled = system.fluid, system.grains, system.coupled
+        self.weight, self.frames = system.weight, system.frames
+        self.stepper, self.parts = stepper, [stepper, *others]
+        self._before = [part.before for part in self.parts if overrides(part, "before")]
+        self._after = [part.after for part in self.parts if overrides(part, "after")]
+        self._between = [part for part in self.parts if overrides(part, "before") or overrides(part, "after")]
+
+    @property
+    def step(self) -> int:
+        """Steps done."""
+        return self.clock.step
+
+    @property
+    def time(self) -> float:
+        """s."""
+        return self.clock.time
+
+    @property
+    def step_seconds(self) -> float:
+        """Length of a step, s."""
+        return self.clock.seconds
+
+    def part(self, kind: type[P]) -> P | None:
+        """The part of this class; None where the scene has no section for it."""
+        return next((part for part in self.parts if isinstance(part, kind)), None)
+
+    def advance(self, steps: int) -> None:
+        """Do ``steps`` steps; raises Unstable when a grain is nowhere."""
+        try:
+            self._advance(steps)
+        except Unstable as error:
+            raise self.stepper.explained(error) from None
+
+    def _advance(self, steps: int) -> None:
+        if self.stepper.takes_many and all(part.idle for part in self._between):
+            self.stepper.advance_many(steps)
+            return
+        clock, advance, before, after = self.clock, self.stepper.advance, self._before, self._after
+        for _ in range(steps):
+            for act in before:
+                act()
+            advance()
+            clock.put(clock.step + 1)
+            for act in after:
+                act()
+
+    def fields(self) -> Fields:
+        """Density excess (kg/m³), velocity (m/s, two arrays) and solid fraction of every cell, each (ny, nx)."""
+        return self.stepper.fields()
+
+    def check(self) -> None:
+        """Raise Unstable, naming cell or grain, quantity and step, when the state is beyond sense."""
+        for part in self.parts:
+            part.check()
+
+    def series(self) -> dict[str, float]:
+        """One row: time, and the columns of every part."""
+        row = {"time (s)": self.time}
+        for part in self.parts:
+            row |= part.row()
+        return row
+
+    def tables(self) -> dict[str, dict[str, float]]:
+        """A row of each further series: what probes, flux sections and load cells read; {} where there are none."""
+        tables: dict[str, dict[str, float]] = {}
+        for part in self.parts:
+            tables |= part.tables()
+        return tables
+
+    def snapshot(self) -> Snapshot:
+        """Fluid as cells, grains as points."""
+        snapshot = Snapshot(self.time, self.step)
+        for part in self.parts:
+            part.show(snapshot)
+        return snapshot
+
+    def state(self) -> dict[str, Any]:
+        """Everything needed to go on bit for bit."""
+        state: dict[str, Any] = {"step": self.step}
+        for part in self.parts:
+            state |= part.state()
+        return state
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state of a simulation built from the same scene.
+
+        In the reverse order of the parts: what stands in the fluid is put in place before the fluid is restored.
+        """
+        self.clock.put(int(state["step"]))
+        for part in reversed(self.parts):
+            part.restore(state)

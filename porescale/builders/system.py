@@ -1,0 +1,39 @@
+"""What a scene is at time 0, before parts are made of it: fluid, grains, and what is in both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from porescale.builders.derive import Derived
+from porescale.builders.initial.frames import Placed
+from porescale.builders.part import Array, Clock
+from porescale.coupling.coverage.rectangle import Rectangle
+from porescale.coupling.step import Coupled
+from porescale.dem.grains import Grains
+from porescale.lbm.fluid import Fluid
+from porescale.scene.scene import Scene
+
+
+@dataclass
+class System:
+    """None, or empty, where the scene has no such thing.
+
+    weight : (n, 2) N/m, of dry grains;  frames : bodies of segments, those of the grains, a rock's last;
+    recorded : names of the bodies whose motion is recorded;  rectangles : as the lattice has them.
+    """
+
+    scene: Scene
+    derived: Derived
+    clock: Clock
+    fluid: Fluid | None = None
+    grains: Grains | None = None
+    coupled: Coupled | None = None
+    weight: Array | None = None
+    frames: list[Placed] = field(default_factory=list)
+    recorded: list[str] = field(default_factory=list)
+    rectangles: list[Rectangle] = field(default_factory=list)
+
+    @property
+    def held(self) -> int:
+        """Number of discs that are held."""
+        return len(self.scene.disc)
