@@ -72,7 +72,7 @@ class Tank:
         self.model.advance(steps)
 
     def check(self) -> None:
-        """As a run asks."""
+        """As a run checks."""
         self.model.check()
 
     def read(self) -> Mapping[str, float]:
@@ -95,7 +95,7 @@ class Box:
             self.flow.advance()
 
     def check(self) -> None:
-        """Nothing is asked: `Flow.advance` raises where a number is none."""
+        """Nothing is checked: `Flow.advance` raises where a number is none."""
 
     def read(self) -> Mapping[str, float]:
         """Mass, and momentum over the sum of all sizes at the start."""

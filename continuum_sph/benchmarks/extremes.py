@@ -1,4 +1,4 @@
-"""What `continuum-sph study extremes` asks for: each number from mild to absurd, in a flow that shows what it does."""
+"""What `continuum-sph study extremes` tries: each number from mild to absurd, in a flow that shows what it does."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ FALL = (2.0 * GRAVITY * COLUMN[1]) ** 0.5  # m/s, from the top of the columns
 CHECKED = 20  # steps between two looks at whether all is in sense
 JUDGED = 0.25  # s: the front of the columns has come half a metre, and has as far to go to the wall
 SPACING = 0.05  # m
-NEAR = 0.5 * SPACING  # m: particles of this size know a front no better
+NEAR = 0.5 * SPACING  # m: particles of this size resolve a front no better
 CLOSED = 0.01  # of the energy at the start, by which its book may be off
 
 
 def driven(model: Simulation, end: float, judged: bool = False) -> str | Verdict:
-    """Take ``model`` to ``end`` (s) and say what became of it; Unstable where it leaves sense.  ``judged``: by how far
+    """Take ``model`` to ``end`` (s) and state the outcome; Unstable where it leaves sense.  ``judged``: by how far
     water has run at JUDGED and by its book of energies."""
     model.flow.layer.keep_budget()
     start = budget(model.flow)["energy balance"]
@@ -44,14 +44,14 @@ def driven(model: Simulation, end: float, judged: bool = False) -> str | Verdict
     n = model.flow.layer.fluid
     pressure = model.flow.layer.pressure[:n]
     outside = n - int(model.part(WaterPart).inside().sum())
-    said = f"{model.step} steps to {model.time:.3g} s; fastest {fastest:.3g} m/s = {fastest / _sound(model):.2g} c0"
-    said += f"; pressure {pressure.min():.3g} to {pressure.max():.3g} Pa; energy balance {energy:.3f} of the start"
-    said += f"; {outside} particles outside" if outside else ""
+    text = f"{model.step} steps to {model.time:.3g} s; fastest {fastest:.3g} m/s = {fastest / _sound(model):.2g} c0"
+    text += f"; pressure {pressure.min():.3g} to {pressure.max():.3g} Pa; energy balance {energy:.3f} of the start"
+    text += f"; {outside} particles outside" if outside else ""
     if not judged or way is None:
-        return said
+        return text
     off = way - mild_front()
     return Verdict(
-        f"{said}; front at {JUDGED:g} s {100.0 * off:+.1f} cm from that at Mach 0.05 with everything else as it comes",
+        f"{text}; front at {JUDGED:g} s {100.0 * off:+.1f} cm from that at Mach 0.05 with everything else as it comes",
         abs(off) < NEAR and abs(energy - 1.0) < CLOSED,
     )
 

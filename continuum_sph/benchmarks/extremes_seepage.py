@@ -1,4 +1,4 @@
-"""What `continuum-sph study extremes` asks of soil with water in it: permeabilities from gravel to rock."""
+"""What `continuum-sph study extremes` tries on soil with water in it: permeabilities from gravel to rock."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def stirred(permeability: float, seconds: float = 0.2) -> Callable[[], str]:
                 parts = energies(both, ground)
                 free = parts["sum"] - parts["heat of drag"]
                 growth, least = max(growth, free - least), min(least, free)
-        said = f"{both.water.step} steps of {both.next_step / relaxing:.2g} relaxation times of the drag"
-        return f"{said}; {free / start:.2g} of the energy left, grown by {growth / start:.2g} at most"
+        text = f"{both.water.step} steps of {both.next_step / relaxing:.2g} relaxation times of the drag"
+        return f"{text}; {free / start:.2g} of the energy left, grown by {growth / start:.2g} at most"
 
     return run
 

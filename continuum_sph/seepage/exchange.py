@@ -17,7 +17,7 @@ from continuum_sph.seepage.mixture import (
 )
 from continuum_sph.seepage.resistance import drag
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
-from porescale.common.compiled.simd import LANES, lesser, nothing, put_line, take_line, take_two, total
+from porescale.common.compiled.simd import LANES, gather_two, load, minimum, reduce_add, store, zeros
 
 LONGEST = 44.0  # times of relaxation: e^-44 is less than half a unit in the last place of 1
 HALVINGS = 6  # of it, after which the series needs 12 terms: (44/64)^12/13! is 2e-12 of half such a unit
@@ -31,7 +31,7 @@ def relaxation(times):
 
     By its series for x/64, and 1 - e^-2y = (1 - e^-y)(2 - (1 - e^-y)): no branch, and several at once.
     """
-    y = lesser(times, LONGEST) * (1.0 / 2.0**HALVINGS)
+    y = minimum(times, LONGEST) * (1.0 / 2.0**HALVINGS)
     rest = 1.0 - y * (1.0 / 12.0)
     rest = 1.0 - y * (1.0 / 11.0) * rest
     rest = 1.0 - y * (1.0 / 10.0) * rest
@@ -57,19 +57,19 @@ def relative_to_soil(fluid, near, other, weight, shown, own, pores, line):
     near, other, weight: the overlap, water rows first;  shown (s, 2): the soil's times r, of `Skeleton.weigh`.
     """
     for i in prange(fluid):
-        sum_x = nothing()
-        sum_y = nothing()
+        sum_x = zeros()
+        sum_y = zeros()
         k = near[i]
         while k < near[i + 1]:  # any soil stands for the missing end of a row, with no weight
-            sx, sy = take_two(shown, other, k, near[i + 1], 0, 0, fluid)
-            near_by = take_line(weight, k, near[i + 1])
+            sx, sy = gather_two(shown, other, k, near[i + 1], 0, 0, fluid)
+            near_by = load(weight, k, near[i + 1])
             k += LANES
             sum_x += near_by * sx
             sum_y += near_by * sy
         resisting = pores[RESISTING, i]
         share = 1.0 / resisting if resisting > 0.0 else 0.0
-        pores[line, i] = own[i, 0] - share * total(sum_x) if resisting > 0.0 else 0.0
-        pores[line + 1, i] = own[i, 1] - share * total(sum_y) if resisting > 0.0 else 0.0
+        pores[line, i] = own[i, 0] - share * reduce_add(sum_x) if resisting > 0.0 else 0.0
+        pores[line + 1, i] = own[i, 1] - share * reduce_add(sum_y) if resisting > 0.0 else 0.0
 
 
 @parallel_kernel
@@ -87,22 +87,22 @@ def apply_drag(fluid, pores, v, law, factor, seconds, parts, push, heat):
     for block in prange((fluid + LANES - 1) // LANES):
         first = block * LANES
         end = first + LANES  # lines are that much longer
-        porosity = take_line(lines, POROSITY * width + first, POROSITY * width + end)
-        rho = take_line(lines, DENSITY * width + first, DENSITY * width + end)
-        room = take_line(lines, ROOM * width + first, ROOM * width + end)
-        resisting = take_line(lines, RESISTING * width + first, RESISTING * width + end)
-        partial = take_line(lines, MASSES * width + first, MASSES * width + end)
-        unit = take_line(lines, WEIGHT * width + first, WEIGHT * width + end)
-        mass = take_line(lines, MASS * width + first, MASS * width + end)
+        porosity = load(lines, POROSITY * width + first, POROSITY * width + end)
+        rho = load(lines, DENSITY * width + first, DENSITY * width + end)
+        room = load(lines, ROOM * width + first, ROOM * width + end)
+        resisting = load(lines, RESISTING * width + first, RESISTING * width + end)
+        partial = load(lines, MASSES * width + first, MASSES * width + end)
+        unit = load(lines, WEIGHT * width + first, WEIGHT * width + end)
+        mass = load(lines, MASS * width + first, MASS * width + end)
         own = 1.0 / (porosity * rho)
         specific_volume = own + room / partial
         kappa = drag(law, porosity, resisting / room, unit, factor) * specific_volume
         gone = relaxation(kappa * seconds)
         impulse = mass * own / specific_volume
-        put_line(parts[PER_SLIP], first, end, impulse * gone)
-        put_line(parts[PER_PULL], first, end, impulse * (seconds - gone / kappa))
-        put_line(parts[SHARE], first, end, 1.0 / resisting)
-        put_line(parts[INVERSE_MASS], first, end, 1.0 / mass)
+        store(parts[PER_SLIP], first, end, impulse * gone)
+        store(parts[PER_PULL], first, end, impulse * (seconds - gone / kappa))
+        store(parts[SHARE], first, end, 1.0 / resisting)
+        store(parts[INVERSE_MASS], first, end, 1.0 / mass)
         for i in range(first, min(end, fluid)):
             push[i, 0] = 0.0
             push[i, 1] = 0.0
@@ -129,17 +129,17 @@ def apply_reaction(fluid, near, other, weight, push, resisting, soil_mass, soil_
     `apply_drag`."""
     often = 1.0 / seconds
     for s in prange(resisting.shape[0]):
-        sum_x = nothing()
-        sum_y = nothing()
+        sum_x = zeros()
+        sum_y = zeros()
         k = near[fluid + s]
         while k < near[fluid + s + 1]:
-            px, py = take_two(push, other, k, near[fluid + s + 1], 0)
-            share = take_line(weight, k, near[fluid + s + 1])
+            px, py = gather_two(push, other, k, near[fluid + s + 1], 0)
+            share = load(weight, k, near[fluid + s + 1])
             k += LANES
             sum_x += share * px
             sum_y += share * py
-        jx = resisting[s] * total(sum_x)
-        jy = resisting[s] * total(sum_y)
+        jx = resisting[s] * reduce_add(sum_x)
+        jy = resisting[s] * reduce_add(sum_y)
         light = 1.0 / soil_mass[s]
         soil_v[s, 0] += light * jx
         soil_v[s, 1] += light * jy

@@ -12,7 +12,7 @@ from continuum_sph.seepage.overlap import overlap_kernel
 from continuum_sph.water.smoothing import CUBIC, kernel_value
 from continuum_sph.water.state import BY_SHIFTING, RHO, VOLUME, VX, VY, X, Y
 from porescale.common.compiled.jit import parallel_kernel, prange
-from porescale.common.compiled.simd import LANES, kept, nothing, put_line, take_four, take_rows, total
+from porescale.common.compiled.simd import LANES, gather_four, gather_rows, mask_tail, reduce_add, store, zeros
 from porescale.common.neighbors.cells import minimum_image
 
 (
@@ -42,19 +42,19 @@ def gather_soil(fluid, near, soil, weight, record, mass, burden, gravity, specif
     for i in prange(fluid):
         xi = record[i, X]
         yi = record[i, Y]
-        grains = nothing()
-        flux_x = nothing()
-        flux_y = nothing()
-        resisting = nothing()
-        masses = nothing()
-        flow_x = nothing()
-        flow_y = nothing()
+        grains = zeros()
+        flux_x = zeros()
+        flux_y = zeros()
+        resisting = zeros()
+        masses = zeros()
+        flow_x = zeros()
+        flow_y = zeros()
         k = near[i]
         while k < near[i + 1]:  # any soil stands for the missing end of a row, with no weight
-            xj, yj, volume, resistance, inertia, vx, vy, _ = take_rows(burden, soil, k, near[i + 1], 0, 0, fluid)
+            xj, yj, volume, resistance, inertia, vx, vy, _ = gather_rows(burden, soil, k, near[i + 1], 0, 0, fluid)
             near_by = overlap_kernel(xi - xj, yi - yj, h, period_x, period_y, turns_x, turns_y)
-            near_by = kept(near_by, k, near[i + 1])
-            put_line(weight, k, near[i + 1], near_by)
+            near_by = mask_tail(near_by, k, near[i + 1])
+            store(weight, k, near[i + 1], near_by)
             k += LANES
             share = volume * near_by
             grains += share
@@ -65,18 +65,18 @@ def gather_soil(fluid, near, soil, weight, record, mass, burden, gravity, specif
             flow_x += share * vx
             flow_y += share * vy
             masses += inertia * near_by
-        pores[GRAINS, i] = total(grains)
-        pores[FLUX_X, i] = total(flux_x)
-        pores[FLUX_Y, i] = total(flux_y)
-        resists = total(resisting)
+        pores[GRAINS, i] = reduce_add(grains)
+        pores[FLUX_X, i] = reduce_add(flux_x)
+        pores[FLUX_Y, i] = reduce_add(flux_y)
+        resists = reduce_add(resisting)
         pores[RESISTING, i] = resists
-        pores[MASSES, i] = total(masses)
+        pores[MASSES, i] = reduce_add(masses)
         pores[DENSITY, i] = record[i, RHO]
         pores[MASS, i] = mass[i]
         pores[WEIGHT, i] = specific_weight[i] if several else record[i, RHO] * gravity
         share = 1.0 / resists if resists > 0.0 else 0.0
-        pores[SLIP_X, i] = record[i, VX] - share * total(flow_x) if resists > 0.0 else 0.0
-        pores[SLIP_Y, i] = record[i, VY] - share * total(flow_y) if resists > 0.0 else 0.0
+        pores[SLIP_X, i] = record[i, VX] - share * reduce_add(flow_x) if resists > 0.0 else 0.0
+        pores[SLIP_Y, i] = record[i, VY] - share * reduce_add(flow_y) if resists > 0.0 else 0.0
 
 
 @parallel_kernel
@@ -153,16 +153,18 @@ def load_soil(fluid, near, other, weight, x, grains, thrust, force, h, period_x,
     turns_x = 1.0 / period_x if period_x > 0.0 else 0.0
     turns_y = 1.0 / period_y if period_y > 0.0 else 0.0
     for s in prange(grains.shape[0]):
-        fx = nothing()
-        fy = nothing()
+        fx = zeros()
+        fy = zeros()
         k = near[fluid + s]
         end = near[fluid + s + 1]
         while k < end:
-            xj, yj, tx, ty = take_four(thrust, other, k, end, 0)
-            near_by = kept(overlap_kernel(x[s, 0] - xj, x[s, 1] - yj, h, period_x, period_y, turns_x, turns_y), k, end)
-            put_line(weight, k, end, near_by)
+            xj, yj, tx, ty = gather_four(thrust, other, k, end, 0)
+            near_by = mask_tail(
+                overlap_kernel(x[s, 0] - xj, x[s, 1] - yj, h, period_x, period_y, turns_x, turns_y), k, end
+            )
+            store(weight, k, end, near_by)
             k += LANES
             fx += near_by * tx
             fy += near_by * ty
-        force[s, 0] = grains[s] * total(fx)
-        force[s, 1] = grains[s] * total(fy)
+        force[s, 0] = grains[s] * reduce_add(fx)
+        force[s, 1] = grains[s] * reduce_add(fy)

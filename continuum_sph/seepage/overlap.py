@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from continuum_sph.water.smoothing import CUBIC, kernel_value
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
-from porescale.common.compiled.simd import LANES, nearest, put_line, root, take_two
+from porescale.common.compiled.simd import LANES, gather_two, rint, sqrt, store
 from porescale.common.neighbors import PairList
 
 Floats = NDArray[np.float64]
@@ -22,9 +22,9 @@ Floats = NDArray[np.float64]
 @inline
 def overlap_kernel(dx, dy, h, period_x, period_y, turns_x, turns_y):
     """W, 1/m², of the nearest images at (dx, dy) m;  turns: 1/period, 1/m, or 0."""
-    dx -= period_x * nearest(dx * turns_x)
-    dy -= period_y * nearest(dy * turns_y)
-    return kernel_value(CUBIC, root(dx * dx + dy * dy) * (1.0 / h), h)
+    dx -= period_x * rint(dx * turns_x)
+    dy -= period_y * rint(dy * turns_y)
+    return kernel_value(CUBIC, sqrt(dx * dx + dy * dy) * (1.0 / h), h)
 
 
 @parallel_kernel
@@ -37,9 +37,9 @@ def overlap_weights(start, partner, x, weight, h, period_x, period_y):
     for i in prange(x.shape[0]):
         k = start[i]
         while k < start[i + 1]:
-            xj, yj = take_two(x, partner, k, start[i + 1], i)
+            xj, yj = gather_two(x, partner, k, start[i + 1], i)
             near = overlap_kernel(x[i, 0] - xj, x[i, 1] - yj, h, period_x, period_y, turns_x, turns_y)
-            put_line(weight, k, start[i + 1], near)
+            store(weight, k, start[i + 1], near)
             k += LANES
 
 

@@ -21,7 +21,7 @@ from continuum_sph.soil.state import GXX, GXY, GYX, GYY, VOLUME, VX, VY, X, Y
 from continuum_sph.water.bundles import image, inverse_period, nearest_image
 from continuum_sph.water.smoothing import slope_scale, slope_shape
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
-from porescale.common.compiled.simd import LANES, nothing, root, take_rows, total
+from porescale.common.compiled.simd import LANES, gather_rows, reduce_add, sqrt, zeros
 
 NONE, FULL = 0.25, 0.45
 
@@ -87,14 +87,14 @@ def soil_gradient_sums(i, record, near):
     kind, inverse_h, scale = near.kind, 1.0 / near.h, slope_scale(near.kind, near.h)
     turns_x, turns_y = inverse_period(near.period_x), inverse_period(near.period_y)
     xi, yi, vxi, vyi = record[i, X], record[i, Y], record[i, VX], record[i, VY]
-    lxx, lxy, lyy = nothing(), nothing(), nothing()
-    hxx, hxy, hyx, hyy = nothing(), nothing(), nothing(), nothing()
+    lxx, lxy, lyy = zeros(), zeros(), zeros()
+    hxx, hxy, hyx, hyy = zeros(), zeros(), zeros(), zeros()
     k, end = near.start[i], near.split[i]
     while k < end:  # a particle stands for the missing end of its row: it lies and moves as itself
-        xj, yj, vxj, vyj, volume, _, _, _ = take_rows(record, near.partner, k, end, i)
+        xj, yj, vxj, vyj, volume, _, _, _ = gather_rows(record, near.partner, k, end, i)
         k += LANES
         dx, dy = nearest_image(xi - xj, near.period_x, turns_x), nearest_image(yi - yj, near.period_y, turns_y)
-        part = volume * scale * slope_shape(kind, root(dx * dx + dy * dy) * inverse_h)
+        part = volume * scale * slope_shape(kind, sqrt(dx * dx + dy * dy) * inverse_h)
         px, py = part * dx, part * dy
         vx, vy = vxj - vxi, vyj - vyi
         lxx += px * dx
@@ -104,7 +104,12 @@ def soil_gradient_sums(i, record, near):
         hxy += vx * py
         hyx += vy * px
         hyy += vy * py
-    return (-total(lxx), -total(lxy), -total(lyy)), (total(hxx), total(hxy), total(hyx), total(hyy))
+    return (-reduce_add(lxx), -reduce_add(lxy), -reduce_add(lyy)), (
+        reduce_add(hxx),
+        reduce_add(hxy),
+        reduce_add(hyx),
+        reduce_add(hyy),
+    )
 
 
 @inline

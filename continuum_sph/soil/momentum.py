@@ -57,7 +57,7 @@ from continuum_sph.soil.state import (
 from continuum_sph.water.bundles import image, inverse_period, nearest_image
 from continuum_sph.water.smoothing import slope_scale, slope_shape
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
-from porescale.common.compiled.simd import LANES, greater, lesser, nothing, root, take_four, take_rows, total
+from porescale.common.compiled.simd import LANES, gather_four, gather_rows, maximum, minimum, reduce_add, sqrt, zeros
 
 SOFTENING = 0.01  # of h²: keeps the quotient finite when two centres coincide
 
@@ -118,20 +118,20 @@ def soil_forces(i, record, stress, near, choices):
     txx, txy, tyx, tyy = record[i, TXX], record[i, TXY], record[i, TYX], record[i, TYY]
     gxx, gxy, gyx, gyy = record[i, GXX], record[i, GXY], record[i, GYX], record[i, GYY]
     xx, yy, xy, zz = stress[i, XX], stress[i, YY], stress[i, XY], stress[i, ZZ]
-    bx, by, wx, wy, grown = nothing(), nothing(), nothing(), nothing(), nothing()
-    rxx, ryy, rxy, rzz = nothing(), nothing(), nothing(), nothing()
+    bx, by, wx, wy, grown = zeros(), zeros(), zeros(), zeros(), zeros()
+    rxx, ryy, rxy, rzz = zeros(), zeros(), zeros(), zeros()
     k, end = near.start[i], near.split[i]
     while k < end:  # a particle stands for the missing end of its row: it does nothing to itself
-        xj, yj, vxj, vyj, volume, mass, sound_j, shear_rate_j = take_rows(record, near.partner, k, end, i)
-        txx_j, txy_j, tyx_j, tyy_j, gxx_j, gxy_j, gyx_j, gyy_j = take_rows(record, near.partner, k, end, i, TXX)
-        xx_j, yy_j, xy_j, zz_j = take_four(stress, near.partner, k, end, i)
+        xj, yj, vxj, vyj, volume, mass, sound_j, shear_rate_j = gather_rows(record, near.partner, k, end, i)
+        txx_j, txy_j, tyx_j, tyy_j, gxx_j, gxy_j, gyx_j, gyy_j = gather_rows(record, near.partner, k, end, i, TXX)
+        xx_j, yy_j, xy_j, zz_j = gather_four(stress, near.partner, k, end, i)
         k += LANES
         dx, dy = nearest_image(xi - xj, near.period_x, turns_x), nearest_image(yi - yj, near.period_y, turns_y)
         distance2 = dx * dx + dy * dy
-        slope = scale * slope_shape(kind, root(distance2) * inverse_h)
+        slope = scale * slope_shape(kind, sqrt(distance2) * inverse_h)
         vx = vxi - vxj - linear * ((gxx + gxx_j) * dx + (gxy + gxy_j) * dy)
         vy = vyi - vyj - linear * ((gyx + gyx_j) * dx + (gyy + gyy_j) * dy)
-        approach = lesser(vx * dx + vy * dy, most)
+        approach = minimum(vx * dx + vy * dy, most)
         part = volume * slope
         damping_term = (sound + sound_j) * approach * mass * slope / (distance2 + soft)
         stress_term = own * part
@@ -145,11 +145,11 @@ def soil_forces(i, record, stress, near, choices):
         ryy += part * (yy_j - yy)
         rxy += part * (xy_j - xy)
         rzz += part * (zz_j - zz)
-        close = rate * greater(1.0 - distance2 * inverse_spacing2, 0.0)
+        close = rate * maximum(1.0 - distance2 * inverse_spacing2, 0.0)
         wx += close * dx
         wy += close * dy
-    diffused = (total(rxx), total(ryy), total(rxy), total(rzz))
-    return (total(bx), total(by)), diffused, total(grown), (total(wx), total(wy))
+    diffused = (reduce_add(rxx), reduce_add(ryy), reduce_add(rxy), reduce_add(rzz))
+    return (reduce_add(bx), reduce_add(by)), diffused, reduce_add(grown), (reduce_add(wx), reduce_add(wy))
 
 
 @inline

@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from porescale.common.compiled.jit import inline
-from porescale.common.compiled.simd import nearest
+from porescale.common.compiled.simd import rint
 from porescale.common.neighbors.cells import minimum_image
 
 
@@ -108,7 +108,7 @@ def nearest_image(d, period, inverse):
     """Distances ``d`` (m), several at once, to the nearest images;  inverse: of `inverse_period`."""
     if period is None:
         return d
-    return d - period * nearest(d * inverse)
+    return d - period * rint(d * inverse)
 
 
 @inline

@@ -30,7 +30,7 @@ that, and stops itself.  Under "linear" water in the open keeps moving at five t
 from __future__ import annotations
 
 from porescale.common.compiled.jit import inline
-from porescale.common.compiled.simd import greater, lesser
+from porescale.common.compiled.simd import maximum, minimum
 
 PLAIN, HYDROSTATIC, LINEAR = range(3)
 NAMES = ("plain", "hydrostatic", "linear")
@@ -42,7 +42,7 @@ def diffusion_share(approach, inverse_noise_speed, sound_share):
 
     approach v_ij · x_ij, m²/s;  inverse_noise_speed 1/(h v_n), s/m², and sound_share s: of `noise_scale`.
     """
-    return lesser(sound_share + inverse_noise_speed * greater(approach, -approach), 1.0)
+    return minimum(sound_share + inverse_noise_speed * maximum(approach, -approach), 1.0)
 
 
 @inline

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from continuum_sph.water.eos.law import StateLaw
 from porescale.common.compiled.jit import inline
-from porescale.common.compiled.simd import greater, lesser, take_two
+from porescale.common.compiled.simd import gather_two, maximum, minimum
 
 Floats = NDArray[np.float64]
 
@@ -60,7 +60,7 @@ def fluid_number(properties, i):
 @inline
 def same_fluid(number, other):
     """1 where particles have fluids of one number, else 0, so that sums need no branch; the numbers as floats."""
-    return 1.0 - lesser(greater(number - other, other - number), 1.0)
+    return 1.0 - minimum(maximum(number - other, other - number), 1.0)
 
 
 @inline
@@ -68,5 +68,5 @@ def pair_fluid(properties, partner, k, end, i):
     """(1 where partners are of the fluid of particle i, else 0;  their viscosities, Pa s);  1 and 0 of one fluid."""
     if properties is None:
         return 1.0, 0.0
-    number, viscosity = take_two(properties, partner, k, end, i)
+    number, viscosity = gather_two(properties, partner, k, end, i)
     return same_fluid(properties[i, 0], number), viscosity

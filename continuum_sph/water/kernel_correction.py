@@ -16,7 +16,7 @@ from continuum_sph.water.fluids import pair_fluid
 from continuum_sph.water.smoothing import kernel_kind, kernel_slope, kernel_value, slope_scale, slope_shape
 from continuum_sph.water.state import RHO, VOLUME, X, Y
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
-from porescale.common.compiled.simd import LANES, nothing, root, take_rows, total
+from porescale.common.compiled.simd import LANES, gather_rows, reduce_add, sqrt, zeros
 
 NONE, FULL = 0.5, 0.8  # a level surface has 0.49 in its first row and 0.90 in its second
 TRACE = 3
@@ -78,13 +78,13 @@ def fluid_moments(i, record, near, properties, whole):
     inverse_h, scale = 1.0 / h, slope_scale(kind, h)
     turns_x, turns_y = inverse_period(near.period_x), inverse_period(near.period_y)
     xi, yi, rho = record[i, X], record[i, Y], record[i, RHO]
-    mxx, mxy, myy, nxx, nxy, nyy = nothing(), nothing(), nothing(), nothing(), nothing(), nothing()
-    ax, ay, bx, by = nothing(), nothing(), nothing(), nothing()
+    mxx, mxy, myy, nxx, nxy, nyy = zeros(), zeros(), zeros(), zeros(), zeros(), zeros()
+    ax, ay, bx, by = zeros(), zeros(), zeros(), zeros()
     k, end = near.start[i], near.split[i]
     while k < end:  # a particle stands for the missing end of its row, at no distance from itself
-        xj, yj, _, _, rho_j, _, volume, _ = take_rows(record, near.partner, k, end, i)
+        xj, yj, _, _, rho_j, _, volume, _ = gather_rows(record, near.partner, k, end, i)
         dx, dy = nearest_image(xi - xj, near.period_x, turns_x), nearest_image(yi - yj, near.period_y, turns_y)
-        q = root(dx * dx + dy * dy) * inverse_h
+        q = sqrt(dx * dx + dy * dy) * inverse_h
         part = volume * scale * slope_shape(kind, q)
         px, py = part * dx, part * dy
         mxx += px * dx
@@ -102,8 +102,11 @@ def fluid_moments(i, record, near, properties, whole):
         bx += (rho_j - rho) * px
         by += (rho_j - rho) * py
         k += LANES
-    m, own = (-total(mxx), -total(mxy), -total(myy)), (-total(nxx), -total(nxy), -total(nyy))
-    return m, own, (total(ax), total(ay)), (total(bx), total(by))
+    m, own = (
+        (-reduce_add(mxx), -reduce_add(mxy), -reduce_add(myy)),
+        (-reduce_add(nxx), -reduce_add(nxy), -reduce_add(nyy)),
+    )
+    return m, own, (reduce_add(ax), reduce_add(ay)), (reduce_add(bx), reduce_add(by))
 
 
 @inline

@@ -9,7 +9,7 @@ from continuum_sph.water.smoothing import kernel_kind, slope_scale, slope_shape,
 from continuum_sph.water.state import COMPRESSIBILITY, RHO, VX, VY, P, X, Y
 from continuum_sph.water.viscosity import artificial, laminar, mutual
 from porescale.common.compiled.jit import inline
-from porescale.common.compiled.simd import LANES, nothing, root, take_four, take_rows, take_two, total
+from porescale.common.compiled.simd import LANES, gather_four, gather_rows, gather_two, reduce_add, sqrt, zeros
 
 
 @inline
@@ -32,16 +32,16 @@ def fluid_sums(i, record, near, fluids, gradients, choices):
     viscosity, sound = fluids.table[number, VISCOSITY], fluids.table[number, SOUND]
     friction = laminar(viscosity, 1.0, specific_volume, 1.0)
     cohesion = cohesion_of(choices.cohesive, fluids.table, number, fluids.mass, i)
-    ax, ay, bx, by, sx, sy = nothing(), nothing(), nothing(), nothing(), nothing(), nothing()
-    compression, diffused = nothing(), nothing()
+    ax, ay, bx, by, sx, sy = zeros(), zeros(), zeros(), zeros(), zeros(), zeros()
+    compression, diffused = zeros(), zeros()
     k, end = near.start[i], near.split[i]
     while k < end:
-        xj, yj, vxj, vyj, rho_j, pressure_j, volume, compressibility_j = take_rows(record, near.partner, k, end, i)
+        xj, yj, vxj, vyj, rho_j, pressure_j, volume, compressibility_j = gather_rows(record, near.partner, k, end, i)
         dx, dy = nearest_image(xi - xj, near.period_x, turns_x), nearest_image(yi - yj, near.period_y, turns_y)
         vx, vy = vxi - vxj, vyi - vyj
         distance2 = dx * dx + dy * dy
         width, inverse, scale = pair_width(fluids.lengths, near.partner, k, end, i, kind, h, inverse_h, scale_h)
-        q = root(distance2) * inverse
+        q = sqrt(distance2) * inverse
         part = volume * scale * slope_shape(kind, q)
         approach = vx * dx + vy * dy
         same, viscosity_j = pair_fluid(fluids.properties, near.partner, k, end, i)
@@ -72,8 +72,14 @@ def fluid_sums(i, record, near, fluids, gradients, choices):
         sx -= weight * vx
         sy -= weight * vy
         k += LANES
-    a = (total(ax), total(ay))
-    return a, (a[0] + total(bx), a[1] + total(by)), (total(sx), total(sy)), total(compression), total(diffused)
+    a = (reduce_add(ax), reduce_add(ay))
+    return (
+        a,
+        (a[0] + reduce_add(bx), a[1] + reduce_add(by)),
+        (reduce_add(sx), reduce_add(sy)),
+        reduce_add(compression),
+        reduce_add(diffused),
+    )
 
 
 @inline
@@ -100,7 +106,7 @@ def pair_width(lengths, partner, k, end, i, kind, h, inverse_h, scale_h):
     """
     if lengths is None:
         return h, inverse_h, scale_h
-    length, _ = take_two(lengths, partner, k, end, i)
+    length, _ = gather_two(lengths, partner, k, end, i)
     width = 0.5 * (lengths[i, 0] + length)
     return width, 1.0 / width, slope_scale(kind, width)
 
@@ -121,7 +127,7 @@ def less_linear(diffused, gradient, noise, partner, k, end, i, distance, noise_p
         return diffused
     if noise != LINEAR:
         return diffused
-    along_x, along_y = take_two(gradient, partner, k, end, i)
+    along_x, along_y = gather_two(gradient, partner, k, end, i)
     dx, dy = distance
     return diffused - 0.5 * ((gradient[i, 0] + along_x) * dx + (gradient[i, 1] + along_y) * dy) * noise_part
 
@@ -131,7 +137,7 @@ def corrected_distance(matrix, partner, k, end, i, dx, dy):
     """(x, y) m of (L_i + L_j)/2 times the distance, and half the trace of that; the distance and 1 without."""
     if matrix is None:
         return dx, dy, 1.0
-    xx, xy, yy, _ = take_four(matrix, partner, k, end, i)
+    xx, xy, yy, _ = gather_four(matrix, partner, k, end, i)
     xx = 0.5 * (matrix[i, 0] + xx)
     xy = 0.5 * (matrix[i, 1] + xy)
     yy = 0.5 * (matrix[i, 2] + yy)

@@ -28,7 +28,7 @@ from continuum_sph.water.kernel_correction import TRACE
 from continuum_sph.water.smoothing import kernel_kind, slope_scale, slope_shape
 from continuum_sph.water.state import X, Y
 from porescale.common.compiled.jit import parallel_kernel, prange
-from porescale.common.compiled.simd import LANES, greater, nothing, root, take_four, take_rows, total
+from porescale.common.compiled.simd import LANES, gather_four, gather_rows, maximum, reduce_add, sqrt, zeros
 
 OPEN = 1.5  # trace of M: 1.95 on a lattice, 1.2 in the outermost row of a level surface, 0.9 in a corner
 MOST = 0.25  # of U
@@ -55,23 +55,23 @@ def shift(fluid, record, near, material, table, matrix, concentration, drift, st
             continue
         ux = -strength * concentration[i, 0]
         uy = -strength * concentration[i, 1]
-        falls_x = nothing()
-        falls_y = nothing()
-        open_by = nothing()
+        falls_x = zeros()
+        falls_y = zeros()
+        open_by = zeros()
         k = near.start[i]
         while k < near.split[i]:  # a particle stands for the missing end of its row: it is not open
-            xj, yj, _, _, _, _, volume, _ = take_rows(record, near.partner, k, near.split[i], i)
-            _, _, _, trace = take_four(matrix, near.partner, k, near.split[i], i)
+            xj, yj, _, _, _, _, volume, _ = gather_rows(record, near.partner, k, near.split[i], i)
+            _, _, _, trace = gather_four(matrix, near.partner, k, near.split[i], i)
             k += LANES
             dx = nearest_image(record[i, X] - xj, near.period_x, turns_x)
             dy = nearest_image(record[i, Y] - yj, near.period_y, turns_y)
-            part = volume * steep * slope_shape(kind, root(dx * dx + dy * dy) * inverse_h)
+            part = volume * steep * slope_shape(kind, sqrt(dx * dx + dy * dy) * inverse_h)
             falls_x += part * (trace - closed) * dx
             falls_y += part * (trace - closed) * dy
-            open_by -= part * greater(OPEN - trace, 0.0)  # more than nothing where some neighbour is open
-        nx = total(falls_x)
-        ny = total(falls_y)
-        sees_open = total(open_by) > 0.0
+            open_by -= part * maximum(OPEN - trace, 0.0)  # more than nothing where some neighbour is open
+        nx = reduce_add(falls_x)
+        ny = reduce_add(falls_y)
+        sees_open = reduce_add(open_by) > 0.0
         length = nx * nx + ny * ny
         if sees_open and length > 0.0:
             along = (ux * nx + uy * ny) / length

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from porescale.common.compiled.jit import inline
-from porescale.common.compiled.simd import greater
+from porescale.common.compiled.simd import maximum
 
 CUBIC, WENDLAND = 0, 1
 NAMES = ("cubic", "wendland")
@@ -34,10 +34,10 @@ def kernel_value(kind, q, h):
     WENDLAND: 7/(4 π h²) (1 - q/2)⁴ (1 + 2q).
     """
     if kind == CUBIC:
-        outer = greater(2.0 - q, 0.0)
-        inner = greater(1.0 - q, 0.0)
+        outer = maximum(2.0 - q, 0.0)
+        inner = maximum(1.0 - q, 0.0)
         return 5.0 / (14.0 * np.pi * h * h) * (outer * outer * outer - 4.0 * inner * inner * inner)
-    rest = greater(1.0 - 0.5 * q, 0.0)
+    rest = maximum(1.0 - 0.5 * q, 0.0)
     square = rest * rest
     return 1.75 / (np.pi * h * h) * square * square * (1.0 + 2.0 * q)
 
@@ -54,10 +54,10 @@ def value_scale(kind, h):
 def value_shape(kind, q):
     """The part of `kernel_value` that depends on q alone."""
     if kind == CUBIC:
-        outer = greater(2.0 - q, 0.0)
-        inner = greater(1.0 - q, 0.0)
+        outer = maximum(2.0 - q, 0.0)
+        inner = maximum(1.0 - q, 0.0)
         return outer * outer * outer - 4.0 * inner * inner * inner
-    rest = greater(1.0 - 0.5 * q, 0.0)
+    rest = maximum(1.0 - 0.5 * q, 0.0)
     return rest * rest * rest * rest * (1.0 + 2.0 * q)
 
 
@@ -73,11 +73,11 @@ def slope_scale(kind, h):
 def slope_shape(kind, q):
     """The part of `kernel_slope` that depends on q alone."""
     if kind == CUBIC:
-        q = greater(q, 1e-9)  # centres that coincide: the limit -2 is reached to 1e-9
-        outer = greater(2.0 - q, 0.0)
-        inner = greater(1.0 - q, 0.0)
+        q = maximum(q, 1e-9)  # centres that coincide: the limit -2 is reached to 1e-9
+        outer = maximum(2.0 - q, 0.0)
+        inner = maximum(1.0 - q, 0.0)
         return (4.0 * inner * inner - outer * outer) / q
-    rest = greater(1.0 - 0.5 * q, 0.0)
+    rest = maximum(1.0 - 0.5 * q, 0.0)
     return rest * rest * rest
 
 

@@ -18,7 +18,7 @@ Sakai 2004 have μ_ij without h and with r·x for v·r.
 from __future__ import annotations
 
 from porescale.common.compiled.jit import inline
-from porescale.common.compiled.simd import greater, lesser
+from porescale.common.compiled.simd import maximum, minimum
 
 CENTRAL = 4.0
 """Friction along the line of centres over eq. 34's in all directions: 2(2 + 2) for 2, in the plane."""
@@ -43,7 +43,7 @@ def central(viscous_term, approach, distance2):
 
     viscous_term 1/s;  approach v_ij · x_ij, m²/s;  distance2 r², m².
     """
-    return CENTRAL * viscous_term * approach / greater(distance2, COINCIDENT)
+    return CENTRAL * viscous_term * approach / maximum(distance2, COINCIDENT)
 
 
 @inline
@@ -53,7 +53,7 @@ def mutual(viscosity_i, viscosity_j, specific_i, approach, distance2):
     That is 2 μ_i μ_j/(μ_i + μ_j), 0 if one has none.  The rest: as there.  One division.
     """
     above = 4.0 * CENTRAL * viscosity_i * specific_i * viscosity_j * approach
-    return above / greater((viscosity_i + viscosity_j) * distance2, COINCIDENT)
+    return above / maximum((viscosity_i + viscosity_j) * distance2, COINCIDENT)
 
 
 @inline
@@ -65,6 +65,6 @@ def artificial(alpha, beta, sound_speed, length, softening, approach, distance2,
     """
     soft = distance2 + softening * length * length
     if beta is None:
-        return -2.0 * alpha * sound_speed * length * lesser(approach, 0.0) / (soft * density_sum)
-    per_mass = length * lesser(approach, 0.0) / (soft * density_sum)  # μ/2ρ̄
+        return -2.0 * alpha * sound_speed * length * minimum(approach, 0.0) / (soft * density_sum)
+    per_mass = length * minimum(approach, 0.0) / (soft * density_sum)  # μ/2ρ̄
     return 2.0 * (beta * per_mass * density_sum - alpha * sound_speed) * per_mass

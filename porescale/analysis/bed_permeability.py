@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def write_permeability(run: Run, folder: Path) -> list[Path]:
-    """Measure the bed and write permeability.csv, a row a snapshot; [] if the scene does not ask for it.
+    """Measure the bed and write permeability.csv, a row a snapshot; [] if the scene has no such section.
 
     Raises InputError where the window holds no grain.  Takes seconds: flow through the bed is driven until steady.
     """

@@ -1,4 +1,4 @@
-"""What a biaxial test of a cell says of its soil: strength, dilatancy, stiffness.
+"""What a biaxial test of a cell shows of its soil: strength, dilatancy, stiffness.
 
 Axial strain a = -ε_yy and volume strain v = ε_xx + ε_yy, logarithmic, dilation positive; stresses are compression.
 
@@ -29,7 +29,7 @@ WINDOW = 0.01
 LATE = 2.0 / 3.0
 """Share of the strain from where on a test is in its critical state."""
 LEAST = 4
-"""Rows of the first loading, below which no slope is told from swings."""
+"""Rows of the first loading, below which a slope cannot be separated from oscillations."""
 
 
 def running(strain: Array, values: Array) -> tuple[Array, Array]:

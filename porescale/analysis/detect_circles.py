@@ -1,6 +1,6 @@
 """Circles in a laboratory's picture of discs: where they are and how large, to a fraction of a pixel.
 
-1. Discs are told from what lies between them by Otsu's threshold (1979, IEEE Trans. Syst. Man Cybern. 9, 62) of the
+1. Discs are parted from what lies between them by Otsu's threshold (1979, IEEE Trans. Syst. Man Cybern. 9, 62) of the
    picture less its slow changes of light.
 2. Each peak of the distance to the background is a disc, as high as its radius: touching discs have a saddle between
    them.  Lower peaks within a disc that was taken are its own.

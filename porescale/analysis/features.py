@@ -1,4 +1,4 @@
-"""What a trade study may ask of a run besides its tables: the flow field, and where its strongest vortex lies."""
+"""What a trade study may read of a run besides its tables: the flow field, and where its strongest vortex lies."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ HARD = 300.0
 
 
 def pressure_of(scene: Scene) -> float:
-    """The stress (Pa) that a scene's soil is asked about: as it says, as its packing is pressed, else as the weight of
+    """The stress (Pa) at which a scene's soil is measured: as given, as its packing is pressed, else as the weight of
     half the packing's height has it, buoyant where there is fluid."""
     asked, packing = asked_of(scene), packing_of(scene)
     if asked.pressure is not None:
@@ -106,7 +106,7 @@ def ramp_of(asked: Homogenise, packing: Packing) -> float:
 
 
 def side_of(asked: Homogenise, packing: Packing) -> float:
-    """Side (m) of the cell that holds the grains asked for."""
+    """Side (m) of the cell that holds the chosen number of grains."""
     return packing.diameter * math.sqrt(asked.grains * math.pi / 4.0 * (1.0 + packing.size_spread**2 / 3.0) / SOLID)
 
 

@@ -1,4 +1,4 @@
-"""A material file: what packings of grains say of the soil they make, with how far each number is known.  TOML.
+"""A material file: what packings of grains show of the soil they make, with how far each number is known.  TOML.
 
 format          1
 [soil]          numbers that a scene of the continuum takes over: density (of grains per whole volume), porosity,

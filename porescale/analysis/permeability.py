@@ -31,7 +31,7 @@ from porescale.lbm.lattice import viscosity
 Array = NDArray[np.floating]
 
 TAU = 0.6
-"""Relaxation time unless told otherwise: drag depends least on it where it is small."""
+"""Relaxation time unless given: drag depends least on it where it is small."""
 SLOWNESS = 1e-6
 """Body force over viscosity: Reynolds numbers of the pores stay below 1e-4."""
 STEADY = 2e-5

@@ -50,7 +50,7 @@ class Watched:
             self.coupled.advance()
 
     def check(self) -> None:
-        """As a run asks."""
+        """As a run checks."""
         self.coupled.grains.check()
         self._sense.check(self.coupled.fluid.step, float(self.coupled.fluid.step))
 

@@ -1,6 +1,6 @@
 """The smallest lattice that does the job of water alone: one array, one loop, two rates, walls; nothing is chosen.
 
-It is what `study parts` holds a scene of water against: in place as `lattice.py` says, TRT (Ginzburg, Verhaeghe &
+It is what `study parts` holds a scene of water against: in place as in `lattice.py`, TRT (Ginzburg, Verhaeghe &
 d'Humieres 2008) without a body force, half-way bounce-back at all four sides.
 """
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from porescale.benchmarks.minimal_dem import PlainDiscs
 from porescale.benchmarks.minimal_lbm import PlainWater, plain_cells, slots_of
-from porescale.common.compiled.jit import inline, kernel, part, sum_by_halves
+from porescale.common.compiled.jit import inline, kernel, tree_sum, unchecked_view
 from porescale.coupling.coverage.discs import SCRATCH, cover_disc
 from porescale.coupling.coverage.rows import BLOCK, whole_blocks
 from porescale.coupling.immersed import FOLLOWING
@@ -26,7 +26,7 @@ from porescale.coupling.step import Coupled
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-total = sum_by_halves(BLOCK)
+total = tree_sum(BLOCK)
 
 
 class Covered(NamedTuple):
@@ -89,7 +89,12 @@ def lay(n, y, covered, s, sx, sy):
     first = (n * highest + y - corner[n, 1]) * width
     for at in range(0, width, BLOCK):
         x = corner[n, 0] + at + BLOCK
-        e, t, tx, ty = part(fraction, first + at, BLOCK), part(s, x, BLOCK), part(sx, x, BLOCK), part(sy, x, BLOCK)
+        e, t, tx, ty = (
+            unchecked_view(fraction, first + at, BLOCK),
+            unchecked_view(s, x, BLOCK),
+            unchecked_view(sx, x, BLOCK),
+            unchecked_view(sy, x, BLOCK),
+        )
         for i in range(BLOCK):
             t[i] += e[i]
             tx[i] += e[i] * (vx + e[i] * cx)
@@ -108,7 +113,12 @@ def take(n, y, covered, s, sx, sy, partial, load):
     first = (n * highest + y - corner[n, 1]) * width
     for at in range(0, width, BLOCK):
         x = corner[n, 0] + at + BLOCK
-        e, rho, jx, jy = part(fraction, first + at, BLOCK), part(s, x, BLOCK), part(sx, x, BLOCK), part(sy, x, BLOCK)
+        e, rho, jx, jy = (
+            unchecked_view(fraction, first + at, BLOCK),
+            unchecked_view(s, x, BLOCK),
+            unchecked_view(sx, x, BLOCK),
+            unchecked_view(sy, x, BLOCK),
+        )
         for i in range(BLOCK):
             arm = rx + (at + i)
             gx = e[i] * (jx[i] - rho[i] * (vx + e[i] * cx))
@@ -179,10 +189,16 @@ def cut(slots, first, count):
     """``count`` cells of nine ``slots``, from ``first`` on."""
     a0, a1, a2, a3, a4, a5, a6, a7, a8 = slots
     return (
-        part(a0, first, count), part(a1, first, count), part(a2, first, count), part(a3, first, count),
-        part(a4, first, count), part(a5, first, count), part(a6, first, count), part(a7, first, count),
-        part(a8, first, count),
-    )  # fmt: skip
+        unchecked_view(a0, first, count),
+        unchecked_view(a1, first, count),
+        unchecked_view(a2, first, count),
+        unchecked_view(a3, first, count),
+        unchecked_view(a4, first, count),
+        unchecked_view(a5, first, count),
+        unchecked_view(a6, first, count),
+        unchecked_view(a7, first, count),
+        unchecked_view(a8, first, count),
+    )
 
 
 @kernel
@@ -214,8 +230,13 @@ def wet_rows(f, parity, even, odd, covered, sums, spare, partial, load):
             sums[:, :BLOCK] = 0.0
             sums[:, BLOCK + nx :] = 0.0
             m, n = left, right - left
-            here = part(s, m + BLOCK, n), part(sx, m + BLOCK, n), part(sy, m + BLOCK, n)
-            room = part(spare[0], 0, n), part(spare[1], 0, n), part(spare[2], 0, n), part(spare[3], 0, n)
+            here = unchecked_view(s, m + BLOCK, n), unchecked_view(sx, m + BLOCK, n), unchecked_view(sy, m + BLOCK, n)
+            room = (
+                unchecked_view(spare[0], 0, n),
+                unchecked_view(spare[1], 0, n),
+                unchecked_view(spare[2], 0, n),
+                unchecked_view(spare[3], 0, n),
+            )
             wet_cells(cut(slots, m, n), here, room, k, spread)
             for entry in range(start[y], start[y + 1]):
                 take(listed[entry], y, covered, s, sx, sy, partial, load)

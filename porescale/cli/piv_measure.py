@@ -18,14 +18,8 @@ from porescale.common.core.errors import Fault, InputError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from porescale.piv.estimate.measure import Vectors
-    from porescale.piv.estimate.series import Shots
     from porescale.piv.fields.field import Field
 
-CHANCE = 0.05
-"""Share of vectors of the fluid that passes validation by chance where two pictures have nothing in common (measured:
-up to 0.04 of small ones)."""
-STRANGERS = Fault("pictures", None, "do not show the same tracers: hardly a vector passes validation")
 PATIENCE = 10.0
 """Seconds between lines of progress."""
 
@@ -59,9 +53,9 @@ def measure(
 ) -> int:
     """Measure displacements between pictures, with validity, correlation and uncertainty for every vector."""
     from porescale.piv.estimate.measure import Settings
-    from porescale.piv.estimate.series import Shots, averaged, corner, measured, whole_rows
-    from porescale.piv.fields.field import in_metres, in_pixels
+    from porescale.piv.estimate.series import Shots
     from porescale.piv.images.film import open_film
+    from porescale.piv.pipeline import Measurement, write_fields
 
     if not films:
         raise InputError(Fault("films", None, "none given", repair="give two pictures, or a film"))
@@ -78,34 +72,13 @@ def measure(
     film = open_film(films, start=start, end=end, step=step, region=_box(region))
     pixel, seconds = _scales(scale, interval, film.rate)
     shots = Shots(film, mask, tuple(polygon or ()), background)
-    rows = whole_rows(film) if pixel is not None else 0
-
-    def finished(vectors: Vectors) -> Field:
-        """Vectors as a field of the whole picture, in pixels, or in m and m/s where their scales are known."""
-        field = in_pixels(vectors, corner(film))
-        return field if pixel is None or seconds is None else in_metres(field, rows, pixel, seconds * step)
-
-    pairs = max(0, film.count() - 1)
-    total = 1 if average else pairs
-    if average:
-        found: Iterable[Vectors] = (averaged(shots, settings, _passes(pairs)) for _ in range(1))
-    else:
-        found = measured(shots, settings, _aside if pairs > 1 else None)
-    fields = (finished(it) for it in found)
-
-    def span(shape: tuple[int, ...]) -> tuple[float, ...]:
-        """Where a picture of a shape lies, in the units of the fields."""
-        return _span(shape, corner(film), rows, pixel)
-
     zero = 0.0 if time_ is None else quantity("--time", time_, "s")
-    times = (zero + (seconds or 1.0) * (start + 0.5 * step), (seconds or 1.0) * step)
-    said = _written(_progress(fields, total), shots, folder, csv, openpiv, times, span, total == 1)
-    if overlay and folder is not None and not average:
-        from porescale.piv.fields.overlay import overlay_film
-
-        shape = next(iter(film)).shape
-        said["files"].append(str(overlay_film(folder, film, span(shape))))
-    _say(said, json)
+    measurement = Measurement(shots, settings, average, pixel, seconds, zero)
+    fields = measurement.fields(_aside, _passes(measurement.pairs))
+    found = write_fields(
+        measurement, _progress(fields, measurement.total), folder, csv=csv, openpiv=openpiv, overlay=overlay
+    )  # fmt: skip
+    _print(found, json)
     return 0
 
 
@@ -140,30 +113,30 @@ def _scales(scale: str | None, interval: str | None, rate: float | None) -> tupl
 
 
 def _aside(text: str) -> None:
-    """Tell something beside the outcome."""
+    """Print a text on stderr, beside the outcome."""
     print(text, file=sys.stderr, flush=True)
 
 
 def _passes(pairs: int) -> Callable[[], None]:
-    """Counts the pairs that passes over a film go through, and prints so now and then."""
+    """A function that counts the pairs of passes over a film, with a line on stderr now and then."""
     done, last = 0, time.perf_counter()
 
-    def tell() -> None:
-        """Count one pair more, and print the progress."""
+    def count() -> None:
+        """One pair more."""
         nonlocal done, last
         done += 1
         if time.perf_counter() - last > PATIENCE:
             last = time.perf_counter()
             _aside(f"pass {(done - 1) // max(1, pairs) + 1}: {(done - 1) % max(1, pairs) + 1} of {pairs} pairs")
 
-    return tell
+    return count
 
 
-def _progress(fields: Iterable[Field], total: int) -> Iterator[tuple[Field, int]]:
+def _progress(fields: Iterable[Field], total: int) -> Iterator[Field]:
     """Fields as they come, with a line on stderr now and then."""
     start = last = time.perf_counter()
     for number, field in enumerate(fields, 1):
-        yield field, number
+        yield field
         now = time.perf_counter()
         if now - last > PATIENCE and number < total:
             left = (now - start) / number * (total - number)
@@ -171,77 +144,13 @@ def _progress(fields: Iterable[Field], total: int) -> Iterator[tuple[Field, int]
             last = now
 
 
-def _written(
-    fields: Iterator[tuple[Field, int]],
-    shots: Shots,
-    folder: Path | None,
-    csv: Path | None,
-    openpiv: Path | None,
-    times: tuple[float, float],
-    span: Callable[[tuple[int, ...]], tuple[float, ...]],
-    alone: bool,
-) -> dict[str, Any]:
-    """Write each field as it comes; gives what was measured and written.  InputError for one field without vectors.
-
-    times : of the first field, and from one to the next, s.
-    """
-    from porescale.common.record import snapshots
-    from porescale.common.record.model import Snapshot
-    from porescale.piv.estimate.series import as_grid
-    from porescale.piv.fields.field import write_csv, write_openpiv
-    from porescale.piv.fields.pictures import quiver, vorticity
-
-    counts = {"pairs": 0, "vectors": 0, "valid": 0, "replaced": 0, "solid": 0}
-    files: list[Path] = []
-    last = None
-    if folder is not None:
-        snapshots.clear(folder)
-    for field, number in fields:
-        if alone and field.valid.sum() < CHANCE * (~field.solid).sum():
-            raise InputError(STRANGERS)
-        last = field
-        counts["pairs"] += 1
-        counts["vectors"] += field.u.size
-        for name in ("valid", "replaced", "solid"):
-            counts[name] += int(getattr(field, name).sum())
-        if number == 1:
-            for path, write in ((csv, write_csv), (openpiv, write_openpiv)):
-                if path is not None:
-                    write(field, path)
-                    files.append(path)
-        if folder is not None:
-            table = folder / f"vectors_{number - 1:04d}.csv"
-            write_csv(field, table)
-            files += [table] if number == 1 else []
-            moment = times[0] + (number - 1) * times[1]
-            snapshots.write_part(folder, Snapshot(moment, number - 1, grids={"piv": as_grid(field)}))
-    if not alone and counts["valid"] < CHANCE * (counts["vectors"] - counts["solid"]):
-        if folder is not None:
-            snapshots.clear(folder)
-        raise InputError(STRANGERS)
-    if folder is not None and last is not None:
-        snapshots.assemble(folder)
-        image = next(iter(shots.film))
-        files += [folder / "piv.vtkhdf", quiver(last, folder / "quiver.png", image, span(image.shape))]
-        files.append(vorticity(last, folder / "vorticity.png"))
-    return {**counts, "files": [str(path) for path in files]}
-
-
-def _span(shape: tuple[int, ...], corner: tuple[int, int], rows: int, pixel: float | None) -> tuple[float, ...]:
-    """Left, right, bottom, top of the measured region, in the field's units."""
-    left, top = corner
-    if pixel is None:
-        return left - 0.5, left + shape[1] - 0.5, top + shape[0] - 0.5, top - 0.5
-    return left * pixel, (left + shape[1]) * pixel, (rows - top - shape[0]) * pixel, (rows - top) * pixel
-
-
-def _say(said: dict[str, Any], json: bool) -> None:
-    """What was measured, for people or scripts."""
+def _print(found: dict[str, Any], json: bool) -> None:
+    """Print what was measured, as text or as JSON."""
     if json:
-        print(json_text.dumps(said, indent=1))
+        print(json_text.dumps(found, indent=1))
         return
-    fluid = said["vectors"] - said["solid"]
-    share = 100 * said["valid"] / fluid if fluid else 0.0
-    print(f"{said['pairs']} pairs, {fluid} vectors in the fluid, {share:.1f} % valid, {said['replaced']} replaced")
-    for path in said["files"]:
+    fluid = found["vectors"] - found["solid"]
+    share = 100 * found["valid"] / fluid if fluid else 0.0
+    print(f"{found['pairs']} pairs, {fluid} vectors in the fluid, {share:.1f} % valid, {found['replaced']} replaced")
+    for path in found["files"]:
         print(path)

@@ -7,10 +7,10 @@ Each row of a body's patch is summed when the lattice row has been collided and 
 order afterwards, so that loads do not depend on threads.
 """
 
-from porescale.common.compiled.jit import fetch, inline, kernel, parallel_kernel, part, prange, sum_by_halves
+from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange, prefetch, tree_sum, unchecked_view
 from porescale.coupling.coverage.rows import AHEAD, BLOCK, blocks_inside
 
-total = sum_by_halves(BLOCK)
+total = tree_sum(BLOCK)
 
 
 @inline
@@ -28,7 +28,7 @@ def accumulate_load_row(y, rows, patches, motion, periodic_x, ramp, scratch, par
     density, jx, jy = scratch[0], scratch[1], scratch[2]
     for k in range(rows.start[y], rows.start[y + 1]):
         if k + AHEAD < rows.body.shape[0]:
-            fetch(row_load, (rows.body[k + AHEAD] * row_load.shape[1] + rows.line[k + AHEAD]) * row_load.shape[2])
+            prefetch(row_load, (rows.body[k + AHEAD] * row_load.shape[1] + rows.line[k + AHEAD]) * row_load.shape[2])
         n = rows.body[k]
         j = rows.line[k]
         stride = patches.stride[n]
@@ -59,11 +59,11 @@ def accumulate_load_row(y, rows, patches, motion, periodic_x, ramp, scratch, par
                 arm = ramp.dtype.type(rx + b)
                 vy = ramp.dtype.type(vy0 + spin[n] * b)
                 cy = ramp.dtype.type(cy0 + shift[n, 2] * b)
-                e = part(patches.fraction, at + b, BLOCK)
+                e = unchecked_view(patches.fraction, at + b, BLOCK)
                 x = base + b + BLOCK
-                rho = part(density, x, BLOCK)
-                kx = part(jx, x, BLOCK)
-                ky = part(jy, x, BLOCK)
+                rho = unchecked_view(density, x, BLOCK)
+                kx = unchecked_view(jx, x, BLOCK)
+                ky = unchecked_view(jy, x, BLOCK)
                 for i in range(BLOCK):
                     gy = e[i] * (ky[i] - rho[i] * (vy + turning * ramp[i] + e[i] * (cy + twist * ramp[i])))
                     gx = e[i] * (kx[i] - rho[i] * (vx + e[i] * cx))
@@ -80,7 +80,7 @@ def accumulate_load_row(y, rows, patches, motion, periodic_x, ramp, scratch, par
                 mass += total(partial, 3 * BLOCK)
                 inertia += total(partial, 4 * BLOCK)
                 if soft:
-                    slip = part(scratch[3], x, BLOCK)
+                    slip = unchecked_view(scratch[3], x, BLOCK)
                     for i in range(BLOCK):
                         edge = e[i] * (1 - e[i]) * (rho[i] > 0)  # none of what lies beyond the box
                         partial[5 * BLOCK + i] = edge * slip[i]

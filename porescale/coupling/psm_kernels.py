@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.compiled.jit import inline, parallel_kernel, part, prange, thread
+from porescale.common.compiled.jit import inline, parallel_kernel, prange, thread, unchecked_view
 from porescale.coupling.coverage.rows import BLOCK, rasterize_row
 from porescale.coupling.load import accumulate_load_row
 from porescale.coupling.solid.law import (
@@ -71,15 +71,15 @@ def cut_parts(planes, first, n):
     """Entries ``first`` to ``first + n - 1`` of nine rows."""
     a0, a1, a2, a3, a4, a5, a6, a7, a8 = planes
     return (
-        part(a0, first, n),
-        part(a1, first, n),
-        part(a2, first, n),
-        part(a3, first, n),
-        part(a4, first, n),
-        part(a5, first, n),
-        part(a6, first, n),
-        part(a7, first, n),
-        part(a8, first, n),
+        unchecked_view(a0, first, n),
+        unchecked_view(a1, first, n),
+        unchecked_view(a2, first, n),
+        unchecked_view(a3, first, n),
+        unchecked_view(a4, first, n),
+        unchecked_view(a5, first, n),
+        unchecked_view(a6, first, n),
+        unchecked_view(a7, first, n),
+        unchecked_view(a8, first, n),
     )
 
 
@@ -96,9 +96,14 @@ def collide_saturated_row(planes, s, sx, sy, st, weights, first, last, laws):
     # Cut to the range first: an index that might be negative keeps the loop from being vectorised.
     n = last - first
     a0, a1, a2, a3, a4, a5, a6, a7, a8 = cut_parts(planes, first, n)
-    s, sx, sy, st = part(s, first, n), part(sx, first, n), part(sy, first, n), part(st, first, n)
-    inverse, b = part(weights[0], 0, n), part(weights[1], 0, n)
-    first_rate, second_rate = part(weights[2], 0, n), part(weights[3], 0, n)
+    s, sx, sy, st = (
+        unchecked_view(s, first, n),
+        unchecked_view(sx, first, n),
+        unchecked_view(sy, first, n),
+        unchecked_view(st, first, n),
+    )
+    inverse, b = unchecked_view(weights[0], 0, n), unchecked_view(weights[1], 0, n)
+    first_rate, second_rate = unchecked_view(weights[2], 0, n), unchecked_view(weights[3], 0, n)
     weights_row(s, sx, sy, (inverse, b, first_rate, second_rate), weighting, solid)
     c = numbers(law.rate)
     one = c.one
@@ -157,8 +162,12 @@ def saturated_row(y, planes, rows, patches, motion, periodic_x, work, laws):
         first, last = (right, n) if end_of_row else (0, left)
         collide_row(planes, first, last, law)
     if left < right:
-        s, sx, sy = part(scratch[0], BLOCK, n), part(scratch[1], BLOCK, n), part(scratch[2], BLOCK, n)
-        softness = part(scratch[scratch.shape[0] - 1], BLOCK, n)
+        s, sx, sy = (
+            unchecked_view(scratch[0], BLOCK, n),
+            unchecked_view(scratch[1], BLOCK, n),
+            unchecked_view(scratch[2], BLOCK, n),
+        )
+        softness = unchecked_view(scratch[scratch.shape[0] - 1], BLOCK, n)
         for first in range(left, right, AT_ONCE):
             last = min(first + AT_ONCE, right)
             collide_saturated_row(planes, s, sx, sy, softness, work.weights, first, last, laws)

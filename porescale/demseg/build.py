@@ -1,6 +1,6 @@
 """A deck as a system of grains.
 
-Choices where the tutorial is silent, or says two things:
+Choices where the tutorial is silent, or contradicts itself:
 - Contacts hold until the overlap is gone (``release`` "overlap"), as its e = exp(-pi h/sqrt(1 - h^2)) has it.
 - Walls of the domain are of the first material; unlike materials mix as in dem/contact/materials.py.
 - Segments that make no polygon weigh ``rod`` times their length: 2 thick, and 0.1 where thick is 0.  The record printed
@@ -38,7 +38,7 @@ ROD = 0.1
 
 @dataclass(frozen=True)
 class Options:
-    """What the program asked at run time, or never said: see module.  rule : of contacts with segments, segments.py."""
+    """Read by the program at run time, or left open: see module.  rule : of contacts with segments, segments.py."""
 
     seed: int = 0
     release: str = "overlap"
@@ -62,7 +62,7 @@ class Built:
 
 
 def with_bodies(deck: Deck, seed: int) -> Deck:
-    """The deck with the discs that mode 0 makes, in place of what it says of them."""
+    """The deck with the discs that mode 0 makes, in place of what it holds of them."""
     return deck if deck.random is None else replace(deck, bodies=random_discs(deck, deck.random, seed), random=None)
 
 
@@ -181,7 +181,7 @@ def _steer(deck: Deck, built: Built) -> None:
 
 
 def _told(control: Control, seconds: float) -> list[Moved | Pushed | None]:
-    """What each component is told; not pushed at all is free."""
+    """What is prescribed for each component; without a force it is free."""
     return [
         Moved(value / seconds) if kind == MOVED else Pushed(value) if value else None
         for kind, value in zip(control.kinds, control.values, strict=True)

@@ -1,8 +1,8 @@
 """A deck as a scene: the tables of a scene.toml, and their text.
 
-Scenes know discs, clumps, bodies of segments, materials, walls, controls and bonds; their domain begins at the origin.
+Scenes have discs, clumps, bodies of segments, materials, walls, controls and bonds; their domain begins at the origin.
 Their bodies are in another order: discs, clumps, segments, polygons, so sums are added up otherwise and runs agree to
-round-off, as long as it does not grow.  Scenes know no angle at the start, which is left out: nothing depends on it.
+round-off, as long as it does not grow.  Scenes have no angle at the start, which is left out: nothing depends on it.
 Decks that go on from another run (jclid 1) are refused: scenes do not start with springs that are stretched.
 """
 
@@ -41,7 +41,7 @@ UNITS = {"plain": Units(), "cgs": Units(1e-2, 1e3), "mm-g": Units(1e-3, 1e6)}
 def scene_of(
     deck: Deck, name: str, release: str, units: Units, bonds: list[Row] | None = None, rod: float | None = None
 ) -> dict[str, Any]:
-    """The tables of the scene of a deck with bodies; raises InputError at what scenes do not know, see module.
+    """The tables of the scene of a deck with bodies; raises InputError at what scenes do not have, see module.
 
     bonds : those of a deck with jclid 3, see tension.py;  rod : width of segments that weigh, see build.py.
     """

@@ -1,4 +1,4 @@
-"""What a deck says: in_gm.dat (grains) and in_bc.dat (the run), read and written.
+"""What a deck holds: in_gm.dat (grains) and in_bc.dat (the run), read and written.
 
 in_gm.dat, one record a line (tutorial I-2, I-7):
     mode mode2 mode3
@@ -82,7 +82,7 @@ class Control:
 
 @dataclass(frozen=True)
 class Deck:
-    """A deck; names as in the module's layout.  bodies: none in mode 0, where ``random`` says what to make."""
+    """A deck; names as in the module's layout.  bodies: none in mode 0, where ``random`` states what to make."""
 
     dt: float
     gravity: tuple[float, float]

@@ -2,7 +2,7 @@
 
 energy.dat (tutorial I-2): step, then
     enrg potential;  enva kinetic;  enka elastic, bonds included;  enca lost in dashpots;  enfr lost in friction;
-    enxd work of bodies moved as told;  enxf work of bodies pushed as told;  err what does not balance.
+    enxd work of bodies with prescribed motion;  enxf work of prescribed forces;  err what does not balance.
 f-d_curve.dat (I-3): step, body, force x, place x, force y, place y, moment, angle, the order of the printed numbers
 (the text beside them has force and place the other way round); forces are those of contacts.
 Both every nprn2 steps and at both ends, written anew, whole or absent, every nprn1 steps; steps count on from iloop.
@@ -43,7 +43,7 @@ class DeckRun:
     """A deck in motion; ``step`` counts from its beginning, ``deck.iloop`` what was done before."""
 
     def __init__(self, deck: Deck, options: Options, folder: Path) -> None:
-        """``folder`` holds in_cf.dat or in_cf0.dat where the deck asks for one; else see read."""
+        """``folder`` holds in_cf.dat or in_cf0.dat where the deck needs one; else see read."""
         self.deck = with_bodies(deck, options.seed)
         before = read_state(folder / CF) if deck.jclid == GO_ON else None
         self._start = self.deck.bodies if before is None else _started(self.deck, before, folder / CF)
@@ -57,7 +57,7 @@ class DeckRun:
             bonded(self.built, read_tensions(folder / CF0, self.built))
 
     def _go_on(self, before: dict[str, Any], folder: Path) -> None:
-        """Take over the state of in_cf.dat; in_gm.dat must say the same of all bodies."""
+        """Take over the state of in_cf.dat; in_gm.dat must hold the same bodies."""
         walls = self.grains.walls.copy()
         try:
             _restore(self.grains, before["grains"])
@@ -66,8 +66,8 @@ class DeckRun:
             raise InputError(Fault("state", None, problem, file=str(folder / CF))) from None
         self.grains.walls[:] = walls  # the domain may have changed
         now = bodies_now(self.deck, self.built)
-        for number, (said, is_) in enumerate(zip(self.deck.bodies, now, strict=True)):
-            if said != is_:
+        for number, (given, is_) in enumerate(zip(self.deck.bodies, now, strict=True)):
+            if given != is_:
                 repair = "write jclid 0 or 3 in in_bc.dat to start from in_gm.dat"
                 problem = "is not as in_cf.dat has it"
                 raise InputError(Fault(f"body {number + 1}", None, problem, repair=repair, file=str(folder / GM)))
@@ -85,7 +85,7 @@ class DeckRun:
     def check(self) -> None:
         """Raise Unstable when a point is nowhere, or outside of the domain by more than the domain is long.
 
-        Nothing else stops a deck: what steps that are too long do to its energies, ``err`` says.
+        Nothing else stops a deck: what steps that are too long do to its energies, ``err`` shows.
         """
         x1, x2, y1, y2 = self.deck.domain
         at = self.grains.discs.position
@@ -215,7 +215,7 @@ def _started(deck: Deck, before: dict[str, Any], path: Path) -> tuple[Body, ...]
 
 
 def _restore(grains: Grains, state: dict[str, Any]) -> None:
-    """``grains`` as ``state`` has them, but for controls and records where they were told others then."""
+    """``grains`` as ``state`` has them, but for controls and records where others were prescribed then."""
     held = grains.held.copy()
     clumps = grains.steering.clumps.held.copy() if grains.steered else None
     if grains.steered:

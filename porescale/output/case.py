@@ -67,7 +67,7 @@ def draw(figure: Figure, picture: Path) -> None:
 def conclude(
     folder: Path, numbers: Mapping[str, float], figure: Figure, out: Path, say: Callable[[str], object] = print
 ) -> int:
-    """Say every row with what was measured, write ``out``/picture.png; the exit code: 1 if a row is missed."""
+    """Print every row with what was measured, write ``out``/picture.png; the exit code: 1 if a row is missed."""
     off = missed(folder, numbers)
     for row in expected(folder):
         word = "MISSED" if row["name"] in off else "ok"

@@ -19,7 +19,7 @@ KIND = {"segment": 0, "polygon": 1, "container": 2, "rock": 3, "plate": 4}
 
 def frame_cloud(grains: Grains, placed: Sequence[Placed]) -> Cloud:
     """Corners with thickness ("radius"), velocity, the number of their body among frames, its kind, see KIND, and
-    whether it moves as told ("driven").
+    whether its motion is prescribed ("driven").
 
     Bodies in a periodic box lie where their centroid is within it.
     """

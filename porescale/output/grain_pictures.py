@@ -126,7 +126,7 @@ def numbers(snapshot: Snapshot, look: Look) -> Figure:
 
 
 def rose_of(snapshot: Snapshot, look: Look) -> Figure:
-    """Directions of loaded contacts, and of the normal forces in them, with what the fabric tensor says of them."""
+    """Directions of loaded contacts, and of the normal forces in them, with what the fabric tensor gives for them."""
     contacts = snapshot.clouds[CONTACTS]
     figure = Figure((6.4, 6.6), dpi=100)
     axes: Any = figure.add_subplot(projection="polar")

@@ -8,7 +8,7 @@ import pydantic
 
 from porescale.common.core.errors import Fault
 from porescale.common.schema.sections import Refused, Section, quantity
-from porescale.scene.time_function import Course, with_courses
+from porescale.scene.time_function import TimeFunction, with_time_functions
 
 RATES, STRESSES = ("rate_xx", "rate_yy", "rate_xy"), ("stress_xx", "stress_yy", "shear_stress")
 
@@ -20,12 +20,12 @@ class Cell(Section):
     positive;  shear_stress : of the sign of the shear that it drives.  Dry scenes only.
     """
 
-    rate_xx: Course | None = None
-    rate_yy: Course | None = None
-    rate_xy: Course | None = None
-    stress_xx: Course | None = None
-    stress_yy: Course | None = None
-    shear_stress: Course | None = None
+    rate_xx: TimeFunction | None = None
+    rate_yy: TimeFunction | None = None
+    rate_xy: TimeFunction | None = None
+    stress_xx: TimeFunction | None = None
+    stress_yy: TimeFunction | None = None
+    shear_stress: TimeFunction | None = None
     fastest: float | None = quantity("1/s", None, gt=0, le=1e6, help="largest rate under a stress")
 
     UNITS: ClassVar[dict[str, tuple[str, str]]] = {
@@ -34,19 +34,19 @@ class Cell(Section):
 
     @pydantic.model_validator(mode="before")
     @classmethod
-    def _courses(cls, table: Any) -> Any:
-        return with_courses(table, cls.UNITS)
+    def _time_functions(cls, table: Any) -> Any:
+        return with_time_functions(table, cls.UNITS)
 
     @pydantic.model_validator(mode="after")
     def _sensible(self) -> Cell:
         faults = []
-        told = [name for name in (*RATES, *STRESSES) if getattr(self, name) is not None]
-        if not told:
+        given = [name for name in (*RATES, *STRESSES) if getattr(self, name) is not None]
+        if not given:
             faults.append(Fault("", None, "strains nothing", repair="give a rate or a stress, or leave it out"))
         for rate, stress in zip(RATES, STRESSES, strict=True):
-            if rate in told and stress in told:
+            if rate in given and stress in given:
                 faults.append(Fault(stress, None, f"and {rate} cannot both be told", repair="give one of them"))
-        stressed = any(name in told for name in STRESSES)
+        stressed = any(name in given for name in STRESSES)
         if stressed and self.fastest is None:
             problem, repair = "is missing: the largest rate under a stress", "add it, such as 1"
             faults.append(Fault("fastest", None, problem, "1/s", "> 0", repair))

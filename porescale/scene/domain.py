@@ -13,7 +13,7 @@ from porescale.lbm.boundary.choose import boundaries, boundary
 from porescale.lbm.boundary.law import Boundary
 from porescale.scene.ranges import SPEED
 from porescale.scene.servo import SERVO, check_servo
-from porescale.scene.time_function import Course, with_courses
+from porescale.scene.time_function import TimeFunction, with_time_functions
 
 KINDS: tuple[str, ...] = tuple(boundaries())
 Kind: Any = Literal[KINDS]
@@ -38,8 +38,8 @@ class Side(Section):
     velocity: tuple[float, float] | None = quantity("m/s", None, **SPEED, help="mean velocity of the fluid at the side")
     profile: Literal["uniform", "parabola"] = "uniform"
     pressure: float | None = quantity("Pa", None, ge=-1e9, le=1e9, help="pressure above hydrostatic")
-    stress: Course | None = None
-    force: Course | None = None
+    stress: TimeFunction | None = None
+    force: TimeFunction | None = None
     fastest: float | None = quantity("m/s", None, gt=0, le=1e4, help="largest speed under stress or force")
 
     @pydantic.model_validator(mode="before")
@@ -47,7 +47,7 @@ class Side(Section):
     def _from_word(cls, value: Any) -> Any:
         """A word stands for a side of that kind without numbers."""
         if not isinstance(value, str):
-            return with_courses(value, SERVO)
+            return with_time_functions(value, SERVO)
         if value not in KINDS:
             allowed = ", ".join(KINDS)
             raise Refused(Fault("", value, "unknown choice", "", allowed, nearest(value, KINDS, "choices")))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from porescale.common.core.errors import Fault
-from porescale.scene.time_function import Course
+from porescale.scene.time_function import TimeFunction
 
 SERVO = {"stress": ("Pa", "stress on the wall"), "force": ("N/m", "force on the wall")}
 
@@ -14,11 +14,11 @@ class Pressed(Protocol):
     """What a servo-controlled wall says, side or not."""
 
     @property
-    def stress(self) -> Course | None:
+    def stress(self) -> TimeFunction | None:
         """Pa."""
 
     @property
-    def force(self) -> Course | None:
+    def force(self) -> TimeFunction | None:
         """N/m."""
 
     @property

@@ -17,7 +17,7 @@ LARGEST = 1e12
 """SI, of any number that changes with time: what lies beyond is a slip of the exponent."""
 
 
-class Course(Section):
+class TimeFunction(Section):
     """A number over time: ``3``, ``{ amplitude = 1, frequency = 2, phase = 0, mean = 3 }`` or pairs
     ``[[time, value], …]``, straight between them and constant before and after.
     """
@@ -30,7 +30,7 @@ class Course(Section):
     values: tuple[float, ...] = ()
 
     @pydantic.model_validator(mode="after")
-    def _one_kind(self) -> Course:
+    def _one_kind(self) -> TimeFunction:
         if len(self.times) != len(self.values):
             raise Refused(Fault("values", len(self.values), "are not as many as times", "", str(len(self.times))))
         if any(not later > earlier for earlier, later in zip(self.times, self.times[1:], strict=False)):
@@ -55,9 +55,9 @@ class Course(Section):
         return max([*slopes, 2.0 * math.pi * self.frequency * abs(self.amplitude)])
 
 
-def course(value: Any, unit: str, help: str) -> Any:
-    """What stands in a scene for a course in ``unit`` as a table of its keys, all values in SI; raises Refused."""
-    if value is None or isinstance(value, Course):
+def as_table(value: Any, unit: str, help: str) -> Any:
+    """A function of time in ``unit``, as a scene writes it, as a table of its keys, all in SI; raises Refused."""
+    if value is None or isinstance(value, TimeFunction):
         return value
     own = Quantity(unit, ge=-LARGEST, le=LARGEST, help=help)
     if isinstance(value, Mapping):
@@ -77,15 +77,15 @@ def course(value: Any, unit: str, help: str) -> Any:
     return {"mean": own.convert(value)}
 
 
-def with_courses(table: Any, units: Mapping[str, tuple[str, str]]) -> Any:
-    """``table`` with the courses of a section made ready; units : key -> (unit, what it is).  Raises Refused."""
+def with_time_functions(table: Any, units: Mapping[str, tuple[str, str]]) -> Any:
+    """``table`` of a section with its functions of time as tables; units : key -> (unit, help).  Raises Refused."""
     if not isinstance(table, Mapping):
         return table
     made, faults = dict(table), []
     for key, (unit, help) in units.items():
         try:
             if key in made:
-                made[key] = course(made[key], unit, help)
+                made[key] = as_table(made[key], unit, help)
         except Refused as refused:
             faults += [_below(key, fault) for fault in refused.faults]
     if faults:
@@ -103,9 +103,9 @@ class Component(Section):
     velocity : moved so;  displacement : since the start, only its changes matter;  force : pushed so, besides all else.
     """
 
-    velocity: Course | None = None
-    displacement: Course | None = None
-    force: Course | None = None
+    velocity: TimeFunction | None = None
+    displacement: TimeFunction | None = None
+    force: TimeFunction | None = None
 
     UNITS: ClassVar[dict[str, tuple[str, str]]] = {
         "velocity": ("m/s", "velocity"), "displacement": ("m", "displacement"), "force": ("N/m", "force"),
@@ -119,7 +119,7 @@ class Component(Section):
                 repair = "write free, or { velocity = … }, { displacement = … }, { force = … }"
                 raise Refused(Fault("", value, "unknown choice", "", "free, or a table", repair))
             return {}
-        return with_courses(value, cls.UNITS)
+        return with_time_functions(value, cls.UNITS)
 
     @pydantic.model_validator(mode="after")
     def _one(self) -> Component:
@@ -130,7 +130,7 @@ class Component(Section):
 
     @property
     def fastest(self) -> float:
-        """The largest speed that it tells, m/s (or rad/s)."""
+        """The largest speed that it prescribes, m/s (or rad/s)."""
         if self.velocity:
             return self.velocity.largest
         return self.displacement.steepest if self.displacement else 0.0

@@ -44,7 +44,7 @@ def known_test(strain: float = 0.24, poisson: float = POISSON) -> dict[str, NDAr
 
 
 def known_numbers(series: dict[str, NDArray[np.float64]]) -> list[float]:
-    """What a test says of E, ν, φ, ψ, over what they are."""
+    """What a test gives for E, ν, φ, ψ, over what they are."""
     (found,) = biaxial.numbers([series])
     return [
         found["stiffness"] / STIFFNESS, found["Poisson's ratio"] / POISSON, found["peak friction angle"] / FRICTION,

@@ -208,7 +208,7 @@ NARROW = {0.25: (2.83, 3.15), 0.5: (2.86, 3.19), 0.75: (3.05, 3.46)}
 """The same bounds in ground that ends 1 T beside the pile, by finite volumes: `tests/reference/sheet_pile.py`."""
 
 APART = {share: high / low - 1.0 for share, (low, high) in NARROW.items()}
-"""How far ground may rise, over s, and its head still tell one bound from the other: ground that has risen by δ s is
+"""How far ground may rise, over s, and its head still part one bound from the other: ground that has risen by δ s is
 that of a pile (1 + δ) s deep, which stands at least (1 + δ) times the head."""
 HEADS = (2.8, 3.0, 3.2, 3.4)  # over i_c s
 HELD = {0.5: QUICK, 0.25: replace(QUICK, share=0.25, rows=20), 0.75: replace(QUICK, share=0.75, rows=20)}

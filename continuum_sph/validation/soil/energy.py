@@ -3,7 +3,7 @@
 Kinetic and potential energy go into the work of stress on the soil (what it stores and what friction turns into heat),
 the damping of zig-zags and particles stopped at a wall's surface.  Two entries come from nowhere: `parting` moves
 particles without a force, up as well as down, and walls, which are images of the soil before them, do a little work.
-Volume that particles exchange is no energy: it only says whose share of the work comes next.  What is left is that of
+Volume that particles exchange is no energy: it only shifts the work of the next step.  What is left is that of
 the steps in time: (ω Δt)²/8 of what moves, ω up to 2 c/h, Δt 0.25 h/c.
 """
 

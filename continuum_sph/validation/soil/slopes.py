@@ -157,7 +157,7 @@ STEEP = 35.0  # degrees
 def departure(*, seconds: float = 2.0, exchanged: bool = True) -> float:
     """Largest share by which a particle's density ever departs from that at the start, of a layer that slides.
 
-    exchanged : particles exchange volume, as `continuum_sph.soil.momentum` says.
+    exchanged : particles exchange volume, as in `continuum_sph.soil.momentum`.
     """
     flow = layer(STEEP)
     start, largest = flow.soil.density.copy(), 0.0

@@ -22,7 +22,7 @@ VALIDATIONS = Validations()
 
 MARTIN_MOYCE = ("martin_moyce_1952_a1.125in", "martin_moyce_1952_a2.25in")
 KOSHIZUKA_OKA = ("koshizuka_oka_1996", "koshizuka_oka_1996_b")  # one experiment, digitised twice
-LATEST = 2.9  # of t √(2g/a): later the front meets the far wall of the trial's tank
+LATEST = 2.9  # of t √(2g/a): later the front reaches the far wall of the trial's tank
 RELEASED = 1.0  # of t √(2g/a): earlier the experiments show how their column was let go
 PASSED = 1.5  # widths: the first place that all experiments' fronts pass after that
 

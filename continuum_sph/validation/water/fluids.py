@@ -282,9 +282,9 @@ def rising(spacing: float, seconds: float) -> tuple[float, float, float]:
     while flow.time < seconds:
         flow.advance()
         if flow.step % 20 == 0:
-            said = inclusion_row(flow)
-            swiftest = max(swiftest, said["bubble rise (m/s)"])
-            flattest = min(flattest, said["bubble circularity ()"])
+            row = inclusion_row(flow)
+            swiftest = max(swiftest, row["bubble rise (m/s)"])
+            flattest = min(flattest, row["bubble circularity ()"])
     return swiftest, flattest, inclusion_row(flow)["bubble centre (m)"]
 
 

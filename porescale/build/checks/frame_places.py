@@ -1,6 +1,6 @@
 """Where bodies of segments must not be: out of the box, in each other, in discs; and sections they do not go with.
 
-All of it is geometry by hand, outside the time loop: a pair of bodies whose boxes meet is looked at side by side.
+All of it is geometry by hand, outside the time loop: a pair of bodies whose boxes overlap is compared side by side.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ def _out_of_the_box(scene: Scene, placed: Sequence[Placed]) -> list[Fault]:
 
 
 def _too_thin(scene: Scene, placed: Sequence[Placed]) -> list[Fault]:
-    """Frames without thickness that can meet: nothing would push them apart.  Hertz's law needs one everywhere."""
+    """Frames without thickness that can touch: nothing would push them apart.  Hertz's law needs one everywhere."""
     bare = [it for it in placed if it.frame.thickness == 0.0]
     hertz = scene.contact is not None and scene.contact.law == "hertz"
     if not bare or not (hertz or (len(bare) > 1 and any(it.free for it in bare))):
@@ -218,11 +218,11 @@ def strays(scene: Scene, placed: Sequence[Placed]) -> list[str]:
     size, periodic = np.array([scene.domain.width, scene.domain.height]), np.array(scene.domain.periodic)
     said = []
     for it in placed:
-        told = [control for control in it.told if control is not None]
-        if it.kind != "container" or len(told) != len(it.told):
+        motion = [control for control in it.prescribed if control is not None]
+        if it.kind != "container" or len(motion) != len(it.prescribed):
             continue
         times = np.linspace(0.0, scene.time.end, LOOKS)
-        x, y, turn = (_path(control, times) for control in told)
+        x, y, turn = (_path(control, times) for control in motion)
         about = np.array(it.frame.mass_properties().centroid)
         arms = np.array(it.frame.corners) - about
         for time, gone, angle in zip(times, np.column_stack((x, y)), turn, strict=True):
@@ -240,7 +240,7 @@ def strays(scene: Scene, placed: Sequence[Placed]) -> list[str]:
 
 
 def _path(control: Control, times: Array) -> Array:
-    """Displacement (m, rad) of a component at ``times`` (s) since the first, as told by velocity or displacement."""
+    """Displacement (m, rad) of a component at ``times`` (s) since the first, by its velocity or displacement."""
     rows, points = schedule_rows([schedule_of(control)])
     values = np.array([value_at(rows, points, 0, time) for time in times])
     if isinstance(control, PlacedControl):

@@ -95,7 +95,7 @@ def deepest(
     periodic, box = _periodic(domain), np.array([domain.width, domain.height])
     inside = np.where(periodic, x % box, x)
     inside = np.where(periodic & (inside >= box), 0.0, inside)  # a tiny negative number modulo the box is the box
-    low = np.where(periodic, 0.0, inside.min(axis=0))  # the search wants coordinates from 0 on a side without period
+    low = np.where(periodic, 0.0, inside.min(axis=0))  # the search takes coordinates from 0 on a side without period
     pairs = cKDTree(inside - low, boxsize=np.where(periodic, box, 0.0)).query_pairs(
         2 * float(r.max()), output_type="ndarray"
     )
@@ -115,7 +115,7 @@ def deepest(
 
 
 def _check_periods(scene: Scene, sizes: tuple[float, float, float], faults: list[Fault]) -> bool:
-    """Whether a periodic side is shorter than two cutoffs of the pair search, where a grain meets another twice."""
+    """Whether a periodic side is shorter than two cutoffs of the pair search, where a grain touches another twice."""
     _, mean, largest = sizes
     # The skin follows the mean radius; that of a packing is drawn, so its upper bound counts.
     skin = SKIN * (largest if scene.grains and scene.grains.packing else mean) / 2

@@ -1,6 +1,6 @@
 """Where rectangles must not be or come: in the packing, each other, discs, the gate, open sides; all else is allowed.
 
-Everything moves straight and evenly between a few times, so what meets when follows from linear inequalities.
+Everything moves straight and evenly between a few times, so what overlaps when follows from linear inequalities.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from porescale.scene.scene import Scene
 
 EDGE = 1e-9
-"""Relative slack of edges that meet."""
+"""Relative slack of edges that touch."""
 TOUCH = 1e-3
 """Share of a radius by which a disc may start in a rectangle."""
 NEVER = float("inf")
@@ -193,7 +193,7 @@ def _check_discs(scene: Scene, places: Array, radii: Array, names: Sequence[str]
 def nearest(it: Rectangle, path: Body, place: Array, t0: float, t1: float) -> float:
     """Smallest distance (m) of a centre, from ``place`` along ``path``, to a rectangle between t0 and t1 (s).
 
-    The distance to what is convex is convex along a line: the smaller of two thirds tells where to look on.
+    The distance to what is convex is convex along a line: the smaller of two thirds says where to go on.
     """
 
     def distance(time: float) -> float:

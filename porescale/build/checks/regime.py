@@ -50,7 +50,7 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None, fra
     terminal speed of a grain if that is less, and for a packing that of the gravity current it can become,
     sqrt(g' H)/2 with g' = phi |s - 1| g (Benjamin 1968): grains that fall together fall faster than each alone.
     Fluid under a body force: the parabola between the walls across it, which grains in its way only slow down; under a
-    difference of pressure the same, or Bernoulli's speed if that is less.  What is told to move counts as told.
+    difference of pressure the same, or Bernoulli's speed if that is less.  Prescribed motion counts as it is.
     """
     g, speed = math.hypot(*scene.gravity), max(given_speed(scene), _framed_speed(scene, frames))
     if scene.grains and sizes:
@@ -100,7 +100,7 @@ def _pressed_speed(scene: Scene, scales: Scales) -> float:
 
 
 def _framed_speed(scene: Scene, frames: Sequence[Placed]) -> float:
-    """The largest speed that bodies of segments start or are told to move with, m/s."""
+    """The largest speed that bodies of segments start with or are prescribed to have, m/s."""
     speeds = [0.0]
     for it in frames:
         size = float(np.ptp(np.array(it.frame.corners), axis=0).max())

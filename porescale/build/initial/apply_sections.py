@@ -18,7 +18,7 @@ from porescale.dem.grains import Grains
 from porescale.dem.motion.time_function import Schedule
 from porescale.scene.cell import RATES, STRESSES, Cell
 from porescale.scene.scene import Scene
-from porescale.scene.time_function import Course
+from porescale.scene.time_function import TimeFunction
 
 
 def apply_sections(scene: Scene, grains: Grains, mass: float, placed: Sequence[Placed] = ()) -> list[str]:
@@ -64,8 +64,8 @@ def strain(it: Cell, grains: Grains) -> None:
 
     def prescribed(name: str) -> Schedule | None:
         """A rate or stress over time; None where the section names none."""
-        course: Course | None = getattr(it, name)
-        return schedule_of(course) if course else None
+        function: TimeFunction | None = getattr(it, name)
+        return schedule_of(function) if function else None
 
     xx, yy, xy = (prescribed(name) for name in RATES)
     along, up, shear = (prescribed(name) for name in STRESSES)

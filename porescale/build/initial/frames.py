@@ -34,16 +34,16 @@ Array = NDArray[np.float64]
 Kind = Literal["segment", "polygon", "container", "rock", "plate"]
 
 
-Told = tuple[Control | None, Control | None, Control | None]
+Prescribed = tuple[Control | None, Control | None, Control | None]
 
 
 PLATES = ("first plate", "second plate")
 
 
-FREE: Told = (None, None, None)
+FREE: Prescribed = (None, None, None)
 
 
-HELD: Told = (Moved(), Moved(), Moved())
+HELD: Prescribed = (Moved(), Moved(), Moved())
 
 
 ROD = 1e-3
@@ -52,19 +52,19 @@ ROD = 1e-3
 
 @dataclass(frozen=True)
 class Placed:
-    """A frame of a scene: ``key`` of its section, what it is, and what its components are told."""
+    """A frame of a scene: ``key`` of its section, what it is, and how its components are prescribed to move."""
 
     key: str
     kind: Kind
     frame: Frame
-    told: Told = FREE
+    prescribed: Prescribed = FREE
     name: str = ""
     record: bool = False
 
     @property
     def free(self) -> bool:
         """Whether forces move it: it is one of the grains."""
-        return self.kind not in ("container", "plate") and not all(isinstance(it, Moved) for it in self.told)
+        return self.kind not in ("container", "plate") and not all(isinstance(it, Moved) for it in self.prescribed)
 
 
 def any_frames(scene: Scene) -> bool:
@@ -117,17 +117,17 @@ def _made(plan: MaterialPlan, key: str, kind: Kind, section: SegmentBody | Polyg
         return [Placed(key, kind, _container(plan, section, more), _prescribed(section), name, section.record)]
     density = section.density or plan.density(section.material)
     more |= {"velocity": section.velocity, "spin": section.spin}
-    told, made = HELD if section.held else FREE, []
+    motion, made = HELD if section.held else FREE, []
     for at, angle, size in copies_of(section):
         if isinstance(section, PolygonBody):
             frame = polygon(_turned(section.points, at, angle, size), section.thickness, density, **more)
         else:
             frame = _lines(section, at, angle, density, more | {"width": section.width, "long": section.long})
-        made.append(Placed(key, kind, frame, told))
+        made.append(Placed(key, kind, frame, motion))
     return made
 
 
-def _prescribed(section: Container) -> Told:
+def _prescribed(section: Container) -> Prescribed:
     """How each component of a container moves: it stands where none is prescribed."""
     stands = Moved()
     x, y, rotation = (control_of(it) or stands for it in (section.x, section.y, section.rotation))
@@ -181,7 +181,7 @@ def with_corners(grains: Grains, placed: Sequence[Placed]) -> Grains:
 def bind_frames(
     grains: Grains, placed: Sequence[Placed], clumps: tuple[list[Any], list[float], list[Body | None]]
 ) -> None:
-    """Make frames of the last discs, beside clumps (numbers, densities, bodies); tell and watch nothing so far.
+    """Make frames of the last discs, beside clumps (numbers, densities, bodies); no motion is prescribed so far.
 
     Raises InputError by the keys of sections.
     """
@@ -206,11 +206,11 @@ def _of_clump(fault: Fault, placed: Sequence[Placed], before: int) -> Fault:
 
 
 def prescribe_motion(grains: Grains, placed: Sequence[Placed]) -> list[ClumpNumber]:
-    """Tell frames what they are told; returns those that are recorded of themselves, in their order."""
+    """Prescribe the motion of frames; returns those that are recorded of themselves, in their order."""
     first = grains.steering.clumps.count - len(placed)
     for k, it in enumerate(placed):
-        if it.told != FREE:
-            grains.steering.control(ClumpNumber(first + k), *it.told)
+        if it.prescribed != FREE:
+            grains.steering.control(ClumpNumber(first + k), *it.prescribed)
     return [ClumpNumber(first + k) for k, it in enumerate(placed) if it.record]
 
 

@@ -97,7 +97,7 @@ def grains_of(scene: Scene, derived: Derived, frames: list[Placed]) -> tuple[Gra
 
 
 def _held(discs: Sequence[Disc], density: float) -> Discs:
-    """The discs that move as told; their mass moves nothing."""
+    """The discs whose motion is prescribed; their mass has no effect."""
     return make_discs(
         [(it.x, it.y) for it in discs], np.array([it.diameter / 2 for it in discs]), density,
         np.array([it.velocity for it in discs]), np.array([it.spin for it in discs]),

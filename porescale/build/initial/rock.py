@@ -80,10 +80,10 @@ def rock_frames(scene: Scene, law: Law) -> list[Placed]:
             points, thickness, density, width=2.0 * max(thickness, off), long=True,
             material=plan.number("", wall=True),
         )  # fmt: skip
-        told = list(HELD)
+        motion = list(HELD)
         if name == PLATES[1]:
-            told[axis] = moves
-        made.append(Placed("rock", "plate", frame, (told[0], told[1], told[2]), name))
+            motion[axis] = moves
+        made.append(Placed("rock", "plate", frame, (motion[0], motion[1], motion[2]), name))
     return made
 
 

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from porescale.dem.motion.control import Control, Moved, Placed, Pushed
 from porescale.dem.motion.time_function import Constant, Schedule, Sine, Table
-from porescale.scene.time_function import Component, Course
+from porescale.scene.time_function import Component, TimeFunction
 
 
-def schedule_of(course: Course) -> Schedule:
+def schedule_of(function: TimeFunction) -> Schedule:
     """A number over time."""
-    if course.times:
-        return Table(course.times, course.values)
-    if course.amplitude:
-        return Sine(course.amplitude, course.frequency, course.phase, course.mean)
-    return Constant(course.mean)
+    if function.times:
+        return Table(function.times, function.values)
+    if function.amplitude:
+        return Sine(function.amplitude, function.frequency, function.phase, function.mean)
+    return Constant(function.mean)
 
 
-def schedule_or_zero(course: Course | None) -> Schedule:
+def schedule_or_zero(function: TimeFunction | None) -> Schedule:
     """The same, zero where there is none."""
-    return schedule_of(course) if course else 0.0
+    return schedule_of(function) if function else 0.0
 
 
 def control_of(component: Component) -> Control | None:

@@ -104,7 +104,7 @@ class BondsPart(Part):
             self.made += 1
 
     def _join(self, key: str, section: Bonds) -> None:
-        """The bonds that a section knows by number; raises InputError at a number that there is not."""
+        """The bonds that a section gives by number; raises InputError at a number that there is not."""
         grains = self.grains
         ends = np.array([row[:3] for row in section.known], np.int64)
         segments = 0 if grains.segments is None else len(grains.segments.ends)

@@ -43,7 +43,7 @@ class FlowInstruments(Part):
         return cls(system.clock, fluid, system)
 
     def tables(self) -> dict[str, Row]:
-        """A row of every table that the scene asks for."""
+        """A row of every table that the scene has a section for."""
         first, fields, tables = {"time (s)": self.clock.time} | self.first, self.fluid.fields(), {}
         if self.probes:
             tables["probes"] = first | self._probe_row(self.probes, fields)

@@ -32,7 +32,7 @@ from numba.core.errors import NumbaWarning
 from numba.extending import intrinsic, overload
 
 from porescale.common.compiled.cache import keep_only_used, mark_used, writable
-from porescale.common.compiled.jit import GIVEN, cache_folder, fetch, part, prange, thread
+from porescale.common.compiled.jit import GIVEN, cache_folder, prange, prefetch, thread, unchecked_view
 from porescale.common.compiled.kernel_key import Unknown, key_of, warning
 
 # A row kernel reads and writes nine population rows: LLVM must compare 36 pairs of them before it vectorises,
@@ -105,7 +105,7 @@ class _Place(_CacheLocator):
         return cls(py_file)
 
     def get_cache_path(self) -> str:
-        """The folder."""
+        """The folder of compiled kernels."""
         return str(cache_folder())
 
     def get_source_stamp(self) -> str:
@@ -181,7 +181,7 @@ def choose_by_law(chosen: Callable[..., Any], bodies: dict[type, Any]) -> None:
     overload(chosen, strict=False, jit_options=_INLINED)(choose)
 
 
-def choose_by_precision(chosen: Callable[..., Any], constants: dict[int, Any]) -> None:
+def choose_precision(chosen: Callable[..., Any], constants: dict[int, Any]) -> None:
     """Let ``chosen`` mean, in kernels, the constants for the bits of its argument."""
 
     def choose(number: Any) -> Any:
@@ -193,7 +193,7 @@ def choose_by_precision(chosen: Callable[..., Any], constants: dict[int, Any]) -
 
 
 def _view(typing: Any, array: Any, first: Any, count: Any) -> Any:
-    """``part`` in kernels."""
+    """Signature and code of ``unchecked_view`` in kernels."""
     if not isinstance(array, numba.types.Array) or array.ndim != 1 or array.layout != "C":
         return None
 
@@ -216,13 +216,13 @@ def _view(typing: Any, array: Any, first: Any, count: Any) -> Any:
 _part: Any = intrinsic(_view)
 
 
-@overload(part, strict=False, jit_options=_INLINED)
+@overload(unchecked_view, strict=False, jit_options=_INLINED)
 def _choose_part(array: Any, first: Any, count: Any) -> Any:
     return lambda array, first, count: _part(array, first, count)
 
 
 def _prefetch(typing: Any, array: Any, at: Any) -> Any:
-    """``fetch`` in kernels."""
+    """Signature and code of ``prefetch`` in kernels."""
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         """The machine's own word for it."""
@@ -240,16 +240,16 @@ def _prefetch(typing: Any, array: Any, at: Any) -> Any:
 _fetch: Any = intrinsic(_prefetch)
 
 
-@overload(fetch, strict=False, jit_options=_INLINED)
+@overload(prefetch, strict=False, jit_options=_INLINED)
 def _choose_fetch(array: Any, at: Any) -> Any:
     return lambda array, at: _fetch(array, at)
 
 
-def teach_sum_by_halves(total: Callable[..., Any], count: int) -> None:
-    """Let ``total`` (array, first) of ``sum_by_halves`` mean vector additions in kernels."""
+def teach_tree_sum(total: Callable[..., Any], count: int) -> None:
+    """Let ``total`` (array, first) of ``tree_sum`` mean vector additions in kernels."""
 
     def vector(typing: Any, array: Any, first: Any) -> Any:
-        """``total`` in kernels."""
+        """Signature and code of ``total`` in kernels."""
 
         def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
             """One load, then halves of the vector added until one number is left."""

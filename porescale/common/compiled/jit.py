@@ -1,7 +1,7 @@
 """How functions become kernels: compiled by numba when they are first called, and not before.
 
 numba takes longer to import than a wrong scene takes to be found wrong, so what is defined here waits for it: a
-`Kernel` until it is called, and what is told of other functions (`by_law`, `part` …) until the first kernel is.
+`Kernel` until it is called, and the other functions (`by_law`, `unchecked_view` …) until the first kernel is.
 compiling.py does the work then, and simd_code.py for simd.py.
 
 Kernels are compiled once and kept on disk.  numba stamps a cached kernel with its own file only, so an edited contact
@@ -70,7 +70,7 @@ def when_compiling(teach: Callable[[Any], object]) -> None:
 
 
 def compiler() -> Any:
-    """compiling.py, once all that has waited for it is told; numba is imported by the first call."""
+    """compiling.py, once all that waited for it is registered; numba is imported by the first call."""
     global _compiler
     with _LOCK:
         if _compiler is None:
@@ -93,7 +93,7 @@ class Kernel:
 
     @cached_property
     def compiled(self) -> Any:
-        """numba's dispatcher."""
+        """numba's dispatcher of the function."""
         return compiler().dispatcher(self.py_func, self.options)
 
     @property
@@ -167,7 +167,7 @@ def by_law(signature: F) -> Any:
     return chosen
 
 
-def by_precision(build: Callable[[type], Any]) -> Any:
+def precision_constants(build: Callable[[type], Any]) -> Any:
     """Make an inline kernel of one number that returns ``build(np.float32)`` or ``build(np.float64)`` as constants.
 
     A float64 literal promotes a float32 kernel; what this returns for a number of the kernel's own precision does not.
@@ -179,11 +179,11 @@ def by_precision(build: Callable[[type], Any]) -> Any:
         return constants[8 * np.dtype(type(number)).itemsize]
 
     vars(chosen).update(__name__=build.__name__, __doc__=build.__doc__, meaning=constants)
-    when_compiling(lambda machine: machine.choose_by_precision(chosen, constants))
+    when_compiling(lambda machine: machine.choose_precision(chosen, constants))
     return chosen
 
 
-def part(array: Any, first: Any, count: Any) -> Any:
+def unchecked_view(array: Any, first: Any, count: Any) -> Any:
     """``count`` entries of a one-dimensional array from ``first`` on; for loops that take many short parts.
 
     In kernels a view that owns nothing: a slice made the usual way counts references and is cut to the array, which
@@ -192,14 +192,14 @@ def part(array: Any, first: Any, count: Any) -> Any:
     return array[first : first + count]
 
 
-def fetch(array: Any, at: Any) -> None:
+def prefetch(array: Any, at: Any) -> None:
     """Ask for the entry ``at`` of a contiguous array, counted as if it were flat, to be brought to the nearest cache.
 
     For entries that a loop comes to in an order that no machine foresees.  Does nothing else, nor in plain Python.
     """
 
 
-def sum_by_halves(count: int) -> Any:
+def tree_sum(count: int) -> Any:
     """Make an inline kernel (array, first) that sums ``count`` entries, a power of two, from ``first`` on.
 
     The second half is added to the first until one is left: vector additions, in an order that no machine changes.
@@ -214,7 +214,7 @@ def sum_by_halves(count: int) -> Any:
         return left[0]
 
     vars(total).update(py_func=total, meaning=count)
-    when_compiling(lambda machine: machine.teach_sum_by_halves(total, count))
+    when_compiling(lambda machine: machine.teach_tree_sum(total, count))
     return total
 
 

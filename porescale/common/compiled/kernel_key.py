@@ -102,7 +102,7 @@ class _Content:
                 self.add(content)
 
     def add(self, *values: Any) -> None:
-        """Constants, functions, types."""
+        """Add constants, functions and types to the hash."""
         for value in values:
             if id(value) in self.own:
                 self.put("own", self.own[id(value)])
@@ -173,7 +173,7 @@ class _Content:
 
 
 OVERLOADED = frozenset(f"{__package__}.{name}" for name in ("jit", "simd"))
-"""Modules whose functions compiling.py and lanes_code.py compile; all of these belong to ``surroundings``."""
+"""Modules whose functions compiling.py and simd_code.py compile; all of these belong to ``surroundings``."""
 
 _FUNCTIONS = (FunctionType, BuiltinFunctionType, np.ufunc, type(np.sum))
 
@@ -184,7 +184,7 @@ def _root(value: Any) -> str:
 
 
 def _hash(content: bytes) -> str:
-    """Hash of bytes."""
+    """SHA-256 hash of bytes, hexadecimal."""
     return hashlib.sha256(content).hexdigest()
 
 

@@ -2,7 +2,7 @@
 
 A compiler that keeps the order of sums, as ours must, adds the terms of a row one after the other and leaves most of
 the machine idle.  Here the order is part of the program: a row is taken LANES entries at a time, every lane has its own
-sum, and `total` adds the lanes by halves.  The same bits on any machine, however wide its vectors are.
+sum, and `reduce_add` adds the lanes by halves.  The same bits on any machine, however wide its vectors are.
 
 In kernels what these functions return is a vector of LANES float64 that takes + - * / with its like and with numbers;
 in plain Python it is an array.  Numbers may stand for vectors everywhere.
@@ -18,45 +18,45 @@ import numpy as np
 from porescale.common.compiled.jit import when_compiling
 
 LANES = 4  # twice as many are 2 % faster where vectors are that wide (measured), and half as many registers elsewhere
-WORDS = 32  # that `put_ascending` compares at once: a row of partners
-COLUMNS = 8  # that `take_rows` reads of a record
+WORDS = 32  # that `store_sorted` compares at once: a row of partners
+COLUMNS = 8  # that `gather_rows` reads of a record
 CODE = f"{__package__}.simd_code"
 """What these functions are in kernels."""
 
 
-def root(a: Any) -> Any:
-    """√a."""
+def sqrt(a: Any) -> Any:
+    """Square root of every lane."""
     return np.sqrt(a)
 
 
-def nearest(a: Any) -> Any:
+def rint(a: Any) -> Any:
     """The whole number nearest to a, the even one of two."""
     return np.rint(a)
 
 
-def greater(a: Any, b: Any) -> Any:
+def maximum(a: Any, b: Any) -> Any:
     """The greater of two, b where they cannot be compared."""
     return np.where(np.greater(a, b), a, b)[()]
 
 
-def lesser(a: Any, b: Any) -> Any:
+def minimum(a: Any, b: Any) -> Any:
     """The lesser of two, b where they cannot be compared."""
     return np.where(np.less(a, b), a, b)[()]
 
 
-def nothing() -> Any:
+def zeros() -> Any:
     """Zero in every lane."""
     return np.zeros(LANES)
 
 
-def total(a: Any) -> Any:
+def reduce_add(a: Any) -> Any:
     """Sum of the lanes of ``a``: the second half is added to the first until one is left."""
     while len(a) > 1:
         a = a[: len(a) // 2] + a[len(a) // 2 :]
     return a[0]
 
 
-def take_line(line: Any, first: Any, end: Any) -> Any:
+def load(line: Any, first: Any, end: Any) -> Any:
     """Entries ``line[first]``, ``line[first + 1]`` … of a float64 array, 0 from ``line[end]`` on.
 
     Not checked: that ``line`` has LANES entries from ``first`` on, also where the last ones are not taken.
@@ -65,18 +65,18 @@ def take_line(line: Any, first: Any, end: Any) -> Any:
     return np.where(inside, line[first : first + LANES], 0.0)
 
 
-def kept(a: Any, first: Any, end: Any) -> Any:
+def mask_tail(a: Any, first: Any, end: Any) -> Any:
     """Lanes of ``a`` that stand for entries ``first``, ``first + 1`` … of a row, 0 from ``end`` on."""
     return np.where(np.arange(first, first + LANES) < end, a, 0.0)
 
 
-def put_line(line: Any, first: Any, end: Any, values: Any) -> None:
+def store(line: Any, first: Any, end: Any, values: Any) -> None:
     """Write LANES values to ``line[first]``, ``line[first + 1]`` … of a float64 array, none from ``line[end]`` on."""
     count = min(LANES, end - first)
     line[first : first + count] = values[:count]
 
 
-def put_ascending(line: Any, count: Any, target: Any, first: Any) -> None:
+def store_sorted(line: Any, count: Any, target: Any, first: Any) -> None:
     """Write the first ``count`` entries of ``line`` to ``target[first]`` and on, the least first; both int32.
 
     Every entry counts those less than it, which says where it goes: quick for tens of entries, and nothing is guessed.
@@ -85,7 +85,7 @@ def put_ascending(line: Any, count: Any, target: Any, first: Any) -> None:
     target[first : first + count] = np.sort(line[:count])
 
 
-def rows_of(columns: int) -> Any:
+def row_gatherer(columns: int) -> Any:
     """Make the function that takes that many columns, an even number, of rows."""
 
     def take(record: Any, row: Any, first: Any, end: Any, other: Any, column: Any = 0, before: Any = 0) -> Any:
@@ -101,7 +101,7 @@ def rows_of(columns: int) -> Any:
     return take
 
 
-take_rows = rows_of(COLUMNS)
-take_four = rows_of(4)
-take_two = rows_of(2)
+gather_rows = row_gatherer(COLUMNS)
+gather_four = row_gatherer(4)
+gather_two = row_gatherer(2)
 when_compiling(lambda _: import_module(CODE))

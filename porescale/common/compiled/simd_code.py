@@ -18,16 +18,16 @@ from numba.extending import intrinsic, models, overload, register_model
 from porescale.common.compiled.simd import (
     LANES,
     WORDS,
-    greater,
-    kept,
-    lesser,
-    nearest,
-    nothing,
-    put_ascending,
-    put_line,
-    root,
-    take_line,
-    total,
+    load,
+    mask_tail,
+    maximum,
+    minimum,
+    reduce_add,
+    rint,
+    sqrt,
+    store,
+    store_sorted,
+    zeros,
 )
 
 NUMBER, COUNT, SHORT = ir.DoubleType(), ir.IntType(64), ir.IntType(32)
@@ -80,7 +80,7 @@ def _operator(keys: tuple[Callable[..., Any], ...], code: Callable[..., Any], op
     for operation in keys:
 
         class Template(AbstractTemplate):
-            """The operator on vectors, as numba is told of it."""
+            """The operator on vectors, as numba sees it."""
 
             key: Any = operation
 
@@ -139,19 +139,19 @@ def _chosen(sign: str) -> Callable[..., Any]:
     return lambda builder, a, b: builder.select(builder.fcmp_ordered(sign, a, b), a, b)
 
 
-_function(root, _by_machine("sqrt"), lambda a: np.sqrt(a))
-_function(nearest, _by_machine("rint"), lambda a: np.rint(a))
-_function(greater, _chosen(">"), lambda a, b: a if a > b else b)
-_function(lesser, _chosen("<"), lambda a, b: a if a < b else b)
+_function(sqrt, _by_machine("sqrt"), lambda a: np.sqrt(a))
+_function(rint, _by_machine("rint"), lambda a: np.rint(a))
+_function(maximum, _chosen(">"), lambda a, b: a if a > b else b)
+_function(minimum, _chosen("<"), lambda a, b: a if a < b else b)
 
 
 def _zero(typing: Any) -> Any:
-    """``nothing`` in kernels."""
+    """Signature and code of ``zeros`` in kernels."""
     return lanes(), lambda context, builder, _, values: ir.Constant(VECTOR, [0.0] * LANES)
 
 
 def _sum(typing: Any, a: Any) -> Any:
-    """``total`` in kernels."""
+    """Signature and code of ``reduce_add`` in kernels."""
 
     def code(context: Any, builder: Any, _: Any, values: Any) -> Any:
         """Halves of the vector added until one number is left."""
@@ -167,7 +167,7 @@ def _sum(typing: Any, a: Any) -> Any:
 
 
 def _put_line(typing: Any, line: Any, first: Any, end: Any, values: Any) -> Any:
-    """``put_line`` in kernels."""
+    """Signature and code of ``store`` in kernels."""
 
     def code(context: Any, builder: Any, _: Any, taken: Any) -> Any:
         """One store where all lanes lie before the end, else those that do, one by one."""
@@ -189,7 +189,7 @@ def _put_line(typing: Any, line: Any, first: Any, end: Any, values: Any) -> Any:
 
 
 def _put_ascending(typing: Any, line: Any, count: Any, target: Any, first: Any) -> Any:
-    """``put_ascending`` in kernels: WORDS entries at a time are compared with all."""
+    """``store_sorted`` in kernels: WORDS entries at a time are compared with all."""
     vector, none = ir.VectorType(SHORT, WORDS), COUNT(0)
 
     def code(context: Any, builder: Any, _: Any, values: Any) -> Any:
@@ -219,19 +219,19 @@ def _put_ascending(typing: Any, line: Any, count: Any, target: Any, first: Any) 
 
 
 def _kept(builder: Any, values: Any, first: Any, end: Any) -> Any:
-    """Code of `kept`."""
+    """Instructions of ``mask_tail`` on loaded values."""
     places = ir.Constant(ir.VectorType(COUNT, LANES), list(range(LANES)))
     inside = builder.icmp_signed("<", places, _everywhere(builder, builder.sub(end, first)))
     return builder.select(inside, values, ir.Constant(VECTOR, [0.0] * LANES))
 
 
 def _keep(typing: Any, a: Any, first: Any, end: Any) -> Any:
-    """``kept`` in kernels."""
+    """Signature and code of ``mask_tail`` in kernels."""
     return lanes(lanes, types.int64, types.int64), lambda context, builder, _, values: _kept(builder, *values)
 
 
 def _take_line(typing: Any, line: Any, first: Any, end: Any) -> Any:
-    """``take_line`` in kernels."""
+    """Signature and code of ``load`` in kernels."""
 
     def code(context: Any, builder: Any, _: Any, values: Any) -> Any:
         """A load, of which lanes beyond the end are zero."""
@@ -258,32 +258,32 @@ _put: Any = intrinsic(_put_line)
 _ascending: Any = intrinsic(_put_ascending)
 
 
-@overload(nothing, strict=False, jit_options=INLINED)
+@overload(zeros, strict=False, jit_options=INLINED)
 def _choose_nothing() -> Any:
     return lambda: _nothing()
 
 
-@overload(total, strict=False, jit_options=INLINED)
+@overload(reduce_add, strict=False, jit_options=INLINED)
 def _choose_total(a: Any) -> Any:
     return lambda a: _total(a)
 
 
-@overload(take_line, strict=False, jit_options=INLINED)
+@overload(load, strict=False, jit_options=INLINED)
 def _choose_line(line: Any, first: Any, end: Any) -> Any:
     return lambda line, first, end: _line(line, first, end)
 
 
-@overload(kept, strict=False, jit_options=INLINED)
+@overload(mask_tail, strict=False, jit_options=INLINED)
 def _choose_kept(a: Any, first: Any, end: Any) -> Any:
     return lambda a, first, end: _keeping(a, first, end)
 
 
-@overload(put_line, strict=False, jit_options=INLINED)
+@overload(store, strict=False, jit_options=INLINED)
 def _choose_put(line: Any, first: Any, end: Any, values: Any) -> Any:
     return lambda line, first, end, values: _put(line, first, end, values)
 
 
-@overload(put_ascending, strict=False, jit_options=INLINED)
+@overload(store_sorted, strict=False, jit_options=INLINED)
 def _choose_ascending(line: Any, count: Any, target: Any, first: Any) -> Any:
     return lambda line, count, target, first: _ascending(line, count, target, first)
 
@@ -321,7 +321,7 @@ def _numbers(builder: Any, listed: Any, first: Any, end: Any, other: Any, before
 
 
 def teach_rows(take: Callable[..., Any], columns: int) -> None:
-    """Let ``take``, made by ``rows_of`` for so many columns, mean vectors in kernels."""
+    """Let ``take``, made by ``row_gatherer`` for so many columns, mean vectors in kernels."""
 
     def vectors(typing: Any, record: Any, row: Any, first: Any, end: Any, other: Any, column: Any, before: Any) -> Any:
         """Rows come two columns at a time and are put side by side in registers."""

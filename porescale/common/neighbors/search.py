@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.common.compiled.jit import inline, kernel, parallel_kernel, part, prange, thread
-from porescale.common.compiled.simd import WORDS, put_ascending
+from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange, thread, unchecked_view
+from porescale.common.compiled.simd import WORDS, store_sorted
 from porescale.common.neighbors.cells import cell_of, tilted_image, untilted, wrapped
 
 
@@ -174,7 +174,7 @@ def fill_serial(start, partner, row, x, reach, ordered, order, cell_start, grid,
         found, needed = search_row(True, i, x, reach, ordered, order, cell_start, grid, criterion, row)
         longest = max(longest, needed)
         if needed <= row.shape[0] and begin + found <= partner.shape[0]:
-            put_ascending(row, found, partner, begin)
+            store_sorted(row, found, partner, begin)
         start[i + 1] = begin + found
     return start[x.shape[0]], longest
 
@@ -199,9 +199,9 @@ def fill_parallel(start, partner, scratch, length, x, reach, ordered, order, cel
     """Rows over threads into the places that ``start`` (n + 1,) names: overwrites ``partner`` and ``scratch``, of which
     each thread has ``length`` entries, as many as `count_parallel` says."""
     for i in prange(x.shape[0]):
-        row = part(scratch, thread() * length, length)
+        row = unchecked_view(scratch, thread() * length, length)
         found, _ = search_row(True, i, x, reach, ordered, order, cell_start, grid, criterion, row)
-        put_ascending(row, found, partner, start[i])
+        store_sorted(row, found, partner, start[i])
 
 
 @kernel

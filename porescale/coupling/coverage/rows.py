@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.compiled.jit import fetch, inline, parallel_kernel, part, prange
+from porescale.common.compiled.jit import inline, parallel_kernel, prange, prefetch, unchecked_view
 
 BLOCK = 16
 """Cells done at once: the widest vector of float32."""
@@ -168,8 +168,8 @@ def rasterize_row(y, rows, patches, motion, periodic_x, ramp, scratch):
         if k + AHEAD < rows.body.shape[0]:
             m = rows.body[k + AHEAD]
             soon = patches.start[m] + rows.line[k + AHEAD] * patches.stride[m]
-            fetch(patches.fraction, soon)
-            fetch(patches.fraction, soon + BLOCK // 2)
+            prefetch(patches.fraction, soon)
+            prefetch(patches.fraction, soon + BLOCK // 2)
         n = rows.body[k]
         j = rows.line[k]
         stride = patches.stride[n]
@@ -188,18 +188,18 @@ def rasterize_row(y, rows, patches, motion, periodic_x, ramp, scratch):
             for b in range(first, last, BLOCK):
                 vy = ramp.dtype.type(vy0 + spin[n] * b)
                 cy = ramp.dtype.type(cy0 + shift[n, 2] * b)
-                e = part(patches.fraction, at + b, BLOCK)
+                e = unchecked_view(patches.fraction, at + b, BLOCK)
                 x = base + b + BLOCK
-                t = part(s, x, BLOCK)
-                tx = part(sx, x, BLOCK)
-                ty = part(sy, x, BLOCK)
+                t = unchecked_view(s, x, BLOCK)
+                tx = unchecked_view(sx, x, BLOCK)
+                ty = unchecked_view(sy, x, BLOCK)
                 for i in range(BLOCK):
                     t[i] += e[i]
                     tx[i] += e[i] * (vx + e[i] * cx)
                     ty[i] += e[i] * (vy + turning * ramp[i] + e[i] * (cy + twist * ramp[i]))
                 if scratch.shape[0] > 3:
                     softness = ramp.dtype.type(motion.theta[n])
-                    summed = part(scratch[3], x, BLOCK)
+                    summed = unchecked_view(scratch[3], x, BLOCK)
                     for i in range(BLOCK):
                         summed[i] += e[i] * softness
             if first < last:

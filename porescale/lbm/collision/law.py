@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from porescale.common.compiled.jit import by_law, by_precision, inline
+from porescale.common.compiled.jit import by_law, inline, precision_constants
 
 
 class Macroscopic(NamedTuple):
@@ -97,7 +97,7 @@ class Numbers(NamedTuple):
     c38: np.floating
 
 
-@by_precision
+@precision_constants
 def numbers(real: type) -> Numbers:
     """``Numbers`` in the precision of a number."""
     return Numbers(*(real(v) for v in (4 / 9, 1 / 9, 1 / 36, 0, 0.25, 0.5, 1, 1.5, 2, 3, 4.5, 9, 0.75, 0.375)))

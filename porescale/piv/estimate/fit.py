@@ -38,7 +38,7 @@ FLAT = 1e-6
 """Share of the largest variance of grey levels, or of their slopes, below which there is nothing to see."""
 ROUND = 0.01
 """Determinant of H over its squared trace, 1/4 for round spots and 0 for straight edges, from which both components are
-told.
+known.
 """
 LEAST_FREE = np.float32(0.25)
 """Share of the spots' freedom that is left at least, when variances are judged."""
@@ -48,7 +48,7 @@ ROUNDS, CLOSE = 30, 0.02
 
 @dataclass(frozen=True)
 class Equations:
-    """What pixels say about an update, by blocks, float32: sums of w gx gx, w gx gy, w gy gy, w gx r, w gy r; of the
+    """Share of pixels in an update, by blocks, float32: sums of w gx gx, w gx gy, w gy gy, w gx r, w gy r; of the
     products of the last two; and m, their correlation.
     """
 
@@ -61,7 +61,7 @@ class Equations:
 def equations(
     pairs: Iterable[tuple[Ready, Ready]], along: Paths, noise: float, slack: float, *, exact: bool
 ) -> Equations:
-    """Deform all pairs along paths and sum up what they say; ``noise``, ``slack`` as in ``Settings``.
+    """Deform all pairs along paths and sum up their contributions; ``noise``, ``slack`` as in ``Settings``.
 
     exact : by quintic splines, without bias, rather than by OpenCV's cubic ones, in a fifth of the time; paths are
     displacements then, else places.
@@ -184,12 +184,12 @@ def _dot(a: Single, b: Single) -> float:
 
 
 def variances(known: Equations, freedom: float) -> Single:
-    """Variance of a component at each block, px^2, if one square px of data gave it: of H^-1 Q H^-1, H what pictures
-    tell an update, Q the variance of what they say, found from how it scatters (White 1980, Econometrica 48, 817).
+    """Variance of a component at each block, px^2, if one square px of data gave it: of H^-1 Q H^-1, H the information
+    of pictures on an update, Q its variance, found from how it scatters (White 1980, Econometrica 48, 817).
 
     freedom : of the fit, coefficients a square px of one component.  Spots are few: with n of them to p coefficients
-    residuals are short by 1 - p/n, and scattered spots tell less than the same light spread out by as much again (n of
-    blocks: squared mean over mean square of H).  Infinite where pictures tell nothing, or of one component only, as
+    residuals are short by 1 - p/n, and scattered spots weigh less than the same light spread out by as much again (n of
+    blocks: squared mean over mean square of H).  Infinite where pictures show nothing, or of one component only, as
     a straight edge does.
     """
     area = np.float32(BLOCK**2)

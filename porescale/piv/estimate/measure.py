@@ -102,7 +102,7 @@ class Vectors:
 
 
 FEW = 8
-"""px between knots below which fewer than three tracers, at the usual seeding, are to tell what a knot does."""
+"""px between knots below which fewer than three tracers, at the usual seeding, determine a knot."""
 FIRST = 64
 """Window of the first pass, px, at least."""
 
@@ -195,7 +195,7 @@ def measure_ready(
 
 class Fitted(NamedTuple):
     """A fitted field.  grid : of its knots;  c (2, m, n) : coefficients of u and v;  lost (ny, nx) : knots of the fluid
-    that failed validation;  known : what the pictures said of the last update.
+    that failed validation;  known : what the pictures determine of the last update.
     """
 
     grid: Grid
@@ -304,7 +304,7 @@ SETTLED, SHARE = 0.3, 99.0
 last: each leaves a quarter of the one before, and the better pictures match the more of it can be had.
 """
 DOUBT = 0.6
-"""Correlation from which a fitted vector is believed whatever its neighbours say."""
+"""Correlation from which a fitted vector is believed whatever its neighbours are."""
 
 
 def _alike(correlation: Array, fluid: Flags, least: float) -> Flags:
@@ -315,11 +315,11 @@ def _alike(correlation: Array, fluid: Flags, least: float) -> Flags:
 
 
 def _vectors(fitted: Fitted, grid: Grid, masks: Sequence[Flags | None], ratio: Array, settings: Settings) -> Vectors:
-    """The outcome on the grid asked for; solids carry zeros."""
+    """The outcome on the chosen grid; solids carry zeros."""
     knots, known = fitted.grid, fitted.known
     u, v = (knots.values(it) for it in fitted.c)
-    crowd = max(1.0, FEW / knots.step)
-    smooth = smoothed(u, v, knots.step, settings.firm, crowd, choose=settings.smooth)
+    alike = max(1.0, FEW / knots.step)
+    smooth = smoothed(u, v, knots.step, settings.firm, alike, choose=settings.smooth)
     fluid = _fluid(grid, masks)
     near = np.ix_(*(nearest(own, other) for own, other in ((knots.y, grid.y), (knots.x, grid.x))))
     match = at_places(known.correlation, grid.x, grid.y)

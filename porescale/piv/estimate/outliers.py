@@ -13,7 +13,7 @@ Flags = NDArray[np.bool_]
 THRESHOLD, LEAST = 2.0, 0.1
 """Of the normalised median test: bound, and fluctuation in px taken as normal (Westerweel & Scarano 2005)."""
 ENOUGH = 5
-"""Neighbours asked for; where fewer of the eight are fluid the next ring is asked too."""
+"""Neighbours needed; where fewer of the eight are fluid the next ring counts too."""
 
 
 @inline
@@ -68,7 +68,7 @@ RIDGE = 0.05
 
 @kernel
 def fill_once(u, v, good, new_u, new_v, done):
-    """Planes through the good vectors around, at each that is not good; ``done`` says where there were enough.
+    """Planes through the good vectors around, at each that is not good; ``done`` marks where there were enough.
 
     Least squares over a neighbourhood of REACH steps, weighted by exp(-d^2/4.5), with a small wish for flatness.  All
     (ny, nx); new_u, new_v, done are overwritten where ``good`` is false.

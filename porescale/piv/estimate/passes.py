@@ -51,7 +51,7 @@ def paths(grid: Grid, coefficients: NDArray[Any], *, curved: bool, every: int = 
     """Half a displacement back and half forward from every pixel, along a parabola where ``curved``.
 
     coefficients (2, m, n) : of the splines of u and v;  every : pixels to one of a coarser picture, in whose pixels
-    places are told then;  whole : places rather than displacements.  In a steady flow the mid-point between X(-1/2)
+    places are given then;  whole : places rather than displacements.  In a steady flow the mid-point between X(-1/2)
     and X(+1/2) lies (d . grad) d/8 off the material's place at mid time.
     """
     half = 0.5 * np.asarray(coefficients, float)

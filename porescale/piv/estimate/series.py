@@ -52,18 +52,18 @@ class Shots:
             last = shot
 
 
-def measured(shots: Shots, settings: Settings, say: Callable[[str], object] | None = None) -> Iterator[Vectors]:
+def measured(shots: Shots, settings: Settings, warn: Callable[[str], object] | None = None) -> Iterator[Vectors]:
     """A field for each pair of frames, one pair in memory at a time.  InputError where a pair cannot be measured.
 
-    say : told of pairs that show nothing, whose vectors are all invalid then; without it they are an error too.
+    warn : called for pairs that show nothing, whose vectors are all invalid then; without it they are an error too.
     """
     count = 0
     for (first, mask_a), (second, mask_b) in shots.pairs():
         count += 1
-        fault = None if say is None else unseen((first, second), (mask_a, mask_b))
-        if say is not None and fault is not None:
+        fault = None if warn is None else unseen((first, second), (mask_a, mask_b))
+        if warn is not None and fault is not None:
             number = shots.film.start + (count - 1) * shots.film.step
-            say(f"frames {number} and {number + shots.film.step}: {InputError(fault)}; none of their vectors is valid")
+            warn(f"frames {number} and {number + shots.film.step}: {InputError(fault)}; none of their vectors is valid")
             yield nothing((first.shape[0], first.shape[1]), (mask_a, mask_b), settings)
             continue
         empty = np.zeros(first.shape, bool)
@@ -73,13 +73,13 @@ def measured(shots: Shots, settings: Settings, say: Callable[[str], object] | No
         raise InputError(Fault("film", None, "fewer than two frames chosen", repair="widen --start, --end, --step"))
 
 
-def averaged(shots: Shots, settings: Settings, tell: Callable[[], object] | None = None) -> Vectors:
+def averaged(shots: Shots, settings: Settings, passed: Callable[[], object] | None = None) -> Vectors:
     """One field from all pairs of a steady flow: their correlations and equations are summed, not their vectors.
 
-    Gone through once for every pass, one pair in memory at a time; solid is what is solid in every frame.  tell :
+    Gone through once for every pass, one pair in memory at a time; solid is what is solid in every frame.  passed :
     called for every pair in every pass.
     """
-    pairs = _Prepared(shots, settings, tell or (lambda: None))
+    pairs = _Prepared(shots, settings, passed or (lambda: None))
     size, solid = None, None
     for (first, mask_a), (second, mask_b) in shots.pairs():
         refuse(first, second, (mask_a, mask_b), settings)
@@ -97,14 +97,14 @@ class _Prepared:
 
     shots: Shots
     settings: Settings
-    tell: Callable[[], object]
+    passed: Callable[[], object]
 
     def __iter__(self) -> Iterator[tuple[Ready, Ready]]:
         last = None
         for picture, mask in self.shots.frames():
             new = ready(picture, mask, 2 * max(16, self.settings.window))
             if last is not None:
-                self.tell()
+                self.passed()
                 yield last, new
             last = new
 

@@ -1,4 +1,4 @@
-"""Smoothing of a field no more than its own noise asks for.
+"""Smoothing of a field no more than its own noise supports.
 
 Penalised least squares, sum (z - y)^2 + s sum |second differences of z|^2, natural at the edges, so that planes are
 left as they are (Whittaker 1923; Eilers & Marx 2003); s by generalised cross-validation (Craven & Wahba 1979, Numer.
@@ -48,8 +48,8 @@ class Smoothed(NamedTuple):
 def smoothed(u: Array, v: Array, step: int, stiffness: float, alike: float = 1.0, *, choose: bool = True) -> Smoothed:
     """A field as a fit with the stiffness of the least cross-validation score would have made it.
 
-    u, v : at the knots, ``step`` px apart, of a fit with ``stiffness``, which is undone to judge what the pictures
-    said; less is not tried, nor more unless ``choose``;  alike : knots that share the tracers of one, >= 1.
+    u, v : at the knots, ``step`` px apart, of a fit with ``stiffness``, which is undone to judge the data of the
+    pictures; less is not tried, nor more unless ``choose``;  alike : knots that share the tracers of one, >= 1.
     """
     (down, rows), (across, columns) = _modes(u.shape[0]), _modes(u.shape[1])
     py, px = np.sqrt(down)[:, None], np.sqrt(across)

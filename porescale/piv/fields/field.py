@@ -126,7 +126,7 @@ def _turned(field: Field) -> Field:
 
 
 def read(path: Path) -> Field:
-    """A field from our CSV or OpenPIV's text, told apart by their first line.
+    """A field from our CSV or OpenPIV's text, distinguished by their first line.
 
     y points up where it falls from row to row.  OpenPIV's fields whose points are a unit and more apart are taken for
     pixels, and turned.  InputError for files that are neither, or whose points are no grid.

@@ -44,7 +44,7 @@ def field_of_run(folder: Path, time: float | None = None) -> Field:
 
 
 def surface_of_run(folder: Path, x: Array, time: float | None = None) -> Surface | None:
-    """The pile's surface at columns x, m, from the grains of a run; None for a folder without (a film's, say)."""
+    """The pile's surface at columns x, m, from the grains of a run; None for a folder without (that of a film)."""
     if (folder / f"{MEASURED}.vtkhdf").exists():
         return None
     run = open_run(folder)

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 ARROWS = 48
 """Arrows across a picture, at most."""
 REPLACED, VALID = "#d95f02", "#ffd54a"
-"""Colours of arrows over an image: told apart without colour too, by their lightness."""
+"""Colours of arrows over an image: which differ in lightness, too."""
 
 
 def quiver(

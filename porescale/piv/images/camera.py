@@ -26,7 +26,7 @@ THIN, THICK = 0.5, 1.5
 GREYS = {"bright": 180.0, "dark": 4.0}
 """Grey levels of solids."""
 SIDE = 1024
-"""px of the longer side of a picture, where nothing else is asked for."""
+"""px of the longer side of a picture, where nothing else is given."""
 LARGEST = 4096
 """px a side, at most."""
 LONGEST = 100_000

@@ -45,7 +45,7 @@ class Film:
 
     files : one film, or the pictures in order;  start, end : first frame and the one after the last (None: all);
     step : frames from one used to the next;  region : left, top, right, bottom px, the last two excluded;  rate :
-    frames a second, None if the files do not say.
+    frames a second, None if the files do not hold it.
     """
 
     files: tuple[Path, ...]
@@ -79,7 +79,7 @@ class Film:
             last = frame
 
     def count(self) -> int:
-        """Number of chosen frames; a film that does not say is decoded for it."""
+        """Number of chosen frames; a film whose file does not hold it is decoded."""
         if not self.moving:
             return len(range(len(self.files))[self.start : self.end : self.step])
         stated = _stated(self.files[0])

@@ -13,7 +13,7 @@ BODIES = ("grain", "clump", "segment", "polygon")
 
 
 class Controlled(Section):
-    """Control of one body: each of x, y, rotation "free", or told a velocity, a displacement or a force.
+    """Control of one body: each of x, y, rotation "free", or with a prescribed velocity, displacement or force.
 
     record = true: force and displacement in control.csv; what a control gives is what contacts, weight and fluid take.
     """

@@ -8,7 +8,7 @@ import pydantic
 
 from porescale.common.core.errors import Fault
 from porescale.common.schema.sections import Refused, Section, quantity
-from porescale.scene.time_function import Course, with_courses
+from porescale.scene.time_function import TimeFunction, with_time_functions
 
 
 class Rock(Section):
@@ -24,12 +24,14 @@ class Rock(Section):
     gap: float | None = quantity("m", None, gt=0, le=1e3, help="distance of neighbouring polygons' lines")
     pressed: float | None = quantity("m", None, gt=0, le=1e3, help="overlap of their sides, from which they are bonded")
     plates: Literal["x", "y", "none"] = pydantic.Field("x", description="along which axis the plates press and pull")
-    strain: Course | None = pydantic.Field(None, description="of the sample over time, > 0 pulled; left out, it stands")
+    strain: TimeFunction | None = pydantic.Field(
+        None, description="of the sample over time, > 0 pulled; left out, it stands"
+    )
 
     @pydantic.model_validator(mode="before")
     @classmethod
-    def _courses(cls, table: Any) -> Any:
-        return with_courses(table, {"strain": ("", "strain of the sample")})
+    def _time_functions(cls, table: Any) -> Any:
+        return with_time_functions(table, {"strain": ("", "strain of the sample")})
 
     @pydantic.model_validator(mode="after")
     def _whole(self) -> Rock:

@@ -120,8 +120,8 @@ class PolygonBody(Framed):
 class Container(Section):
     """Long segments that hold grains: a box, a hopper, a drum.  Kept out of the cells of the neighbour search.
 
-    It stands still but for the components that are told; ``pivot`` is the point that x and y move and about which it
-    turns.  What it takes is in control.csv.
+    It stands still but for the components that are prescribed; ``pivot`` is the point that x and y move and about which
+    it turns.  What it takes is in control.csv.
     """
 
     chain: Points = quantity("m", (), **PLACE, help="points from which to which its segments go")

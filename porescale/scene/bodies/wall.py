@@ -10,11 +10,11 @@ import pydantic
 from porescale.common.core.errors import Fault
 from porescale.common.schema.sections import Refused, Section, quantity
 from porescale.scene.servo import SERVO, check_servo
-from porescale.scene.time_function import Course, with_courses
+from porescale.scene.time_function import TimeFunction, with_time_functions
 
 
 class Wall(Section):
-    """A straight wall without end, solid behind: it stands, moves and turns as told, or is pressed on by the grains.
+    """A straight wall without end, solid behind: it stands, moves and turns as prescribed, or the grains press on it.
 
     stress, force : it moves along its normal, no faster than ``fastest``, so that the grains press on it so, > 0 for
     compression.  Dry scenes only.
@@ -25,11 +25,11 @@ class Wall(Section):
     y: float = quantity("m", ge=-1e3, le=1e3, help="a point of the wall, about which it turns")
     normal: tuple[float, float] = quantity("", ge=-1e6, le=1e6, help="direction towards the grains, of any length")
     friction: float | None = quantity("", None, ge=0, le=1e3, help="friction coefficient (default: that of the sides)")
-    velocity_x: Course | None = None
-    velocity_y: Course | None = None
-    turning: Course | None = None
-    stress: Course | None = None
-    force: Course | None = None
+    velocity_x: TimeFunction | None = None
+    velocity_y: TimeFunction | None = None
+    turning: TimeFunction | None = None
+    stress: TimeFunction | None = None
+    force: TimeFunction | None = None
     fastest: float | None = quantity("m/s", None, gt=0, le=1e4, help="largest speed under stress or force")
     length: float | None = quantity("m", None, ge=1e-9, le=1e3, help="length over which a stress acts")
 
@@ -39,8 +39,8 @@ class Wall(Section):
 
     @pydantic.model_validator(mode="before")
     @classmethod
-    def _courses(cls, table: Any) -> Any:
-        return with_courses(table, cls.UNITS)
+    def _time_functions(cls, table: Any) -> Any:
+        return with_time_functions(table, cls.UNITS)
 
     @pydantic.model_validator(mode="after")
     def _sensible(self) -> Wall:

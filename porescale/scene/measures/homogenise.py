@@ -8,7 +8,7 @@ from porescale.common.schema.sections import Section, quantity
 
 
 class Homogenise(Section):
-    """How `porescale homogenise` asks the scene's packing what soil it makes; runs of the scene do without it.
+    """How `porescale homogenise` measures the soil that the packing makes; runs of the scene do without it.
 
     pressure : left out, that of the packing, else what the weight of half its height makes.
     """

@@ -159,7 +159,7 @@ TURNING = {(20, 0.2): (1.001161, 2.509), (14, 0.4): (2.720315, 3.499)}
 SHIFT = 0.28125
 """Radius shift times radius, cells², at magic parameter 3/16."""
 ASKED = 0.01
-"""Largest error of a mean over places in a cell up to solid fraction 0.3 that was asked for; single ones twice."""
+"""Largest error of a mean over places in a cell up to solid fraction 0.3; of single ones twice that."""
 
 
 def means(drags: Iterable[Sequence[float]], exact: Sequence[float], share: float) -> Measured:

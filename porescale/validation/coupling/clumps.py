@@ -60,7 +60,7 @@ def sunk(coupled: Coupled, steps: int) -> Coupled:
 
 
 def momentum_error_of_clumps(steps: int = 200) -> float:
-    """Largest error of the momentum of clumps that meet in a periodic box and the fluid, over their own at first."""
+    """Largest error of the momentum of clumps that collide in a periodic box and the fluid, over their own at first."""
     bodies = [[(12.0, 20.0, 5.0), (16.0, 23.0, 4.0)], [(30.0, 24.0, 5.0), (34.0, 22.0, 5.0)]]
     velocity = np.array([[0.02, 0.01]] * 2 + [[-0.03, 0.0]] * 2)
     coupled = immersed_clumps(bodies, g=0.0, side="periodic", velocity=velocity)
@@ -105,7 +105,7 @@ EPS = 2.0**-52
     tolerance=1000 * EPS,
 )
 def momentum() -> Measured:
-    """Error of the book over sum m |v| at the start: two clumps that meet in a periodic box."""
+    """Error of the book over sum m |v| at the start: two clumps that collide in a periodic box."""
     error = momentum_error_of_clumps()
     return Measured(0.0, error, error)
 

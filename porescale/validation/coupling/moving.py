@@ -1,6 +1,4 @@
-"""Validations of discs that move as told, or freely: oscillation, shear, streams, falls.
-
-Discs that move as told, or freely, in fluid: oscillation, shear, a stream, gravity in the fluid; lattice units.
+"""Discs with prescribed motion, or free, in fluid: oscillation, shear, streams, falls.  Lattice units.
 
 Discs that fall on each other and on the bottom, SI.
 """
@@ -129,7 +127,7 @@ def stream_drag(
     steps: int = 2000,
     method: Method = DEFAULT,
 ) -> Array:
-    """Drag on a disc that meets fluid at ``speed`` in a periodic box of six diameters, (steps,).
+    """Drag on a disc that enters fluid at ``speed`` in a periodic box of six diameters, (steps,).
 
     frame 0: the disc stands and the fluid streams;  1: the fluid stands and the disc goes;  others between and beyond.
     """  # fmt: skip
@@ -200,7 +198,7 @@ def kiss(
     """Time (s) at which two falling discs first touch, and their places then (2, 2) in diameters.
 
     Uhlmann 2005: channel 8 x 24 diameters, d 0.25 cm, s 1.5, nu 0.01 cm²/s, g 9.81 m/s², released at rest 4 and 6
-    diameters below the top, d/250 to the right and to the left of the middle.  nan if they have not met after 0.3 s.
+    diameters below the top, d/250 to the right and to the left of the middle.  nan if they do not touch within 0.3 s.
     """  # fmt: skip
     diameter, nu = 0.0025, 1e-6
     spacing = diameter / cells_per_diameter

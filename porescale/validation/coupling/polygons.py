@@ -138,7 +138,7 @@ PLATES = {0: 13.673741, 30: 18.646834, 90: 71.364736}
 of the tensor R, R_xx - R_xy²/R_yy."""
 
 ASKED = 0.01
-"""Largest error of a mean over places in a cell, as asked for of discs (verify_arrays.py)."""
+"""Largest error of a mean over places in a cell, as for discs (arrays.py)."""
 
 
 def square(fraction: float, degrees: float) -> Array:

@@ -90,7 +90,7 @@ def towed(
     solid_walls: bool = False,
     method: Method = DEFAULT,
 ) -> Coupled:
-    """Held discs in fluid at rest under a body force; they meet neither each other's images nor, by default, walls."""
+    """Held discs in fluid at rest under a body force; they touch neither each other's images nor, by default, walls."""
     fluid = Fluid(
         *cells, relaxation_time, operator=method.operator, magic=method.magic, force=force, sides=sides or Sides()
     )

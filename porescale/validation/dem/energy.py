@@ -91,7 +91,7 @@ SIDE, PAIRS = 5, 8
 RATE = math.sqrt(STIFFNESS / MASS)  # rad/s, of a disc against a wall
 WAVE = 0.02 * RATE / (2.0 * math.pi)  # Hz: slow against contacts
 PUSH = 1e-3 * STIFFNESS * RADIUS  # N/m, a pressed overlap of 1e-3 radii
-LASTS = 60.0 / RATE  # s: every disc meets some others
+LASTS = 60.0 / RATE  # s: every disc touches some others
 LAW = Linear(STIFFNESS, 200.0, 0.25 * STIFFNESS, 100.0, 0.4)
 
 DRIVES: dict[str, Callable[[Steering], None]] = {

@@ -26,7 +26,7 @@ CHUNG = "Chung & Ooi 2011 protocols, linear law in two dimensions"
 def bounce(law: Linear, steps_per_contact: float, phases: int = 20, speed: float = 1.0) -> Array:
     """Restitution of a disc on a wall, (phases,), touching at evenly spread moments of a contact step.
 
-    The floor is met from above without gravity; dt is the contact time over ``steps_per_contact``.
+    The floor is approached from above without gravity; dt is the contact time over ``steps_per_contact``.
     """
     lasts = law.contact_time(MASS)
     dt = lasts / steps_per_contact
@@ -103,7 +103,7 @@ def impact(
     dt = law.contact_time(MASS) / steps_per_contact
     grains = row_on_floor(fall.size, 0.5 * fall * dt, law)
     discs = grains.discs
-    # Discs of different speeds run for 1.3 contact times and must not meet.
+    # Discs of different speeds run for 1.3 contact times and must not touch.
     run = 1.3 * law.contact_time(MASS) * float(np.abs(slide).max(initial=0.0))
     discs.position[:, 0] = np.arange(fall.size) * (APART + 2.0 * run)
     discs.velocity[:, 0], discs.velocity[:, 1], discs.spin[:] = slide, -fall, turn

@@ -23,7 +23,7 @@ RADIUS = 0.01  # m
 DENSITY = 2500.0  # kg/m^3
 MASS = math.pi * RADIUS**2 * DENSITY  # kg/m
 STIFFNESS = 1e7  # N/m
-APART = 10.0 * RADIUS  # between discs that must not meet
+APART = 10.0 * RADIUS  # between discs that must not touch
 TANGENTIAL: dict[str, Any] = {"tangential_stiffness": 0.25 * STIFFNESS, "friction": 0.3}
 
 

@@ -37,7 +37,7 @@ def pressure_channel(
 
 def plug(length: int, height: int, speed_in: float, speed_out: float, steps: int) -> tuple[float, float]:
     """Mass gained in ``steps`` by a box between walls that fluid enters at the left and leaves at the right, and what
-    the given speeds say."""
+    the given speeds are."""
     sides = Sides("velocity", "velocity", left_velocity=(speed_in, 0.0), right_velocity=(speed_out, 0.0))
     fluid = Fluid(length, height, 0.8, sides=sides)
     before = fluid.mass_excess()

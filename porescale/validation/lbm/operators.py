@@ -1,6 +1,6 @@
 """Validations of collision operators beside one another.
 
-Flows that tell collision operators apart: moving frames, thin shear layers, eddy viscosity.
+Flows in which collision operators differ: moving frames, thin shear layers, eddy viscosity.
 """
 
 from __future__ import annotations

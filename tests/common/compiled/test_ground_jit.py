@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from porescale.common.compiled.jit import fetch, kernel, part, set_threads, sum_by_halves, threads
+from porescale.common.compiled.jit import kernel, prefetch, set_threads, threads, tree_sum, unchecked_view
 from porescale.common.core.errors import InputError
 
 
@@ -23,13 +23,13 @@ def test_threads_are_those_asked_for_or_refused_with_the_range():
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_parts_are_slices_and_sums_by_halves_are_those_of_plain_python(dtype):
-    total = sum_by_halves(8)
+    total = tree_sum(8)
 
     @kernel
     def both(values):
-        fetch(values, 3)  # which changes nothing
+        prefetch(values, 3)  # which changes nothing
         for i in range(8):
-            part(values, 3, 8)[i] *= 2
+            unchecked_view(values, 3, 8)[i] *= 2
         return total(values, 3)
 
     values = np.random.default_rng(1).uniform(-1, 1, 20).astype(dtype)
@@ -37,7 +37,7 @@ def test_parts_are_slices_and_sums_by_halves_are_those_of_plain_python(dtype):
     expected[3:11] *= 2
     found = both(values)
     np.testing.assert_array_equal(values, expected)
-    np.testing.assert_array_equal(part(values, 3, 8), values[3:11])
+    np.testing.assert_array_equal(unchecked_view(values, 3, 8), values[3:11])
     by_halves = ((values[3] + values[7]) + (values[5] + values[9])) + (
         (values[4] + values[8]) + (values[6] + values[10])
     )

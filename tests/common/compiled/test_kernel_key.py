@@ -13,7 +13,7 @@ from typing import NamedTuple
 import pytest
 
 from porescale.common.compiled import jit
-from porescale.common.compiled.jit import Kernel, by_law, by_precision, inline, kernel, sum_by_halves
+from porescale.common.compiled.jit import Kernel, by_law, inline, kernel, precision_constants, tree_sum
 from porescale.common.compiled.kernel_key import Unknown, key_of
 
 ROOT = Path(jit.__file__).resolve().parents[3]
@@ -227,8 +227,8 @@ def test_numbers_by_precision_and_lengths_of_sums_count():
 
         return calls
 
-    assert key(user(sum_by_halves(4))) == key(user(sum_by_halves(4))) != key(user(sum_by_halves(8)))
-    third, again, half = (by_precision(lambda real, n=n: (real(1 / n),)) for n in (3, 3, 2))
+    assert key(user(tree_sum(4))) == key(user(tree_sum(4))) != key(user(tree_sum(8)))
+    third, again, half = (precision_constants(lambda real, n=n: (real(1 / n),)) for n in (3, 3, 2))
     assert key(user(third)) == key(user(again)) != key(user(half))
 
 
