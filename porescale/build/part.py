@@ -7,6 +7,7 @@ neither built nor imported.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
@@ -82,29 +83,33 @@ class Part:
         """Take up what `state` of a part built from the same scene gave; called in the reverse order of the parts."""
 
 
-class Stepper(Part):
+class Stepper(Part, ABC):
     """The part that carries the physics through a step: fluid, dry grains, or both.  A simulation has exactly one."""
 
+    clock: Clock
+
+    @abstractmethod
     def advance(self) -> None:
         """Do a step; may raise Unstable."""
-        raise NotImplementedError
 
     @property
     def takes_many(self) -> bool:
-        """Whether `advance_many` gives the same as so many times `advance`, where all other parts are idle."""
+        """Whether `advance_many` is less work than so many times `advance`, where all other parts are idle."""
         return False
 
     def advance_many(self, steps: int) -> None:
-        """Do ``steps`` steps in one call, and set the clock."""
-        raise NotImplementedError
+        """Do ``steps`` steps with nothing between them, and set the clock."""
+        for _ in range(steps):
+            self.advance()
+            self.clock.put(self.clock.step + 1)
 
     def fields(self) -> Fields:
         """Of a simulation with fluid."""
-        raise NotImplementedError
+        raise TypeError("a simulation without fluid has no fields of it")
 
+    @abstractmethod
     def explained(self, error: Unstable) -> Unstable:
         """``error``, raised within a step, in steps of the simulation; raises one that is nearer to the cause."""
-        raise NotImplementedError
 
 
 def overrides(part: Part, name: str) -> bool:

@@ -1,7 +1,7 @@
-"""Why a run went beyond sense: the likely cause, told from what it had been doing, not from the wreck.
+"""Why a run diverged: the likely cause, from the state before, not from the diverged one.
 
-At the end every number is huge.  What tells is how the flow stood when it last made sense, and how far that is beyond
-what the map of stability (limits.py) says holds.
+At the end every number is huge.  The cause shows in the last state within bounds, by how far it lies beyond what holds
+on the map of stability (limits.py).
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from porescale.coupling import limits
 
 @dataclass(frozen=True)
 class Circumstances:
-    """How a run stood when it last made sense; lattice units.
+    """How a run stood at the last check that it passed; lattice units.
 
     operator, eddies, solid_operator, weighting : the laws;  relaxation_time;  speed : the fastest, of fluid, grains and
-    what is told to move, cells per step;  density_change : the largest, relative;  density_ratio : of the lightest free
+    what is moved, cells per step;  density_change : the largest, relative;  density_ratio : of the lightest free
     grain over the fluid, None without one;  cells_per_diameter : of the smallest grain, as the fluid sees it.
     """
 

@@ -41,7 +41,7 @@ class DivergenceCheck:
         )  # fmt: skip
 
     def check(self, step: int, time: float) -> None:
-        """Raise Unstable, naming cell, quantity, value and likely cause, where the fluid is beyond sense.
+        """Raise Unstable, naming cell, quantity, value and likely cause, where the fluid is outside of its bounds.
 
         That is: a number that is none, Mach 0.6, a density changed by a half, polygons within each other.  step, time
         (s): as the message has it.

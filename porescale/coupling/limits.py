@@ -13,7 +13,7 @@ from porescale.lbm.collision.choose import OPERATORS
 MACH = 0.3
 """Largest Mach number of the map: at relaxation times of 0.52 to 5 every operator but "mrt" holds there (lbm.shear)."""
 DENSITY = 0.3
-"""Relative change of density beyond which the linear equation of state misleads: 0.5 is taken for beyond sense."""
+"""Relative change of density beyond which the linear equation of state misleads; from 0.5 on a run has diverged."""
 _MEASURED = {name: operator.holds for name, operator in OPERATORS.items() if operator.holds}
 IN_THE_OPEN = {name: holds.in_the_open for name, holds in _MEASURED.items()}
 """Cell Reynolds number |u|/nu up to which each collision operator holds in the open, see lbm/collision/law.py."""

@@ -31,11 +31,11 @@ STRETCH = 64
 
 
 class RowWork(NamedTuple):
-    """What a row is worked out with.
+    """What rows are worked out with.
 
-    ramp (BLOCK,): 0, 1, 2, ...;  row_load (n, largest height, 5 or 7): load.py;  scratch (3 or 4, BLOCK + nx + BLOCK):
-    zero before and after;  weights (5, AT_ONCE or more): scratch, its last row the ``partial`` of load.py.  In
-    ``sweep`` scratch and weights have one more axis, for the threads.
+    ramp (BLOCK,): 0, 1, 2, ...;  row_load (n, largest height, 5 or 7): load.py;  for each thread scratch (threads, 3 or
+    4, BLOCK + nx + BLOCK): zero before and after;  weights (threads, 5, AT_ONCE or more): scratch, its last row the
+    ``partial`` of load.py.
     """
 
     ramp: NDArray[np.floating]
@@ -139,20 +139,20 @@ def collide_saturated_row(planes, s, sx, sy, st, weights, first, last, laws):
 
 
 @inline
-def saturated_row(y, planes, rows, patches, motion, periodic_x, work, laws):
+def saturated_row(y, planes, rows, patches, motion, periodic_x, ramp, row_load, scratch, weights, laws):
     """Row ``y`` of the lattice: rasterize its bodies, collide, take their loads.  Plain fluid outside of what the
     bodies cover.
 
-    planes: the row's nine slots;  work: ``RowWork``;  laws: of weight, solid and fluid operator.  Overwrites the slots
-    and row_load of the bodies in the row.
+    planes: the row's nine slots;  ramp, row_load, scratch, weights: one thread's of ``RowWork``, handed on one by one
+    since a tuple of them made in the loop over threads costs 8 % of the sweep;  laws: of weight, solid and fluid
+    operator.  Overwrites the slots and row_load of the bodies in the row.
     """
     law = laws[2]
-    scratch = work.scratch
     n = planes[0].shape[0]
     left = n
     right = n
     if rows.start[y] < rows.start[y + 1]:
-        left, right = rasterize_row(y, rows, patches, motion, periodic_x, work.ramp, scratch)
+        left, right = rasterize_row(y, rows, patches, motion, periodic_x, ramp, scratch)
     if left >= right:
         left = n
         right = n
@@ -170,12 +170,12 @@ def saturated_row(y, planes, rows, patches, motion, periodic_x, work, laws):
         softness = unchecked_view(scratch[scratch.shape[0] - 1], BLOCK, n)
         for first in range(left, right, AT_ONCE):
             last = min(first + AT_ONCE, right)
-            collide_saturated_row(planes, s, sx, sy, softness, work.weights, first, last, laws)
+            collide_saturated_row(planes, s, sx, sy, softness, weights, first, last, laws)
         for k in range(scratch.shape[0]):
             scratch[k, :BLOCK] = 0
             scratch[k, BLOCK + n :] = 0
         accumulate_load_row(
-            y, rows, patches, motion, periodic_x, work.ramp, scratch, work.weights[4], work.row_load
+            y, rows, patches, motion, periodic_x, ramp, scratch, weights[4], row_load
         )  # fmt: skip
         for k in range(scratch.shape[0]):
             scratch[k, BLOCK + left : BLOCK + right] = 0
@@ -193,7 +193,9 @@ def sweep(f, parity, band_order, height, rows, patches, motion, periodic_x, work
     for turn in prange(band_order.shape[0]):
         band = band_order[turn]
         mine = thread()
-        own = RowWork(ramp, row_load, scratch[mine], weights[mine])
         for y in range(band * height, min((band + 1) * height, f.shape[1] - 2)):
             planes = slots(f, y + 1, parity)
-            saturated_row(y, planes, rows, patches, motion, periodic_x, own, (weighting, solid, law))
+            saturated_row(
+                y, planes, rows, patches, motion, periodic_x, ramp, row_load, scratch[mine], weights[mine],
+                (weighting, solid, law),
+            )  # fmt: skip

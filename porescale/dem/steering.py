@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -42,6 +43,13 @@ def hold(grains: State, disc: int | slice | Array, x: bool = True, y: bool = Tru
     grains.withheld[disc] = 0.0
 
 
+def steering_of(grains: State) -> Steering:
+    """Drivers of ``grains``: there from the first use on."""
+    if grains.drivers is None:
+        grains.drivers = Steering(grains)
+    return cast(Steering, grains.drivers)
+
+
 class Steering(Drivers):
     """Drivers of ``grains`` that can be changed.  Made by Grains on first use, see ``Grains.steering``."""
 
@@ -67,7 +75,7 @@ class Steering(Drivers):
         self._controls, self._given = [self._controls[k] for k in kept], self._given[kept]
         self._watched = [body for body in self._watched if not isinstance(body, Clump)]
         self.watch(*self._watched)
-        grains.contact = grains.contact._replace(mass=masses(grains))
+        grains.body_mass = masses(grains)
         grains.pairs.group = clumps.group if clumps.count else None
         refresh(grains, anew=True)
         return clumps

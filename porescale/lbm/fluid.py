@@ -1,4 +1,15 @@
-"""The fluid's state and one step of it."""
+"""The fluid's state and one step of it (lattice Boltzmann, D2Q9: Qian, d'Humieres & Lallemand 1992).
+
+    f_i(x + c_i, t + 1) = f_i(x, t) + Omega_i(f) + S_i(F)
+
+    Omega + S   collision with the body force F       collision/, one operator a file
+    x + c_i     streaming, in place                   stream.py, slots explained in lattice.py
+    at sides    what comes back into the box          boundary/links.py, one kind of side a file
+    at plates   links cut half-way                    boundary/thin_plate.py
+    rho, u      moments of f, half the force in u     moments.py, ``Fluid.fields``
+
+Collision and streaming are one sweep over the cells; ``Fluid.advance`` is the step.
+"""
 
 from __future__ import annotations
 
@@ -27,8 +38,8 @@ ROWS_AT_ONCE = 64
 class Fluid:
     """A box of nx by ny cells of fluid in lattice units, at rest with density 1 until ``set_flow``.
 
-    populations (9, ny + 2, nx + 2): slots, see lattice.py;  step: steps done;  plates: of no thickness, see plate.py.
-    A step allocates nothing.
+    populations (9, ny + 2, nx + 2): slots, see lattice.py;  step: steps done;  plates: of no thickness, see
+    boundary/thin_plate.py.  A step allocates nothing.
     """
 
     def __init__(
@@ -73,17 +84,22 @@ class Fluid:
         self.step = 0
 
     def advance(self, cells: Sweep = sweep, *extra: Any) -> None:
-        """One step.  ``cells`` sweeps them, given populations, the step's parity, ``extra`` and the law."""
-        parity = self.step % 2
-        if parity:
-            self._exchange(+1.0)
-        cells(self.populations, parity, *extra, without_force(self.law))
-        if parity:
-            self._exchange(-1.0)
-        self.links.close(self._flat, parity, (self.law.fx, self.law.fy))
+        """One step: collide and stream all cells, then settle what crosses plates and sides.
+
+        cells: the sweep, called with populations, the step's parity, ``extra`` and the law of collision; that of
+        partially saturated cells is psm_kernels.py of the coupling.
+        """
+        odd = self.step % 2
+        if odd:
+            self._bounce_off_plates(+1.0)
+        cells(self.populations, odd, *extra, without_force(self.law))
+        if odd:
+            self._bounce_off_plates(-1.0)
+        self.links.close(self._flat, odd, (self.law.fx, self.law.fy))
         self.step += 1
 
-    def _exchange(self, sign: float) -> None:
+    def _bounce_off_plates(self, sign: float) -> None:
+        """Exchange the slots of all links that plates cut, before an odd sweep (+1) and after it (-1)."""
         for p in self.plates:
             exchange(self._flat, p.first, p.second, p.pull, p.links_from(), p.signed_speed(sign))
 
@@ -105,7 +121,7 @@ class Fluid:
             yield
             return
         kept = [(p, self._flat[p.first].copy(), self._flat[p.second].copy()) for p in self.plates]
-        self._exchange(+1.0)
+        self._bounce_off_plates(+1.0)
         try:
             yield
         finally:

@@ -1,4 +1,4 @@
-"""Beyond sense: where what the lattice holds is no fluid any more."""
+"""Bounds beyond which what the lattice holds is no fluid any more."""
 
 from __future__ import annotations
 

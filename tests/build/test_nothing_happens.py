@@ -6,6 +6,7 @@ import numpy as np
 
 from porescale import Scene
 from porescale.build.build import build
+from porescale.build.parts.gate import GatePart
 from porescale.common.schema.sections import validate
 from porescale.coupling.psm import Saturated
 from porescale.lbm.fluid import Fluid
@@ -61,7 +62,9 @@ def test_dry_steps_are_the_same_however_they_are_called():
     one.advance(steps - steps // 2)
     for _ in range(steps):
         other.advance(1)
-    assert one.gate.open
+    gate = one.part(GatePart)
+    assert gate
+    assert gate.open
     assert one.step == other.step == steps
     assert one.time == other.time
     for name in ("position", "velocity", "spin", "force"):

@@ -3,7 +3,7 @@
 Dense coverage of every disc from the area a circle has in common with a square.  Solid operators "odd-SC1" and "SC1"
 with weight B2, from Noble & Torczynski 1998: collision  f + (1 - B)(Omega^f + S) + B Omega^s;  loads
 -sum B_n sum_i Omega^s_n c_i.  "exact-wall" with its own weight, radius and half-step correction, from the docstrings of
-porescale/coupling/solid/exact_wall.py and saturated.py.
+porescale/coupling/solid/exact_wall.py and psm.py.
 The switches are the wrong ways that the tests must be able to tell from the right one.
 """
 

@@ -68,7 +68,7 @@ class Bodies:
     def before(self, fluid: Fluid, patches: Patches, shift: Array, slow_load: Array) -> None:
         """Let the sides move with what reaches through them in the step to come.
 
-        A body that a side carries needs no half-step correction, and its load knows none: shift and slow_load (n, 3)
+        A body that a side carries needs no half-step correction, and its load has none: shift and slow_load (n, 3)
         are cleared for it.
         """
         self.mass += move_sides(

@@ -13,10 +13,10 @@ the part of an edge in one row, ``tall`` high, from column ``left`` to ``right``
 No term is a small difference of large ones: a fraction is good to a few roundings of the corners' places.  Derived
 here; rasterisers of outline fonts add up edges alike.
 
-Exact walls hold plane faces where they are, but a disc looks too small by A/R (saturated.py): where the outline turns
-by dφ an area A dφ is missing.  So it is given back where the outline turns: each corner is drawn out to a tip, a cell
-long, of that area.  Of many corners the polygon then becomes the disc with its shift, and a square keeps its drag: the
-same area put evenly on the sides leaves 4 % missing at 10 cells a side, as the stress at a corner goes to infinity.
+Exact walls hold plane faces where they are, but a disc looks too small by A/R (solid/exact_wall.py): where the outline
+turns by dφ an area A dφ is missing.  So it is given back where the outline turns: each corner is drawn out to a tip, a
+cell long, of that area.  Of many corners the polygon then becomes the disc with its shift, and a square keeps its drag:
+the same area put evenly on the sides leaves 4 % missing at 10 cells a side, as the stress at a corner goes to infinity.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""What a body that is no disc says of itself.
+"""The contract of a body that is no disc.
 
-A new one (a convex polygon, say) is one more file with a class of this kind: the rows of the lattice, the loads and the
-sides of the box know only patches (coverage_rows.py).  Lattice units throughout.
+A new one is one more file with a class of this kind: the rows of the lattice, the loads and the sides of the box work
+on patches alone (rows.py).  Lattice units throughout.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Integers = NDArray[np.int64]
 
 
 class Shape(ABC):
-    """A body that moves as its owner says: he sets place, velocity and spin between steps.
+    """A body with prescribed motion: its owner sets place, velocity and spin between steps.
 
     velocity (2,) cells per step;  spin: about ``centre``, radians per step.
     """

@@ -3,7 +3,7 @@
 Near tau = 1/2 the viscous layer at a grain is thinner than a cell.  A weight that is right in slow flow then looks a
 cell too big (drag 6 to 24 % too high), and shakes as cells are covered and set free: the noise is the content, at one
 wave a cell, of a nonlinear function of a sharp mask.  What is needed depends on the cell Reynolds number R = |U| h/nu
-of the body, told from the slip at its rim, w = sum e (1 - e)|v - u| / sum e (1 - e), low-passed:
+of the body, estimated from the slip at its rim, w = sum e (1 - e)|v - u| / sum e (1 - e), low-passed:
 
     q = (3.3 w sqrt(2 r)/nu)^(4/3), about R²;      theta = q/(q + 4),   theta2 = q/(q + 36)
     radius      r_c = r - sqrt(r) (0.49 theta + 0.25 theta2) + (A/r)(1 - theta)

@@ -1,6 +1,6 @@
 """Bodies that reach through a side of the box: there the side moves with them.
 
-A full cell is rigid, and so is a side: what fills a body would be pinned where it meets a side at rest, and a gate on
+A full cell is rigid, and so is a side: what fills a body would be pinned where it touches a side at rest, and a gate on
 its way out would carry it into the lid and compress it (densities of 8 to 13, then no numbers at all).  So a link
 through the side, where bodies cover it by e, comes back from a side that moves with e v (Ladd 1994):
 

@@ -31,7 +31,7 @@ STATE = ("ends", "back", "whole", "broken")
 
 
 class Bonds(NamedTuple):
-    """What kernels know of bonds: arrays as in BondList, and the clock (2,): seconds before the step last changed, and
+    """Bonds as kernels take them: arrays as in BondList, and the clock (2,): seconds before the step last changed, and
     steps since."""
 
     ends: Index
@@ -103,10 +103,10 @@ def stored_in_bonds(position, radius, segments, bonds, cell):
 
 
 @kernel
-def pressing(position, radius, ends, segments, law, cell, back):
+def pressing(position, radius, body_mass, material, ends, segments, law, cell, back):
     """Overwrite back (m,) N/m with the elastic normal force at each of ``ends`` (m, 3), see Bonds, 0 where apart.
 
-    Arrays as in pull_bonds;  law see contact/law.py.  Corners by weight.
+    Arrays as in DiscArrays;  law see contact/law.py.  Corners by weight.
     """
     for k in range(ends.shape[0]):
         i, j = ends[k, 0], ends[k, 1]
@@ -118,9 +118,9 @@ def pressing(position, radius, ends, segments, law, cell, back):
             weight = weight_of(i, j, dx, dy, position, segments) if segments.rule == OUTLINE else 0
         back[k] = 0.0
         if overlap > 0.0:
-            p = law.table[material_of(law.material, i), material_of(law.material, a)]
+            p = law.table[material_of(material, i), material_of(material, a)]
             reduced = radius[i] * radius[a] / (radius[i] + radius[a])
-            both = law.mass[i] * law.mass[a] / (law.mass[i] + law.mass[a])
+            both = body_mass[i] * body_mass[a] / (body_mass[i] + body_mass[a])
             back[k] = weight * stiffness(overlap, reduced, both, p, law)[0]
 
 

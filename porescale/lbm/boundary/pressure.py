@@ -87,7 +87,7 @@ def _origin(bounds: Bounds, link: Link) -> tuple[int, tuple[int, int]]:
     """Direction and cell whose collided population a link continues: that of the boundary cell beside its halo cell.
 
     Beyond a periodic side that is the wrapped cell, beyond free slip the image of the link's own, and where two
-    pressure sides meet its own.
+    pressure sides join its own.
     """
     back = int(OPPOSITE[link.out])
     across = bounds.sides.boundary(link.across) if link.across else None

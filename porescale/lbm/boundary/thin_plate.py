@@ -25,7 +25,7 @@ class Plate:
     row (k,): the lower of the two rows a link joins, so that a plate whose lower edge has risen cuts the links of rows
     at and above it.  lower_edge: cells above the bottom;  speed: upward, lattice units.
 
-    Where the plate meets a free-slip side, a link that mirrors there would come down on the plate's other face; its
+    Where the plate touches a free-slip side, a link that mirrors there would come down on the plate's other face; its
     two halo slots are exchanged as well.
     """
 
