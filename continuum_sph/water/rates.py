@@ -10,8 +10,8 @@ kinetic and compressive energy balance pair by pair.
 Every particle gathers from its full row of partners: each pair is computed twice, nothing is scattered, so threads
 never write to one place and the sums have one order.  Forces of a pair are opposite but for the rounding of the
 division by mass.  A row of partners is taken several at a time (`porescale.common.compiled.simd`); a particle stands
-for the missing end of its own row and adds nothing, being at no distance from itself and moving as it does.  Factors that all partners
-share multiply the sums.
+for the missing end of its own row and adds nothing, being at no distance from itself and moving as it does.  Factors
+that all partners share multiply the sums.
 
 What a scene has no use for is None in the bundles (`bundles`).  The pass is compiled for what there is, and kept on
 disk, each kind by itself: it holds no branch, load or sum of anything else.  Sums over partners in the fluids are in
