@@ -19,7 +19,7 @@ from porescale.dem.contact.materials import Law, Materials
 from porescale.dem.discs import Discs
 from porescale.dem.forces.bonds import BondList
 from porescale.dem.forces.segment_list import SegmentList
-from porescale.dem.forces.threads import Sweeps
+from porescale.dem.forces.threads import ThreadChoice
 from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.motion.drivers import Drivers
 from porescale.dem.motion.periodic_cell import Still, Straining, period_of
@@ -115,7 +115,7 @@ class State:
         self.rectangle_frictions: list[float | None] = []
         self.rectangles, self.rectangle_spring = np.zeros((0, 6)), np.zeros((0, count, 0))
         self.rectangle_force = np.zeros((0, 2))
-        self.sweeps, self.stale, self.touching = Sweeps(count), True, np.zeros(count, np.int64)
+        self.sweeps, self.stale, self.touching = ThreadChoice(count), True, np.zeros(count, np.int64)
         self.reach: Array | None = None
         self.external_force, self.external_torque = np.zeros((count, 2)), np.zeros(count)
         self.held, self.withheld = np.zeros((0, 3), np.uint8), np.zeros((0, 3))

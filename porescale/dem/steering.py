@@ -17,7 +17,7 @@ from porescale.dem.listing import refresh
 from porescale.dem.motion import affine_strain as cells
 from porescale.dem.motion import servo as servos
 from porescale.dem.motion.control import KINDS, PUSH, Control
-from porescale.dem.motion.drivers import Clump, Drivers, Row
+from porescale.dem.motion.drivers import Clump, Drivers, LoadRecord
 from porescale.dem.motion.time_function import Schedule
 from porescale.dem.state import State
 from porescale.dem.timestep import lightest
@@ -105,7 +105,7 @@ class Steering(Drivers):
             hold(self._grains, index, *held)
         self._compile()
 
-    def record(self) -> list[Row]:
+    def record(self) -> list[LoadRecord]:
         """Force and displacement of every watched body now, after a call of step."""
         rows, count = [], max(self._grains.last_count, 1)
         for k, body in enumerate(self._watched):
@@ -116,7 +116,7 @@ class Steering(Drivers):
                 if row[:2] == where:
                     supply[row[2]] = given[0] / count
             gone = self._place(*where) - self._watched_from[k]
-            rows.append(Row(self._grains.time, body, *(tuple(part.tolist()) for part in (gone, met, supply))))
+            rows.append(LoadRecord(self._grains.time, body, *(tuple(part.tolist()) for part in (gone, met, supply))))
         return rows
 
     def move_wall(self, name: str, x: Schedule = 0.0, y: Schedule = 0.0, turn: Schedule = 0.0) -> None:

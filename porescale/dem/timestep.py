@@ -28,7 +28,7 @@ def dampings(hard: Springs) -> tuple[float, float, float]:
 
 def lightest(clumps: Clumps, discs: Discs, laws: Sequence[Law]) -> float:
     """Mass (kg/m) that the smallest disc would have if its packing limit (packing_limit) were that of the
-    fastest clump under all of ``laws``; infinite where all clumps are moved as told.
+    fastest clump under all of ``laws``; infinite where all clumps are with a prescribed velocity.
 
     Contacts of clumps count as stiff as those of the largest member, and as damped as those of the heaviest clump.
     """
@@ -38,7 +38,7 @@ def lightest(clumps: Clumps, discs: Discs, laws: Sequence[Law]) -> float:
             own = parts(law.stiffest(float(clumps.mass.max()), largest))
             if max(own) > 0.0:
                 most, mass = fastest(clumps, discs.radius, *own, NEIGHBOURS), float(discs.mass.min())
-                if most == 0.0:  # all are moved as told
+                if most == 0.0:  # all are with a prescribed velocity
                     continue
                 for _ in range(HALVINGS):  # dashpots of Hertz go with the root of the mass that is looked for
                     mass = packing_factor(*parts(law.stiffest(mass, size))) / most

@@ -291,7 +291,7 @@ def fastest(clumps: Clumps, radius: Array, normal: float, tangential: float, rol
     body = clumps.group[clumps.member]
     both = np.bincount(body, touch * (normal + tangential), clumps.count) / clumps.mass
     both += np.bincount(body, touch * turning, clumps.count) / clumps.inertia
-    moving = ~clumps.held.all(axis=1)  # what is moved as told gives no answer
+    moving = ~clumps.held.all(axis=1)  # what is with a prescribed velocity gives no answer
     if moving.any() or np.any(clumps.group < 0):
         both = both[moving]
     return float(both.max(initial=0.0))

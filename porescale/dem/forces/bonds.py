@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from porescale.common.compiled.jit import inline, kernel
 from porescale.dem.contact.law import material_of, stiffness
 from porescale.dem.forces.segment_list import SegmentList, refuse_beyond
-from porescale.dem.forces.segments import OUTLINE, foot, meeting, weight_of
+from porescale.dem.forces.segments import OUTLINE, closest_point, segment_contact, weight_of
 from porescale.dem.motion.periodic_cell import image
 
 Array = NDArray[np.float64]
@@ -57,7 +57,7 @@ def way_between(ends, k, position, segments, cell):
     i, j = ends[k, 0], ends[k, 1]
     if ends[k, 2] == 1:
         a, b = segments.ends[j, 0], segments.ends[j, 1]
-        _, share, dx, dy = foot(i, a, b, position, cell)
+        _, share, dx, dy = closest_point(i, a, b, position, cell)
         return dx, dy, a, share, b
     dx, dy = image(position[j, 0] - position[i, 0], position[j, 1] - position[i, 1], cell)
     return dx, dy, j, 0.0, j
@@ -113,7 +113,7 @@ def pressing(position, radius, body_mass, material, ends, segments, law, cell, b
         dx, dy, a, _, b = way_between(ends, k, position, segments, cell)
         overlap, weight = radius[i] + radius[a] - np.sqrt(dx * dx + dy * dy), 1
         if ends[k, 2] == 1:
-            overlap = meeting(segments.rule, i, a, b, radius, position, cell)[0]
+            overlap = segment_contact(segments.rule, i, a, b, radius, position, cell)[0]
         elif segments.start[i] < segments.start[i + 1] or segments.start[j] < segments.start[j + 1]:
             weight = weight_of(i, j, dx, dy, position, segments) if segments.rule == OUTLINE else 0
         back[k] = 0.0

@@ -34,7 +34,7 @@ from porescale.dem.contact.law import (
     moments,
     store_history,
 )
-from porescale.dem.motion.periodic_cell import drift, image, note
+from porescale.dem.motion.periodic_cell import add_load, affine_velocity, image
 
 
 class Approach(NamedTuple):
@@ -78,7 +78,7 @@ def contact_kinematics(dx, dy, du, dv, spin_i, spin_j, ri, rj):
 @inline
 def relative_velocity(i, j, dx, dy, velocity, cell):
     """Velocity (m/s) of disc i relative to j, (dx, dy) m from it."""
-    drift_x, drift_y = drift(dx, dy, cell)
+    drift_x, drift_y = affine_velocity(dx, dy, cell)
     return velocity[i, 0] - velocity[j, 0] - drift_x, velocity[i, 1] - velocity[j, 1] - drift_y
 
 
@@ -159,7 +159,7 @@ def pair_contact(i, j, k, d, history, shared, law, dt, cell):
     overlap = ri + rj - np.sqrt(square)
     way = contact_kinematics(dx, dy, du, dv, d.spin[i], d.spin[j], ri, rj)
     gx, gy, moment_i, moment_j = contact_force(i, k, overlap, way, mass, p, history, d.budget, law, dt)
-    note(gx, gy, dx, dy, cell)
+    add_load(gx, gy, dx, dy, cell)
     return True, gx, gy, moment_i, moment_j
 
 

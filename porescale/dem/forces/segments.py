@@ -15,8 +15,8 @@ Rules for what counts, see RULES:
     So a disc that rolls round a corner always has one contact, corner against corner counts once, a straight side cut
     in two is as stiff as one, and faces that slide off each other lose their contacts gradually.
 "each": every segment for itself, with its rounded ends: corners of polygons are twice as stiff, U as continuous.
-"printed": equations 5 to 9 of the tutorial, with the radius that (7) lacks: near an end the overlap falls to zero, past
-    it it jumps, and energy cannot close.  For comparison.
+"printed": equations 5 to 9 of the DEMseg tutorial, with the radius that (7) lacks: near an end the overlap falls to
+    zero, past it it jumps, and energy cannot close.  For comparison.
 
 A negative weight takes elastic force off, nothing else: no dashpot, no friction.  Where a contact passes from segment
 to corner or back it hands over its springs.
@@ -74,7 +74,7 @@ class Segments(NamedTuple):
 
 
 @inline
-def foot(i, a, b, position, cell):
+def closest_point(i, a, b, position, cell):
     """(whether the point of segment a-b closest to disc i lies between the ends; its share of the way from a to b; the
     way to it from i, x, y m).
     """
@@ -92,8 +92,8 @@ def foot(i, a, b, position, cell):
 
 @inline
 def printed(i, a, b, reach, position, cell):
-    """(overlap m, share of the way, way to the touched point m) of disc i and segment a-b by the tutorial's (5) to (9);
-    reach (m): both radii together.
+    """(overlap m, share of the way, way to the touched point m) of disc i and segment a-b by equations 5 to 9 of
+    the DEMseg tutorial;  reach (m): both radii together.
     """
     ex, ey = position[b, 0] - position[a, 0], position[b, 1] - position[a, 1]
     ax, ay = image(position[a, 0] - position[i, 0], position[a, 1] - position[i, 1], cell)
@@ -113,14 +113,14 @@ def printed(i, a, b, reach, position, cell):
 
 
 @inline
-def meeting(rule, i, a, b, radius, position, cell):
+def segment_contact(rule, i, a, b, radius, position, cell):
     """(overlap m, share of the way from a to b, way x, y m to the touched point) of disc i and segment a-b by ``rule``;
     an overlap <= 0 is none.
     """
     reach = radius[i] + radius[a]
     if rule == PRINTED:
         return printed(i, a, b, reach, position, cell)
-    between, share, dx, dy = foot(i, a, b, position, cell)
+    between, share, dx, dy = closest_point(i, a, b, position, cell)
     overlap = reach - np.sqrt(dx * dx + dy * dy)
     if rule == OUTLINE and not between:
         overlap = min(overlap, 0.0)
@@ -149,11 +149,11 @@ def weight_of(i, j, dx, dy, position, segments):
 def between_ends(segments, row, position, cell):
     """Whether the closest point of row ``row`` of ``segments.near`` lies between the ends."""
     e = segments.near[row, 1]
-    return foot(segments.near[row, 0], segments.ends[e, 0], segments.ends[e, 1], position, cell)[0]
+    return closest_point(segments.near[row, 0], segments.ends[e, 0], segments.ends[e, 1], position, cell)[0]
 
 
 @kernel
-def hand_over(k, weight, segments, position, law, cell):
+def transfer_history(k, weight, segments, position, law, cell):
     """Springs of corner pair k (weight 1) from a segment that the contact has left, or to one that it has come to."""
     memory, own = segments.corner_memory, segments.near_memory
     if weight == 1 and not has_history(memory, k, law):
@@ -189,7 +189,7 @@ def add_corner_forces(d, segments, law, dt, cell):
         overlap = ri + rj - np.sqrt(dx * dx + dy * dy)
         weight = weight_of(i, j, dx, dy, position, segments)
         if overlap > 0.0 and weight != 0:
-            hand_over(k, weight, segments, position, law, cell)
+            transfer_history(k, weight, segments, position, law, cell)
             mass = d.body_mass[i] * d.body_mass[j] / (d.body_mass[i] + d.body_mass[j])
             p = law.table[material_of(d.material, i), material_of(d.material, j)]
             if weight > 0:
@@ -207,7 +207,7 @@ def add_corner_forces(d, segments, law, dt, cell):
             force[j, 0] -= gx
             force[j, 1] -= gy
         elif overlap > 0.0:
-            hand_over(k, weight, segments, position, law, cell)
+            transfer_history(k, weight, segments, position, law, cell)
         if not (overlap > 0.0 and weight > 0) and has_history(memory, k, law):
             if has_budget(budget):
                 du, dv = relative_velocity(i, j, dx, dy, velocity, cell)
@@ -233,7 +233,7 @@ def add_segment_forces(d, segments, law, dt, cell):
     for k in range(segments.near.shape[0]):
         i, e = segments.near[k, 0], segments.near[k, 1]
         a, b = segments.ends[e, 0], segments.ends[e, 1]
-        overlap, share, dx, dy = meeting(segments.rule, i, a, b, radius, position, cell)
+        overlap, share, dx, dy = segment_contact(segments.rule, i, a, b, radius, position, cell)
         if overlap <= 0.0 and not (has_budget(budget) and has_history(memory, k, law)):
             store_history(memory, k, 0.0, 0.0, law)
             continue
@@ -285,7 +285,7 @@ def survey_segments(position, radius, material, segments, law, cell):
     for k in range(segments.near.shape[0]):
         i, e = segments.near[k, 0], segments.near[k, 1]
         a = segments.ends[e, 0]
-        overlap, _, _, _ = meeting(segments.rule, i, a, segments.ends[e, 1], radius, position, cell)
+        overlap, _, _, _ = segment_contact(segments.rule, i, a, segments.ends[e, 1], radius, position, cell)
         if overlap > 0.0:
             p = law.table[material_of(material, i), material_of(material, a)]
             spring, roll = load_history(segments.near_memory, k, law)

@@ -63,7 +63,7 @@ class Threads(NamedTuple):
     far: Array
 
 
-Sweep = Serial | Threads
+Threading = Serial | Threads
 
 
 @kernel
@@ -242,7 +242,7 @@ def serial(count: int, surfaces: int) -> Serial:
     return Serial(np.zeros((blocks, surfaces, 3)), np.ones((surfaces, -(-count // RUN)), np.uint8))
 
 
-class Sweeps:
+class ThreadChoice:
     """What sweeps need beside the system: made once, renewed when the pair list is.
 
     ``now`` chooses: threads where there are several, and enough discs to pay for their barriers.
@@ -255,7 +255,7 @@ class Sweeps:
         self.incoming, self.far = np.zeros(0, np.int64), np.zeros((0, 4))
         self._builds = -1
 
-    def now(self, pairs: PairList, surfaces: int, budget: bool, alone: bool = False) -> Sweep:
+    def now(self, pairs: PairList, surfaces: int, budget: bool, alone: bool = False) -> Threading:
         """How to sweep over the system with this list and number of ``surfaces``.
 
         budget : an energy budget is kept;  alone : something in the step allows one thread only.

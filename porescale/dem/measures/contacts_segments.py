@@ -14,7 +14,14 @@ from porescale.dem.bodies.bonding import segments_now
 from porescale.dem.contact.law import MU
 from porescale.dem.forces.bonds import BondList, pressing, touched
 from porescale.dem.forces.segment_list import SegmentList
-from porescale.dem.forces.segments import OUTLINE, Segments, add_segment_forces, hand_over, meeting, weight_of
+from porescale.dem.forces.segments import (
+    OUTLINE,
+    Segments,
+    add_segment_forces,
+    segment_contact,
+    transfer_history,
+    weight_of,
+)
 from porescale.dem.measures.contact_list import NOBODY, Bodies, Contacts, Places, listed, nearest_image
 from porescale.dem.state import State
 
@@ -33,7 +40,7 @@ def segment_contacts(grains: State, own: SegmentList) -> list[Contacts]:
     weight = np.zeros(len(pairs), np.int64)
     for k in np.flatnonzero(near):
         weight[k] = weight_of(pairs[k, 0], pairs[k, 1], way[k, 0], way[k, 1], d.position, known)
-        hand_over(int(k), int(weight[k]), known, d.position, grains.contact, cell)
+        transfer_history(int(k), int(weight[k]), known, d.position, grains.contact, cell)
     found = []
     once = np.flatnonzero(weight > 0)
     if len(once):
@@ -44,7 +51,7 @@ def segment_contacts(grains: State, own: SegmentList) -> list[Contacts]:
     rows = []
     for row, (i, e) in enumerate(own.near):
         a, b = own.ends[e]
-        overlap, share, dx, dy = meeting(known.rule, i, a, b, d.radius, d.position, cell)
+        overlap, share, dx, dy = segment_contact(known.rule, i, a, b, d.radius, d.position, cell)
         if overlap > 0.0:
             rows.append((row, i, a, b, overlap, share, dx, dy))
     if rows:

@@ -28,7 +28,7 @@ class Clump(NamedTuple):
     number: int
 
 
-class Row(NamedTuple):
+class LoadRecord(NamedTuple):
     """One line of the force-displacement record: of a body, since it was watched."""
 
     time: float  # s

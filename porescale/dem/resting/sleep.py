@@ -9,7 +9,7 @@ its weight, be it by a blow, by a neighbour that leaves or by the fluid.  So wha
 more than that share: it stands within  share W/k  of where its springs balance, a share of its own overlap.
 
 All sleep ends while a wall, plate or rectangle moves or comes or goes (plates above all discs do not count).
-One thread works; results are the same at any number.  Clumps, frames, bonds and strained cells do not know sleep.
+One thread works; results are the same at any number.  Clumps, frames, bonds and strained cells are without sleep.
 """
 
 from __future__ import annotations

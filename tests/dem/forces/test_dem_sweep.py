@@ -74,7 +74,7 @@ def test_the_external_force_added_last_gives_other_bits():  # the twin that must
 
 def test_small_systems_and_one_thread_go_through_one_loop():
     pairs = crowded(0)[1]
-    small = sweep.Sweeps(30).now(pairs, 4, budget=True)
+    small = sweep.ThreadChoice(30).now(pairs, 4, budget=True)
     assert isinstance(small, sweep.Serial)
     assert small.partial.shape == (1, 4, 3)
 
@@ -83,7 +83,7 @@ def test_a_large_system_with_an_energy_budget_goes_block_by_block(monkeypatch):
     monkeypatch.setattr(sweep, "SERIAL_BELOW", 10)
     monkeypatch.setattr(sweep, "threads", lambda: 1)
     _, pairs, _, _ = crowded(0)
-    sweeps = sweep.Sweeps(30)
+    sweeps = sweep.ThreadChoice(30)
     assert isinstance(sweeps.now(pairs, 0, budget=False), sweep.Serial)
     assert isinstance(sweeps.now(pairs, 0, budget=True), sweep.Threads)
     assert isinstance(sweeps.now(pairs, 0, budget=True, alone=True), sweep.Serial)
