@@ -4,7 +4,7 @@ from continuum_sph import Simulation, load, open_run
 simulation = Simulation(load("cases/collapsing_water_column", quality="draft"))
 simulation.advance(100)
 
-Source of the method: Maeda & Sakai 2004; where its printed equations cannot be followed, the docstrings say so.
+Source of the method: Maeda & Sakai 2004; where its equations cannot be followed, the docstrings say so.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from porescale.dem.discs import make_discs
 from porescale.dem.forces.rectangle import Rectangle
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
-from porescale.dem.prepare.compaction import Press, kept
+from porescale.dem.prepare.compaction import Compactor, kept
 from porescale.output.case import conclude, options, stage
 
 Array = NDArray[np.float64]
@@ -57,7 +57,7 @@ def pressed(
     count = round(0.83 * size[0] * size[1] / (math.pi / 4.0 * diameter**2))
     radius = 0.5 * diameter * (1.0 + SPREAD * (2.0 * (np.arange(count) + 0.5) / count - 1.0))
     contact = law(DENSITY * math.pi / 4.0 * diameter**2, friction)
-    press = Press((0.0, 0.0), size, contact, (periodic, periodic), 0.0, DENSITY, seed)
+    press = Compactor((0.0, 0.0), size, contact, (periodic, periodic), 0.0, DENSITY, seed)
     return kept(press, radius, PRESSURE).grains, contact
 
 

@@ -10,12 +10,12 @@ from porescale.common.schema.sections import Section, quantity
 
 
 class NumericsSection(Section):
-    """Particles and what corrects them.  The paper: kernel cubic, smoothing_ratio 1, smoothing_length evolved (eq. 52),
+    """Particles and what corrects them.  Maeda & Sakai 2004: kernel cubic, smoothing_ratio 1, smoothing_length evolved,
     density_filter (eq. 27), xsph, and neither density diffusion nor shifting nor corrected gradients.
 
     diffusion_of : what the density diffusion takes for noise, the departure from "hydrostatic" density, from a "linear"
     field, or every difference ("plain");  noise_floor : over the pressure under the deepest water; noise below it
-    diffuses the more slowly the weaker it is, with 0 all of it at the pace of sound, and water at rest creeps;
+    diffuses the more slowly the weaker it is, with 0 all of it at the speed of sound, and water at rest creeps;
     density_filter : steps between filters, 0 never.
     xsph moves particles with the smoothed velocity but continuity with their own: volume is lost where they differ.
     """

@@ -44,7 +44,7 @@ class Body(Section):
 class SoilNumerics(Section):
     """What keeps particles of soil calm and evenly spread; see `continuum_sph.soil.momentum`.
 
-    The paper: gradient "plain", damping_of "approach" with 0.001, neither diffusion nor parting.
+    Maeda & Sakai 2004: gradient "plain", damping_of "approach" with 0.001, neither diffusion nor parting.
     damping_viscosity : what damping takes goes as alpha, the speed of sound c and h; told as their product it stays
     the same whatever the stiffness and the spacing are, and with it how far a tongue of soil slides.
     """
@@ -66,7 +66,8 @@ class SoilSection(Section):
     A key material names a file of `porescale homogenise`, see material_file.py, whose numbers hold where the scene has
     none of its own;  strength : which of its angles;  origin : where they come from, for the card of a run.
 
-    friction_angle : φ; the paper's tan φ = 0.5 is sin φ = 0.5, 30 degrees;  modulus : "printed" is eq. 43, of plane
+    friction_angle : φ; tan φ = 0.5 of Maeda & Sakai 2004 is sin φ = 0.5, 30 degrees;  modulus : "printed" is their
+    eq. 43, of plane
     stress;  stress : at the start, "geostatic" below its surface with K0 = rest (left out: as it would settle), or
     "none";  permeability_law : how k follows the porosity;  floor, sides : of the tank, "hold" the soil or let it
     "slip".

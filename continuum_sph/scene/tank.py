@@ -14,8 +14,8 @@ class TankSection(Section):
     """A rectangular tank, lower left inner corner at the origin.
 
     "slip" walls carry pressure only, "stick" walls hold the water as well, or floor and lid alone do.  wall_particles:
-    "pressure" take the pressure of the water before them (Adami, Hu & Adams 2012), "images" are those of the paper
-    (eqs 50, 51).
+    "pressure" take the pressure of the water before them (Adami, Hu & Adams 2012), "images" are those of
+    Maeda & Sakai 2004 (eqs 50, 51).
     """
 
     width: float = quantity("m", ge=SMALLEST, le=LARGEST, help="inner width of the tank")

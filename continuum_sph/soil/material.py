@@ -6,7 +6,8 @@ modulus B, dp = B dε_v, there are two: "plane strain", E/2(1+ν)(1-2ν), which 
 stress ratio K0 = (B - G)/(B + G): ν/(1-ν) in plane strain, ν with the printed modulus as long as soil stays elastic.
 
 Strength: τ_f = p sin φ + c cos φ for the radius τ of Mohr's circle in the plane, Mohr-Coulomb while σ_zz lies between
-the other two.  The paper's τ_f = p tan φ_d is the same with sin φ = tan φ_d: its 0.5 is φ = 30°.
+the other two.  That of Maeda & Sakai 2004, τ_f = p tan φ_d, is the same with
+sin φ = tan φ_d: their 0.5 is φ = 30°.
 """
 
 from __future__ import annotations

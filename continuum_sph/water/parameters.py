@@ -27,9 +27,9 @@ class Law:
     smoothing : kernel and h;  spacing : of the particles, m;  fluids : by the numbers that particles carry;
     gravity : (x, y) m/s²;  alpha, beta, softening : artificial viscosity;  diffusion : δ, and noise, what it takes for
     noise (`density.NAMES`), noise_speed (m/s) at which pairs close in noise that counts, 0: all does (`density`);
-    xsph : ε;  shifting : s;  corrected : gradients of `correction`;  varied : h follows density (eq. 52);
-    filter_every : steps between filters of density (eq. 27), 0 never;  sticky : no-slip walls;  images : walls of the
-    paper (eqs 50, 51), else walls that take the pressure from the fluid;  tension : σ between two fluids, N/m;
+    xsph : ε;  shifting : s;  corrected : gradients of `kernel_correction`;  varied : h follows density (eq. 52);
+    filter_every : steps between filters of density (eq. 27), 0 never;  sticky : no-slip walls;  images : image walls
+    (eqs 50, 51), else walls that take the pressure from the fluid;  tension : σ between two fluids, N/m;
     cut : no negative pressure;  courant : the 0.25 of eq. 49.
     """
 

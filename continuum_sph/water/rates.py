@@ -3,15 +3,15 @@
 dv_i/dt = -(1/ρ_i) Σ V_j (p_i + p_j) ∇_i W - Σ m_j Π_ij ∇_i W + laminar viscosity + g   (eqs 34, 35)
 dρ_i/dt =  ρ_i Σ V_j v_ij · ∇_i W + diffusion                                          (eq. 25)
 
-The print has p_i/ρ_i² + p_j/ρ_j² with masses; (p_i + p_j) V_j/ρ_i is the same within one fluid but for its small
+Eq. 34 has p_i/ρ_i² + p_j/ρ_j² with masses; (p_i + p_j) V_j/ρ_i is the same within one fluid but for its small
 changes of density, holds between fluids of any two densities, and is what continuity with volumes does the work of:
 kinetic and compressive energy balance pair by pair.
 
 Every particle gathers from its full row of partners: each pair is computed twice, nothing is scattered, so threads
-never meet and the sums have one order.  Forces of a pair are opposite but for the rounding of the division by mass.
-A row of partners is taken several at a time (`porescale.common.compiled.simd`); a particle stands for the missing end
-of its own row and adds nothing, being at no distance from itself and moving as it does.  Factors that all partners
-share multiply the sums.
+never write to one place and the sums have one order.  Forces of a pair are opposite but for the rounding of the
+division by mass.  A row of partners is taken several at a time (`porescale.common.compiled.simd`); a particle stands
+for the missing end of its own row and adds nothing, being at no distance from itself and moving as it does.  Factors
+that all partners share multiply the sums.
 
 What a scene has no use for is None in the bundles (`bundles`).  The pass is compiled for what there is, and kept on
 disk, each kind by itself: it holds no branch, load or sum of anything else.  Sums over partners in the fluids are in

@@ -14,7 +14,6 @@ from porescale.build.kinds import SECTIONS
 from porescale.common.cli.report import Report
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting.choose import WEIGHTINGS
-from porescale.dem.contact.linear import Linear
 from porescale.lbm.collision.choose import OPERATORS
 from porescale.scene.bodies.segments import PolygonBody, SegmentBody
 from porescale.scene.scene import Scene
@@ -146,13 +145,9 @@ def _contact(derived: Derived, out: Report) -> None:
     assert derived.contact_step is not None
     out.heading("Contact")
     mass = derived.mean_mass / 2
-    if isinstance(law, Linear):
-        out.row("damping ratio of a pair", law.damping_ratio(mass))
-        out.row("contact time of a pair", law.contact_time(mass), "s")
-    else:
-        radius = derived.diameters[1] / 4  # reduced, of two mean grains
-        out.row("damping ratio of a pair", law.damping_ratio)
-        out.row("contact time of a pair", law.contact_time(mass, radius, 0.01), "s", "at 1 cm/s; longer when slower")
+    lasts, remark = law.contact_report(mass, derived.diameters[1] / 4)  # reduced radius of two mean grains
+    out.row("damping ratio of a pair", law.ratio_of_damping(mass))
+    out.row("contact time of a pair", lasts, "s", remark)
     out.row("restitution of a pair", law.restitution(mass))
     out.row("stability limit in a packing", derived.contact_limit, "s")
     out.row("contact step", derived.contact_step, "s")

@@ -11,7 +11,9 @@ from porescale.build.initial.circles import grains_of
 from porescale.build.initial.random_polygons import check_random_places
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting.choose import WEIGHTINGS
+from porescale.dem.contact.choose import LAWS
 from porescale.lbm.collision.choose import OPERATORS
+from porescale.scene import contact
 from porescale.scene.bodies.segments import PolygonBody
 from porescale.scene.circles import Circles
 from porescale.scene.fluid import CHOICES, Fluid
@@ -23,4 +25,5 @@ Scene.checks += [check_needed, check_places]
 Fluid.checks.append(check_solid_options)
 PolygonBody.checks.append(check_random_places)
 Circles.read = grains_of
+contact.LAWS += LAWS
 CHOICES.update(operator=OPERATORS, solid_operator=SOLID_OPERATORS, weighting=WEIGHTINGS)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem import checkpoint, laws, listing, sanity, steering
-from porescale.dem.bodies.bonding import beside
+from porescale.dem.bodies.bonding import framed_parts
 from porescale.dem.contact.materials import Law, Materials
 from porescale.dem.discs import Discs
 from porescale.dem.forces.rectangle import Rectangle
@@ -20,8 +20,8 @@ from porescale.dem.forces.walls import HIGH, LOW, PRESENT, VELOCITY, Box, Plate,
 from porescale.dem.measures.energy import open_book
 from porescale.dem.motion.affine_strain import Deforming
 from porescale.dem.motion.periodic_cell import Still
-from porescale.dem.motion.rigid_and_driven import Arrays
-from porescale.dem.resting.frictionless import law_of_steps, turning
+from porescale.dem.motion.rigid_and_driven import DriverArrays
+from porescale.dem.resting.frictionless import law_of_steps, may_turn
 from porescale.dem.resting.static import leave_out, what_stands
 from porescale.dem.state import State
 from porescale.dem.step import contact_steps
@@ -69,9 +69,7 @@ class Grains(State):
     @property
     def steering(self) -> steering.Steering:
         """Clumps, controlled bodies, moving walls and the strain of the cell: there from the first use on."""
-        if self.drivers is None:
-            self.drivers = steering.Steering(self)
-        return cast(steering.Steering, self.drivers)
+        return steering.steering_of(self)
 
     def add_wall(
         self, name: str, point: tuple[float, float], normal: tuple[float, float], friction: float | None = None
@@ -129,39 +127,32 @@ class Grains(State):
                 own[:] = 0.0 if given is None else given
         if self.static and leave_out(self, self.static, dt, count, drag):
             return
-        d = self.discs
         if dt != self.last_dt:
             self.seconds, self.steps_of_dt, self.last_dt = self.time, 0, dt
         if self.book is not None and self.book_start is None:
             self.current_pairs()
             self.book_start = open_book(self, self.book, dt)
-        motion: Arrays | None = None
+        motion: DriverArrays | None = None
         cell: Still | Deforming = self.still
         if self.drivers is not None:
             self.drivers.start(self.seconds, self.steps_of_dt)
             motion, cell = self.drivers.arrays, self.drivers.now()
-        strained = cell is not self.still
+        alone = cell is not self.still  # what drivers do is done by one thread
         if self.free_law is None:
             self.free_law = law_of_steps(self)
-        free = motion is None and not strained and self.segments is None and self.bonds is None
+        free = motion is None and not alone and self.segments is None and self.bonds is None
         law = self.free_law if free and self.free_law is not None else self.contact
         self.last_count = count
         left = count if self.sleep is None else self.sleep.step(self, dt, drag, count)
         while left > 0:
             pairs = self.current_pairs()
+            d = self.disc_arrays()
+            if not may_turn(self, law):
+                d = d._replace(angle=d.angle[:0])
             done, self.stale = contact_steps(
-                left, dt, drag, d.position, d.angle if turning(self, law) else d.angle[:0],
-                d.velocity, d.spin, d.radius, d.mass, d.inertia, d.force, d.torque,
-                self.external_force, self.external_torque,
-                pairs.start, pairs.partner, pairs.carried, pairs.checked_position, pairs.skin_margin**2,
-                law,
-                self.walls, self.wall_laws, self.wall_spring, self.wall_load,
-                self.plates, self.plate_laws, self.plate_spring, self.plate_force,
-                self.rectangles, self.rectangle_laws, self.rectangle_spring, self.rectangle_force,
-                self.held, self.withheld, left == count,
-                self.sweeps.now(pairs, self.surfaces, self.book is not None, strained),
-                motion, cell,
-                *beside(self, self.seconds, self.steps_of_dt),
+                left, dt, drag, left == count, d, self.pair_arrays(), law, self.surfaces(),
+                self.sweeps.now(pairs, self.surface_count, self.book is not None, alone), motion, cell,
+                framed_parts(self, self.seconds, self.steps_of_dt),
             )  # fmt: skip
             left -= done
             self.steps += done

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.bodies.rigid import masses
-from porescale.dem.contact.law import COLUMNS, memory_of
+from porescale.dem.contact.law import COLUMNS, springs_of
 from porescale.dem.contact.materials import Law, Materials
 from porescale.dem.state import State
 
@@ -49,9 +49,9 @@ def set_law(grains: State, law: Law | Materials, wall_law: Law | None = None) ->
         raise InputError(Fault("contact.law", "linear and hertz", "all laws of a system must be of one kind"))
     grains.law, grains.laws_at_walls, grains.laws = law, at_walls, used
     grains.wall_law = law if wall_law is None and not isinstance(law, Materials) else wall_law
-    kind = used[0].kind(grains.springs > 1 or any(each.rolls for each in used))
-    grains.contact = kind(table, grains.material, masses(grains), grains.book)
-    _widen(grains, memory_of(grains.contact))
+    rolling = 1.0 if grains.springs > 1 or any(each.rolls for each in used) else None
+    grains.contact, grains.body_mass = used[0].kernel(table, 1.0, rolling), masses(grains)
+    _widen(grains, springs_of(grains.contact))
     grains.wall_laws = surface_laws(grains, grains.wall_frictions)
     grains.plate_laws = surface_laws(grains, grains.plate_frictions)
     grains.rectangle_laws = surface_laws(grains, grains.rectangle_frictions)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.neighbors.pair_list import PairList
-from porescale.dem.contact.law import memory_of
+from porescale.dem.contact.law import springs_of
 from porescale.dem.finite import check_finite
 from porescale.dem.state import State
 
@@ -46,5 +46,5 @@ def rebuild(grains: State, anew: bool = False) -> None:
     else:
         grains.pairs.update(d.position, reach)
     if grains.segments is not None:
-        grains.segments.update(d, memory_of(grains.contact), grains.pairs.builds)
+        grains.segments.update(d, springs_of(grains.contact), grains.pairs.builds)
     grains.stale, grains.static = False, None

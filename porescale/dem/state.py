@@ -12,12 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.neighbors.pair_list import PairList
-from porescale.dem.contact.law import BOOK, KernelLaw
+from porescale.dem.arrays import DiscArrays, Pairs, Surface, Surfaces, contact_arrays
+from porescale.dem.contact.budget import BUDGET
+from porescale.dem.contact.law import KernelLaw
 from porescale.dem.contact.materials import Law, Materials
 from porescale.dem.discs import Discs
 from porescale.dem.forces.bonds import BondList
 from porescale.dem.forces.segment_list import SegmentList
-from porescale.dem.forces.threads import Sweeps
+from porescale.dem.forces.threads import ThreadChoice
 from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.motion.drivers import Drivers
 from porescale.dem.motion.periodic_cell import Still, Straining, period_of
@@ -61,7 +63,7 @@ class Sleeping(Protocol):
 class State:
     """Discs, the laws of their contacts, and what they touch.
 
-    discs, box, material (n,) uint8 or None where there is one;  book (n, BOOK) or None: energy budget, see
+    discs, box, material (n,) uint8 or None where there is one;  book (n, BUDGET) or None: energy budget, see
     measures/energy.py, book_start: its values before the first step.
     Laws: law (as given), wall_law, laws_at_walls (one for each material), laws (all in use), contact (as kernels take
     it), free_law (as steps of free discs take it, None: not known yet), springs: springs of a contact.
@@ -69,7 +71,7 @@ class State:
     (w, n, s) m, wall_load (w, 3) N/m, N m/m of the last step, with its views wall_force (w, 2) and wall_moment (w,),
     about the walls' points.  Plates: plate_names, plates (p, 5), plate_frictions, plate_laws, plate_spring (p, n, s),
     plate_force (p, 2).  Rectangles: rectangles (k, 6) and likewise.  Springs: tangential and, with rolling resistance,
-    rolling.
+    rolling.  body_mass (n,) kg/m: of each disc's body, a clump or itself.
     Pairs: pairs, skin (m), reach (n,) m where it is more than the radii, stale: the list must be checked before the
     next step, sweeps, touching (n,): discs that touch each disc, of the last survey.
     Loads: external_force (n, 2) N/m, external_torque (n,) N m/m.  held (n, 3): not 0 where x, y, rotation of a disc is
@@ -86,6 +88,7 @@ class State:
     laws_at_walls: list[Law]
     laws: list[Law]
     contact: KernelLaw
+    body_mass: Array
     wall_laws: Array
     plate_laws: Array
     rectangle_laws: Array
@@ -97,7 +100,7 @@ class State:
         """Discs in ``box`` with ``plates``, without laws (laws.set_law) and so without a pair list."""
         count = discs.count
         self.discs, self.box, self.material, self.skin = discs, box, material, skin
-        self.book = np.zeros((count, BOOK)) if energy else None
+        self.book = np.zeros((count, BUDGET)) if energy else None
         self.book_start: Array | None = None
         self.springs = 0
         self.free_law: KernelLaw | None = None
@@ -112,7 +115,7 @@ class State:
         self.rectangle_frictions: list[float | None] = []
         self.rectangles, self.rectangle_spring = np.zeros((0, 6)), np.zeros((0, count, 0))
         self.rectangle_force = np.zeros((0, 2))
-        self.sweeps, self.stale, self.touching = Sweeps(count), True, np.zeros(count, np.int64)
+        self.sweeps, self.stale, self.touching = ThreadChoice(count), True, np.zeros(count, np.int64)
         self.reach: Array | None = None
         self.external_force, self.external_torque = np.zeros((count, 2)), np.zeros(count)
         self.held, self.withheld = np.zeros((0, 3), np.uint8), np.zeros((0, 3))
@@ -130,8 +133,43 @@ class State:
         self.wall_load = np.zeros((len(self.walls), 3))
         self.wall_force, self.wall_moment = self.wall_load[:, :2], self.wall_load[:, 2]
 
+    def disc_arrays(self) -> DiscArrays:
+        """The discs as kernels take them."""
+        d = self.discs
+        return DiscArrays(
+            d.position, d.angle, d.velocity, d.spin, d.radius, d.mass, d.inertia, d.force, d.torque,
+            self.external_force, self.external_torque, self.held, self.withheld, self.body_mass, self.material,
+            self.book,
+        )  # fmt: skip
+
+    def some_discs(self, discs: NDArray[Any]) -> DiscArrays:
+        """Copies of some of the discs, by index, as contact kernels take them; forces zero, without energy budget."""
+        d = self.discs
+        own = None if self.material is None else self.material[discs]
+        return contact_arrays(
+            d.position[discs], d.velocity[discs], d.spin[discs], d.radius[discs], self.body_mass[discs], own
+        )
+
+    def pair_arrays(self) -> Pairs:
+        """The pair list as kernels take it."""
+        p = self.pairs
+        return Pairs(p.start, p.partner, p.carried, p.checked_position, p.skin_margin**2)
+
+    def surface(self, kind: str) -> Surface:
+        """All surfaces of a ``kind``, "wall", "plate" or "rectangle", as kernels take them."""
+        load = self.wall_load if kind == "wall" else getattr(self, f"{kind}_force")
+        return getattr(self, f"{kind}s"), getattr(self, f"{kind}_laws"), getattr(self, f"{kind}_spring"), load
+
+    def surfaces(self) -> Surfaces:
+        """Walls, plates and rectangles as kernels take them."""
+        return Surfaces(
+            self.walls, self.wall_laws, self.wall_spring, self.wall_load, self.plates, self.plate_laws,
+            self.plate_spring, self.plate_force, self.rectangles, self.rectangle_laws, self.rectangle_spring,
+            self.rectangle_force,
+        )  # fmt: skip
+
     @property
-    def surfaces(self) -> int:
+    def surface_count(self) -> int:
         """Number of walls, plates and rectangles."""
         return len(self.walls) + len(self.plates) + len(self.rectangles)
 
@@ -158,12 +196,6 @@ class State:
     def reset_clock(self) -> None:
         """Count steps and seconds from zero again."""
         self.steps, self.seconds, self.steps_of_dt = 0, 0.0, 0
-
-    def law_of(self, discs: NDArray[Any]) -> KernelLaw:
-        """The law as kernels take it for some of the discs, by index, without an energy budget."""
-        law = self.contact
-        own = None if law.material is None else law.material[discs]
-        return type(law)(law.table, own, law.mass[discs], None)
 
     def stiffest_contact(self) -> tuple[float, float]:
         """Normal stiffness (N/m) and dashpot (N s/m) of the stiffest contact there can be."""

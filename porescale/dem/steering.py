@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,7 +17,7 @@ from porescale.dem.listing import refresh
 from porescale.dem.motion import affine_strain as cells
 from porescale.dem.motion import servo as servos
 from porescale.dem.motion.control import KINDS, PUSH, Control
-from porescale.dem.motion.drivers import Clump, Drivers, Row
+from porescale.dem.motion.drivers import Clump, Drivers, LoadRecord
 from porescale.dem.motion.time_function import Schedule
 from porescale.dem.state import State
 from porescale.dem.timestep import lightest
@@ -40,6 +41,13 @@ def hold(grains: State, disc: int | slice | Array, x: bool = True, y: bool = Tru
         grains.held, grains.withheld = np.zeros((grains.discs.count, 3), np.uint8), np.zeros((grains.discs.count, 3))
     grains.held[disc] = x, y, rotation
     grains.withheld[disc] = 0.0
+
+
+def steering_of(grains: State) -> Steering:
+    """Drivers of ``grains``: there from the first use on."""
+    if grains.drivers is None:
+        grains.drivers = Steering(grains)
+    return cast(Steering, grains.drivers)
 
 
 class Steering(Drivers):
@@ -67,7 +75,7 @@ class Steering(Drivers):
         self._controls, self._given = [self._controls[k] for k in kept], self._given[kept]
         self._watched = [body for body in self._watched if not isinstance(body, Clump)]
         self.watch(*self._watched)
-        grains.contact = grains.contact._replace(mass=masses(grains))
+        grains.body_mass = masses(grains)
         grains.pairs.group = clumps.group if clumps.count else None
         refresh(grains, anew=True)
         return clumps
@@ -97,7 +105,7 @@ class Steering(Drivers):
             hold(self._grains, index, *held)
         self._compile()
 
-    def record(self) -> list[Row]:
+    def record(self) -> list[LoadRecord]:
         """Force and displacement of every watched body now, after a call of step."""
         rows, count = [], max(self._grains.last_count, 1)
         for k, body in enumerate(self._watched):
@@ -108,7 +116,7 @@ class Steering(Drivers):
                 if row[:2] == where:
                     supply[row[2]] = given[0] / count
             gone = self._place(*where) - self._watched_from[k]
-            rows.append(Row(self._grains.time, body, *(tuple(part.tolist()) for part in (gone, met, supply))))
+            rows.append(LoadRecord(self._grains.time, body, *(tuple(part.tolist()) for part in (gone, met, supply))))
         return rows
 
     def move_wall(self, name: str, x: Schedule = 0.0, y: Schedule = 0.0, turn: Schedule = 0.0) -> None:

@@ -13,71 +13,49 @@ from porescale.common.compiled.jit import kernel
 from porescale.dem.forces.bonds import pull_bonds
 from porescale.dem.forces.rectangle import move_rectangles
 from porescale.dem.forces.segments import add_segment_forces
-from porescale.dem.forces.threads import sweep_pairs, sweep_surfaces
-from porescale.dem.forces.walls import ask_near, move_plates
-from porescale.dem.motion.affine_strain import at_present, move_discs, note_clumps, steer
-from porescale.dem.motion.leapfrog import note_step, withhold
-from porescale.dem.motion.rigid_and_driven import carry_bodies, govern
+from porescale.dem.forces.threads import add_surface_forces, all_pair_forces
+from porescale.dem.forces.walls import mark_near, move_plates
+from porescale.dem.motion.affine_strain import add_clump_terms, cell_now, move_discs, steer
+from porescale.dem.motion.leapfrog import add_step_work, withhold
+from porescale.dem.motion.rigid_and_driven import apply_drivers, move_bodies
 
 WAY = 2.01
-"""How far a disc gets within a call, in lengths that the list allows from its mark: from one side of the mark to the
-other, and for round-off 0.01 more, where the domain is less than 1e13 such lengths wide."""
-ASK_AGAIN = 3
-"""Steps of a call that pay for asking once which discs are near walls, which costs what walls do in a step."""
+"""How far a disc gets within a call, in lengths that the list allows from where it was listed: from one side of that
+place to the other, and for round-off 0.01 more, where the domain is less than 1e13 such lengths wide."""
+MARK_AGAIN = 3
+"""Steps of a call that pay for marking once which discs are near walls, which costs what walls do in a step."""
 
 
 @kernel
-def contact_steps(
-    count, dt, drag, position, angle, velocity, spin, radius, mass, inertia, force, torque,
-    external_force, external_torque, start, partner, carried, anchor, limit_square, law,
-    walls, wall_laws, wall_spring, wall_force, plates, plate_laws, plate_spring, plate_force,
-    rectangles, rectangle_laws, rectangle_spring, rectangle_force, held, withheld, first, sweep,
-    motion, cell, segments, bonds,
-):  # fmt: skip
-    """Up to ``count`` contact steps; returns (steps done, whether the pair list must be rebuilt first to
+def contact_steps(count, dt, drag, first, d, pairs, law, surfaces, sweep, motion, cell, framed):
+    """Up to ``count`` contact steps of ``dt`` (s); returns (steps done, whether the pair list must be rebuilt first to
     go on).
 
-    Arrays as in add_pair_forces and the like, withhold and kick_drift; external_force (n, 2)
-    N/m and external_torque (n,) N m/m are the same over all steps.  first: withheld forces are summed anew.
-    sweep: by one thread or several, see sweep.py;  motion: of what is no free disc, None or motion.Arrays;  cell:
-    cell.Still or strain.Deforming;  segments, bonds: None or segments.Segments and bonds.Bonds, in a cell that stands
-    still.  Overwrites the state of discs, springs, plates, rectangles.
+    drag 1/s: background damping;  first: withheld forces are summed anew;  d: DiscArrays;  pairs: Pairs;  law see
+    contact/law.py;  surfaces: Surfaces;  sweep: by one thread or several, see forces/threads.py;  motion: of what is no
+    free disc, None or DriverArrays;  cell: Still or Deforming;  framed: None or (Segments, Bonds), in a cell that
+    stands still.  Overwrites the state of discs, springs, plates, rectangles.
     """
     sweep.near[:] = 1
     for step in range(count):
-        sweep_pairs(
-            position, velocity, spin, radius, force, torque, external_force, external_torque, start, partner, carried,
-            law, dt, at_present(cell), sweep,
-        )  # fmt: skip
-        sweep_surfaces(
-            position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, wall_force,
-            plates, plate_laws, plate_spring, plate_force,
-            rectangles, rectangle_laws, rectangle_spring, rectangle_force, law, dt, sweep,
-        )  # fmt: skip
-        if motion is None and step == 0 and count >= ASK_AGAIN:  # walls stand still; springs far from them are at rest
-            ask_near(position, radius, walls, WAY * np.sqrt(limit_square), sweep.near)
-        if segments is not None:
-            add_segment_forces(position, velocity, spin, radius, force, torque, segments, law, dt, cell)
-        if bonds is not None:
-            pull_bonds(position, radius, force, torque, segments, bonds, step, dt, cell)
-        note_step(law.book, velocity, spin, mass, inertia, external_force, external_torque, drag, dt)
+        all_pair_forces(d, pairs, law, dt, cell_now(cell), sweep)
+        add_surface_forces(d, surfaces, law, dt, sweep)
+        if motion is None and step == 0 and count >= MARK_AGAIN:  # walls stand still; springs far from them are at rest
+            mark_near(d.position, d.radius, surfaces.walls, WAY * np.sqrt(pairs.limit_square), sweep.near)
+        if framed is not None:
+            add_segment_forces(d, framed[0], law, dt, cell)
+            pull_bonds(d.position, d.radius, d.force, d.torque, framed[0], framed[1], step, dt, cell)
+        add_step_work(d.budget, d, drag, dt)
         if motion is not None:
-            govern(
-                motion, walls, wall_force, position, velocity, spin, radius, mass, inertia, force, torque,
-                external_force, external_torque, step, dt, drag, first and step == 0, law.book,
-            )  # fmt: skip
-            note_clumps(motion, velocity, mass, force, external_force, cell)
-        withhold(held, withheld, velocity, spin, mass, inertia, force, torque, drag, first and step == 0, law.book, dt)
-        steer(velocity, mass, step, dt, cell)
-        moved = move_discs(
-            position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt, sweep, cell
-        )
+            apply_drivers(motion, surfaces.walls, surfaces.wall_load, d, step, dt, drag, first and step == 0)
+            add_clump_terms(motion.clumps, d, cell)
+        withhold(d, drag, first and step == 0, d.budget, dt)
+        steer(d.velocity, d.mass, step, dt, cell)
+        moved = move_discs(d, pairs, drag, dt, sweep, cell)
         if motion is not None:
-            moved = carry_bodies(
-                motion, walls, position, angle, velocity, spin, anchor, limit_square, drag, dt, moved, cell
-            )
-        move_plates(plates, dt)
-        move_rectangles(rectangles, dt)
+            moved = move_bodies(motion, d, surfaces.walls, pairs, drag, dt, moved, cell)
+        move_plates(surfaces.plates, dt)
+        move_rectangles(surfaces.rectangles, dt)
         if moved:
             return step + 1, True
     return count, False

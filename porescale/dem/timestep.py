@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from porescale.dem.bodies.clumps import Clumps, fastest
-from porescale.dem.contact.linear import Linear
+from porescale.dem.contact.law import Springs
 from porescale.dem.contact.materials import Law
 from porescale.dem.discs import Discs
 
@@ -16,19 +16,19 @@ HALVINGS = 60
 """Steps to a fixed point each of which halves the logarithm of the distance, at least."""
 
 
-def stiffnesses(hard: Linear) -> tuple[float, float, float]:
+def stiffnesses(hard: Springs) -> tuple[float, float, float]:
     """Normal, tangential and rolling, N/m."""
     return hard.stiffness, hard.tangential_stiffness, hard.rolling_stiffness * hard.rolls
 
 
-def dampings(hard: Linear) -> tuple[float, float, float]:
+def dampings(hard: Springs) -> tuple[float, float, float]:
     """Normal, tangential and rolling, N s/m."""
     return hard.damping, hard.tangential_damping, hard.rolling_damping * hard.rolls
 
 
 def lightest(clumps: Clumps, discs: Discs, laws: Sequence[Law]) -> float:
     """Mass (kg/m) that the smallest disc would have if its packing limit (packing_limit) were that of the
-    fastest clump under all of ``laws``; infinite where all clumps are moved as told.
+    fastest clump under all of ``laws``; infinite where all clumps are with a prescribed velocity.
 
     Contacts of clumps count as stiff as those of the largest member, and as damped as those of the heaviest clump.
     """
@@ -38,7 +38,7 @@ def lightest(clumps: Clumps, discs: Discs, laws: Sequence[Law]) -> float:
             own = parts(law.stiffest(float(clumps.mass.max()), largest))
             if max(own) > 0.0:
                 most, mass = fastest(clumps, discs.radius, *own, NEIGHBOURS), float(discs.mass.min())
-                if most == 0.0:  # all are moved as told
+                if most == 0.0:  # all are with a prescribed velocity
                     continue
                 for _ in range(HALVINGS):  # dashpots of Hertz go with the root of the mass that is looked for
                     mass = packing_factor(*parts(law.stiffest(mass, size))) / most
@@ -69,19 +69,17 @@ def packing_limit(law: Law, mass: float, radius: float | None = None) -> float:
     A mode z = -1 needs dt^2 K + 2 dt C = 4 M; with bounds K/M = a, C/M = b: dt = 2 / (b/2 + sqrt(b^2/4 +
     a)), which is 2 (sqrt(1 + h^2) - h)/w for one pair.
     """
-    law = _tangents(law, mass, radius)
-    a = packing_factor(law.stiffness, law.tangential_stiffness, law.rolling_stiffness * law.rolls) / mass
-    b = packing_factor(law.damping, law.tangential_damping, law.rolling_damping * law.rolls) / mass
+    hard = _tangents(law, mass, radius)
+    a = packing_factor(*stiffnesses(hard)) / mass
+    b = packing_factor(*dampings(hard)) / mass
     return 2.0 / (0.5 * b + math.sqrt(0.25 * b * b + a))
 
 
-def _tangents(law: Law, mass: float, radius: float | None) -> Linear:
-    """The linear law that is as stiff as ``law`` ever is for the lightest disc."""
-    if isinstance(law, Linear):
-        return law
-    if radius is None:
-        raise ValueError("the stable step of a law of Hertz depends on the radius")
-    return law.stiffest(mass, radius)
+def _tangents(law: Law, mass: float, radius: float | None) -> Springs:
+    """The springs that are as stiff as ``law`` ever is for the lightest disc."""
+    if radius is None and law.needs_radius:
+        raise ValueError(f"the stable step of the law {law.name!r} depends on the radius")
+    return law.stiffest(mass, radius or 0.0)
 
 
 def stable_step(

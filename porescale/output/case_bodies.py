@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from porescale.common.core.atomic import save
-from porescale.dem.bodies.bonding import beside, pieces
+from porescale.dem.bodies.bonding import pieces, segments_now
 from porescale.dem.forces.bonds import touched
 from porescale.dem.grains import Grains
 
@@ -85,7 +85,7 @@ def draw_bodies(axes: Axes, grains: Grains, at: Shot, colours: list[str] | str =
 
 def draw_cracks(axes: Axes, grains: Grains, at: Shot, length: float, width: float = 1.0) -> None:
     """Broken bonds whose ends are still near each other, as lines of ``length`` (m) along the crack."""
-    bonds, known = grains.bonds, beside(grains)[0]
+    bonds, known = grains.bonds, segments_now(grains)
     if bonds is None or known is None:
         return
     gone = (at.whole == 0) & (bonds.back > 0.0)

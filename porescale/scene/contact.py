@@ -6,7 +6,9 @@ from typing import Any, Literal
 
 import pydantic
 
-from porescale.common.schema.sections import Section, quantity
+from porescale.common.core.errors import Fault
+from porescale.common.schema.messages import nearest
+from porescale.common.schema.sections import Refused, Section, quantity
 from porescale.scene.ranges import FRICTION
 
 STIFFNESS: Any = {"ge": 0, "le": 1e15}
@@ -18,22 +20,11 @@ DASHPOT: Any = {"ge": 0, "le": 1e12}
 RATIO: Any = {"ge": 0, "le": 1e3}
 
 
-LINEAR = ("stiffness", "damping", "tangential_stiffness", "tangential_damping", "rolling_stiffness", "rolling_damping")
-
-
-HERTZ = (
-    "young", "poisson", "damping_ratio", "tangential_damping_ratio", "rolling_stiffness_ratio", "rolling_damping_ratio",
-)  # fmt: skip
-
-
-BOTH = ("restitution", "friction", "rolling_friction")
-
-
 DAMPED = ("damping", "damping_ratio", "restitution")
 
 
-WAYS = {"linear": ("damping", "restitution"), "hertz": ("damping_ratio", "restitution")}
-"""Keys of the two laws, and those of which exactly one damps."""
+LAWS: list[str] = []
+"""Names of contact laws: the register, put here by build/scene.py."""
 
 
 class Touch(Section):
@@ -61,7 +52,7 @@ class Touch(Section):
 
     def numbers(self) -> dict[str, float]:
         """What is given, by key."""
-        values = {key: getattr(self, key) for key in (*LINEAR, *HERTZ, *BOTH)}
+        values = {key: getattr(self, key) for key in Touch.model_fields}
         return {key: value for key, value in values.items() if value is not None}
 
 
@@ -88,7 +79,7 @@ class Contact(Touch):
     "linear": springs and dashpots;  "hertz": of Hertz and Mindlin, for spheres of the discs' radii, one a metre.
     """
 
-    law: Literal["linear", "hertz"] = "linear"
+    law: str = "linear"
     tangential_stiffness: float = quantity("N/m", 0.0, **STIFFNESS, help="tangential stiffness per metre of depth")
     tangential_damping: float = quantity("N s/m", 0.0, **DASHPOT, help="tangential damping per metre of depth")
     friction: float = quantity("", 0.0, **FRICTION, help="friction coefficient between grains")
@@ -106,3 +97,11 @@ class Contact(Touch):
     )
     deepest: float = quantity("", 0.02, gt=0, le=0.3, help='overlap over radius that the step of "hertz" allows for')
     pair: tuple[Pair, ...] = ()
+
+    @pydantic.field_validator("law")
+    @classmethod
+    def _known(cls, name: str) -> str:
+        if name not in LAWS:
+            allowed = " or ".join(repr(it) for it in LAWS)
+            raise Refused(Fault("", name, "unknown choice", "", allowed, nearest(name, LAWS, "choices")))
+        return name

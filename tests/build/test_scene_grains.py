@@ -15,7 +15,7 @@ from porescale.common.core.constants import GRAVITY
 from porescale.common.schema.sections import scene_as_dict, validate
 from porescale.dem.contact.hertz import Hertz
 from porescale.dem.contact.law import CR, KN, KR, MU, MUR
-from porescale.dem.contact.linear import Linear
+from porescale.dem.contact.linear import Linear, LinearKernel
 from tests.reference.scenes import column, dry, grain
 from tests.reference.scenes_of_grains import assert_same_bits, lines, loose, resumed
 
@@ -77,7 +77,8 @@ def test_one_plain_law_has_neither_materials_nor_rolling():
     grains = build(dry()).grains
     assert grains.material is None
     assert grains.pairs.carried.shape[1] == 1
-    assert type(grains.contact).__name__ == "LinearSliding"
+    assert isinstance(grains.contact, LinearKernel)
+    assert grains.contact.rolling is None
 
 
 def test_rolling_resistance_arrives_in_the_kernels_table():

@@ -7,6 +7,7 @@ import copy
 import numpy as np
 import pytest
 
+from porescale.dem.arrays import contact_arrays
 from porescale.dem.motion.leapfrog import withhold
 from porescale.validation.coupling import setups as lab
 
@@ -133,10 +134,12 @@ def test_what_is_withheld_is_summed_over_the_steps_of_a_call_compiled_or_not():
     for run in (withhold, withhold.py_func):
         withheld, force, torque = np.full((2, 3), 7.0), np.array([[1.0, 2.0], [3.0, 4.0]]), np.array([5.0, 6.0])
         other = force.copy(), torque.copy()
-        motion = np.array([[0.5, 0.25], [0.1, 0.2]]), np.array([0.3, 0.4])
-        body = np.array([2.0, 3.0]), np.array([4.0, 5.0])
-        run(held, withheld, *motion, *body, force, torque, 0.0, True, None, 1.0)
-        run(held, withheld, *motion, *body, *other, 0.1, False, None, 1.0)
+        velocity, spin = np.array([[0.5, 0.25], [0.1, 0.2]]), np.array([0.3, 0.4])
+        discs = contact_arrays(np.zeros((2, 2)), velocity, spin, np.ones(2), np.ones(2))._replace(
+            mass=np.array([2.0, 3.0]), inertia=np.array([4.0, 5.0]), held=held, withheld=withheld
+        )
+        run(discs._replace(force=force, torque=torque), 0.0, True, None, 1.0)
+        run(discs._replace(force=other[0], torque=other[1]), 0.1, False, None, 1.0)
         np.testing.assert_array_equal(withheld, [[2.0, 0.0, 10.0], [0.0, 8.0, 0.0]])
         np.testing.assert_array_equal(force, [[0.0, 2.0], [3.0, 0.0]])
         np.testing.assert_array_equal(torque, [0.0, 6.0])

@@ -14,6 +14,7 @@ from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.measures import survey as measure
 from porescale.dem.motion import leapfrog as kick
+from porescale.dem.motion.periodic_cell import Still
 from porescale.dem.prepare.settle import pack, unpack
 from porescale.dem.timestep import packing_limit
 from tests.reference.dem import Body, World
@@ -77,12 +78,6 @@ def test_fast_grains_follow_the_slow_twin(release):
     assert grains.plate_ends("plate")[1] == pytest.approx(twin.plates[0][1], rel=1e-12)
 
 
-def arrays_for_forces(grains):
-    d, p = grains.discs, grains.pairs
-    loads = np.zeros_like(d.force), np.zeros_like(d.torque)
-    return d, p, loads
-
-
 def compress(grains):
     """A state with contacts everywhere: every disc 8 % larger than the room it has."""
     grains.discs.radius[:] = 0.0113
@@ -94,42 +89,17 @@ def test_kernels_do_the_same_as_plain_python():
     # Python checks the bounds that compiled code does not.
     a, b = compress(grains_in_a_box()), compress(grains_in_a_box())
     for grains, plain in ((a, False), (b, True)):
-        d, p, (force, torque) = arrays_for_forces(grains)
+        d, pairs, law = grains.disc_arrays(), grains.pair_arrays(), grains.contact
         call = (lambda kernel: kernel.py_func) if plain else (lambda kernel: kernel)
-        call(forces.start_forces)(force, torque, np.ones_like(force), np.ones_like(torque))
-        call(forces.add_pair_forces)(
-            d.position, d.velocity, d.spin, d.radius, force, torque, p.start, p.partner, p.carried, 0.0, 0.0,
-            grains.contact, 1e-5,
-        )  # fmt: skip
-        near = np.ones((len(grains.walls), walls.runs_of(d.count)), np.uint8)
-        call(walls.add_near_walls)(
-            d.position, d.velocity, d.spin, d.radius, force, torque, grains.walls, grains.wall_laws,
-            grains.wall_spring, grains.wall_force, near, grains.contact, 1e-5,
-        )  # fmt: skip
-        call(walls.add_plate_forces)(
-            d.position, d.velocity, d.spin, d.radius, force, torque, grains.plates, grains.plate_laws,
-            grains.plate_spring, grains.plate_force, grains.contact, 1e-5,
-        )  # fmt: skip
-        call(kick.kick_drift)(
-            d.position,
-            d.angle,
-            d.velocity,
-            d.spin,
-            d.mass,
-            d.inertia,
-            force,
-            torque,
-            p.list_position,
-            1.0,
-            3.0,
-            1e-5,
-        )
-        d.force[:], d.torque[:] = force, torque
-        grains.kept = call(measure.survey_pairs)(
-            d.position, d.radius, p.start, p.partner, p.carried, grains.cell, grains.contact, grains.touching
-        ) + call(measure.survey_walls)(
-            d.position, d.radius, grains.walls, grains.wall_laws, grains.wall_spring, grains.contact
-        )  # fmt: skip
+        d.external_force[:], d.external_torque[:] = 1.0, 1.0
+        call(forces.start_forces)(d)
+        call(forces.pair_forces)(d, pairs, law, 1e-5, Still(0.0, 0.0))
+        near = np.ones((len(grains.walls), walls.runs_of(len(d.radius))), np.uint8)
+        call(walls.add_near_walls)(d, *grains.surface("wall"), 0, near, 0, len(d.radius), law, 1e-5)
+        call(walls.add_plate_forces)(d, *grains.surface("plate"), 0, 0, len(d.radius), law, 1e-5)
+        call(kick.kick_drift)(d, pairs.checked_position, 1.0, 3.0, 1e-5)
+        grains.kept = call(measure.survey_pairs)(d, pairs, grains.cell, law, grains.touching)
+        grains.kept += call(measure.survey_walls)(d, *grains.surface("wall")[:3], law)
     assert (a.touching > 1).all()
     assert a.plate_force.any()
     assert a.kept == b.kept

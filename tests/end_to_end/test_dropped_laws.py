@@ -108,6 +108,51 @@ def _weight(solid, theta, slip_x, slip_y, law):
 
 WEIGHTING = Weighting("square", "for a test", Square)
 ''',
+    "dem/contact/stiffening.py": '''
+"""A spring that is twice as stiff where the overlap is the reduced radius: k d (1 + d/R)."""
+from dataclasses import dataclass
+from typing import ClassVar
+
+from porescale.dem.contact.law import (
+    CN, CR, CT, KN, KernelLaw, history_scaling, stiffness, stiffness_scale, stored_normal,
+)
+from porescale.dem.contact.linear import Linear
+
+
+class StiffeningKernel(KernelLaw):
+    """The law as kernels take it."""
+
+
+@stiffness.of(StiffeningKernel)
+def _stiffness(overlap, radius, mass, p, law):
+    return p[KN] * overlap * (1.0 + overlap / radius), p[CN], 1.0, 1.0, p[CT], p[CR]
+
+
+@stiffness_scale.of(StiffeningKernel)
+def _stiffness_scale(overlap, radius, law):
+    return 1.0
+
+
+@history_scaling.of(StiffeningKernel)
+def _history_scaling(overlap, closing, dt, law):
+    return 1.0
+
+
+@stored_normal.of(StiffeningKernel)
+def _stored_normal(overlap, radius, p, law):
+    return p[KN] * overlap * overlap * (0.5 + overlap / (3.0 * radius))
+
+
+@dataclass(frozen=True)
+class Stiffening(Linear):
+    name: ClassVar = "stiffening"
+    order: ClassVar = 100
+    purpose: ClassVar = "for a test"
+    kernel: ClassVar = StiffeningKernel
+
+
+LAW = Stiffening
+''',
     "lbm/boundary/belt.py": '''
 """A wall by another name, which slides along itself."""
 from porescale.lbm.boundary.wall import Wall
@@ -148,6 +193,27 @@ weighting = "{weighting}"
 x = 0.01
 y = 0.01
 diameter = 0.006
+"""
+DRY = """
+title = "A grain that falls on the floor"
+[domain]
+width = 0.01
+height = 0.01
+[time]
+end = 0.04
+[output]
+snapshot_interval = 0.04
+series_interval = 0.01
+[grains]
+density = 2500
+[[grains.grain]]
+x = 0.005
+y = 0.0035
+diameter = 0.002
+[contact]
+law = "{law}"
+stiffness = 1e4
+restitution = 0.8
 """
 NAMES = {
     "operator": "shear-only",
@@ -198,6 +264,30 @@ def test_new_offers_them_too(tree: Path, tmp_path: Path) -> None:
     assert porescale(tree, "new", tmp_path / "a").returncode == 0
     text = (tmp_path / "a" / "scene.toml").read_text(encoding="utf-8")
     assert all(name in text for name in NAMES.values())
+
+
+def dry(folder: Path, law: str) -> Path:
+    """A dry scene with this contact law."""
+    folder.mkdir()
+    (folder / "scene.toml").write_text(DRY.format(law=law), encoding="utf-8")
+    return folder
+
+
+def test_a_contact_law_that_was_dropped_is_offered(tree: Path, tmp_path: Path) -> None:
+    found = porescale(tree, "check", dry(tmp_path / "wrong", "nonsense"))
+    assert found.returncode == 2
+    assert "'stiffening'" in found.stdout + found.stderr
+    assert porescale(tree, "new", tmp_path / "new").returncode == 0
+    assert "stiffening" in (tmp_path / "new" / "scene.toml").read_text(encoding="utf-8")
+
+
+def test_a_contact_law_that_was_dropped_runs(tree: Path, tmp_path: Path) -> None:
+    rows = []
+    for law in ("linear", "stiffening"):
+        done = porescale(tree, "run", dry(tmp_path / law, law), "--quiet")
+        assert done.returncode == 0, done.stdout + done.stderr
+        rows.append((tree / "runs" / law / "series.csv").read_text(encoding="utf-8"))
+    assert rows[0] != rows[1]  # a bounce from another spring
 
 
 def test_they_run(tree: Path, tmp_path: Path) -> None:

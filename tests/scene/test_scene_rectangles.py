@@ -283,9 +283,9 @@ def test_an_overlap_with_a_rectangle_counts_among_the_others():
     assert max_overlap(grains).share == pytest.approx(0.4, rel=1e-12)
     assert elastic_energy(grains) == pytest.approx(0.5 * 2e5 * 2e-4**2, rel=1e-12)
     grains.discs.position[0] = 0.005, 0.0016
-    given = grains.discs.position, grains.discs.radius, grains.rectangles, grains.rectangle_laws
     for survey in (survey_rectangles, survey_rectangles.py_func):
-        assert survey(*given, grains.rectangle_spring, grains.contact)[0] == pytest.approx(1.2, rel=1e-12)
+        found = survey(grains.disc_arrays(), *grains.surface("rectangle")[:3], grains.contact)
+        assert found[0] == pytest.approx(1.2, rel=1e-12)
 
 
 def test_pictures_show_a_rectangle_where_it_is_and_within_the_box():

@@ -64,14 +64,14 @@ def test_a_spring_kept_while_the_contact_stiffens_gains_energy():
     # Pressed with its spring at s, k_t s^2/2 grows with k_t ~ sqrt(d) and nobody pays; rescaled it only falls.
     row, s, radius = impacts.HERTZ.row(), 1e-6, RADIUS
     energy = [0.5 * row[hertz.KT] * math.sqrt(radius * d) * s**2 for d in (1e-5, 4e-5)]
-    left = hertz.kept.py_func(4e-5, 1.0, 3e-5, kernel_law())
+    left = hertz.history_scaling.py_func(4e-5, 1.0, 3e-5, kernel_law())
     assert energy[1] == pytest.approx(2.0 * energy[0])
     assert energy[1] * left**2 == pytest.approx(0.5 * energy[0])
-    assert hertz.kept.py_func(1e-5, -1.0, 3e-5, kernel_law()) == 1.0
+    assert hertz.history_scaling.py_func(1e-5, -1.0, 3e-5, kernel_law()) == 1.0
 
 
 def kernel_law():
-    return impacts.HERTZ.kind(False)(impacts.HERTZ.row()[None, None], None, np.ones(1), None)
+    return impacts.HERTZ.kernel(impacts.HERTZ.row()[None, None], 1.0, None)
 
 
 def test_without_resistance_a_disc_rolls_off():

@@ -69,7 +69,7 @@ class StateLaw(Protocol):
 
 
 @by_law
-def pressure_of(ratio: Any, law: Any) -> Any:
+def pressure_of(ratio, law):
     """Pressure (Pa) and (c/c0)² at ``ratio`` ρ/ρ0, in kernels.
 
     law : the `numbers` of a law, by whose type the body is chosen.

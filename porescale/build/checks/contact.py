@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from porescale.build.initial.contact_laws import merged
 from porescale.common.core.errors import Fault
+from porescale.dem.contact.choose import LAWS
 from porescale.dem.contact.materials import MOST
-from porescale.scene.contact import DAMPED, HERTZ, LINEAR, WAYS, Contact, Pair, Touch
+from porescale.scene.contact import DAMPED, Contact, Pair, Touch
 from porescale.scene.scene import Scene
 
 
@@ -52,42 +53,41 @@ def _check_names(scene: Scene, contact: Contact) -> list[Fault]:
     return faults
 
 
-def _check_kind(key: str, section: Touch, law: str) -> list[Fault]:
+def _check_kind(key: str, section: Touch, name: str) -> list[Fault]:
     """Every number belongs to the law."""
-    others, name = (HERTZ, "hertz") if law == "linear" else (LINEAR, "linear")
+    law = LAWS[name]
     plain = Contact.model_construct() if isinstance(section, Contact) else None
     faults = []
-    for other in others:
-        value = getattr(section, other)
-        if value is not None and not (plain and value == getattr(plain, other)):
-            problem = f'belongs to law = "{name}", this is "{law}"'
-            faults.append(Fault(f"{key}.{other}", value, problem, repair=f'leave it out, or write law = "{name}"'))
+    for other in LAWS.values():
+        for number in other.keys:
+            value = None if number in law.keys else getattr(section, number)
+            if value is not None and not (plain and value == getattr(plain, number)):
+                problem = f'belongs to law = "{other.name}", this is "{name}"'
+                repair = f'leave it out, or write law = "{other.name}"'
+                faults.append(Fault(f"{key}.{number}", value, problem, repair=repair))
     if isinstance(section, Pair):
-        for other in ("young", "poisson"):
-            if getattr(section, other) is not None:
+        for number in {it: None for each in LAWS.values() for it in each.of_materials}:
+            if getattr(section, number) is not None:
                 problem = "follows from the two materials"
-                faults.append(Fault(f"{key}.{other}", getattr(section, other), problem, repair="leave it out"))
-        if sum(getattr(section, other) is not None for other in DAMPED) > 1:
+                faults.append(Fault(f"{key}.{number}", getattr(section, number), problem, repair="leave it out"))
+        if sum(getattr(section, number) is not None for number in DAMPED) > 1:
             problem = "at most one of the two is needed"
-            faults.append(Fault(f"{key}.{', '.join(WAYS[law])}", None, problem, repair="give one"))
+            faults.append(Fault(f"{key}.{', '.join(law.damping_keys)}", None, problem, repair="give one"))
     return faults
 
 
 def _check_complete(key: str, numbers: dict[str, float], contact: Contact) -> list[Fault]:
     """What a law needs is there, and what it says has an effect."""
-    linear = contact.law == "linear"
-    faults = []
-    needed = "stiffness" if linear else "young"
+    law, faults = LAWS[contact.law], []
+    needed, unit = law.required
     if needed not in numbers:
-        faults.append(Fault(f"{key}.{needed}", None, "is missing", "N/m" if linear else "Pa", "> 0", "add it"))
-    ways = WAYS[contact.law]
+        faults.append(Fault(f"{key}.{needed}", None, "is missing", unit, "> 0", "add it"))
+    ways = law.damping_keys
     if sum(way in numbers for way in ways) != 1:
         problem, repair = "exactly one of the two is needed", "give one, leave the other out"
         faults.append(Fault(f"{key}.{', '.join(ways)}", None, problem, repair=repair))
-    if linear:
-        resists = numbers.get("rolling_stiffness", 0.0) + numbers.get("rolling_damping", 0.0) > 0.0
-        if resists != (numbers.get("rolling_friction", 0.0) > 0.0):
-            one, other = ("rolling_stiffness", "rolling_friction")[:: -1 if resists else 1]
-            problem = f"is needed where there is {other}" if not resists else "is needed for rolling resistance"
-            faults.append(Fault(f"{key}.{one}", None, problem, "", "> 0", f"give both, or leave {other} out"))
+    wrong = law.rolling_problem(numbers)
+    if wrong:
+        one, problem, repair = wrong
+        faults.append(Fault(f"{key}.{one}", None, problem, "", "> 0", repair))
     return faults

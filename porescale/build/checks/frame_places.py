@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from porescale.build.checks.wall_places import across_walls
 from porescale.build.initial.frames import Placed
 from porescale.common.core.errors import Fault, InputError
-from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Law
 from porescale.dem.discs import Discs
 from porescale.dem.motion.control import Control, Moved, schedule_of
@@ -199,10 +198,7 @@ def thin_for(placed: Sequence[Placed], speed: float, mass: float, law: Law) -> s
     if len(found) < 2:
         return ""
     thin = min(found)
-    if isinstance(law, Linear):
-        deep, power = speed * float(np.sqrt(0.5 * mass / law.stiffness)), 2.0
-    else:
-        deep, power = float((15.0 * mass * speed**2 / (32.0 * law.modulus * np.sqrt(0.5 * thin))) ** 0.4), 2.5
+    deep, power = law.impact(0.5 * mass, 0.5 * thin, speed)
     allowed = WAVES * 2.0 * thin
     if deep <= allowed:
         return ""

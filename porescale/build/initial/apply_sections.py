@@ -13,7 +13,7 @@ from porescale.build.initial.frames import Placed
 from porescale.build.initial.placed import by_hand
 from porescale.build.initial.time_functions import schedule_of
 from porescale.build.initial.walls import add_walls, moving_sides
-from porescale.dem.contact.law import BOOK
+from porescale.dem.contact.budget import BUDGET
 from porescale.dem.grains import Grains
 from porescale.dem.motion.time_function import Schedule
 from porescale.scene.cell import RATES, STRESSES, Cell
@@ -29,7 +29,7 @@ def apply_sections(scene: Scene, grains: Grains, mass: float, placed: Sequence[P
     """
     materials = MaterialPlan.of(scene).laws(mass) if scene.grains else None
     if scene.output.energy:
-        grains.book = np.zeros((grains.discs.count, BOOK))
+        grains.book = np.zeros((grains.discs.count, BUDGET))
     if materials:
         own = [it.frame.material for it in placed for _ in it.frame.corners]
         names = names_of(scene, grains.discs.count - len(own))

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from porescale.dem.contact.hertz import Hertz
-from porescale.dem.contact.linear import Linear, damping_from_restitution
+from porescale.dem.contact.choose import LAWS
 from porescale.dem.contact.materials import Law, Materials
-from porescale.dem.contact.restitution import ratio_from_restitution
 from porescale.scene.contact import DAMPED, Contact, Material, Touch
 from porescale.scene.scene import Scene
 
@@ -22,45 +20,8 @@ def merged(contact: Contact, own: Touch | None = None) -> dict[str, float]:
 
 
 def law_of(numbers: dict[str, float], contact: Contact, mass: float) -> Law:
-    """The law of ``numbers``; a restitution of the linear one is that of two grains of ``mass`` (kg/m)."""
-    get = numbers.get
-    rolling = get("rolling_friction", 0.0)
-    if contact.law == "linear":
-        k = numbers["stiffness"]
-        damping = get("damping")
-        if damping is None:
-            damping = damping_from_restitution(numbers["restitution"], mass / 2, k, contact.release)
-        return Linear(
-            k, damping, get("tangential_stiffness", 0.0), get("tangential_damping", 0.0), get("friction", 0.0),
-            contact.release, rolling, get("rolling_stiffness", 0.0), get("rolling_damping", 0.0),
-        )  # fmt: skip
-    plain = Hertz.of(numbers["young"], numbers["poisson"], 1.0, get("friction", 0.0), contact.release, rolling)
-    ratio = get("damping_ratio")
-    if ratio is None:
-        ratio = ratio_from_restitution(numbers["restitution"], contact.release)
-    return replace(
-        plain, damping_ratio=ratio, tangential_damping_ratio=get("tangential_damping_ratio", ratio),
-        rolling_stiffness=get("rolling_stiffness_ratio", 1.0),
-        rolling_damping_ratio=get("rolling_damping_ratio", ratio), deepest=contact.deepest,
-    )  # fmt: skip
-
-
-RENAMED = {"rolling_stiffness_ratio": "rolling_stiffness"}
-"""Keys of sections that the law of Hertz calls otherwise."""
-
-
-def overridden(law: Law, numbers: dict[str, float], mass: float) -> Law:
-    """``law`` with the numbers of a pair; ``mass`` (kg/m): effective, of two grains of mean size."""
-    given = {RENAMED.get(key, key): value for key, value in numbers.items() if key != "restitution"}
-    restitution = numbers.get("restitution")
-    if isinstance(law, Linear):
-        if restitution is not None:
-            stiffness = given.get("stiffness", law.stiffness)
-            given["damping"] = damping_from_restitution(restitution, mass, stiffness, law.release)
-        return replace(law, **given)  # type: ignore[arg-type]
-    if restitution is not None:
-        given["damping_ratio"] = ratio_from_restitution(restitution, law.release)
-    return replace(law, **given)  # type: ignore[arg-type]
+    """The law of ``numbers``; a restitution that depends on the mass is that of two grains of ``mass`` (kg/m)."""
+    return LAWS[contact.law].from_numbers(numbers, contact.release, mass, contact.deepest)
 
 
 @dataclass(frozen=True)
@@ -115,7 +76,7 @@ class MaterialPlan:
         for pair in contact.pair:
             one, other = pair.materials
             both = heavy[one] * heavy[other] / (heavy[one] + heavy[other])
-            between[one, other] = overridden(mixing.law(one, other), pair.numbers(), both)
+            between[one, other] = mixing.law(one, other).with_numbers(pair.numbers(), both)
         return Materials(laws, between, contact.wall_material or None)
 
     def law_and_others(self, material: str, mass: float) -> tuple[Law, Law, list[Law]]:

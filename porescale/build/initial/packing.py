@@ -11,7 +11,7 @@ from porescale.common.core.errors import InputError
 from porescale.common.neighbors.grading import graded_radii, lognormal_radii
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Law
-from porescale.dem.prepare.compaction import Compressed, Press, kept
+from porescale.dem.prepare.compaction import Compactor, Compressed, kept
 from porescale.scene.packing import Packing
 
 Array = NDArray[np.float64]
@@ -42,7 +42,7 @@ def compressed(packing: Packing, density: float, periodic: tuple[bool, bool], la
     radius = radii_of(packing)
     assert radius is not None
     box = (packing.left, packing.bottom), (packing.left + packing.width, packing.bottom + packing.height)
-    press = Press(*box, law, periodic, packing.settling_friction, density, packing.seed)
+    press = Compactor(*box, law, periodic, packing.settling_friction, density, packing.seed)
     try:
         return kept(press, radius, packing.pressure)
     except InputError as error:

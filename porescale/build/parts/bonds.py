@@ -13,7 +13,7 @@ from porescale.build.part import Clock, Part, Row
 from porescale.build.system import System
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.record.model import Cloud, Snapshot
-from porescale.dem.bodies.bonding import beside, bond
+from porescale.dem.bodies.bonding import bond, segments_now
 from porescale.dem.bodies.rigid import as_bodies
 from porescale.dem.forces.bonds import BondList, touched
 from porescale.dem.grains import Grains
@@ -159,7 +159,7 @@ class BondsPart(Part):
         shown = bonds.back > 0.0
         ends = np.ascontiguousarray(bonds.ends[shown])
         way, far, other = np.zeros((len(ends), 2)), np.zeros((len(ends), 2)), np.zeros(len(ends), np.int64)
-        known = beside(self.grains)[0]
+        known = segments_now(self.grains)
         at = self.grains.discs.position
         if known is not None:
             touched(at, ends, known, self.grains.cell, way, far, other)

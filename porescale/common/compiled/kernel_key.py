@@ -145,7 +145,7 @@ class _Content:
                 raise Unknown(f"{kind.__qualname__}, which no other process can import")
             if kind not in self.laws:
                 self.laws[kind] = None
-                self.add(vars(kind)["_fields"], vars(kind).get("_field_defaults"))
+                self.add(kind._fields, getattr(kind, "_field_defaults", None))  # own or of a base class
         elif not (issubclass(kind, BaseException) or _root(kind) in LIBRARIES):
             raise Unknown(f"the class {kind.__qualname__}")
 

@@ -11,29 +11,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
-from porescale.dem.contact.law import memory_of
+from porescale.dem.contact.law import springs_of
 from porescale.dem.forces.bonds import NO_BONDS, BondList, Bonds, pressing
 from porescale.dem.forces.segment_list import no_segments
 from porescale.dem.forces.segments import Segments
 from porescale.dem.listing import current_pairs
 from porescale.dem.motion.drivers import Clump
 from porescale.dem.state import State
+from porescale.dem.steering import steering_of
 
 Index = NDArray[np.int64]
 
 
 def segments_now(grains: State) -> Segments:
     """Segments as kernels take them; none where the system has none."""
-    memory = memory_of(grains.contact)
+    memory = springs_of(grains.contact)
     if grains.segments is None:
         return no_segments(grains.discs.count, memory)
     return grains.segments.now(grains.discs, memory, grains.pairs.builds)
 
 
-def beside(grains: State, seconds: float = 0.0, steps: int = 0) -> tuple[Segments, Bonds] | tuple[None, None]:
-    """Segments and bonds as kernels take them at a time, both or none, so that the loop has no kinds with but one."""
+def framed_parts(grains: State, seconds: float = 0.0, steps: int = 0) -> tuple[Segments, Bonds] | None:
+    """Segments and bonds as kernels take them at a time, None where there is neither: always both, so that the loop
+    over steps is not compiled for one alone."""
     if grains.segments is None and grains.bonds is None:
-        return None, None
+        return None
     bonds = NO_BONDS if grains.bonds is None else grains.bonds
     return segments_now(grains), bonds.now(seconds, steps)
 
@@ -44,7 +46,7 @@ def bond(grains: State, bodies: Iterable[int | Clump] | None = None) -> int:
     Contacts that are bonded already stay as they are.  Raises InputError for a body that is not there, and in a cell
     that is strained.
     """
-    if grains.drivers is not None and grains.drivers.cell is not None:
+    if steering_of(grains).cell is not None:
         raise InputError(Fault("bonds", problem="are not made in a strained cell"))
     d, pairs = grains.discs, current_pairs(grains)
     first = np.repeat(np.arange(d.count), np.diff(pairs.start))
@@ -63,7 +65,7 @@ def bond(grains: State, bodies: Iterable[int | Clump] | None = None) -> int:
         known = {tuple(row) for row in grains.bonds.ends[grains.bonds.whole != 0].tolist()}
         ends = ends[[tuple(row) not in known for row in ends.tolist()]] if len(ends) else ends
     back = np.zeros(len(ends))
-    pressing(d.position, d.radius, ends, arrays, grains.contact, grains.cell, back)
+    pressing(d.position, d.radius, grains.body_mass, grains.material, ends, arrays, grains.contact, grains.cell, back)
     made = BondList(np.ascontiguousarray(ends[back != 0.0]), back[back != 0.0])
     grains.bonds = made if grains.bonds is None else grains.bonds.joined(made)
     return made.count

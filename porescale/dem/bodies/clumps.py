@@ -19,13 +19,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from porescale.common.compiled.jit import kernel
 from porescale.common.core.errors import Fault, InputError
+from porescale.dem.arrays import contact_arrays
 from porescale.dem.bodies.union import outline
 from porescale.dem.discs import Discs
 
@@ -49,6 +50,26 @@ class Body:
     inertia: float
     frame: bool = False
     area: float | None = None
+
+
+class ClumpArrays(NamedTuple):
+    """Clumps as kernels take them: fields as in Clumps, those of the bodies named as those of discs."""
+
+    start: NDArray[np.int64]
+    member: NDArray[np.int64]
+    offset: Array
+    arm: Array
+    turn: Array
+    position: Array
+    angle: Array
+    velocity: Array
+    spin: Array
+    mass: Array
+    inertia: Array
+    force: Array
+    torque: Array
+    held: NDArray[np.uint8]
+    withheld: Array
 
 
 class Clumps:
@@ -96,10 +117,12 @@ class Clumps:
 
     def place(self, discs: Discs) -> None:
         """Put the members of every clump where the body is, moving as it does: overwrites their rows."""
-        place_members(
-            self.start, self.member, self.offset, self.arm, self.turn, self.position, self.angle, self.velocity,
-            self.spin, discs.position, discs.angle, discs.velocity, discs.spin, 0.0, 0.0, 0.0,
-        )  # fmt: skip
+        at = contact_arrays(discs.position, discs.velocity, discs.spin, discs.radius, discs.mass)
+        place_members(self.arrays(), at._replace(angle=discs.angle), 0.0, 0.0, 0.0)
+
+    def arrays(self) -> ClumpArrays:
+        """The clumps as kernels take them."""
+        return ClumpArrays(*(getattr(self, name) for name in ClumpArrays._fields))
 
     @property
     def count(self) -> int:
@@ -214,40 +237,40 @@ def shares(weight: Array, offset: Array, radius: float) -> Array | None:
 
 
 @kernel
-def place_members(
-    start, member, offset, arm, turn, position, angle, velocity, spin,
-    disc_position, disc_angle, disc_velocity, disc_spin, gxx, gxy, gyy,
-):  # fmt: skip
+def place_members(c, d, gxx, gxy, gyy):
     """Put the members of every clump where the body is, moving as it does.
 
-    start, member, offset (k, 2) m, turn (k,) rad and the bodies' position, angle, velocity, spin as in Clumps;  gxx,
-    gxy, gyy 1/s: the cell's affine motion, relative to which velocities are.  Overwrites arm (k, 2) m and the members'
-    rows of the discs' arrays.
+    c: ClumpArrays;  d: DiscArrays;  gxx, gxy, gyy 1/s: the cell's affine motion, relative to which velocities are.
+    Overwrites c.arm (k, 2) m and the members' rows of position, angle, velocity and spin of the discs.
     """
-    for c in range(spin.shape[0]):
-        cosine, sine = np.cos(angle[c]), np.sin(angle[c])
-        for k in range(start[c], start[c + 1]):
-            i = member[k]
+    offset, arm, position, velocity, spin = c.offset, c.arm, c.position, c.velocity, c.spin
+    disc_position, disc_velocity = d.position, d.velocity
+    for b in range(spin.shape[0]):
+        cosine, sine = np.cos(c.angle[b]), np.sin(c.angle[b])
+        for k in range(c.start[b], c.start[b + 1]):
+            i = c.member[k]
             ax = cosine * offset[k, 0] - sine * offset[k, 1]
             ay = sine * offset[k, 0] + cosine * offset[k, 1]
             arm[k, 0], arm[k, 1] = ax, ay
-            disc_position[i, 0], disc_position[i, 1] = position[c, 0] + ax, position[c, 1] + ay
-            disc_velocity[i, 0] = velocity[c, 0] - spin[c] * ay - gxx * ax - gxy * ay
-            disc_velocity[i, 1] = velocity[c, 1] + spin[c] * ax - gyy * ay
-            disc_angle[i], disc_spin[i] = angle[c] + turn[k], spin[c]
+            disc_position[i, 0], disc_position[i, 1] = position[b, 0] + ax, position[b, 1] + ay
+            disc_velocity[i, 0] = velocity[b, 0] - spin[b] * ay - gxx * ax - gxy * ay
+            disc_velocity[i, 1] = velocity[b, 1] + spin[b] * ax - gyy * ay
+            d.angle[i], d.spin[i] = c.angle[b] + c.turn[k], spin[b]
 
 
 @kernel
-def gather(start, member, arm, force, torque, disc_force, disc_torque):
-    """Overwrite force (b, 2) N/m and torque (b,) N m/m with the sums over members about the centroids."""
-    for c in range(torque.shape[0]):
+def gather(c, disc_force, disc_torque):
+    """Overwrite force (b, 2) N/m and torque (b,) N m/m of ClumpArrays ``c`` with the sums over members about the
+    centroids, from force (n, 2) N/m and torque (n,) N m/m of the discs."""
+    arm, force, torque = c.arm, c.force, c.torque
+    for b in range(torque.shape[0]):
         fx, fy, moment = 0.0, 0.0, 0.0
-        for k in range(start[c], start[c + 1]):
-            i = member[k]
+        for k in range(c.start[b], c.start[b + 1]):
+            i = c.member[k]
             fx += disc_force[i, 0]
             fy += disc_force[i, 1]
             moment += disc_torque[i] + arm[k, 0] * disc_force[i, 1] - arm[k, 1] * disc_force[i, 0]
-        force[c, 0], force[c, 1], torque[c] = fx, fy, moment
+        force[b, 0], force[b, 1], torque[b] = fx, fy, moment
 
 
 def fastest(clumps: Clumps, radius: Array, normal: float, tangential: float, rolling: float, neighbours: int) -> float:
@@ -268,7 +291,7 @@ def fastest(clumps: Clumps, radius: Array, normal: float, tangential: float, rol
     body = clumps.group[clumps.member]
     both = np.bincount(body, touch * (normal + tangential), clumps.count) / clumps.mass
     both += np.bincount(body, touch * turning, clumps.count) / clumps.inertia
-    moving = ~clumps.held.all(axis=1)  # what is moved as told gives no answer
+    moving = ~clumps.held.all(axis=1)  # what is with a prescribed velocity gives no answer
     if moving.any() or np.any(clumps.group < 0):
         both = both[moving]
     return float(both.max(initial=0.0))

@@ -20,7 +20,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.bodies.clumps import Body
-from porescale.dem.contact.hertz import Hertz
 from porescale.dem.contact.materials import Law, Materials
 from porescale.dem.discs import Discs, make_discs
 from porescale.dem.forces.segment_list import SegmentList
@@ -236,7 +235,7 @@ def add_frames(
     Clumps that there were are no more.  clump_bodies : mass and inertia by hand.  Raises InputError as framed does.
     """
     discs = grains.discs
-    if any(isinstance(each, Hertz) for each in grains.laws) and min(frame.thickness for frame in frames) == 0.0:
+    if any(each.needs_radius for each in grains.laws) and min(frame.thickness for frame in frames) == 0.0:
         raise InputError(Fault("frame.thickness", 0.0, "the law of Hertz needs a radius of corners", "m", "> 0"))
     sizes = [len(frame.corners) for frame in frames]
     first = discs.count - sum(sizes)

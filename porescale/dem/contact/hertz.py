@@ -22,7 +22,9 @@ Antypov & Elliott 2011, EPL 94, 50004.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,21 +38,26 @@ from porescale.dem.contact.law import (
     KR,
     KT,
     RELEASES,
-    HertzRolling,
-    HertzSliding,
-    kept,
-    scale_at,
+    KernelLaw,
+    history_scaling,
     stiffness,
+    stiffness_scale,
     stored_normal,
 )
 from porescale.dem.contact.linear import Linear, series
 from porescale.dem.contact.restitution import contact_phase, ratio_from_restitution, refuse, restitution_of
 
+RENAMED = {"rolling_stiffness_ratio": "rolling_stiffness"}
+"""Keys of [contact] that are called otherwise here."""
 TANGENT = 2.0 * math.sqrt(5.0 / 6.0)
 """Damping over sqrt(m dF/dd) and ratio h: of a d^(1/4) = TANGENT h sqrt(m 3/2 K sqrt(d))."""
 
 
-@stiffness.of(HertzSliding, HertzRolling)
+class HertzKernel(KernelLaw):
+    """The law of Hertz and Mindlin as kernels take it."""
+
+
+@stiffness.of(HertzKernel)
 def _stiffness(overlap, radius, mass, p, law):
     """Tangents that grow with the square root of the overlap."""
     scale = np.sqrt(radius * overlap)
@@ -59,22 +66,22 @@ def _stiffness(overlap, radius, mass, p, law):
     return p[KN] * scale * overlap, p[CN] * root, scale, 1.0 / scale, p[CT] * root, p[CR] * root
 
 
-@scale_at.of(HertzSliding, HertzRolling)
-def _scale_at(overlap, radius, law):
-    """Radius of the contact."""
+@stiffness_scale.of(HertzKernel)
+def _stiffness_scale(overlap, radius, law):
+    """Radius of the contact area, m."""
     return np.sqrt(radius * overlap)
 
 
-@kept.of(HertzSliding, HertzRolling)
-def _kept(overlap, closing, dt, law):
+@history_scaling.of(HertzKernel)
+def _history_scaling(overlap, closing, dt, law):
     """Springs shrink as the contact does while it is unloaded, never grow."""
     before = max(overlap - closing * dt, 0.0)
     return np.sqrt(min(before / overlap, 1.0))
 
 
-@stored_normal.of(HertzSliding, HertzRolling)
+@stored_normal.of(HertzKernel)
 def _stored_normal(overlap, radius, p, law):
-    """Integral of K d^(3/2)."""
+    """Integral of K d^(3/2) over the overlap."""
     return 0.4 * p[KN] * np.sqrt(radius * overlap) * overlap * overlap
 
 
@@ -88,7 +95,19 @@ class Hertz:
     deepest : overlap over radius that the stable step allows for, > 0: stiffness grows with its root.
     """
 
-    name = "hertz"
+    name: ClassVar = "hertz"
+    order: ClassVar = 1
+    purpose: ClassVar = "of Hertz and Mindlin, for spheres of the discs' radii, one a metre"
+    kernel: ClassVar[type[KernelLaw]] = HertzKernel
+    keys: ClassVar[tuple[str, ...]] = (
+        "young", "poisson", "damping_ratio", "tangential_damping_ratio", "rolling_stiffness_ratio",
+        "rolling_damping_ratio",
+    )  # fmt: skip
+    required: ClassVar = ("young", "Pa")
+    damping_keys: ClassVar[tuple[str, ...]] = ("damping_ratio", "restitution")
+    of_materials: ClassVar[tuple[str, ...]] = ("young", "poisson")
+    needs_radius: ClassVar = True
+
     modulus: float
     shear_modulus: float = 0.0
     damping_ratio: float = 0.0
@@ -138,14 +157,39 @@ class Hertz:
             friction, release, rolling_friction, rolling_damping_ratio=ratio,
         )  # fmt: skip
 
+    @classmethod
+    def from_numbers(cls, numbers: Mapping[str, float], release: str, mass: float, deepest: float) -> Hertz:
+        """The law of the keys of [contact]; its restitution is the same at any ``mass``."""
+        get = numbers.get
+        plain = cls.of(
+            numbers["young"], numbers["poisson"], 1.0, get("friction", 0.0), release, get("rolling_friction", 0.0)
+        )
+        ratio = get("damping_ratio")
+        if ratio is None:
+            ratio = ratio_from_restitution(numbers["restitution"], release)
+        return replace(
+            plain, damping_ratio=ratio, tangential_damping_ratio=get("tangential_damping_ratio", ratio),
+            rolling_stiffness=get("rolling_stiffness_ratio", 1.0),
+            rolling_damping_ratio=get("rolling_damping_ratio", ratio), deepest=deepest,
+        )  # fmt: skip
+
+    def with_numbers(self, numbers: Mapping[str, float], mass: float) -> Hertz:
+        """This law with other numbers, by the keys of [contact]; its restitution is the same at any ``mass``."""
+        given = {RENAMED.get(key, key): value for key, value in numbers.items() if key != "restitution"}
+        restitution = numbers.get("restitution")
+        if restitution is not None:
+            given["damping_ratio"] = ratio_from_restitution(restitution, self.release)
+        return replace(self, **given)  # type: ignore[arg-type]
+
+    @staticmethod
+    def rolling_problem(numbers: Mapping[str, float]) -> tuple[str, str, str] | None:
+        """Rolling stiffness and damping have values of their own where they are not given: nothing can be missing."""
+        return None
+
     @property
     def rolls(self) -> bool:
         """Whether there is rolling resistance."""
         return self.rolling_friction > 0.0
-
-    def kind(self, rolls: bool) -> type[HertzSliding | HertzRolling]:
-        """The class under which kernels take it, with rolling resistance or without."""
-        return HertzRolling if rolls else HertzSliding
 
     def with_friction(self, friction: float) -> Hertz:
         """The same law with another friction coefficient."""
@@ -171,7 +215,7 @@ class Hertz:
             ]
         )
 
-    def mixed(self, other: Hertz) -> Hertz:
+    def mixed(self, other: Any) -> Hertz:
         """Between unlike materials, each of which has its law with itself; see materials.py for the rule."""
         if not isinstance(other, Hertz) or other.release != self.release:
             raise InputError(Fault("contact.law", f"{self} and {other}", "differ in kind or release"))
@@ -233,6 +277,18 @@ class Hertz:
         total = quad(rising, 0.0, 1.0)[0] + quad(falling, 0.0, 1.0)[0]
         return float(total * (speed / w) ** -0.2 / w)
 
+    def ratio_of_damping(self, mass: float) -> float:
+        """The damping ratio, which is the same at any ``mass``."""
+        return self.damping_ratio
+
+    def contact_report(self, mass: float, radius: float) -> tuple[float, str]:
+        """Seconds that a contact lasts at a speed of 1 cm/s, and that it lasts longer at a lower one."""
+        return self.contact_time(mass, radius, 0.01), "at 1 cm/s; longer when slower"
+
+    def impact(self, mass: float, radius: float, speed: float) -> tuple[float, float]:
+        """See overlap_at; it goes with the modulus to the power of 2/5."""
+        return self.overlap_at(mass, radius, speed), 2.5
+
     def stiffest(self, mass: float, radius: float) -> Linear:
         """The linear law of its tangents at the overlap ``deepest`` times ``radius`` (m), for the stable step.
 
@@ -250,3 +306,6 @@ class Hertz:
         """Seconds an impact lasts that reaches ``deepest`` of ``radius`` (m) at a wall; ``mass`` reduced, kg/m."""
         speed = math.sqrt(self.constant(radius) * (self.deepest * radius) ** 2.5 / (1.25 * mass))
         return self.contact_time(mass, radius, speed)
+
+
+LAW = Hertz

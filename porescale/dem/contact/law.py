@@ -1,4 +1,4 @@
-"""A contact as kernels see it: one body for every law, cut to what the law has when it is compiled.
+"""A contact as kernels see it: springs, dashpots and sliders round the elastic force of a law.
 
 Normal:      F = F_el(d) + g d',  d overlap (m), d' closing speed (m/s), F > 0 pushes apart; two rules for its end:
   release "force"   : F = max(0, ...), never pulls; the contact ends when the force vanishes;
@@ -14,9 +14,9 @@ So the dashpot decides with the spring whether the contact slides, but never ent
 dissipates: a spring lengthens by no more than the slip that did work on it.  (Resetting the spring to the limit with
 the dashpot in the check, as is common, stores energy nobody supplied.)
 
-A law goes into kernels as a flat NamedTuple: its class says which bodies are compiled (linear or Hertz, with rolling
-resistance or without), the absence of ``material`` and ``book`` leaves out what serves several materials and the energy
-book.
+A law goes into kernels as a flat NamedTuple, its class chosen by the law's file: that says which of the four formulas
+below (``stiffness`` to ``stored_normal``) are compiled.  The absence of ``friction`` or ``rolling`` leaves their part
+out, that of ``material`` and ``budget`` of the discs what serves several materials and the energy budget.
 
 Sources: Cundall & Strack 1979, Geotechnique 29, 47; release at zero force: Schwager & Poeschel 2007, Granular Matter 9,
 465; rolling: Iwashita & Oda 1998, J. Eng. Mech. 124, 285; Ai, Chen, Rotter & Ooi 2011, Powder Technology 206, 269;
@@ -25,7 +25,8 @@ rolling speed independent of the observer: Luding 2008, Granular Matter 10, 235.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,77 +35,167 @@ from porescale.common.compiled.jit import by_law, inline
 
 Array = NDArray[np.float64]
 
-KN, CN, KT, CT, MU, RULE, YIELD, KR, CR, MUR, RYIELD = range(11)
-"""Columns of a law's row, as kernels read it.  YIELD is 1/k_t and RYIELD 1/k_r, which spare divisions (0 for none)."""
+KN, CN, KT, CT, MU, RULE, COMPLIANCE_T, KR, CR, MUR, COMPLIANCE_R = range(11)
+"""Columns of a law's row, as kernels read it.  The compliances are 1/k_t and 1/k_r, which spare divisions (0 for none).
+"""
 COLUMNS = 11
 RELEASES = ("force", "overlap")
 RELEASE_FORCE, RELEASE_OVERLAP = 0.0, 1.0
 
-NORMAL_DASHPOT, TANGENTIAL_DASHPOT, FRICTION, ROLLING_DASHPOT, ROLLING_FRICTION = range(5)
-SURFACES, EXTERNAL, HOLDERS, DRAG = range(5, 9)
-BEFORE_X, BEFORE_Y, BEFORE_SPIN = range(9, 12)
-"""Columns of the energy book: lost in dashpots and friction, work of moving surfaces, of external forces and of those
-who hold discs, lost to the background drag (J/m); velocity and spin half a step before the last force (m/s, rad/s)."""
-BOOK = 12
 
+class KernelLaw(NamedTuple):
+    """A law as kernels take it; the file of a law derives a class of its own, for its formulas.
 
-class LinearSliding(NamedTuple):
-    """Linear law without rolling resistance.
-
-    table (m, m, COLUMNS): rows by the materials of both discs;  material (n,) uint8, or None where there is one;
-    mass (n,) kg/m of the discs;  book (n, BOOK): energy book, at the lower disc of a pair, or None.
+    table (m, m, COLUMNS): rows by the materials of both discs;  friction: None leaves it out, springs are then neither
+    read nor written: they are zero and stay so, and nothing turns a disc;  rolling: None where there is no resistance.
     """
 
     table: Array
-    material: NDArray[np.uint8] | None
-    mass: Array
-    book: Array | None
+    friction: float | None
+    rolling: float | None
 
 
-class LinearRolling(NamedTuple):
-    """Linear law with rolling resistance; fields as in LinearSliding."""
+class Springs(Protocol):
+    """Stiffnesses (N/m) and dashpots (N s/m) per metre of depth: what the stable step takes of a law."""
 
-    table: Array
-    material: NDArray[np.uint8] | None
-    mass: Array
-    book: Array | None
+    @property
+    def stiffness(self) -> float:
+        """Normal stiffness."""
+
+    @property
+    def damping(self) -> float:
+        """Normal dashpot."""
+
+    @property
+    def tangential_stiffness(self) -> float:
+        """Tangential stiffness."""
+
+    @property
+    def tangential_damping(self) -> float:
+        """Tangential dashpot."""
+
+    @property
+    def rolling_stiffness(self) -> float:
+        """Rolling stiffness."""
+
+    @property
+    def rolling_damping(self) -> float:
+        """Rolling dashpot."""
+
+    @property
+    def rolls(self) -> bool:
+        """Whether there is rolling resistance."""
 
 
-class HertzSliding(NamedTuple):
-    """Law of Hertz and Mindlin without rolling resistance; fields as in LinearSliding."""
+class ContactLaw(Protocol):
+    """What a law of contacts provides.  A law is one file of this folder: parameters, formulas, source, consequences.
 
-    table: Array
-    material: NDArray[np.uint8] | None
-    mass: Array
-    book: Array | None
-
-
-class HertzRolling(NamedTuple):
-    """Law of Hertz and Mindlin with rolling resistance; fields as in LinearSliding."""
-
-    table: Array
-    material: NDArray[np.uint8] | None
-    mass: Array
-    book: Array | None
-
-
-class LinearSmooth(NamedTuple):
-    """Linear law without friction; fields as in LinearSliding.  Springs are neither read nor written: they are zero
-    and stay so, and nothing turns a disc.
+    The file has a frozen dataclass with these members, ``LAW = TheClass`` for the register (choose.py), a class derived
+    from KernelLaw, and bodies for it of the four formulas: ``@stiffness.of(TheKernel)`` and so on.
     """
 
-    table: Array
-    material: NDArray[np.uint8] | None
-    mass: Array
-    book: Array | None
+    name: ClassVar[str]
+    """In scenes: [contact] law."""
+    order: ClassVar[int]
+    """Place in lists."""
+    purpose: ClassVar[str]
+    """What it is good for, one line."""
+    kernel: ClassVar[type[KernelLaw]]
+    """Class of the law as kernels take it."""
+    keys: ClassVar[tuple[str, ...]]
+    """Keys of [contact] that belong to this law, restitution, friction and rolling_friction not counted."""
+    required: ClassVar[tuple[str, str]]
+    """The key that must be given, and its unit."""
+    damping_keys: ClassVar[tuple[str, ...]]
+    """Keys of which exactly one damps."""
+    of_materials: ClassVar[tuple[str, ...]]
+    """Keys that follow from two materials, and are not given for a pair."""
+    needs_radius: ClassVar[bool]
+    """Whether points, corners without thickness, have no contact."""
+
+    def __hash__(self) -> int:
+        """Laws are values: equal ones have the same hash."""
+
+    @property
+    def friction(self) -> float:
+        """Friction coefficient."""
+
+    @property
+    def rolling_friction(self) -> float:
+        """Coefficient of rolling friction."""
+
+    @property
+    def release(self) -> str:
+        """Rule for the end of a contact: one of RELEASES."""
+
+    @property
+    def rolls(self) -> bool:
+        """Whether there is rolling resistance."""
+
+    @classmethod
+    def from_numbers(cls, numbers: Mapping[str, float], release: str, mass: float, deepest: float) -> ContactLaw:
+        """The law of the keys of [contact];  mass (kg/m): of two grains each, whose restitution is given;  deepest:
+        overlap over radius that the stable step allows for."""
+
+    def with_numbers(self, numbers: Mapping[str, float], mass: float) -> ContactLaw:
+        """This law with other numbers, by the keys of [contact];  mass (kg/m): effective, of the restitution."""
+
+    def with_friction(self, friction: float) -> ContactLaw:
+        """The same law with another friction coefficient."""
+
+    def mixed(self, other: Any) -> ContactLaw:
+        """Between unlike materials, each of which has its law with itself; see materials.py for the rule."""
+
+    def row(self) -> Array:
+        """The law as kernels read it, (COLUMNS,) float64."""
+
+    def stiffest(self, mass: float, radius: float) -> Springs:
+        """Springs that bound it for the stable step, for a disc of ``mass`` (kg/m) and ``radius`` (m)."""
+
+    def shortest_contact(self, mass: float, radius: float) -> float:
+        """Seconds that the shortest contact lasts, at effective ``mass`` (kg/m) and reduced ``radius`` (m)."""
+
+    def restitution(self, mass: float) -> float:
+        """Parting speed over approach speed at effective ``mass`` (kg/m)."""
+
+    def ratio_of_damping(self, mass: float) -> float:
+        """Normal damping ratio at effective ``mass`` (kg/m)."""
+
+    def contact_report(self, mass: float, radius: float) -> tuple[float, str]:
+        """Seconds that a contact lasts at effective ``mass`` (kg/m) and reduced ``radius`` (m), and a remark on it."""
+
+    def impact(self, mass: float, radius: float, speed: float) -> tuple[float, float]:
+        """Deepest overlap (m) of an undamped impact at ``speed`` (m/s), effective ``mass`` (kg/m), reduced ``radius``
+        (m); and the power of the stiffness over overlap: what of it makes the overlap half as deep."""
+
+    @staticmethod
+    def rolling_problem(numbers: Mapping[str, float]) -> tuple[str, str, str] | None:
+        """What is wrong with the keys of rolling resistance: (key, problem, repair); None where nothing is."""
 
 
-KernelLaw = LinearSliding | LinearRolling | HertzSliding | HertzRolling | LinearSmooth
+class Relative(NamedTuple):
+    """Relative motion at a contact: overlap m;  closing, slip and rolling speed m/s;  reduced radius m."""
+
+    overlap: float
+    closing: float
+    slip: float
+    rolling: float
+    radius: float
 
 
-def memory_of(law: KernelLaw) -> int:
+class Response(NamedTuple):
+    """What a contact answers: normal (> 0 pushes apart), tangential and rolling force N/m, both new springs m."""
+
+    normal: float
+    tangential: float
+    rolling: float
+    spring: float
+    roll: float
+
+
+def springs_of(law: KernelLaw) -> int:
     """Numbers that a contact under ``law`` carries from step to step: its springs."""
-    return 2 if isinstance(law, LinearRolling | HertzRolling) else 1
+    return 1 if law.rolling is None else 2
 
 
 @by_law
@@ -112,17 +203,17 @@ def stiffness(overlap, radius, mass, p, law):
     """(elastic force N/m, normal damping N s/m, scale, 1/scale, tangential and rolling damping N s/m).
 
     overlap (m) > 0;  radius (m) and mass (kg/m) reduced;  p (COLUMNS,) row.  Tangential and rolling stiffness are
-    p[KT] and p[KR] times the scale.
+    p[KT] and p[KR] times the scale.  Bodies: in the file of each law.
     """
 
 
 @by_law
-def scale_at(overlap, radius, law):
+def stiffness_scale(overlap, radius, law):
     """What tangential and rolling stiffness are in proportion to, at ``overlap`` (m) >= 0, ``radius`` (m) reduced."""
 
 
 @by_law
-def kept(overlap, closing, dt, law):
+def history_scaling(overlap, closing, dt, law):
     """Share of a spring that is left when the overlap (m) has come to what it is at ``closing`` (m/s) over ``dt``."""
 
 
@@ -144,140 +235,82 @@ def coulomb(spring, slip, limit, dt, stiff, soft, damping):
     return -force, spring
 
 
-@by_law
-def sliding(spring, slip, limit, dt, stiff, soft, damping, law):
-    """The tangential force (N/m) and its new spring (m): see ``coulomb``."""
-
-
-@sliding.of(LinearSliding, LinearRolling, HertzSliding, HertzRolling)
-def _sliding(spring, slip, limit, dt, stiff, soft, damping, law):
-    """As far as friction goes."""
+@inline
+def element_if(present, spring, slip, limit, dt, stiff, soft, damping):
+    """As ``coulomb``; (0, 0) where ``present`` is None, which leaves the element out when compiled."""
+    if present is None:
+        return 0.0, 0.0
     return coulomb(spring, slip, limit, dt, stiff, soft, damping)
 
 
-@sliding.of(LinearSmooth)
-def _smooth(spring, slip, limit, dt, stiff, soft, damping, law):
-    """None."""
-    return 0.0, 0.0
-
-
-@by_law
-def push(normal, tangential, nx, ny, law):
-    """Components (N/m) of the force on a body that presses with ``normal`` along (nx, ny): see ``contact``."""
-
-
-@push.of(LinearSliding, LinearRolling, HertzSliding, HertzRolling)
-def _push(normal, tangential, nx, ny, law):
-    """Both parts."""
+@inline
+def components_if(friction, normal, tangential, nx, ny):
+    """As force_components, without the tangential part where ``friction`` is None."""
+    if friction is None:
+        return -normal * nx, -normal * ny
     return -normal * nx - tangential * ny, -normal * ny + tangential * nx
 
 
-@push.of(LinearSmooth)
-def _push_smooth(normal, tangential, nx, ny, law):
-    """The normal one alone."""
-    return -normal * nx, -normal * ny
+@inline
+def force_components(found, nx, ny, law):
+    """Components (N/m) of the force on a body, from the Response of the contact along the unit vector (nx, ny)."""
+    return components_if(law.friction, found.normal, found.tangential, nx, ny)
 
 
-@by_law
-def rolling(roll, turning, limit, scale, softness, damping, dt, p, law):
-    """Rolling resistance over the reduced radius and its new spring: (N/m, m).
-
-    roll (m), turning R (w_i - w_j) (m/s), limit F (N/m) >= 0, scale, softness 1/scale, damping (N s/m), dt (s), p row.
-    """
-
-
-@rolling.of(LinearSliding, HertzSliding, LinearSmooth)
-def _no_rolling(roll, turning, limit, scale, softness, damping, dt, p, law):
-    """Discs roll freely."""
-    return 0.0, 0.0
-
-
-@rolling.of(LinearRolling, HertzRolling)
-def _rolling(roll, turning, limit, scale, softness, damping, dt, p, law):
-    """Spring, slider and dashpot against rolling."""
-    return coulomb(roll, turning, p[MUR] * limit, dt, p[KR] * scale, p[RYIELD] * softness, damping)
-
-
-@by_law
-def moments(tangential, resisting, arm_i, arm_j, radius, law):
-    """Torques on both bodies, N m/m: tangential force (N/m) at lever arms (m), rolling resistance at the radius (m)."""
-
-
-@moments.of(LinearSliding, HertzSliding)
-def _moments_sliding(tangential, resisting, arm_i, arm_j, radius, law):
-    """Those of the tangential force."""
-    return tangential * arm_i, tangential * arm_j
-
-
-@moments.of(LinearRolling, HertzRolling)
-def _moments_rolling(tangential, resisting, arm_i, arm_j, radius, law):
-    """Equal and opposite ones of rolling besides."""
+@inline
+def moments_if(friction, rolling, tangential, resisting, arm_i, arm_j, radius):
+    """As ``moments``; adding -0.0 changes no bit, so without friction no torque is read or written for it."""
+    if friction is None:
+        return -0.0, -0.0
+    if rolling is None:
+        return tangential * arm_i, tangential * arm_j
     return tangential * arm_i + resisting * radius, tangential * arm_j - resisting * radius
 
 
-@moments.of(LinearSmooth)
-def _no_moments(tangential, resisting, arm_i, arm_j, radius, law):
-    """None: adding -0.0 changes no bit, so no torque is read or written for it."""
-    return -0.0, -0.0
-
-
-@by_law
-def recall(memory, k, law):
-    """(spring, rolling spring), m, of contact k of ``memory`` (m, 1 or 2)."""
-
-
-@recall.of(LinearSliding, HertzSliding)
-def _recall_sliding(memory, k, law):
-    """One spring a contact."""
-    return memory[k, 0], 0.0
-
-
-@recall.of(LinearSmooth)
-def _recall_nothing(memory, k, law):
-    """Springs at rest."""
-    return 0.0, 0.0
-
-
-@recall.of(LinearRolling, HertzRolling)
-def _recall_rolling(memory, k, law):
-    """Two springs a contact."""
-    return memory[k, 0], memory[k, 1]
-
-
-@by_law
-def remember(memory, k, spring, roll, law):
-    """Overwrite both springs (m) of contact k of ``memory`` (m, 1 or 2)."""
-
-
-@remember.of(LinearSliding, HertzSliding)
-def _remember_sliding(memory, k, spring, roll, law):
-    """One spring a contact."""
-    memory[k, 0] = spring
-
-
-@remember.of(LinearSmooth)
-def _remember_nothing(memory, k, spring, roll, law):
-    """They are."""
-
-
-@remember.of(LinearRolling, HertzRolling)
-def _remember_rolling(memory, k, spring, roll, law):
-    """Two springs a contact."""
-    memory[k, 0] = spring
-    memory[k, 1] = roll
+@inline
+def moments(found, arm_i, arm_j, radius, law):
+    """Torques on both bodies, N m/m: tangential force at lever arms (m), rolling resistance at the reduced radius (m),
+    equal and opposite.
+    """
+    return moments_if(law.friction, law.rolling, found.tangential, found.rolling, arm_i, arm_j, radius)
 
 
 @inline
-def holds(memory, k, law):
-    """Whether contact k of ``memory`` (m, 1 or 2) has a spring that is not at rest."""
-    spring, roll = recall(memory, k, law)
+def load_if(friction, rolling, history, k):
+    """As load_history."""
+    if friction is None:
+        return 0.0, 0.0
+    if rolling is None:
+        return history[k, 0], 0.0
+    return history[k, 0], history[k, 1]
+
+
+@inline
+def load_history(history, k, law):
+    """(spring, rolling spring), m, of contact k of ``history`` (m, 1 or 2); 0 for those that the law has not."""
+    return load_if(law.friction, law.rolling, history, k)
+
+
+@inline
+def store_if(friction, rolling, history, k, spring, roll):
+    """As store_history."""
+    if friction is not None:
+        history[k, 0] = spring
+        if rolling is not None:
+            history[k, 1] = roll
+
+
+@inline
+def store_history(history, k, spring, roll, law):
+    """Overwrite the springs (m) of contact k of ``history`` (m, 1 or 2) that the law has."""
+    store_if(law.friction, law.rolling, history, k, spring, roll)
+
+
+@inline
+def has_history(history, k, law):
+    """Whether contact k of ``history`` (m, 1 or 2) has a spring that is not at rest."""
+    spring, roll = load_history(history, k, law)
     return spring != 0.0 or roll != 0.0
-
-
-@inline
-def booked(book):
-    """Whether there is an energy book."""
-    return book is not None
 
 
 @inline
@@ -289,86 +322,32 @@ def material_of(material, i):
 
 
 @inline
-def contact(overlap, closing, slip, turning, spring, roll, radius, mass, dt, p, law):
-    """One contact: (normal, tangential, rolling N/m, springs m).  The same function for pairs and surfaces.
+def contact(seen, spring, roll, mass, dt, p, law):
+    """One contact, for pairs and surfaces alike: the Response to the Relative motion ``seen``.
 
-    overlap (m) > 0;  closing, slip and rolling speed (m/s);  springs (m);  radius (m) and mass (kg/m) reduced;  dt (s);
-    p (COLUMNS,) row.
+    spring, roll (m): before the step;  mass (kg/m) reduced;  dt (s);  p (COLUMNS,) row.
     """
-    elastic, damping, scale, softness, rubbing, turning_damping = stiffness(overlap, radius, mass, p, law)
-    normal = elastic + damping * closing
+    elastic, damping, scale, softness, rubbing, turning_damping = stiffness(seen.overlap, seen.radius, mass, p, law)
+    normal = elastic + damping * seen.closing
     if p[RULE] == RELEASE_FORCE:
         normal = max(normal, 0.0)
     limit = max(normal, 0.0)
-    left = kept(overlap, closing, dt, law)
-    tangential, spring = sliding(
-        left * spring, slip, p[MU] * limit, dt, p[KT] * scale, p[YIELD] * softness, rubbing, law
+    left = history_scaling(seen.overlap, seen.closing, dt, law)
+    tangential, spring = element_if(
+        law.friction, left * spring, seen.slip, p[MU] * limit, dt, p[KT] * scale, p[COMPLIANCE_T] * softness, rubbing
     )
-    resisting, roll = rolling(left * roll, turning, limit, scale, softness, turning_damping, dt, p, law)
-    return normal, tangential, resisting, spring, roll
-
-
-@inline
-def element_losses(before, after, force, slip, old_stiff, stiff, dt):
-    """(lost in the dashpot, lost in the slider), J/m, of one Coulomb element over the step that led here.
-
-    before, after: spring (m);  force (N/m) on the body;  slip (m/s);  stiffness (N/m) before and after.  The spring's
-    force at both ends of the step does work on the slip between them, trapezoidal, as leap-frog does; what the spring
-    has not kept went into the slider.
-    """
-    held, holds = old_stiff * before, stiff * after
-    worked = 0.5 * (held + holds) * slip * dt
-    return (-force - holds) * slip * dt, worked - 0.5 * (holds * after - held * before)
-
-
-@inline
-def note_contact(
-    i, overlap, closing, slip, turning, before, roll_before, normal, tangential, resisting, spring, roll, radius, mass,
-    dt, p, book, law,
-):  # fmt: skip
-    """Enter into ``book`` (n, BOOK), row i, what one contact lost in the step; nothing where it is None.
-
-    Arguments and results of ``contact``, with the springs before.
-    """
-    if book is None:
-        return
-    elastic, _, scale, _, _, _ = stiffness(overlap, radius, mass, p, law)
-    old = scale_at(max(overlap - closing * dt, 0.0), radius, law)
-    book[i, NORMAL_DASHPOT] += (normal - elastic) * closing * dt
-    dashpot, slider = element_losses(before, spring, tangential, slip, p[KT] * old, p[KT] * scale, dt)
-    book[i, TANGENTIAL_DASHPOT] += dashpot
-    book[i, FRICTION] += slider
-    dashpot, slider = element_losses(roll_before, roll, resisting, turning, p[KR] * old, p[KR] * scale, dt)
-    book[i, ROLLING_DASHPOT] += dashpot
-    book[i, ROLLING_FRICTION] += slider
-
-
-@inline
-def note_parting(i, overlap, closing, slip, turning, before, roll_before, radius, dt, p, book, law):
-    """Enter into ``book`` (n, BOOK), row i, what springs lost that let go within the step; nothing where it is None.
-
-    overlap (m) < 0;  the other arguments as in ``contact``, springs before.  The force of a step ago does half a step's
-    work more, and what the springs held is gone.
-    """
-    if book is None:
-        return
-    old = scale_at(max(overlap - closing * dt, 0.0), radius, law)
-    book[i, FRICTION] += element_losses(before, 0.0, 0.0, slip, p[KT] * old, 0.0, dt)[1]
-    book[i, ROLLING_FRICTION] += element_losses(roll_before, 0.0, 0.0, turning, p[KR] * old, 0.0, dt)[1]
-
-
-@inline
-def note_work(book, i, column, power, dt):
-    """Add ``power`` (W/m) over ``dt`` (s) to a column of ``book`` (n, BOOK), row i; nothing where it is None."""
-    if book is None:
-        return
-    book[i, column] += power * dt
+    resisting, roll = element_if(
+        law.rolling, left * roll, seen.rolling, p[MUR] * limit, dt, p[KR] * scale, p[COMPLIANCE_R] * softness,
+        turning_damping,
+    )  # fmt: skip
+    return Response(normal, tangential, resisting, spring, roll)
 
 
 @inline
 def stored(overlap, spring, roll, radius, p, law):
-    """Elastic energy of one contact, J/m: (normal, tangential, rolling); arguments as in ``contact``."""
-    scale = scale_at(overlap, radius, law)
+    """Elastic energy of one contact, J/m: (normal, tangential, rolling) at ``overlap`` (m) with these springs (m),
+    reduced ``radius`` (m), row p (COLUMNS,)."""
+    scale = stiffness_scale(overlap, radius, law)
     return (
         stored_normal(overlap, radius, p, law),
         0.5 * p[KT] * scale * spring * spring,

@@ -8,7 +8,9 @@ Sources: Cundall & Strack 1979; release at zero force: Schwager & Poeschel 2007,
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,38 +22,40 @@ from porescale.dem.contact.law import (
     CT,
     KN,
     RELEASES,
-    LinearRolling,
-    LinearSliding,
-    LinearSmooth,
-    kept,
-    scale_at,
+    KernelLaw,
+    history_scaling,
     stiffness,
+    stiffness_scale,
     stored_normal,
 )
 from porescale.dem.contact.restitution import contact_phase, ratio_from_restitution, refuse, restitution_of
 
 
-@stiffness.of(LinearSliding, LinearRolling, LinearSmooth)
+class LinearKernel(KernelLaw):
+    """The linear law as kernels take it."""
+
+
+@stiffness.of(LinearKernel)
 def _stiffness(overlap, radius, mass, p, law):
-    """The same at every overlap."""
+    """Elastic force k_n d; stiffnesses and dampings are the same at every overlap."""
     return p[KN] * overlap, p[CN], 1.0, 1.0, p[CT], p[CR]
 
 
-@scale_at.of(LinearSliding, LinearRolling, LinearSmooth)
-def _scale_at(overlap, radius, law):
-    """Constant."""
+@stiffness_scale.of(LinearKernel)
+def _stiffness_scale(overlap, radius, law):
+    """One at every overlap."""
     return 1.0
 
 
-@kept.of(LinearSliding, LinearRolling, LinearSmooth)
-def _kept(overlap, closing, dt, law):
-    """All of it."""
+@history_scaling.of(LinearKernel)
+def _history_scaling(overlap, closing, dt, law):
+    """Springs keep their length."""
     return 1.0
 
 
-@stored_normal.of(LinearSliding, LinearRolling, LinearSmooth)
+@stored_normal.of(LinearKernel)
 def _stored_normal(overlap, radius, p, law):
-    """Half k d²."""
+    """Half the stiffness times the overlap squared."""
     return 0.5 * p[KN] * overlap * overlap
 
 
@@ -66,7 +70,18 @@ class Linear:
     metre) and rolling_damping c_r (N s/m per metre) on the rolling path.
     """
 
-    name = "linear"
+    name: ClassVar = "linear"
+    order: ClassVar = 0
+    purpose: ClassVar = "springs and dashpots"
+    kernel: ClassVar[type[KernelLaw]] = LinearKernel
+    keys: ClassVar[tuple[str, ...]] = (
+        "stiffness", "damping", "tangential_stiffness", "tangential_damping", "rolling_stiffness", "rolling_damping",
+    )  # fmt: skip
+    required: ClassVar = ("stiffness", "N/m")
+    damping_keys: ClassVar[tuple[str, ...]] = ("damping", "restitution")
+    of_materials: ClassVar[tuple[str, ...]] = ()
+    needs_radius: ClassVar = False
+
     stiffness: float
     damping: float = 0.0
     tangential_stiffness: float = 0.0
@@ -109,14 +124,41 @@ class Linear:
         damping = damping_from_restitution(restitution, mass, stiffness, release)
         return cls(stiffness, damping, tangential_stiffness, tangential_damping, friction, release)
 
+    @classmethod
+    def from_numbers(cls, numbers: Mapping[str, float], release: str, mass: float, deepest: float) -> Linear:
+        """The law of the keys of [contact]; ``deepest`` is not needed: stiffness is the same at every overlap."""
+        get, k = numbers.get, numbers["stiffness"]
+        damping = get("damping")
+        if damping is None:
+            damping = damping_from_restitution(numbers["restitution"], mass / 2, k, release)
+        return cls(
+            k, damping, get("tangential_stiffness", 0.0), get("tangential_damping", 0.0), get("friction", 0.0),
+            release, get("rolling_friction", 0.0), get("rolling_stiffness", 0.0), get("rolling_damping", 0.0),
+        )  # fmt: skip
+
+    def with_numbers(self, numbers: Mapping[str, float], mass: float) -> Linear:
+        """This law with other numbers, by the keys of [contact];  mass (kg/m): effective, of the restitution."""
+        given = {key: value for key, value in numbers.items() if key != "restitution"}
+        restitution = numbers.get("restitution")
+        if restitution is not None:
+            stiffness = given.get("stiffness", self.stiffness)
+            given["damping"] = damping_from_restitution(restitution, mass, stiffness, self.release)
+        return replace(self, **given)  # type: ignore[arg-type]
+
+    @staticmethod
+    def rolling_problem(numbers: Mapping[str, float]) -> tuple[str, str, str] | None:
+        """Rolling resistance needs a spring or a dashpot, and friction; either without the other has no effect."""
+        resists = numbers.get("rolling_stiffness", 0.0) + numbers.get("rolling_damping", 0.0) > 0.0
+        if resists == (numbers.get("rolling_friction", 0.0) > 0.0):
+            return None
+        one, other = ("rolling_stiffness", "rolling_friction")[:: -1 if resists else 1]
+        problem = f"is needed where there is {other}" if not resists else "is needed for rolling resistance"
+        return one, problem, f"give both, or leave {other} out"
+
     @property
     def rolls(self) -> bool:
         """Whether there is rolling resistance."""
         return self.rolling_friction > 0.0
-
-    def kind(self, rolls: bool) -> type[LinearSliding | LinearRolling]:
-        """The class under which kernels take it, with rolling resistance or without."""
-        return LinearRolling if rolls else LinearSliding
 
     def with_friction(self, friction: float) -> Linear:
         """The same law with another friction coefficient."""
@@ -140,7 +182,7 @@ class Linear:
             ]
         )
 
-    def mixed(self, other: Linear) -> Linear:
+    def mixed(self, other: Any) -> Linear:
         """Between unlike materials, each of which has its law with itself; see materials.py for the rule."""
         if not isinstance(other, Linear) or other.release != self.release:
             raise InputError(Fault("contact.law", f"{self} and {other}", "differ in kind or release"))
@@ -179,6 +221,18 @@ class Linear:
         """h = c / (2 sqrt(k m)) at effective ``mass`` (kg/m)."""
         return self.damping / (2.0 * math.sqrt(self.stiffness * mass))
 
+    def ratio_of_damping(self, mass: float) -> float:
+        """The damping ratio at effective ``mass`` (kg/m)."""
+        return self.damping_ratio(mass)
+
+    def contact_report(self, mass: float, radius: float) -> tuple[float, str]:
+        """Seconds that a contact lasts: the same at every speed and ``radius``."""
+        return self.contact_time(mass), ""
+
+    def impact(self, mass: float, radius: float, speed: float) -> tuple[float, float]:
+        """Overlap v sqrt(m/k) of an undamped impact, which goes with the root of the stiffness."""
+        return speed * math.sqrt(mass / self.stiffness), 2.0
+
     def contact_time(self, mass: float) -> float:
         """Seconds from touch until the contact ends; infinite for release "overlap" at h >= 1.
 
@@ -207,3 +261,6 @@ def damping_from_restitution(restitution: float, mass: float, stiffness: float, 
     Raises InputError unless 0 < restitution <= 1 (release "overlap" also allows 0: critical damping).
     """
     return 2.0 * math.sqrt(stiffness * mass) * ratio_from_restitution(restitution, release)
+
+
+LAW = Linear

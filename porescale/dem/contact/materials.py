@@ -18,10 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
-from porescale.dem.contact.hertz import Hertz
-from porescale.dem.contact.linear import Linear
+from porescale.dem.contact.law import ContactLaw
 
-Law = Linear | Hertz
+Law = ContactLaw
 MOST = 255  # materials: discs name theirs in a byte
 
 
@@ -68,8 +67,7 @@ class Materials:
         if one == other:
             return self.laws[one]
         first, second = self.laws[one], self.laws[other]
-        mixed: Law = first.mixed(second)  # type: ignore[arg-type]
-        return mixed
+        return first.mixed(second)
 
     def all(self) -> list[Law]:
         """Every law in use, pairs and walls."""

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from porescale.common.compiled.jit import inline, kernel
 from porescale.dem.contact.law import material_of, stiffness
 from porescale.dem.forces.segment_list import SegmentList, refuse_beyond
-from porescale.dem.forces.segments import OUTLINE, foot, meeting, weight_of
+from porescale.dem.forces.segments import OUTLINE, closest_point, segment_contact, weight_of
 from porescale.dem.motion.periodic_cell import image
 
 Array = NDArray[np.float64]
@@ -31,7 +31,7 @@ STATE = ("ends", "back", "whole", "broken")
 
 
 class Bonds(NamedTuple):
-    """What kernels know of bonds: arrays as in BondList, and the clock (2,): seconds before the step last changed, and
+    """Bonds as kernels take them: arrays as in BondList, and the clock (2,): seconds before the step last changed, and
     steps since."""
 
     ends: Index
@@ -57,7 +57,7 @@ def way_between(ends, k, position, segments, cell):
     i, j = ends[k, 0], ends[k, 1]
     if ends[k, 2] == 1:
         a, b = segments.ends[j, 0], segments.ends[j, 1]
-        _, share, dx, dy = foot(i, a, b, position, cell)
+        _, share, dx, dy = closest_point(i, a, b, position, cell)
         return dx, dy, a, share, b
     dx, dy = image(position[j, 0] - position[i, 0], position[j, 1] - position[i, 1], cell)
     return dx, dy, j, 0.0, j
@@ -103,24 +103,24 @@ def stored_in_bonds(position, radius, segments, bonds, cell):
 
 
 @kernel
-def pressing(position, radius, ends, segments, law, cell, back):
+def pressing(position, radius, body_mass, material, ends, segments, law, cell, back):
     """Overwrite back (m,) N/m with the elastic normal force at each of ``ends`` (m, 3), see Bonds, 0 where apart.
 
-    Arrays as in pull_bonds;  law see contact/law.py.  Corners by weight.
+    Arrays as in DiscArrays;  law see contact/law.py.  Corners by weight.
     """
     for k in range(ends.shape[0]):
         i, j = ends[k, 0], ends[k, 1]
         dx, dy, a, _, b = way_between(ends, k, position, segments, cell)
         overlap, weight = radius[i] + radius[a] - np.sqrt(dx * dx + dy * dy), 1
         if ends[k, 2] == 1:
-            overlap = meeting(segments.rule, i, a, b, radius, position, cell)[0]
+            overlap = segment_contact(segments.rule, i, a, b, radius, position, cell)[0]
         elif segments.start[i] < segments.start[i + 1] or segments.start[j] < segments.start[j + 1]:
             weight = weight_of(i, j, dx, dy, position, segments) if segments.rule == OUTLINE else 0
         back[k] = 0.0
         if overlap > 0.0:
-            p = law.table[material_of(law.material, i), material_of(law.material, a)]
+            p = law.table[material_of(material, i), material_of(material, a)]
             reduced = radius[i] * radius[a] / (radius[i] + radius[a])
-            both = law.mass[i] * law.mass[a] / (law.mass[i] + law.mass[a])
+            both = body_mass[i] * body_mass[a] / (body_mass[i] + body_mass[a])
             back[k] = weight * stiffness(overlap, reduced, both, p, law)[0]
 
 

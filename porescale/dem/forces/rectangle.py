@@ -1,4 +1,4 @@
-"""Rectangles that move as they are told: gates of finite thickness, pistons, steps.
+"""Rectangles with a prescribed velocity: gates of finite thickness, pistons, steps.
 
 A disc touches a rectangle at its closest point, on a face or a corner, by the contact law of walls; a centre that got
 inside (which a stiff law never lets happen) is pushed out through the nearest face.  Every disc keeps its springs per
@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel
 from porescale.common.core.errors import Fault, InputError
-from porescale.dem.contact.law import SURFACES, booked, holds, note_work, remember
-from porescale.dem.forces.walls import note_leaving, surface_contact
+from porescale.dem.contact.budget import SURFACES, add_work, has_budget
+from porescale.dem.contact.law import has_history, store_history
+from porescale.dem.forces.walls import add_leaving_losses, surface_contact
 
 LEFT, BOTTOM, RIGHT, TOP, VELOCITY_X, VELOCITY_Y = range(6)
 """Columns of the rectangle table: faces (m) and velocity (m/s)."""
@@ -62,13 +63,10 @@ def nearest_face(x, y, left, bottom, right, top):
 
 
 @kernel
-def add_rectangle_forces(
-    position, velocity, spin, radius, force, torque, rectangles, laws, spring, rectangle_force, law, dt
-):  # fmt: skip
-    """Add the contacts of all discs with all rectangles; reset the springs of those that do not touch.
+def add_rectangle_forces(d, rectangles, laws, spring, load, row, first, last, law, dt):
+    """Add the contacts of discs first to last with all rectangles; reset the springs of those that do not touch.
 
-    rectangles (k, 6);  laws (k, m, COLUMNS);  spring (k, n, 1 or 2) m;  rectangle_force (k, 2) N/m, force of the discs
-    on each.  The rest as in walls.add_wall_forces.
+    rectangles (k, 6);  overwrites rows of load (k or more, 2 or 3) N/m from ``row`` on.  The rest as in walls.py.
     """
     for w in range(rectangles.shape[0]):
         left, bottom, right, top = (
@@ -77,40 +75,35 @@ def add_rectangle_forces(
             rectangles[w, RIGHT],
             rectangles[w, TOP],
         )
-        memory, own, book = spring[w], laws[w], law.book
+        across, up = rectangles[w, VELOCITY_X], rectangles[w, VELOCITY_Y]
+        memory, own = spring[w], laws[w]
         sum_x, sum_y = 0.0, 0.0
-        for i in range(radius.shape[0]):
-            x, y = position[i, 0], position[i, 1]
+        for i in range(first, last):
+            x, y = d.position[i, 0], d.position[i, 1]
             dx = min(max(x, left), right) - x
             dy = min(max(y, bottom), top) - y
             square = dx * dx + dy * dy
-            if square < radius[i] * radius[i]:
+            if square < d.radius[i] * d.radius[i]:
                 if square > 0.0:
                     distance = np.sqrt(square)
                     nx, ny = dx / distance, dy / distance
                 else:
                     nx, ny, depth = nearest_face(x, y, left, bottom, right, top)
                     distance = -depth
-                across, up = rectangles[w, VELOCITY_X], rectangles[w, VELOCITY_Y]
-                fx, fy, moment, _ = surface_contact(
-                    i, nx, ny, distance, radius[i], velocity[i, 0] - across, velocity[i, 1] - up, spin[i], 0.0, memory,
-                    dt, own, law,
-                )  # fmt: skip
-                force[i, 0] += fx
-                force[i, 1] += fy
-                torque[i] += moment
+                fx, fy, moment, _ = surface_contact(i, nx, ny, distance, across, up, 0.0, d, memory, dt, own, law)
+                d.force[i, 0] += fx
+                d.force[i, 1] += fy
+                d.torque[i] += moment
                 sum_x -= fx
                 sum_y -= fy
-                note_work(book, i, SURFACES, fx * across + fy * up, dt)
+                add_work(d.budget, i, SURFACES, fx * across + fy * up, dt)
             else:
-                if booked(book) and holds(memory, i, law):
-                    note_leaving(
-                        i, dx, dy, radius[i], velocity[i, 0] - rectangles[w, VELOCITY_X],
-                        velocity[i, 1] - rectangles[w, VELOCITY_Y], spin[i], 0.0, memory, dt, own, book, law,
-                    )  # fmt: skip
-                remember(memory, i, 0.0, 0.0, law)
-        rectangle_force[w, 0] = sum_x
-        rectangle_force[w, 1] = sum_y
+                if has_budget(d.budget) and has_history(memory, i, law):
+                    vx, vy = d.velocity[i, 0] - across, d.velocity[i, 1] - up
+                    add_leaving_losses(i, dx, dy, vx, vy, 0.0, d, memory, dt, own, law)
+                store_history(memory, i, 0.0, 0.0, law)
+        load[row + w, 0] = sum_x
+        load[row + w, 1] = sum_y
 
 
 @inline

@@ -15,8 +15,8 @@ Rules for what counts, see RULES:
     So a disc that rolls round a corner always has one contact, corner against corner counts once, a straight side cut
     in two is as stiff as one, and faces that slide off each other lose their contacts gradually.
 "each": every segment for itself, with its rounded ends: corners of polygons are twice as stiff, U as continuous.
-"printed": equations 5 to 9 of the tutorial, with the radius that (7) lacks: near an end the overlap falls to zero, past
-    it it jumps, and energy cannot close.  For comparison.
+"printed": equations 5 to 9 of the DEMseg tutorial, with the radius that (7) lacks: near an end the overlap falls to
+    zero, past it it jumps, and energy cannot close.  For comparison.
 
 A negative weight takes elastic force off, nothing else: no dashpot, no friction.  Where a contact passes from segment
 to corner or back it hands over its springs.
@@ -33,8 +33,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel
-from porescale.dem.contact.law import booked, holds, material_of, recall, remember, stiffness, stored, stored_normal
-from porescale.dem.forces.pairs import let_go, passing, touch
+from porescale.dem.contact.budget import has_budget
+from porescale.dem.contact.law import (
+    has_history,
+    load_history,
+    material_of,
+    stiffness,
+    store_history,
+    stored,
+    stored_normal,
+)
+from porescale.dem.forces.pairs import contact_force, contact_kinematics, relative_velocity, release_contact
 from porescale.dem.motion.periodic_cell import image
 
 Array = NDArray[np.float64]
@@ -45,7 +54,7 @@ OUTLINE, EACH, PRINTED = range(3)
 
 
 class Segments(NamedTuple):
-    """What kernels know of segments.
+    """Segments as kernels take them.
 
     rule : index into RULES;  ends (s, 2): discs at the ends;  start (n + 1,), other (2 s,): discs at the other ends of
     the segments that end at disc i, ``other[start[i]:start[i + 1]]``;  corner (m, 2), lower first: pairs of discs of
@@ -65,7 +74,7 @@ class Segments(NamedTuple):
 
 
 @inline
-def foot(i, a, b, position, cell):
+def closest_point(i, a, b, position, cell):
     """(whether the point of segment a-b closest to disc i lies between the ends; its share of the way from a to b; the
     way to it from i, x, y m).
     """
@@ -83,8 +92,8 @@ def foot(i, a, b, position, cell):
 
 @inline
 def printed(i, a, b, reach, position, cell):
-    """(overlap m, share of the way, way to the touched point m) of disc i and segment a-b by the tutorial's (5) to (9);
-    reach (m): both radii together.
+    """(overlap m, share of the way, way to the touched point m) of disc i and segment a-b by equations 5 to 9 of
+    the DEMseg tutorial;  reach (m): both radii together.
     """
     ex, ey = position[b, 0] - position[a, 0], position[b, 1] - position[a, 1]
     ax, ay = image(position[a, 0] - position[i, 0], position[a, 1] - position[i, 1], cell)
@@ -104,14 +113,14 @@ def printed(i, a, b, reach, position, cell):
 
 
 @inline
-def meeting(rule, i, a, b, radius, position, cell):
+def segment_contact(rule, i, a, b, radius, position, cell):
     """(overlap m, share of the way from a to b, way x, y m to the touched point) of disc i and segment a-b by ``rule``;
     an overlap <= 0 is none.
     """
     reach = radius[i] + radius[a]
     if rule == PRINTED:
         return printed(i, a, b, reach, position, cell)
-    between, share, dx, dy = foot(i, a, b, position, cell)
+    between, share, dx, dy = closest_point(i, a, b, position, cell)
     overlap = reach - np.sqrt(dx * dx + dy * dy)
     if rule == OUTLINE and not between:
         overlap = min(overlap, 0.0)
@@ -140,53 +149,53 @@ def weight_of(i, j, dx, dy, position, segments):
 def between_ends(segments, row, position, cell):
     """Whether the closest point of row ``row`` of ``segments.near`` lies between the ends."""
     e = segments.near[row, 1]
-    return foot(segments.near[row, 0], segments.ends[e, 0], segments.ends[e, 1], position, cell)[0]
+    return closest_point(segments.near[row, 0], segments.ends[e, 0], segments.ends[e, 1], position, cell)[0]
 
 
 @kernel
-def hand_over(k, weight, segments, position, law, cell):
+def transfer_history(k, weight, segments, position, law, cell):
     """Springs of corner pair k (weight 1) from a segment that the contact has left, or to one that it has come to."""
     memory, own = segments.corner_memory, segments.near_memory
-    if weight == 1 and not holds(memory, k, law):
+    if weight == 1 and not has_history(memory, k, law):
         for place in range(segments.beside.shape[1]):
             row = segments.beside[k, place]
-            if row >= 0 and holds(own, row, law) and not between_ends(segments, row, position, cell):
-                spring, roll = recall(own, row, law)
-                remember(memory, k, spring, roll, law)
-                remember(own, row, 0.0, 0.0, law)
+            if row >= 0 and has_history(own, row, law) and not between_ends(segments, row, position, cell):
+                spring, roll = load_history(own, row, law)
+                store_history(memory, k, spring, roll, law)
+                store_history(own, row, 0.0, 0.0, law)
                 return
-    if weight < 1 and holds(memory, k, law):
+    if weight < 1 and has_history(memory, k, law):
         for place in range(segments.beside.shape[1]):
             row = segments.beside[k, place]
-            if row >= 0 and not holds(own, row, law) and between_ends(segments, row, position, cell):
-                spring, roll = recall(memory, k, law)
-                remember(own, row, spring, roll, law)
-                remember(memory, k, 0.0, 0.0, law)
+            if row >= 0 and not has_history(own, row, law) and between_ends(segments, row, position, cell):
+                spring, roll = load_history(memory, k, law)
+                store_history(own, row, spring, roll, law)
+                store_history(memory, k, 0.0, 0.0, law)
                 return
 
 
 @kernel
-def add_corner_forces(position, velocity, spin, radius, force, torque, segments, law, dt, cell):
+def add_corner_forces(d, segments, law, dt, cell):
     """Add the contacts of all pairs with a corner, by their weights, see module; arguments as in add_segment_forces.
 
     Comes before the segments, whose springs it may take or fill.
     """
-    memory = segments.corner_memory
+    memory, budget = segments.corner_memory, d.budget
+    position, velocity, spin, force, torque = d.position, d.velocity, d.spin, d.force, d.torque
     for k in range(segments.corner.shape[0]):
         i, j = segments.corner[k, 0], segments.corner[k, 1]
         dx, dy = image(position[j, 0] - position[i, 0], position[j, 1] - position[i, 1], cell)
-        ri, rj = radius[i], radius[j]
+        ri, rj = d.radius[i], d.radius[j]
         overlap = ri + rj - np.sqrt(dx * dx + dy * dy)
         weight = weight_of(i, j, dx, dy, position, segments)
         if overlap > 0.0 and weight != 0:
-            hand_over(k, weight, segments, position, law, cell)
-            mass = law.mass[i] * law.mass[j] / (law.mass[i] + law.mass[j])
-            p = law.table[material_of(law.material, i), material_of(law.material, j)]
+            transfer_history(k, weight, segments, position, law, cell)
+            mass = d.body_mass[i] * d.body_mass[j] / (d.body_mass[i] + d.body_mass[j])
+            p = law.table[material_of(d.material, i), material_of(d.material, j)]
             if weight > 0:
-                du, dv = passing(i, j, dx, dy, velocity, cell)
-                gx, gy, moment_i, moment_j = touch(
-                    i, k, overlap, dx, dy, du, dv, spin[i], spin[j], ri, rj, mass, p, memory, law, dt
-                )
+                du, dv = relative_velocity(i, j, dx, dy, velocity, cell)
+                way = contact_kinematics(dx, dy, du, dv, spin[i], spin[j], ri, rj)
+                gx, gy, moment_i, moment_j = contact_force(i, k, overlap, way, mass, p, memory, budget, law, dt)
                 torque[i] += moment_i
                 torque[j] += moment_j
             else:
@@ -198,45 +207,46 @@ def add_corner_forces(position, velocity, spin, radius, force, torque, segments,
             force[j, 0] -= gx
             force[j, 1] -= gy
         elif overlap > 0.0:
-            hand_over(k, weight, segments, position, law, cell)
-        if not (overlap > 0.0 and weight > 0) and holds(memory, k, law):
-            if booked(law.book):
-                du, dv = passing(i, j, dx, dy, velocity, cell)
-                p = law.table[material_of(law.material, i), material_of(law.material, j)]
-                let_go(i, k, min(overlap, 0.0), dx, dy, du, dv, spin[i], spin[j], ri, rj, p, memory, law, dt)
-            remember(memory, k, 0.0, 0.0, law)
+            transfer_history(k, weight, segments, position, law, cell)
+        if not (overlap > 0.0 and weight > 0) and has_history(memory, k, law):
+            if has_budget(budget):
+                du, dv = relative_velocity(i, j, dx, dy, velocity, cell)
+                p = law.table[material_of(d.material, i), material_of(d.material, j)]
+                way = contact_kinematics(dx, dy, du, dv, spin[i], spin[j], ri, rj)
+                release_contact(i, k, min(overlap, 0.0), way, p, memory, budget, law, dt)
+            store_history(memory, k, 0.0, 0.0, law)
 
 
 @kernel
-def add_segment_forces(position, velocity, spin, radius, force, torque, segments, law, dt, cell):
+def add_segment_forces(d, segments, law, dt, cell):
     """Add the contacts of discs and corners with segments, and of corners; reset springs of those that do not touch.
 
-    position, velocity (n, 2) m, m/s;  spin, radius (n,) rad/s, m;  segments: Segments;  law see contact/law.py;  dt s;
-    cell Still.  Adds to force (n, 2) N/m and torque (n,) N m/m: at a segment all to the disc at its first end, with the
+    d: DiscArrays;  segments: Segments;  law see contact/law.py;  dt s;  cell Still.  Adds to ``d.force`` N/m and
+    ``d.torque`` N m/m: at a segment all to the disc at its first end, with the
     moment that belongs to it.  Overwrites the springs in ``segments``.
     Not checked: a centre on the line of a segment gives nan, which Grains.check reports.
     """
     if segments.rule == OUTLINE:
-        add_corner_forces(position, velocity, spin, radius, force, torque, segments, law, dt, cell)
-    memory = segments.near_memory
+        add_corner_forces(d, segments, law, dt, cell)
+    memory, budget, radius = segments.near_memory, d.budget, d.radius
+    position, velocity, spin, force, torque = d.position, d.velocity, d.spin, d.force, d.torque
     for k in range(segments.near.shape[0]):
         i, e = segments.near[k, 0], segments.near[k, 1]
         a, b = segments.ends[e, 0], segments.ends[e, 1]
-        overlap, share, dx, dy = meeting(segments.rule, i, a, b, radius, position, cell)
-        if overlap <= 0.0 and not (booked(law.book) and holds(memory, k, law)):
-            remember(memory, k, 0.0, 0.0, law)
+        overlap, share, dx, dy = segment_contact(segments.rule, i, a, b, radius, position, cell)
+        if overlap <= 0.0 and not (has_budget(budget) and has_history(memory, k, law)):
+            store_history(memory, k, 0.0, 0.0, law)
             continue
         du = velocity[i, 0] - (1.0 - share) * velocity[a, 0] - share * velocity[b, 0]
         dv = velocity[i, 1] - (1.0 - share) * velocity[a, 1] - share * velocity[b, 1]
-        p = law.table[material_of(law.material, i), material_of(law.material, a)]
+        p = law.table[material_of(d.material, i), material_of(d.material, a)]
+        way = contact_kinematics(dx, dy, du, dv, spin[i], spin[a], radius[i], radius[a])
         if overlap <= 0.0:
-            let_go(i, k, overlap, dx, dy, du, dv, spin[i], spin[a], radius[i], radius[a], p, memory, law, dt)
-            remember(memory, k, 0.0, 0.0, law)
+            release_contact(i, k, overlap, way, p, memory, budget, law, dt)
+            store_history(memory, k, 0.0, 0.0, law)
             continue
-        mass = law.mass[i] * law.mass[a] / (law.mass[i] + law.mass[a])
-        gx, gy, moment_i, moment_a = touch(
-            i, k, overlap, dx, dy, du, dv, spin[i], spin[a], radius[i], radius[a], mass, p, memory, law, dt
-        )
+        mass = d.body_mass[i] * d.body_mass[a] / (d.body_mass[i] + d.body_mass[a])
+        gx, gy, moment_i, moment_a = contact_force(i, k, overlap, way, mass, p, memory, budget, law, dt)
         sx, sy = share * (position[b, 0] - position[a, 0]), share * (position[b, 1] - position[a, 1])
         force[i, 0] += gx
         force[i, 1] += gy
@@ -247,7 +257,7 @@ def add_segment_forces(position, velocity, spin, radius, force, torque, segments
 
 
 @kernel
-def survey_segments(position, radius, segments, law, cell):
+def survey_segments(position, radius, material, segments, law, cell):
     """(largest overlap over the reach, the sum of both radii; its disc; what it is pressed against: segment, or
     disc - n; elastic energy J/m, normal, tangential, rolling) of all contacts with segments and corners.  Arguments as
     in add_segment_forces.
@@ -261,10 +271,10 @@ def survey_segments(position, radius, segments, law, cell):
         weight = weight_of(i, j, dx, dy, position, segments)
         if overlap <= 0.0 or weight == 0:
             continue
-        p = law.table[material_of(law.material, i), material_of(law.material, j)]
+        p = law.table[material_of(material, i), material_of(material, j)]
         reduced = radius[i] * radius[j] / (radius[i] + radius[j])
         if weight > 0:
-            spring, roll = recall(segments.corner_memory, k, law)
+            spring, roll = load_history(segments.corner_memory, k, law)
             parts = stored(overlap, spring, roll, reduced, p, law)
             normal, tangential, rolling = normal + parts[0], tangential + parts[1], rolling + parts[2]
         else:
@@ -275,10 +285,10 @@ def survey_segments(position, radius, segments, law, cell):
     for k in range(segments.near.shape[0]):
         i, e = segments.near[k, 0], segments.near[k, 1]
         a = segments.ends[e, 0]
-        overlap, _, _, _ = meeting(segments.rule, i, a, segments.ends[e, 1], radius, position, cell)
+        overlap, _, _, _ = segment_contact(segments.rule, i, a, segments.ends[e, 1], radius, position, cell)
         if overlap > 0.0:
-            p = law.table[material_of(law.material, i), material_of(law.material, a)]
-            spring, roll = recall(segments.near_memory, k, law)
+            p = law.table[material_of(material, i), material_of(material, a)]
+            spring, roll = load_history(segments.near_memory, k, law)
             parts = stored(overlap, spring, roll, radius[i] * radius[a] / (radius[i] + radius[a]), p, law)
             normal, tangential, rolling = normal + parts[0], tangential + parts[1], rolling + parts[2]
             share = overlap / (radius[i] + radius[a])

@@ -1,4 +1,4 @@
-"""Sweeps over discs and contacts, by one thread or by several, with the same bits.
+"""Loops over discs and contacts, by one thread or by several, with the same bits.
 
 Discs are cut into blocks of BLOCK by their numbers.  In a half list a pair belongs to its lower disc, and the force on
 a disc is summed over lower partners first, in their order, then over its own row.  Threads keep to that order:
@@ -8,7 +8,7 @@ No two blocks write to one place, and each sum is that of the single thread, to 
 any numbering of the discs; far pairs, which cost twice the memory traffic, are few where neighbours have near numbers.
 Forces on walls and the like are summed block by block, by a single thread, too.
 
-Where a book of energy is kept, systems that are large enough for threads take this way with one thread as well: entries
+Where an energy budget is kept, systems that are large enough for threads take this way with one thread as well: entries
 of far pairs come first in it.
 """
 
@@ -21,10 +21,9 @@ from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import by_law, inline, kernel, parallel_kernel, prange, threads
 from porescale.common.neighbors.pair_list import PairList
-from porescale.dem.contact.law import HertzRolling, HertzSliding, LinearRolling, LinearSliding, LinearSmooth
 from porescale.dem.forces.pairs import numbers_of, pair_contact, pair_forces, start_forces
 from porescale.dem.forces.rectangle import add_rectangle_forces
-from porescale.dem.forces.walls import RUN, add_near_walls, add_plate_forces, runs_of
+from porescale.dem.forces.walls import RUN, add_near_walls, add_plate_forces
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -41,7 +40,7 @@ class Serial(NamedTuple):
     """One thread.
 
     partial (blocks, surfaces, 3) N/m, N m/m: forces on walls, plates and rectangles by block;  near (surfaces, runs):
-    which runs of discs are near each wall, see walls.ask_near; rows of other surfaces are not read.
+    which runs of discs are near each wall, see walls.mark_near; rows of other surfaces are not read.
     """
 
     partial: Array
@@ -64,7 +63,7 @@ class Threads(NamedTuple):
     far: Array
 
 
-Sweep = Serial | Threads
+Threading = Serial | Threads
 
 
 @kernel
@@ -101,28 +100,27 @@ def list_far(start, partner, far_start, incoming_start, incoming):
 
 
 @parallel_kernel
-def far_forces(position, velocity, spin, radius, start, partner, carried, law, dt, cell, far_start, far):
-    """Contacts of pairs across blocks: overwrites far (f, 4) and their springs.  Arguments as in pair_forces."""
-    count, shared = radius.shape[0], numbers_of(law.table[0, 0])
+def far_forces(d, pairs, law, dt, cell, sweep):
+    """Contacts of pairs across blocks: overwrites sweep.far (f, 4) and their springs.  Arguments as in pair_forces."""
+    count, shared = d.radius.shape[0], numbers_of(law.table[0, 0])
+    start, partner, history, far_start, far = pairs.start, pairs.partner, pairs.history, sweep.far_start, sweep.far
     for b in prange((count + BLOCK - 1) // BLOCK):
         for i in range(b * BLOCK, min((b + 1) * BLOCK, count)):
             q = far_start[i]
             for k in range(start[i + 1] - (far_start[i + 1] - q), start[i + 1]):
-                met, gx, gy, moment_i, moment_j = pair_contact(
-                    i, partner[k], k, position, velocity, spin, radius, carried, shared, law, dt, cell
-                )
+                met, gx, gy, moment_i, moment_j = pair_contact(i, partner[k], k, d, history, shared, law, dt, cell)
                 far[q, 0] = gx if met else NOTHING
                 far[q, 1], far[q, 2], far[q, 3] = gy, moment_i, moment_j
                 q += 1
 
 
 @parallel_kernel
-def near_forces(
-    position, velocity, spin, radius, force, torque, external_force, external_torque, start, partner, carried, law, dt,
-    cell, far_start, incoming_start, incoming, far,
-):  # fmt: skip
-    """All forces between discs, those across blocks from ``far``: overwrites force (n, 2), torque (n,) and springs."""
-    count, shared = radius.shape[0], numbers_of(law.table[0, 0])
+def near_forces(d, pairs, law, dt, cell, sweep):
+    """All forces between discs, those across blocks from ``sweep.far``: overwrites force, torque and springs."""
+    count, shared = d.radius.shape[0], numbers_of(law.table[0, 0])
+    start, partner, history, far_start, far = pairs.start, pairs.partner, pairs.history, sweep.far_start, sweep.far
+    incoming_start, incoming = sweep.incoming_start, sweep.incoming
+    force, torque, external_force, external_torque = d.force, d.torque, d.external_force, d.external_torque
     for b in prange((count + BLOCK - 1) // BLOCK):
         first, last = b * BLOCK, min((b + 1) * BLOCK, count)
         for j in range(first, last):
@@ -138,9 +136,7 @@ def near_forces(
             fx, fy, moment = 0.0, 0.0, 0.0
             for k in range(start[i], start[i + 1] - (far_start[i + 1] - far_start[i])):
                 j = partner[k]
-                met, gx, gy, moment_i, moment_j = pair_contact(
-                    i, j, k, position, velocity, spin, radius, carried, shared, law, dt, cell
-                )
+                met, gx, gy, moment_i, moment_j = pair_contact(i, j, k, d, history, shared, law, dt, cell)
                 if met:
                     fx += gx
                     fy += gy
@@ -159,151 +155,61 @@ def near_forces(
 
 
 @by_law
-def sweep_pairs(
-    position, velocity, spin, radius, force, torque, external_force, external_torque, start, partner, carried, law,
-    dt, cell, sweep,
-):  # fmt: skip
+def all_pair_forces(d, pairs, law, dt, cell, sweep):
     """Overwrite force (n, 2) N/m and torque (n,) N m/m with the external ones and those between discs."""
 
 
-@sweep_pairs.of(Serial)
-def _pairs_serial(
-    position, velocity, spin, radius, force, torque, external_force, external_torque, start, partner, carried, law, dt,
-    cell, sweep,
-):  # fmt: skip
+@all_pair_forces.of(Serial)
+def _pairs_serial(d, pairs, law, dt, cell, sweep):
     """One loop over the list."""
-    start_forces(force, torque, external_force, external_torque)
-    pair_forces(position, velocity, spin, radius, force, torque, start, partner, carried, law, dt, cell)
+    start_forces(d)
+    pair_forces(d, pairs, law, dt, cell)
 
 
-@sweep_pairs.of(Threads)
-def _pairs_threads(
-    position, velocity, spin, radius, force, torque, external_force, external_torque, start, partner, carried, law, dt,
-    cell, sweep,
-):  # fmt: skip
+@all_pair_forces.of(Threads)
+def _pairs_threads(d, pairs, law, dt, cell, sweep):
     """Pairs across blocks first, then block by block."""
-    far_forces(position, velocity, spin, radius, start, partner, carried, law, dt, cell, sweep.far_start, sweep.far)
-    near_forces(
-        position, velocity, spin, radius, force, torque, external_force, external_torque, start, partner, carried, law,
-        dt, cell, sweep.far_start, sweep.incoming_start, sweep.incoming, sweep.far,
-    )  # fmt: skip
+    far_forces(d, pairs, law, dt, cell, sweep)
+    near_forces(d, pairs, law, dt, cell, sweep)
 
 
 @inline
-def cut(array, first, last):
-    """Rows first to last of an array, or None of None."""
-    if array is None:
-        return None
-    return array[first:last]
-
-
-@by_law
-def law_of_block(first, last, law):
-    """The law of discs first to last."""
-
-
-@law_of_block.of(LinearSliding)
-def _linear_sliding(first, last, law):
-    """Of its kind."""
-    return LinearSliding(law.table, cut(law.material, first, last), law.mass[first:last], cut(law.book, first, last))
-
-
-@law_of_block.of(LinearSmooth)
-def _linear_smooth(first, last, law):
-    """Of its kind."""
-    return LinearSmooth(law.table, cut(law.material, first, last), law.mass[first:last], cut(law.book, first, last))
-
-
-@law_of_block.of(LinearRolling)
-def _linear_rolling(first, last, law):
-    """Of its kind."""
-    return LinearRolling(law.table, cut(law.material, first, last), law.mass[first:last], cut(law.book, first, last))
-
-
-@law_of_block.of(HertzSliding)
-def _hertz_sliding(first, last, law):
-    """Of its kind."""
-    return HertzSliding(law.table, cut(law.material, first, last), law.mass[first:last], cut(law.book, first, last))
-
-
-@law_of_block.of(HertzRolling)
-def _hertz_rolling(first, last, law):
-    """Of its kind."""
-    return HertzRolling(law.table, cut(law.material, first, last), law.mass[first:last], cut(law.book, first, last))
-
-
-@inline
-def surfaces_of_block(
-    b, position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws, plate_spring,
-    rectangles, rectangle_laws, rectangle_spring, law, dt, partial, near,
-):  # fmt: skip
-    """Contacts of the discs of block b with all surfaces; overwrites partial[b]."""
-    first, last = b * BLOCK, min((b + 1) * BLOCK, radius.shape[0])
-    own = law_of_block(first, last, law)
-    x, v, w, r = position[first:last], velocity[first:last], spin[first:last], radius[first:last]
-    f, t = force[first:last], torque[first:last]
-    to_plates = walls.shape[0]
-    to_rectangles = to_plates + plates.shape[0]
-    add_near_walls(
-        x, v, w, r, f, t, walls, wall_laws, wall_spring[:, first:last], partial[b, :to_plates],
-        near[:, first // RUN : runs_of(last)], own, dt,
-    )  # fmt: skip
-    if plates.shape[0] > 0:
-        add_plate_forces(
-            x, v, w, r, f, t, plates, plate_laws, plate_spring[:, first:last], partial[b, to_plates:to_rectangles], own,
-            dt,
-        )  # fmt: skip
-    if rectangles.shape[0] > 0:
+def surfaces_of_block(b, d, s, law, dt, sweep):
+    """Contacts of the discs of block b with all surfaces ``s``, Surfaces; overwrites sweep.partial[b]."""
+    first, last = b * BLOCK, min((b + 1) * BLOCK, d.radius.shape[0])
+    load, walls, plates = sweep.partial[b], s.walls.shape[0], s.plates.shape[0]
+    add_near_walls(d, s.walls, s.wall_laws, s.wall_spring, load, 0, sweep.near, first, last, law, dt)
+    if plates > 0:
+        add_plate_forces(d, s.plates, s.plate_laws, s.plate_spring, load, walls, first, last, law, dt)
+    if s.rectangles.shape[0] > 0:
         add_rectangle_forces(
-            x, v, w, r, f, t, rectangles, rectangle_laws, rectangle_spring[:, first:last], partial[b, to_rectangles:],
-            own, dt,
-        )  # fmt: skip
+            d, s.rectangles, s.rectangle_laws, s.rectangle_spring, load, walls + plates, first, last, law, dt
+        )
 
 
 @parallel_kernel
-def surfaces_threads(
-    position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws, plate_spring,
-    rectangles, rectangle_laws, rectangle_spring, law, dt, partial, near,
-):  # fmt: skip
-    """Contacts with all surfaces, block by block: adds to force and torque, overwrites springs and partial."""
-    for b in prange(partial.shape[0]):
-        surfaces_of_block(
-            b, position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws,
-            plate_spring, rectangles, rectangle_laws, rectangle_spring, law, dt, partial, near,
-        )  # fmt: skip
+def surfaces_threads(d, surfaces, law, dt, sweep):
+    """Contacts with all surfaces, block by block: adds to force and torque, overwrites springs and sweep.partial."""
+    for b in prange(sweep.partial.shape[0]):
+        surfaces_of_block(b, d, surfaces, law, dt, sweep)
 
 
 @by_law
-def sweep_blocks(
-    position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws,
-    plate_spring, rectangles, rectangle_laws, rectangle_spring, law, dt, sweep,
-):  # fmt: skip
+def blocks_of_surfaces(d, surfaces, law, dt, sweep):
     """As surfaces_threads, by as many threads as ``sweep`` says."""
 
 
-@sweep_blocks.of(Serial)
-def _blocks_serial(
-    position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws, plate_spring,
-    rectangles, rectangle_laws, rectangle_spring, law, dt, sweep,
-):  # fmt: skip
+@blocks_of_surfaces.of(Serial)
+def _blocks_serial(d, surfaces, law, dt, sweep):
     """One block after another."""
     for b in range(sweep.partial.shape[0]):
-        surfaces_of_block(
-            b, position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws,
-            plate_spring, rectangles, rectangle_laws, rectangle_spring, law, dt, sweep.partial, sweep.near,
-        )  # fmt: skip
+        surfaces_of_block(b, d, surfaces, law, dt, sweep)
 
 
-@sweep_blocks.of(Threads)
-def _blocks_threads(
-    position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws, plate_spring,
-    rectangles, rectangle_laws, rectangle_spring, law, dt, sweep,
-):  # fmt: skip
+@blocks_of_surfaces.of(Threads)
+def _blocks_threads(d, surfaces, law, dt, sweep):
     """Blocks by threads."""
-    surfaces_threads(
-        position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws,
-        plate_spring, rectangles, rectangle_laws, rectangle_spring, law, dt, sweep.partial, sweep.near,
-    )  # fmt: skip
+    surfaces_threads(d, surfaces, law, dt, sweep)
 
 
 @inline
@@ -317,22 +223,17 @@ def add_up(partial, first, total):
             total[s, c] = value
 
 
-@kernel
-def sweep_surfaces(
-    position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, wall_force, plates, plate_laws,
-    plate_spring, plate_force, rectangles, rectangle_laws, rectangle_spring, rectangle_force, law, dt, sweep,
-):  # fmt: skip
+@inline
+def add_surface_forces(d, surfaces, law, dt, sweep):
     """Add the contacts with walls, plates and rectangles; arguments as in the kernels of each.
 
     Overwrites springs and the forces on each surface, summed over discs block by block.
     """
-    sweep_blocks(
-        position, velocity, spin, radius, force, torque, walls, wall_laws, wall_spring, plates, plate_laws,
-        plate_spring, rectangles, rectangle_laws, rectangle_spring, law, dt, sweep,
-    )  # fmt: skip
-    add_up(sweep.partial, 0, wall_force)
-    add_up(sweep.partial, walls.shape[0], plate_force)
-    add_up(sweep.partial, walls.shape[0] + plates.shape[0], rectangle_force)
+    blocks_of_surfaces(d, surfaces, law, dt, sweep)
+    to_plates = surfaces.walls.shape[0]
+    add_up(sweep.partial, 0, surfaces.wall_load)
+    add_up(sweep.partial, to_plates, surfaces.plate_force)
+    add_up(sweep.partial, to_plates + surfaces.plates.shape[0], surfaces.rectangle_force)
 
 
 def serial(count: int, surfaces: int) -> Serial:
@@ -341,7 +242,7 @@ def serial(count: int, surfaces: int) -> Serial:
     return Serial(np.zeros((blocks, surfaces, 3)), np.ones((surfaces, -(-count // RUN)), np.uint8))
 
 
-class Sweeps:
+class ThreadChoice:
     """What sweeps need beside the system: made once, renewed when the pair list is.
 
     ``now`` chooses: threads where there are several, and enough discs to pay for their barriers.
@@ -354,14 +255,14 @@ class Sweeps:
         self.incoming, self.far = np.zeros(0, np.int64), np.zeros((0, 4))
         self._builds = -1
 
-    def now(self, pairs: PairList, surfaces: int, booked: bool, alone: bool = False) -> Sweep:
+    def now(self, pairs: PairList, surfaces: int, budget: bool, alone: bool = False) -> Threading:
         """How to sweep over the system with this list and number of ``surfaces``.
 
-        booked : an energy book is kept;  alone : something in the step allows one thread only.
+        budget : an energy budget is kept;  alone : something in the step allows one thread only.
         """
         if self.partial.shape[1] != surfaces:
             self._room_for(surfaces)
-        if alone or self.count < SERIAL_BELOW or (threads() == 1 and not booked):
+        if alone or self.count < SERIAL_BELOW or (threads() == 1 and not budget):
             return Serial(self.partial, self.near)
         if self._builds != pairs.builds:
             self._renew(pairs)

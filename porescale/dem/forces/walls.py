@@ -16,19 +16,16 @@ from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel
 from porescale.common.core.errors import Fault, InputError
+from porescale.dem.contact.budget import SURFACES, add_contact_losses, add_release_losses, add_work, has_budget
 from porescale.dem.contact.law import (
-    SURFACES,
-    booked,
+    Relative,
     contact,
-    holds,
+    force_components,
+    has_history,
+    load_history,
     material_of,
     moments,
-    note_contact,
-    note_parting,
-    note_work,
-    push,
-    recall,
-    remember,
+    store_history,
 )
 
 Array = NDArray[np.float64]
@@ -43,7 +40,7 @@ WALL = 7
 X, LOW, HIGH, VELOCITY, PRESENT = range(5)
 """Columns of the plate table: x, lower and upper end (m), upward velocity (m/s), 1 while it is there."""
 RUN = 16
-"""Discs that are asked together whether any is near a wall: in a pile settled from left to right 3 % of runs touch a
+"""Discs that are tested together for being near a wall: in a pile settled from left to right 3 % of runs touch a
 side and 26 % the floor; 14 % with runs of 8, but twice as many flags to read."""
 
 
@@ -136,113 +133,102 @@ class Plate:
 
 
 @inline
-def surface_contact(i, nx, ny, distance, radius, vx, vy, spin, turn, memory, dt, laws, law):
+def surface_contact(i, nx, ny, distance, vx, vy, turn, d, memory, dt, laws, law):
     """Disc i against a surface: (force x, force y N/m, torque N m/m) on the disc, and what resists rolling turns the
     surface with (N m/m), about the point of contact.
 
     (nx, ny) unit vector from the disc to the surface;  distance centre to surface (m) < radius, the lever arm;
-    (vx, vy) velocity relative to the surface (m/s);  spin and that of the surface, turn (rad/s);  dt (s);  laws (m,
-    COLUMNS) of the surface with each material;  law see contact/law.py.  Overwrites row i of memory (n, 1 or 2),
-    springs in m.
+    (vx, vy) velocity of the surface (m/s), turn its rotation (rad/s);  d: DiscArrays;  dt (s);  laws (m, COLUMNS) of
+    the surface with each material;  law see contact/law.py.  Overwrites row i of memory (n, 1 or 2), springs in m.
     """
+    radius, spin = d.radius[i], d.spin[i]
     overlap, arm = radius - distance, max(distance, 0.0)
-    closing = vx * nx + vy * ny
-    slip = vy * nx - vx * ny + spin * arm
-    turning = (spin - turn) * radius
-    p, mass = laws[material_of(law.material, i)], law.mass[i]
-    before, roll_before = recall(memory, i, law)
-    normal, tangential, resisting, spring, roll = contact(
-        overlap, closing, slip, turning, before, roll_before, radius, mass, dt, p, law
-    )
-    remember(memory, i, spring, roll, law)
-    note_contact(
-        i, overlap, closing, slip, turning, before, roll_before, normal, tangential, resisting, spring, roll,
-        radius, mass, dt, p, law.book, law,
-    )  # fmt: skip
-    moment, other = moments(tangential, resisting, arm, 0.0, radius, law)
-    fx, fy = push(normal, tangential, nx, ny, law)
+    vx, vy = d.velocity[i, 0] - vx, d.velocity[i, 1] - vy
+    seen = Relative(overlap, vx * nx + vy * ny, vy * nx - vx * ny + spin * arm, (spin - turn) * radius, radius)
+    p, mass = laws[material_of(d.material, i)], d.body_mass[i]
+    spring, roll = load_history(memory, i, law)
+    found = contact(seen, spring, roll, mass, dt, p, law)
+    store_history(memory, i, found.spring, found.roll, law)
+    add_contact_losses(i, seen, spring, roll, found, mass, dt, p, d.budget, law)
+    moment, other = moments(found, arm, 0.0, radius, law)
+    fx, fy = force_components(found, nx, ny, law)
     return fx, fy, moment, other
 
 
 @kernel
-def note_leaving(i, dx, dy, radius, vx, vy, spin, turn, memory, dt, laws, book, law):
-    """Enter into ``book``, if any, what the springs of disc i still held when it left a surface.
+def add_leaving_losses(i, dx, dy, vx, vy, turn, d, memory, dt, laws, law):
+    """Add to the energy budget, if any, what the springs of disc i still held when it left a surface.
 
-    (dx, dy) m from its centre to the nearest point of the surface; the rest as in surface_contact.  A function of its
-    own, and called seldom: merged into the loops over all discs it makes them count references at every disc.
+    (dx, dy) m from its centre to the nearest point of the surface;  (vx, vy) velocity relative to it (m/s); the rest as
+    in surface_contact.  A function of its own, and called seldom: merged into the loops over all discs it makes them
+    count references at every disc.
     """
-    before, roll_before = recall(memory, i, law)
+    radius, spin = d.radius[i], d.spin[i]
+    spring, roll = load_history(memory, i, law)
     distance = np.sqrt(dx * dx + dy * dy)
     nx, ny = dx / distance, dy / distance
-    note_parting(
-        i, radius - distance, vx * nx + vy * ny, vy * nx - vx * ny + spin * distance, (spin - turn) * radius,
-        before, roll_before, radius, dt, laws[material_of(law.material, i)], book, law,
-    )  # fmt: skip
+    slip = vy * nx - vx * ny + spin * distance
+    seen = Relative(radius - distance, vx * nx + vy * ny, slip, (spin - turn) * radius, radius)
+    add_release_losses(i, seen, spring, roll, dt, laws[material_of(d.material, i)], d.budget, law)
 
 
 @kernel
-def add_wall_forces(
-    position, velocity, spin, radius, force, torque, walls, laws, spring, wall_force, law, dt
-):  # fmt: skip
+def add_wall_forces(d, walls, laws, spring, load, law, dt):
     """Add the contacts of all discs with all walls; reset the springs of those that do not touch.
 
-    position, velocity (n, 2) m, m/s;  spin, radius (n,) rad/s, m;  walls (w, WALL);  laws (w, m, COLUMNS) with each
-    material;  law see contact/law.py;  dt s.  Adds to force (n, 2) N/m and torque (n,) N m/m; overwrites spring
-    (w, n, 1 or 2) m and wall_force (w, 2 or 3) N/m, N m/m, the force of the discs on each wall, summed in the order of
-    discs, and its moment about the wall's point.
+    d: DiscArrays;  walls (w, WALL);  laws (w, m, COLUMNS) with each material;  law see contact/law.py;
+    dt s.  Adds to ``d.force`` N/m and ``d.torque`` N m/m; overwrites spring (w, n, 1 or 2) m and load (w, 2 or 3) N/m,
+    N m/m, the force of the discs on each wall, summed in the order of discs, and its moment about the wall's point.
     """
-    near = np.ones((walls.shape[0], runs_of(radius.shape[0])), np.uint8)
-    add_near_walls(position, velocity, spin, radius, force, torque, walls, laws, spring, wall_force, near, law, dt)
+    near = np.ones((walls.shape[0], runs_of(d.radius.shape[0])), np.uint8)
+    add_near_walls(d, walls, laws, spring, load, 0, near, 0, d.radius.shape[0], law, dt)
 
 
 @kernel
-def add_near_walls(
-    position, velocity, spin, radius, force, torque, walls, laws, spring, wall_force, near, law, dt
-):  # fmt: skip
-    """As add_wall_forces, for discs of runs that are near a wall; near (w or more, runs): see ask_near.
+def add_near_walls(d, walls, laws, spring, load, row, near, first, last, law, dt):
+    """As add_wall_forces, for discs first to last in runs that are near a wall; near (w or more, runs): see mark_near.
 
-    Discs of other runs must touch nothing and have springs at rest.
+    ``first`` begins a run.  Discs of other runs must touch nothing and have springs at rest.  Overwrites rows of
+    ``load`` from ``row`` on.
     """
     for w in range(walls.shape[0]):
         px, py, nx, ny = walls[w, PX], walls[w, PY], walls[w, NX], walls[w, NY]
         wall_x, wall_y, turn = walls[w, VX], walls[w, VY], walls[w, TURN]
-        memory, own, book = spring[w], laws[w], law.book
+        memory, own = spring[w], laws[w]
         sum_x, sum_y, moments_sum = 0.0, 0.0, 0.0
-        for run in range(near.shape[1]):
+        for run in range(first // RUN, runs_of(last)):
             if not near[w, run]:
                 continue
-            for i in range(run * RUN, min((run + 1) * RUN, radius.shape[0])):
-                distance = (position[i, 0] - px) * nx + (position[i, 1] - py) * ny
-                if radius[i] - distance > 0.0:
-                    along = (position[i, 1] - py) * nx - (position[i, 0] - px) * ny
+            for i in range(run * RUN, min((run + 1) * RUN, last)):
+                distance = (d.position[i, 0] - px) * nx + (d.position[i, 1] - py) * ny
+                if d.radius[i] - distance > 0.0:
+                    along = (d.position[i, 1] - py) * nx - (d.position[i, 0] - px) * ny
                     at_x, at_y = wall_x - turn * along * nx, wall_y - turn * along * ny
                     fx, fy, moment, other = surface_contact(
-                        i, -nx, -ny, distance, radius[i], velocity[i, 0] - at_x, velocity[i, 1] - at_y, spin[i], turn,
-                        memory, dt, own, law,
-                    )  # fmt: skip
-                    force[i, 0] += fx
-                    force[i, 1] += fy
-                    torque[i] += moment
+                        i, -nx, -ny, distance, at_x, at_y, turn, d, memory, dt, own, law
+                    )
+                    d.force[i, 0] += fx
+                    d.force[i, 1] += fy
+                    d.torque[i] += moment
                     sum_x -= fx
                     sum_y -= fy
                     moments_sum += along * (ny * fy + nx * fx) + other
-                    note_work(book, i, SURFACES, fx * at_x + fy * at_y - other * turn, dt)
+                    add_work(d.budget, i, SURFACES, fx * at_x + fy * at_y - other * turn, dt)
                 else:
-                    if booked(book) and holds(memory, i, law):
-                        along = (position[i, 1] - py) * nx - (position[i, 0] - px) * ny
-                        note_leaving(
-                            i, -distance * nx, -distance * ny, radius[i], velocity[i, 0] - wall_x + turn * along * nx,
-                            velocity[i, 1] - wall_y + turn * along * ny, spin[i], turn, memory, dt, own, book, law,
-                        )  # fmt: skip
-                    remember(memory, i, 0.0, 0.0, law)
-        wall_force[w, 0] = sum_x
-        wall_force[w, 1] = sum_y
-        if wall_force.shape[1] > 2:
-            wall_force[w, 2] = moments_sum
+                    if has_budget(d.budget) and has_history(memory, i, law):
+                        along = (d.position[i, 1] - py) * nx - (d.position[i, 0] - px) * ny
+                        vx = d.velocity[i, 0] - wall_x + turn * along * nx
+                        vy = d.velocity[i, 1] - wall_y + turn * along * ny
+                        add_leaving_losses(i, -distance * nx, -distance * ny, vx, vy, turn, d, memory, dt, own, law)
+                    store_history(memory, i, 0.0, 0.0, law)
+        load[row + w, 0] = sum_x
+        load[row + w, 1] = sum_y
+        if load.shape[1] > 2:
+            load[row + w, 2] = moments_sum
 
 
 @kernel
-def ask_near(position, radius, walls, way, near):
+def mark_near(position, radius, walls, way, near):
     """Overwrite near (w or more, runs): whether a disc of each RUN discs is within ``way`` (m) of touching each wall.
 
     position (n, 2) m;  radius (n,) m;  walls (w, WALL).  A disc that is no number anywhere counts as near.
@@ -259,45 +245,39 @@ def ask_near(position, radius, walls, way, near):
 
 
 @kernel
-def add_plate_forces(
-    position, velocity, spin, radius, force, torque, plates, laws, spring, plate_force, law, dt
-):  # fmt: skip
-    """Add the contacts of all discs with all plates that are present; reset the springs of those that do
-    not touch.
+def add_plate_forces(d, plates, laws, spring, load, row, first, last, law, dt):
+    """Add the contacts of discs first to last with all plates that are present; reset the springs of those that do not
+    touch.
 
-    plates (p, 5);  laws (p, m, COLUMNS);  spring (p, n, 1 or 2) m;  plate_force (p, 2) N/m, force of the discs on each
-    plate.  The rest as in add_wall_forces.
+    plates (p, 5);  overwrites rows of load (p or more, 2 or 3) N/m from ``row`` on.  The rest as in add_wall_forces.
     """
     for w in range(plates.shape[0]):
         sum_x, sum_y = 0.0, 0.0
         if plates[w, PRESENT] != 0.0:
             x, low, high, rise = plates[w, X], plates[w, LOW], plates[w, HIGH], plates[w, VELOCITY]
-            memory, own, book = spring[w], laws[w], law.book
-            for i in range(radius.shape[0]):
-                dx = x - position[i, 0]
-                dy = min(max(position[i, 1], low), high) - position[i, 1]
+            memory, own = spring[w], laws[w]
+            for i in range(first, last):
+                dx = x - d.position[i, 0]
+                dy = min(max(d.position[i, 1], low), high) - d.position[i, 1]
                 square = dx * dx + dy * dy
-                if square < radius[i] * radius[i]:
+                if square < d.radius[i] * d.radius[i]:
                     distance = np.sqrt(square)
                     fx, fy, moment, _ = surface_contact(
-                        i, dx / distance, dy / distance, distance, radius[i],
-                        velocity[i, 0], velocity[i, 1] - rise, spin[i], 0.0, memory, dt, own, law,
-                    )  # fmt: skip
-                    force[i, 0] += fx
-                    force[i, 1] += fy
-                    torque[i] += moment
+                        i, dx / distance, dy / distance, distance, 0.0, rise, 0.0, d, memory, dt, own, law
+                    )
+                    d.force[i, 0] += fx
+                    d.force[i, 1] += fy
+                    d.torque[i] += moment
                     sum_x -= fx
                     sum_y -= fy
-                    note_work(book, i, SURFACES, fy * rise, dt)
+                    add_work(d.budget, i, SURFACES, fy * rise, dt)
                 else:
-                    if booked(book) and holds(memory, i, law):
-                        note_leaving(
-                            i, dx, dy, radius[i], velocity[i, 0], velocity[i, 1] - rise, spin[i], 0.0, memory, dt, own,
-                            book, law,
-                        )  # fmt: skip
-                    remember(memory, i, 0.0, 0.0, law)
-        plate_force[w, 0] = sum_x
-        plate_force[w, 1] = sum_y
+                    if has_budget(d.budget) and has_history(memory, i, law):
+                        vx, vy = d.velocity[i, 0], d.velocity[i, 1] - rise
+                        add_leaving_losses(i, dx, dy, vx, vy, 0.0, d, memory, dt, own, law)
+                    store_history(memory, i, 0.0, 0.0, law)
+        load[row + w, 0] = sum_x
+        load[row + w, 1] = sum_y
 
 
 @inline

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,15 +93,30 @@ def nearest_image(difference: Array, period: tuple[float, float, float]) -> Arra
     return near
 
 
-def listed(
-    first: Index, second: Index, surface: Index, point: Array, normal: Array, start: Array, branch: Array,
-    overlap: Array, force: Array, torque: Array, spring: Array, friction: Array,
-) -> Contacts:  # fmt: skip
-    """Contacts with their forces resolved along normal and tangent."""
-    pushing = np.sum(force * normal, axis=1)
-    along = force[:, 0] * normal[:, 1] - force[:, 1] * normal[:, 0]  # force on i is -force; t = (-n_y, n_x)
+class Bodies(NamedTuple):
+    """Which bodies c contacts are between: first, second, surface (c,), as in Contacts."""
+
+    first: Index
+    second: Index
+    surface: Index
+
+
+class Places(NamedTuple):
+    """Where c contacts are: point, normal, start, branch (c, 2), overlap (c,), as in Contacts."""
+
+    point: Array
+    normal: Array
+    start: Array
+    branch: Array
+    overlap: Array
+
+
+def listed(bodies: Bodies, at: Places, force: Array, torque: Array, spring: Array, friction: Array) -> Contacts:
+    """Contacts with their forces resolved along normal and tangent; ``friction`` (c,): coefficient."""
+    pushing = np.sum(force * at.normal, axis=1)
+    # The force on i is -force, and t = (-n_y, n_x).
+    along = force[:, 0] * at.normal[:, 1] - force[:, 1] * at.normal[:, 0]
     limit = friction * np.maximum(pushing, 0.0)
     return Contacts(
-        first, second, surface, (), point, normal, start, branch, overlap, pushing, along, force, torque, spring,
-        (limit > 0.0) & (np.abs(along) >= AT_LIMIT * limit),
-    )  # fmt: skip
+        *bodies, (), *at, pushing, along, force, torque, spring, (limit > 0.0) & (np.abs(along) >= AT_LIMIT * limit)
+    )

@@ -14,13 +14,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.dem.arrays import DiscArrays, Pairs, Surface
 from porescale.dem.bodies.rigid import arms, clumps_of
-from porescale.dem.contact.law import MU, memory_of
+from porescale.dem.contact.law import MU, springs_of
 from porescale.dem.forces.pairs import pair_forces
 from porescale.dem.forces.rectangle import BOTTOM, LEFT, RIGHT, TOP, add_rectangle_forces, nearest_face
 from porescale.dem.forces.walls import HIGH, LOW, NX, PRESENT, PX, X, add_plate_forces, add_wall_forces
 from porescale.dem.listing import current_pairs
-from porescale.dem.measures.contact_list import NOBODY, Contacts, listed, nearest_image
+from porescale.dem.measures.contact_list import NOBODY, Bodies, Contacts, Places, listed, nearest_image
 from porescale.dem.measures.contacts_segments import bond_contacts, segment_contacts
 from porescale.dem.state import State
 
@@ -62,45 +63,49 @@ def _pairs(grains: State) -> Contacts:
     near = np.sum(apart**2, axis=1) < (d.radius[i] + d.radius[j]) ** 2
     i, j, apart = i[near], j[near], apart[near]
     count = len(i)
-    both = np.column_stack((i, j)).ravel()
-    force, torque = np.zeros((2 * count, 2)), np.zeros(2 * count)
+    both = grains.some_discs(np.column_stack((i, j)).ravel())
     start = np.repeat(np.arange(count + 1), 2)[1:]  # discs 2k have one partner, 2k + 1 none
     carried = pairs.carried[near].copy()
-    pair_forces(
-        d.position[both], d.velocity[both], d.spin[both], d.radius[both], force, torque, start,
-        (2 * np.arange(count) + 1).astype(np.int32), carried, grains.law_of(both), grains.last_dt, grains.cell,
-    )  # fmt: skip
+    alone = Pairs(start, (2 * np.arange(count) + 1).astype(np.int32), carried, both.position, 0.0)
+    pair_forces(both, alone, grains.contact, grains.last_dt, grains.cell)
     distance = np.hypot(*apart.T)
     normal = apart / distance[:, None]
     arm = 0.5 * (distance + (d.radius[i] ** 2 - d.radius[j] ** 2) / distance)
+    bodies = Bodies(i, j, np.full(count, NOBODY))
+    at = Places(
+        d.position[i] + arm[:, None] * normal, normal, d.position[i], apart, d.radius[i] + d.radius[j] - distance
+    )
     return listed(
-        i, j, np.full(count, NOBODY), d.position[i] + arm[:, None] * normal, normal, d.position[i], apart,
-        d.radius[i] + d.radius[j] - distance, force[1::2], torque.reshape(-1, 2), carried[:, 0],
+        bodies,
+        at,
+        both.force[1::2],
+        both.torque.reshape(-1, 2),
+        carried[:, 0],
         grains.contact.table[_material(grains, i), _material(grains, j), MU],
-    )  # fmt: skip
+    )
 
 
-Surface = tuple[Array, Array, Callable[[Index, Array, Array], Array], Array]
+Forces = Callable[[Index], tuple[DiscArrays, Array]]
+Touched = tuple[Array, Array, Forces, Array]
 """Closest point (n, 2) m and signed distance (n,) m of every disc; the step's forces on some; friction by material."""
 
 
-def _surface(grains: State, number: int, nearest: Array, distance: Array, forces: Any, friction: Array) -> Contacts:
+def _surface(grains: State, number: int, nearest: Array, distance: Array, forces: Forces, friction: Array) -> Contacts:
     """The contacts of one surface."""
     d = grains.discs
     i = np.flatnonzero(distance < d.radius)
-    force, torque = np.zeros((len(i), 2)), np.zeros(len(i))
-    spring = forces(i, force, torque)
+    found, spring = forces(i)
+    force, torque = found.force, found.torque
     branch = nearest[i] - d.position[i]
     depth = distance[i]
     # From inside of a rectangle the surface is behind the disc: the normal points away from it.
     normal = np.where(depth[:, None] > 0.0, 1.0, -1.0) * branch / np.where(depth == 0.0, 1.0, np.abs(depth))[:, None]
     count, other = len(i), np.zeros(len(i))
-    if memory_of(grains.contact) > 1:  # what is not the tangential force on its arm resists rolling
+    if springs_of(grains.contact) > 1:  # what is not the tangential force on its arm resists rolling
         other = np.maximum(depth, 0.0) * (force[:, 1] * normal[:, 0] - force[:, 0] * normal[:, 1]) - torque
-    return listed(
-        i, np.full(count, NOBODY), np.full(count, number), nearest[i], normal, d.position[i], branch,
-        d.radius[i] - depth, -force, np.column_stack((torque, other)), spring, friction[_material(grains, i)],
-    )  # fmt: skip
+    bodies = Bodies(i, np.full(count, NOBODY), np.full(count, number))
+    at = Places(nearest[i], normal, d.position[i], branch, d.radius[i] - depth)
+    return listed(bodies, at, -force, np.column_stack((torque, other)), spring, friction[_material(grains, i)])
 
 
 def _material(grains: State, discs: Index) -> NDArray[Any]:
@@ -108,34 +113,34 @@ def _material(grains: State, discs: Index) -> NDArray[Any]:
     return np.zeros(len(discs), np.uint8) if grains.material is None else grains.material[discs]
 
 
-def _wall(grains: State) -> list[Surface]:
+def _wall(grains: State) -> list[Touched]:
     """Straight sides."""
     d = grains.discs
-    made: list[Surface] = []
+    made: list[Touched] = []
     for w, row in enumerate(grains.walls):
         inward = row[NX : NX + 2]
         distance = (d.position - row[PX : PX + 2]) @ inward
-        forces = _single(grains, add_wall_forces, grains.walls, grains.wall_laws, grains.wall_spring, w)
+        forces = _single(grains, add_wall_forces, grains.surface("wall"), w)
         made.append((d.position - distance[:, None] * inward, distance, forces, grains.wall_laws[w, :, MU]))
     return made
 
 
-def _plate(grains: State) -> list[Surface]:
+def _plate(grains: State) -> list[Touched]:
     """Upright plates; one that is gone touches nothing."""
     x, y = grains.discs.position.T
-    made: list[Surface] = []
+    made: list[Touched] = []
     for w, row in enumerate(grains.plates):
         nearest = np.column_stack((np.full_like(x, row[X]), np.clip(y, row[LOW], row[HIGH])))
         distance = np.hypot(nearest[:, 0] - x, nearest[:, 1] - y)
         distance = distance if row[PRESENT] else np.full_like(distance, np.inf)
-        forces = _single(grains, add_plate_forces, grains.plates, grains.plate_laws, grains.plate_spring, w)
+        forces = _single(grains, add_plate_forces, grains.surface("plate"), w)
         made.append((nearest, distance, forces, grains.plate_laws[w, :, MU]))
     return made
 
 
-def _rectangle(grains: State) -> list[Surface]:
+def _rectangle(grains: State) -> list[Touched]:
     """Rectangles, from outside, or from inside through the nearest face."""
-    made: list[Surface] = []
+    made: list[Touched] = []
     at = grains.discs.position
     for w, row in enumerate(grains.rectangles):
         nearest = np.clip(at, row[[LEFT, BOTTOM]], row[[RIGHT, TOP]])
@@ -143,23 +148,21 @@ def _rectangle(grains: State) -> list[Surface]:
         for i in np.flatnonzero(distance == 0.0):
             nx, ny, depth = nearest_face(*at[i], *row[[LEFT, BOTTOM, RIGHT, TOP]])
             nearest[i], distance[i] = at[i] - depth * np.array([nx, ny]), -depth
-        laws = grains.rectangle_laws
-        forces = _single(grains, add_rectangle_forces, grains.rectangles, laws, grains.rectangle_spring, w)
-        made.append((nearest, distance, forces, laws[w, :, MU]))
+        forces = _single(grains, add_rectangle_forces, grains.surface("rectangle"), w)
+        made.append((nearest, distance, forces, grains.rectangle_laws[w, :, MU]))
     return made
 
 
-def _single(grains: State, kernel: Any, table: Array, laws: Array, spring: Array, w: int) -> Any:
-    """The forces of row ``w`` of a table on discs by index; the spring that results, (c,) m, is returned."""
+def _single(grains: State, kernel: Any, surface: Surface, w: int) -> Forces:
+    """The forces of row ``w`` of a surface on discs by index, and the springs (c,) m that result."""
 
-    def forces(i: Index, force: Array, torque: Array) -> Array:
-        """Add to ``force`` (c, 2) N and ``torque`` (c,) N m of the discs ``i`` (c,); returns their springs (c,) m."""
-        d, kept, total = grains.discs, spring[w : w + 1, i].copy(), np.zeros((1, 2))
-        kernel(
-            d.position[i], d.velocity[i], d.spin[i], d.radius[i], force, torque, table[w : w + 1], laws[w : w + 1],
-            kept, total, grains.law_of(i), grains.last_dt,
-        )  # fmt: skip
-        spent: Array = kept[0, :, 0]
-        return spent
+    def forces(i: Index) -> tuple[DiscArrays, Array]:
+        """The discs ``i`` (c,) with the forces on them, and their springs (c,) m."""
+        found, row = grains.some_discs(i), slice(w, w + 1)
+        spring, total = surface[2][row, i].copy(), np.zeros((1, 2))
+        where = () if kernel is add_wall_forces else (0, 0, len(i))  # rows of the load, first and last disc
+        kernel(found, surface[0][row], surface[1][row], spring, total, *where, grains.contact, grains.last_dt)
+        spent: Array = spring[0, :, 0]
+        return found, spent
 
     return forces

@@ -10,12 +10,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.dem.bodies.bonding import beside, segments_now
+from porescale.dem.bodies.bonding import segments_now
 from porescale.dem.contact.law import MU
 from porescale.dem.forces.bonds import BondList, pressing, touched
 from porescale.dem.forces.segment_list import SegmentList
-from porescale.dem.forces.segments import OUTLINE, Segments, add_segment_forces, hand_over, meeting, weight_of
-from porescale.dem.measures.contact_list import NOBODY, Contacts, listed, nearest_image
+from porescale.dem.forces.segments import (
+    OUTLINE,
+    Segments,
+    add_segment_forces,
+    segment_contact,
+    transfer_history,
+    weight_of,
+)
+from porescale.dem.measures.contact_list import NOBODY, Bodies, Contacts, Places, listed, nearest_image
 from porescale.dem.state import State
 
 Array = NDArray[np.float64]
@@ -33,7 +40,7 @@ def segment_contacts(grains: State, own: SegmentList) -> list[Contacts]:
     weight = np.zeros(len(pairs), np.int64)
     for k in np.flatnonzero(near):
         weight[k] = weight_of(pairs[k, 0], pairs[k, 1], way[k, 0], way[k, 1], d.position, known)
-        hand_over(int(k), int(weight[k]), known, d.position, grains.contact, cell)
+        transfer_history(int(k), int(weight[k]), known, d.position, grains.contact, cell)
     found = []
     once = np.flatnonzero(weight > 0)
     if len(once):
@@ -44,7 +51,7 @@ def segment_contacts(grains: State, own: SegmentList) -> list[Contacts]:
     rows = []
     for row, (i, e) in enumerate(own.near):
         a, b = own.ends[e]
-        overlap, share, dx, dy = meeting(known.rule, i, a, b, d.radius, d.position, cell)
+        overlap, share, dx, dy = segment_contact(known.rule, i, a, b, d.radius, d.position, cell)
         if overlap > 0.0:
             rows.append((row, i, a, b, overlap, share, dx, dy))
     if rows:
@@ -78,11 +85,8 @@ def _alone(
         np.ascontiguousarray(pair), corner_memory, np.zeros((len(pair), 0), np.int64),
         np.ascontiguousarray(near), near_memory,
     )  # fmt: skip
-    force, torque = np.zeros((len(rows), 2)), np.zeros(len(rows))
-    add_segment_forces(
-        d.position[rows], d.velocity[rows], d.spin[rows], d.radius[rows], force, torque, alone, grains.law_of(rows),
-        grains.last_dt, grains.cell,
-    )  # fmt: skip
+    found = grains.some_discs(rows)
+    add_segment_forces(found, alone, grains.contact, grains.last_dt, grains.cell)
     i, a = members[:, 0], members[:, 1]
     distance = np.hypot(*way.T)
     normal = way / distance[:, None]
@@ -90,17 +94,27 @@ def _alone(
     branch = way if share is None else way - share[:, None] * (d.position[members[:, 2]] - d.position[a])
     table = grains.contact.table
     material = np.zeros(d.count, np.uint8) if grains.material is None else grains.material
+    bodies = Bodies(i, a, np.full(count, NOBODY))
+    at = Places(
+        d.position[i] + arm[:, None] * normal,
+        normal,
+        d.position[i],
+        branch,
+        d.radius[i] + d.radius[a] - distance if overlap is None else overlap,
+    )
     return listed(
-        i, a, np.full(count, NOBODY), d.position[i] + arm[:, None] * normal, normal, d.position[i], branch,
-        d.radius[i] + d.radius[a] - distance if overlap is None else overlap, force[1::each],
-        torque.reshape(-1, each)[:, :2], memory[:, 0], table[material[i], material[a], MU],
-    )  # fmt: skip
+        bodies,
+        at,
+        found.force[1::each],
+        found.torque.reshape(-1, each)[:, :2],
+        memory[:, 0],
+        table[material[i], material[a], MU],
+    )
 
 
 def bond_contacts(grains: State, own: BondList) -> Contacts:
     """Bonds that hold, each with its back tension as a normal force below zero."""
-    known = beside(grains)[0]
-    assert known is not None
+    known = segments_now(grains)
     whole = own.whole != 0
     return _taken_off(grains, known, own.ends[whole], own.back[whole])
 
@@ -110,7 +124,9 @@ def _taken_off(grains: State, known: Segments, ends: Index, back: Array | None) 
     d, count = grains.discs, len(ends)
     if back is None:
         back = np.zeros(count)
-        pressing(d.position, d.radius, ends, known, grains.contact, grains.cell, back)
+        pressing(
+            d.position, d.radius, grains.body_mass, grains.material, ends, known, grains.contact, grains.cell, back
+        )
         back = -back
     way, far, other = np.zeros((count, 2)), np.zeros((count, 2)), np.zeros(count, np.int64)
     touched(d.position, ends, known, grains.cell, way, far, other)
@@ -118,7 +134,6 @@ def _taken_off(grains: State, known: Segments, ends: Index, back: Array | None) 
     normal = way / distance[:, None]
     force = -back[:, None] * normal
     torque = np.column_stack((np.zeros(count), far[:, 0] * force[:, 1] - far[:, 1] * force[:, 0]))
-    return listed(
-        i, other, np.full(count, NOBODY), d.position[i] + 0.5 * way, normal, d.position[i], way - far,
-        d.radius[i] + d.radius[other] - distance, force, torque, np.zeros(count), np.zeros(count),
-    )  # fmt: skip
+    bodies = Bodies(i, other, np.full(count, NOBODY))
+    at = Places(d.position[i] + 0.5 * way, normal, d.position[i], way - far, d.radius[i] + d.radius[other] - distance)
+    return listed(bodies, at, force, torque, np.zeros(count), np.zeros(count))

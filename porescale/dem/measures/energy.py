@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import kernel
 from porescale.common.core.errors import Fault, InputError
-from porescale.dem.bodies.bonding import beside
-from porescale.dem.contact.law import (
+from porescale.dem.bodies.bonding import framed_parts
+from porescale.dem.contact.budget import (
     BEFORE_SPIN,
     BEFORE_X,
     DRAG,
@@ -33,10 +33,8 @@ from porescale.dem.contact.law import (
     ROLLING_FRICTION,
     SURFACES,
     TANGENTIAL_DASHPOT,
-    material_of,
-    recall,
-    stored,
 )
+from porescale.dem.contact.law import load_history, material_of, stored
 from porescale.dem.forces.bonds import stored_in_bonds
 from porescale.dem.forces.rectangle import BOTTOM, LEFT, RIGHT, TOP, VELOCITY_X
 from porescale.dem.forces.segments import survey_segments
@@ -59,8 +57,9 @@ WORKS = {"work of moving surfaces (J/m)": SURFACES, "work of holders (J/m)": HOL
 
 
 @kernel
-def elastic_pairs(position, radius, start, partner, carried, law, cell):
-    """Elastic energy of all pairs, J/m: (normal, tangential, rolling).  Arguments as in forces.pair_forces."""
+def elastic_pairs(position, radius, material, pairs, law, cell):
+    """Elastic energy of all pairs, J/m: (normal, tangential, rolling).  Arguments as in pairs.pair_forces."""
+    start, partner, history = pairs.start, pairs.partner, pairs.history
     normal, tangential, rolling = 0.0, 0.0, 0.0
     for i in range(radius.shape[0]):
         for k in range(start[i], start[i + 1]):
@@ -68,15 +67,15 @@ def elastic_pairs(position, radius, start, partner, carried, law, cell):
             dx, dy = image(position[j, 0] - position[i, 0], position[j, 1] - position[i, 1], cell)
             overlap = radius[i] + radius[j] - np.sqrt(dx * dx + dy * dy)
             if overlap > 0.0:
-                p = law.table[material_of(law.material, i), material_of(law.material, j)]
-                spring, roll = recall(carried, k, law)
+                p = law.table[material_of(material, i), material_of(material, j)]
+                spring, roll = load_history(history, k, law)
                 parts = stored(overlap, spring, roll, radius[i] * radius[j] / (radius[i] + radius[j]), p, law)
                 normal, tangential, rolling = normal + parts[0], tangential + parts[1], rolling + parts[2]
     return normal, tangential, rolling
 
 
 @kernel
-def elastic_surface(distance, radius, memory, laws, law):
+def elastic_surface(distance, radius, material, memory, laws, law):
     """Elastic energy of all discs at one surface, J/m: (normal, tangential, rolling).
 
     distance (n,) m from the centres;  memory (n, 1 or 2) m;  laws (m, COLUMNS) with each material.
@@ -85,8 +84,8 @@ def elastic_surface(distance, radius, memory, laws, law):
     for i in range(radius.shape[0]):
         overlap = radius[i] - distance[i]
         if overlap > 0.0:
-            spring, roll = recall(memory, i, law)
-            parts = stored(overlap, spring, roll, radius[i], laws[material_of(law.material, i)], law)
+            spring, roll = load_history(memory, i, law)
+            parts = stored(overlap, spring, roll, radius[i], laws[material_of(material, i)], law)
             normal, tangential, rolling = normal + parts[0], tangential + parts[1], rolling + parts[2]
     return normal, tangential, rolling
 
@@ -119,14 +118,15 @@ def elastic(grains: State, dt: float = 0.0) -> tuple[float, float, float]:
 
     That of back tension (bonds.py), below zero, belongs to the normal part.
     """
-    d, pairs = grains.discs, grains.pairs
+    d, material = grains.discs, grains.material
     position, cell = before(d.position, d.velocity, grains.cell, dt)
-    parts = [elastic_pairs(position, d.radius, pairs.start, pairs.partner, pairs.carried, grains.contact, cell)]
+    parts = [elastic_pairs(position, d.radius, material, grains.pair_arrays(), grains.contact, cell)]
     for distance, memory, laws in distances(grains, position, dt):
-        parts.append(elastic_surface(distance, d.radius, memory, laws, grains.contact))
-    segments, bonds = beside(grains)
-    if segments is not None:
-        parts.append(survey_segments(position, d.radius, segments, grains.contact, grains.cell)[3:])
+        parts.append(elastic_surface(distance, d.radius, material, memory, laws, grains.contact))
+    framed = framed_parts(grains)
+    if framed is not None:
+        segments, bonds = framed
+        parts.append(survey_segments(position, d.radius, material, segments, grains.contact, grains.cell)[3:])
         parts.append((stored_in_bonds(position, d.radius, segments, bonds, grains.cell), 0.0, 0.0))
     normal, tangential, rolling = (float(part) for part in np.sum(parts, axis=0))
     return normal, tangential, rolling

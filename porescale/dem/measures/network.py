@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import spsolve
 
-from porescale.dem.bodies.bonding import beside
+from porescale.dem.bodies.bonding import segments_now
 from porescale.dem.contact.linear import Linear
 from porescale.dem.forces.bonds import touched
 from porescale.dem.prepare.rock import Rock
@@ -43,8 +43,7 @@ def network(rock: Rock) -> Network:
     d, clumps, bonds = grains.discs, grains.steering.clumps, grains.bonds
     assert bonds is not None
     assert isinstance(grains.law, Linear)
-    law, known = grains.law, beside(grains)[0]
-    assert known is not None
+    law, known = grains.law, segments_now(grains)
     ends, back = bonds.ends, bonds.back
     way, far, other = np.zeros((len(ends), 2)), np.zeros((len(ends), 2)), np.zeros(len(ends), np.int64)
     touched(d.position, ends, known, grains.cell, way, far, other)

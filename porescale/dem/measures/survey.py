@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from porescale.common.compiled.jit import inline, kernel
 from porescale.dem.bodies.bonding import segments_now
 from porescale.dem.bodies.rigid import clumps_of
-from porescale.dem.contact.law import material_of, recall, stored
+from porescale.dem.contact.law import load_history, material_of, stored
 from porescale.dem.discs import Discs
 from porescale.dem.forces.rectangle import BOTTOM, LEFT, RIGHT, TOP, nearest_face
 from porescale.dem.forces.segments import survey_segments
@@ -25,12 +25,14 @@ Array = NDArray[np.float64]
 
 
 @kernel
-def survey_pairs(position, radius, start, partner, carried, cell, law, touching):
+def survey_pairs(d, pairs, cell, law, touching):
     """(largest overlap over the smaller radius, its i, its j, elastic energy J/m) over the listed pairs.
 
-    Overwrites touching (n,): number of discs that touch each disc.  Arrays as in add_pair_forces.
+    d: DiscArrays;  pairs: Pairs.  Overwrites touching (n,): number of discs that touch each disc.
     """
     touching[:] = 0
+    position, radius, material = d.position, d.radius, d.material
+    start, partner, history = pairs.start, pairs.partner, pairs.history
     worst, worst_i, worst_j, energy = 0.0, -1, -1, 0.0
     for i in range(radius.shape[0]):
         for k in range(start[i], start[i + 1]):
@@ -40,8 +42,8 @@ def survey_pairs(position, radius, start, partner, carried, cell, law, touching)
             if overlap > 0.0:
                 touching[i] += 1
                 touching[j] += 1
-                p = law.table[material_of(law.material, i), material_of(law.material, j)]
-                spring, roll = recall(carried, k, law)
+                p = law.table[material_of(material, i), material_of(material, j)]
+                spring, roll = load_history(history, k, law)
                 reduced = radius[i] * radius[j] / (radius[i] + radius[j])
                 normal, tangential, rolling = stored(overlap, spring, roll, reduced, p, law)
                 energy += normal + tangential + rolling
@@ -52,16 +54,17 @@ def survey_pairs(position, radius, start, partner, carried, cell, law, touching)
 
 
 @inline
-def stored_at_surface(i, overlap, radius, memory, laws, law):
+def stored_at_surface(i, overlap, radius, material, memory, laws, law):
     """Elastic energy (J/m) of disc i against a surface; arguments as in walls.surface_contact."""
-    spring, roll = recall(memory, i, law)
-    normal, tangential, rolling = stored(overlap, spring, roll, radius, laws[material_of(law.material, i)], law)
+    spring, roll = load_history(memory, i, law)
+    normal, tangential, rolling = stored(overlap, spring, roll, radius, laws[material_of(material, i)], law)
     return normal + tangential + rolling
 
 
 @kernel
-def survey_walls(position, radius, walls, laws, spring, law):
+def survey_walls(d, walls, laws, spring, law):
     """(largest overlap over the radius, its disc, its wall, elastic energy J/m) over walls (w, 4)."""
+    position, radius, material = d.position, d.radius, d.material
     worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
     for w in range(walls.shape[0]):
         for i in range(radius.shape[0]):
@@ -69,15 +72,16 @@ def survey_walls(position, radius, walls, laws, spring, law):
             distance += (position[i, 1] - walls[w, PY]) * walls[w, NY]
             overlap = radius[i] - distance
             if overlap > 0.0:
-                energy += stored_at_surface(i, overlap, radius[i], spring[w], laws[w], law)
+                energy += stored_at_surface(i, overlap, radius[i], material, spring[w], laws[w], law)
                 if overlap / radius[i] > worst:
                     worst, worst_i, worst_w = overlap / radius[i], i, w
     return worst, worst_i, worst_w, energy
 
 
 @kernel
-def survey_plates(position, radius, plates, laws, spring, law):
+def survey_plates(d, plates, laws, spring, law):
     """(largest overlap over the radius, its disc, its plate, elastic energy J/m) over the plates (p, 5) present."""
+    position, radius, material = d.position, d.radius, d.material
     worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
     for w in range(plates.shape[0]):
         if plates[w, PRESENT] != 0.0:
@@ -86,15 +90,16 @@ def survey_plates(position, radius, plates, laws, spring, law):
                 dy = min(max(position[i, 1], plates[w, LOW]), plates[w, HIGH]) - position[i, 1]
                 overlap = radius[i] - np.sqrt(dx * dx + dy * dy)
                 if overlap > 0.0:
-                    energy += stored_at_surface(i, overlap, radius[i], spring[w], laws[w], law)
+                    energy += stored_at_surface(i, overlap, radius[i], material, spring[w], laws[w], law)
                     if overlap / radius[i] > worst:
                         worst, worst_i, worst_w = overlap / radius[i], i, w
     return worst, worst_i, worst_w, energy
 
 
 @kernel
-def survey_rectangles(position, radius, rectangles, laws, spring, law):
+def survey_rectangles(d, rectangles, laws, spring, law):
     """(largest overlap over the radius, its disc, its rectangle, elastic energy J/m) over the rectangles (k, 6)."""
+    position, radius, material = d.position, d.radius, d.material
     worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
     for w in range(rectangles.shape[0]):
         left, bottom, right, top = (
@@ -111,7 +116,7 @@ def survey_rectangles(position, radius, rectangles, laws, spring, law):
                 distance = -nearest_face(position[i, 0], position[i, 1], left, bottom, right, top)[2]
             overlap = radius[i] - distance
             if overlap > 0.0:
-                energy += stored_at_surface(i, overlap, radius[i], spring[w], laws[w], law)
+                energy += stored_at_surface(i, overlap, radius[i], material, spring[w], laws[w], law)
                 if overlap / radius[i] > worst:
                     worst, worst_i, worst_w = overlap / radius[i], i, w
     return worst, worst_i, worst_w, energy
@@ -201,17 +206,16 @@ def unbalanced(grains: State) -> float:
 def _survey(grains: State) -> tuple[float, int, int, float]:
     """survey_pairs of ``grains``; fills ``grains.touching``."""
     result: tuple[float, int, int, float] = survey_pairs(
-        grains.discs.position, grains.discs.radius, grains.pairs.start, grains.pairs.partner,
-        grains.pairs.carried, grains.cell, grains.contact, grains.touching,
-    )  # fmt: skip
+        grains.disc_arrays(), grains.pair_arrays(), grains.cell, grains.contact, grains.touching
+    )
     return result
 
 
 def _survey_walls(grains: State) -> tuple[float, int, int, float]:
+    """survey_walls of ``grains``, corners of segments by their own measure."""
     d = grains.discs
-    result: tuple[float, int, int, float] = survey_walls(
-        d.position, d.radius, grains.walls, grains.wall_laws, grains.wall_spring, grains.contact
-    )
+    walls = grains.walls, grains.wall_laws, grains.wall_spring
+    result: tuple[float, int, int, float] = survey_walls(grains.disc_arrays(), *walls, grains.contact)
     if grains.segments is None or not len(grains.walls):
         return result
     # Corners may be points: what they go into a wall is held against their segments.
@@ -222,10 +226,9 @@ def _survey_walls(grains: State) -> tuple[float, int, int, float]:
 
 
 def _survey_plates(grains: State) -> tuple[float, int, int, float]:
-    d = grains.discs
-    result: tuple[float, int, int, float] = survey_plates(
-        d.position, d.radius, grains.plates, grains.plate_laws, grains.plate_spring, grains.contact
-    )
+    """survey_plates of ``grains``."""
+    plates = grains.plates, grains.plate_laws, grains.plate_spring
+    result: tuple[float, int, int, float] = survey_plates(grains.disc_arrays(), *plates, grains.contact)
     return result
 
 
@@ -234,16 +237,15 @@ def _survey_segments(grains: State) -> tuple[float, int, int, float, float, floa
     if grains.segments is None:
         return 0.0, -1, 0, 0.0, 0.0, 0.0
     result: tuple[float, int, int, float, float, float] = survey_segments(
-        d.position, d.radius, segments_now(grains), grains.contact, grains.cell
+        d.position, d.radius, grains.material, segments_now(grains), grains.contact, grains.cell
     )
     return result
 
 
 def _survey_rectangles(grains: State) -> tuple[float, int, int, float]:
-    d = grains.discs
+    """survey_rectangles of ``grains``; nothing where there is none."""
     if not len(grains.rectangles):
         return 0.0, -1, -1, 0.0
-    result: tuple[float, int, int, float] = survey_rectangles(
-        d.position, d.radius, grains.rectangles, grains.rectangle_laws, grains.rectangle_spring, grains.contact
-    )
+    rectangles = grains.rectangles, grains.rectangle_laws, grains.rectangle_spring
+    result: tuple[float, int, int, float] = survey_rectangles(grains.disc_arrays(), *rectangles, grains.contact)
     return result

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import by_law, kernel
-from porescale.dem.motion.leapfrog import sweep_kick
+from porescale.dem.motion.leapfrog import move_free
 from porescale.dem.motion.periodic_cell import (
     SQUARES,
     TURNING_XX,
@@ -60,19 +60,19 @@ class Deforming(NamedTuple):
 
 
 @by_law
-def at_present(cell):
+def cell_now(cell):
     """The cell as pairs see it now; clears the load of a strained one."""
 
 
-@at_present.of(Still)
+@cell_now.of(Still)
 def present_still(cell):
-    """Itself."""
+    """A cell that stands still is the same at all times."""
     return cell
 
 
-@at_present.of(Deforming)
+@cell_now.of(Deforming)
 def present_deforming(cell):
-    """Its numbers now."""
+    """The numbers of a strained cell now."""
     s = cell.state
     cell.load[:] = 0.0
     return Straining(s[WIDTH], s[HEIGHT], s[TILT], s[GXX], s[GXY], s[GYY], cell.load)
@@ -85,25 +85,25 @@ def drift_of(cell):
 
 @drift_of.of(Still)
 def no_drift(cell):
-    """None."""
+    """Zero in a cell that stands still."""
     return 0.0, 0.0, 0.0
 
 
 @drift_of.of(Deforming)
 def drift_deforming(cell):
-    """As ``steer`` left it."""
+    """The gradient as ``steer`` left it."""
     return cell.state[GXX], cell.state[GXY], cell.state[GYY]
 
 
 @by_law
 def steer(velocity, mass, step, dt, cell):
-    """Choose the velocity gradient for the step to come, from schedules and from the stress of this one, and book the
+    """Choose the velocity gradient for the step to come, from schedules and from the stress of this one, and add up the
     cell's work;  velocity (n, 2) m/s, mass (n,) kg/m;  step: number within the call;  dt s."""
 
 
 @steer.of(Still)
 def steer_still(velocity, mass, step, dt, cell):
-    """Nothing to choose."""
+    """A cell that stands still has no gradient to choose."""
 
 
 @steer.of(Deforming)
@@ -112,35 +112,35 @@ def steer_deforming(velocity, mass, step, dt, cell):
     s, time = cell.state, cell.clock[0] + (cell.clock[1] + step) * dt
     pxx, pxy, pyy = pressure(velocity, mass, cell.load, s[WIDTH] * s[HEIGHT])
     before = pxx * s[GXX] + pyy * s[GYY] + pxy * s[GXY]
-    s[GXX] = told_rate(pxx, 0, time, dt, cell)
-    s[GYY] = told_rate(pyy, 1, time, dt, cell)
-    s[GXY] = told_rate(pxy, 2, time, dt, cell)
+    s[GXX] = prescribed_rate(pxx, 0, time, dt, cell)
+    s[GYY] = prescribed_rate(pyy, 1, time, dt, cell)
+    s[GXY] = prescribed_rate(pxy, 2, time, dt, cell)
     s[WORK] -= 0.5 * s[WIDTH] * s[HEIGHT] * dt * (before + pxx * s[GXX] + pyy * s[GYY] + pxy * s[GXY])
 
 
 @by_law
-def note_clumps(a, velocity, mass, force, external_force, cell):
-    """What clumps, a motion.Arrays, change in the sums of a strained cell; all arrays of discs, before the kick."""
+def add_clump_terms(c, d, cell):
+    """What clumps ``c``, ClumpArrays, change in the sums of a strained cell;  d: DiscArrays, before the kick."""
 
 
-@note_clumps.of(Still)
-def no_clumps_noted(a, velocity, mass, force, external_force, cell):
-    """Nothing."""
+@add_clump_terms.of(Still)
+def no_clump_terms(c, d, cell):
+    """A cell that stands still has no sums."""
 
 
-@note_clumps.of(Deforming)
-def note_clumps_deforming(a, velocity, mass, force, external_force, cell):
+@add_clump_terms.of(Deforming)
+def clump_terms_deforming(c, d, cell):
     """Overwrites ``cell.load``: X_j - X_i = d - o_j + o_i of centroids, so g d over contacts lacks g o over members."""
-    load = cell.load
-    for c in range(a.body_mass.shape[0]):
-        for k in range(a.start[c], a.start[c + 1]):
-            i = a.member[k]
+    load, force, external_force, velocity, mass = cell.load, d.force, d.external_force, d.velocity, d.mass
+    for b in range(c.mass.shape[0]):
+        for k in range(c.start[b], c.start[b + 1]):
+            i = c.member[k]
             gx, gy = force[i, 0] - external_force[i, 0], force[i, 1] - external_force[i, 1]
-            load[XX] += gx * a.arm[k, 0]
-            load[XY] += gx * a.arm[k, 1]
-            load[YX] += gy * a.arm[k, 0]
-            load[YY] += gy * a.arm[k, 1]
-            u, v, du, dv = velocity[i, 0], velocity[i, 1], a.body_velocity[c, 0], a.body_velocity[c, 1]
+            load[XX] += gx * c.arm[k, 0]
+            load[XY] += gx * c.arm[k, 1]
+            load[YX] += gy * c.arm[k, 0]
+            load[YY] += gy * c.arm[k, 1]
+            u, v, du, dv = velocity[i, 0], velocity[i, 1], c.velocity[b, 0], c.velocity[b, 1]
             load[TURNING_XX] += mass[i] * (u * u - du * du)
             load[TURNING_XY] += mass[i] * (u * v - du * dv)
             load[TURNING_YY] += mass[i] * (v * v - dv * dv)
@@ -158,7 +158,7 @@ def pressure(velocity, mass, load, area):
 
 
 @kernel
-def told_rate(found, k, time, dt, cell):
+def prescribed_rate(found, k, time, dt, cell):
     """Rate (1/s) of component k (xx, yy, xy) of a Deforming cell at its pressure ``found`` (Pa); the stress that is
     wanted is a pressure for the first two and that which drives the shear, -P_xy, for the third.  Overwrites the mean
     rate in ``cell.state``."""
@@ -194,36 +194,25 @@ def room_square(state):
 
 
 @by_law
-def move_discs(
-    position, angle, velocity, spin, mass, inertia, force, torque,
-    anchor, limit_square, drag, dt, sweep, cell,
-):  # fmt: skip
-    """As kick_drift, in ``cell``; a strained one is strained by the step, too."""
+def move_discs(d, pairs, drag, dt, sweep, cell):
+    """As kick_drift, in ``cell``; a strained one is strained by the step, too.  d: DiscArrays;  pairs: Pairs."""
 
 
 @move_discs.of(Still)
-def move_still(
-    position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt, sweep, cell
-):  # fmt: skip
+def move_still(d, pairs, drag, dt, sweep, cell):
     """By one thread or several."""
-    return sweep_kick(
-        position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt, sweep
-    )
+    return move_free(d, pairs.checked_position, pairs.limit_square, drag, dt, sweep)
 
 
 @move_discs.of(Deforming)
-def move_deforming(
-    position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt, sweep, cell
-):  # fmt: skip
+def move_deforming(d, pairs, drag, dt, sweep, cell):
     """Central in time in drag and G: (1 + dt/2 (drag + G)) c' = (1 - dt/2 (drag + G)) c + dt F/m, then
     x' = x + dt (c' + G x), which maps images onto images."""
     gxx, gxy, gyy = drift_of(cell)
     strain(cell.state, dt)
     limit = room_square(cell.state)
-    affine_kick_drift(
-        position, angle, velocity, spin, mass, inertia, force, torque, gxx, gxy, gyy, drag, dt
-    )  # fmt: skip
-    return left_affine(position, anchor, limit, cell.state)
+    affine_kick_drift(d, gxx, gxy, gyy, drag, dt)
+    return left_affine(d.position, pairs.checked_position, limit, cell.state)
 
 
 @kernel
@@ -235,10 +224,13 @@ def strain(state, dt):
 
 
 @kernel
-def affine_kick_drift(
-    position, angle, velocity, spin, mass, inertia, force, torque, gxx, gxy, gyy, drag, dt
-):  # fmt: skip
-    """Kick and drift in a strained cell, see move_deforming; arrays as in kick_drift."""
+def affine_kick_drift(d, gxx, gxy, gyy, drag, dt):
+    """Kick and drift in a strained cell of gradient gxx, gxy, gyy 1/s, see move_deforming.
+
+    d: DiscArrays or ClumpArrays; overwrites position, angle, velocity and spin.  drag 1/s;  dt s.
+    """
+    position, angle, velocity, spin, force, torque = d.position, d.angle, d.velocity, d.spin, d.force, d.torque
+    mass, inertia = d.mass, d.inertia
     half = 0.5 * dt
     for i in range(mass.shape[0]):
         old_y = velocity[i, 1]
@@ -253,36 +245,36 @@ def affine_kick_drift(
 
 
 @kernel
-def left_affine(position, anchor, limit_square, state):
-    """Whether some disc is further than allowed from where the strain since the listing has carried its ``anchor``."""
+def left_affine(position, checked_position, limit_square, state):
+    """Whether some disc is further than allowed from where the strain has carried the place it was listed at."""
     f, h = state[WIDTH] / state[WIDTH_THEN], state[HEIGHT] / state[HEIGHT_THEN]
     slope = (state[TILT] - f * state[TILT_THEN]) / state[HEIGHT_THEN]
     moved = False
     for i in range(position.shape[0]):
-        dx = position[i, 0] - f * anchor[i, 0] - slope * anchor[i, 1]
-        dy = position[i, 1] - h * anchor[i, 1]
+        dx = position[i, 0] - f * checked_position[i, 0] - slope * checked_position[i, 1]
+        dy = position[i, 1] - h * checked_position[i, 1]
         if not (dx * dx + dy * dy <= limit_square):  # also true for nan
             moved = True
     return moved
 
 
 @by_law
-def any_left(position, anchor, limit_square, cell):
-    """Whether some disc has gone further than allowed from its anchor: what move_discs says, without moving."""
+def any_left(position, checked_position, limit_square, cell):
+    """Whether some disc has gone further than allowed from where it was listed: the result of move_discs alone."""
 
 
 @any_left.of(Still)
-def left_still(position, anchor, limit_square, cell):
-    """Of the positions themselves."""
+def left_still(position, checked_position, limit_square, cell):
+    """By the positions themselves."""
     moved = False
     for i in range(position.shape[0]):
-        dx, dy = position[i, 0] - anchor[i, 0], position[i, 1] - anchor[i, 1]
+        dx, dy = position[i, 0] - checked_position[i, 0], position[i, 1] - checked_position[i, 1]
         if not (dx * dx + dy * dy <= limit_square):
             moved = True
     return moved
 
 
 @any_left.of(Deforming)
-def left_deforming(position, anchor, limit_square, cell):
-    """Relative to the strain."""
-    return left_affine(position, anchor, room_square(cell.state), cell.state)
+def left_deforming(position, checked_position, limit_square, cell):
+    """By the positions relative to the strain."""
+    return left_affine(position, checked_position, room_square(cell.state), cell.state)

@@ -1,10 +1,10 @@
-"""Control of bodies: each of x, y, rotation free, moved as told, or pushed as told; and what it takes.
+"""Control of bodies: each of x, y, rotation free, with a prescribed velocity, or with a force added; and its work.
 
 A controlled component is one row.  By displacement: the velocity over a step is the schedule's at its middle, or the
-difference of two positions of it over the step, so that positions are met to round-off; the body takes no notice of
+difference of two positions of it over the step, so that positions are reached to round-off, whatever the
 forces, and the control supplies  m (v' - v)/dt - F.  By force: the schedule's value at the whole step is added to F.
 Work is that supply times the mean of the velocities before and after, which is what the kick changes the kinetic energy
-by.  Source: Matsushima's DEMseg tutorial, I-3.
+by.  Source: Matsushima, DEMseg tutorial I-3.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def schedule_of(control: Control) -> Schedule:
 
 
 @inline
-def told_velocity(kind, schedules, points, which, time, dt):
+def prescribed_velocity(kind, schedules, points, which, time, dt):
     """Velocity (m/s, rad/s) over the step from ``time`` to ``time + dt`` (s) of a control by displacement."""
     if kind == VELOCITY:
         return value_at(schedules, points, which, time + 0.5 * dt)
@@ -63,15 +63,17 @@ def told_velocity(kind, schedules, points, which, time, dt):
 
 
 @kernel
-def apply_control(control, given, k, schedules, points, velocity, spin, mass, inertia, force, torque, time, dt):
-    """Row k of control (c, 4) on the bodies with these arrays, before they are kicked; returns its work over the step.
+def apply_control(control, given, k, schedules, points, d, time, dt):
+    """Row k of control (c, 4) on the bodies ``d``, DiscArrays or ClumpArrays, before they are kicked; returns its work
+    over the step.
 
     Overwrites velocity (n, 2) m/s or spin (n,) rad/s where moved (held components, see withhold, keep it), force
     (n, 2) N/m or torque (n,) N m/m where pushed, and row k of given (c, 2).
     """
+    velocity, spin, force, torque = d.velocity, d.spin, d.force, d.torque
     i, axis, kind = control[k, INDEX], control[k, AXIS], control[k, KIND]
     old = spin[i] if axis == 2 else velocity[i, axis]
-    size = inertia[i] if axis == 2 else mass[i]
+    size = d.inertia[i] if axis == 2 else d.mass[i]
     load = torque[i] if axis == 2 else force[i, axis]
     if kind == PUSH:
         supply = value_at(schedules, points, k, time)
@@ -81,7 +83,7 @@ def apply_control(control, given, k, schedules, points, velocity, spin, mass, in
         else:
             force[i, axis] += supply
     else:
-        new = told_velocity(kind, schedules, points, k, time, dt)
+        new = prescribed_velocity(kind, schedules, points, k, time, dt)
         supply = size * (new - old) / dt - load
         if axis == 2:
             spin[i] = new

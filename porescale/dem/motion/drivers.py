@@ -14,7 +14,7 @@ from porescale.dem.discs import Discs
 from porescale.dem.motion import affine_strain as cells
 from porescale.dem.motion.control import KINDS, PUSH, WORK, Control, schedule_of
 from porescale.dem.motion.periodic_cell import LOAD, Still, Straining
-from porescale.dem.motion.rigid_and_driven import FIRST_CONTROL, Arrays
+from porescale.dem.motion.rigid_and_driven import FIRST_CONTROL, DriverArrays
 from porescale.dem.motion.time_function import Schedule, schedule_rows
 
 Array = NDArray[np.float64]
@@ -28,7 +28,7 @@ class Clump(NamedTuple):
     number: int
 
 
-class Row(NamedTuple):
+class LoadRecord(NamedTuple):
     """One line of the force-displacement record: of a body, since it was watched."""
 
     time: float  # s
@@ -42,7 +42,7 @@ class Drivers:
     """What a system of ``discs`` has beside free discs, with the arrays that kernels read.  steering.py sets it up.
 
     clumps: none at first;  cell (STATE,) or None: of a strained cell, see affine_strain.py;  load (LOAD,): of it;
-    arrays: see rigid_and_driven.Arrays;  period: of the box, m.
+    arrays: see rigid_and_driven.DriverArrays;  period: of the box, m.
     """
 
     def __init__(self, discs: Discs, period: tuple[float, float]) -> None:
@@ -117,13 +117,11 @@ class Drivers:
         told = [*self._rates, *(schedule_of(row[3]) for row in self._controls), *(row[4] for row in self._drives)]
         assert len(self._rates) == FIRST_CONTROL
         schedules, points = schedule_rows(told)
-        c = self.clumps
         watched = [self._locate(body) for body in self._watched]
-        self.arrays = Arrays(
-            self._clock, schedules, points, c.start, c.member, c.offset, c.arm, c.turn, c.position, c.angle,
-            c.velocity, c.spin, c.mass, c.inertia, c.force, c.torque, c.held, c.withheld,
-            np.array(control, np.int64).reshape(-1, 4), self._given, np.array(watched, np.int64).reshape(-1, 2),
-            self._watched_load, np.array([row[:4] for row in self._drives], np.int64).reshape(-1, 4), self._servo,
+        self.arrays = DriverArrays(
+            self._clock, schedules, points, self.clumps.arrays(), np.array(control, np.int64).reshape(-1, 4),
+            self._given, np.array(watched, np.int64).reshape(-1, 2), self._watched_load,
+            np.array([row[:4] for row in self._drives], np.int64).reshape(-1, 4), self._servo,
         )  # fmt: skip
 
     def now(self) -> Still | cells.Deforming:

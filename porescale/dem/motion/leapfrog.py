@@ -2,116 +2,124 @@
 
 from __future__ import annotations
 
-from porescale.common.compiled.jit import by_law, inline, kernel, parallel_kernel, prange
-from porescale.dem.contact.law import BEFORE_SPIN, BEFORE_X, BEFORE_Y, DRAG, EXTERNAL, HOLDERS, note_work
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porescale.common.compiled.jit import by_law, inline, parallel_kernel, prange
+from porescale.dem.contact.budget import BEFORE_SPIN, BEFORE_X, BEFORE_Y, DRAG, EXTERNAL, HOLDERS, add_work
 from porescale.dem.forces.threads import BLOCK, Serial, Threads
 
+Array = NDArray[np.float64]
 
-@kernel
-def withhold(held, withheld, velocity, spin, mass, inertia, force, torque, drag, first, book, dt):
-    """Take the force from held components, so that kick_drift leaves their velocity as it is.
 
-    held (n, 3): not 0 where x, y, rotation is held; (0, 3) if none is.  Adds what the holder bears to withheld (n, 3)
-    N/m, N/m, N m/m, after clearing it if ``first``.  Overwrites force (n, 2) and torque (n,) there with what balances
-    the background damping ``drag`` (1/s), 0 without.  The holder's work over ``dt`` (s) goes into ``book``, if any.
-    """
-    for i in range(held.shape[0]):
-        if first:
-            withheld[i, 0], withheld[i, 1], withheld[i, 2] = 0.0, 0.0, 0.0
-        for a in range(2):
-            if held[i, a]:
-                withheld[i, a] += force[i, a]
-                note_work(book, i, HOLDERS, -force[i, a] * velocity[i, a], dt)
-                force[i, a] = drag * mass[i] * velocity[i, a]
-        if held[i, 2]:
-            withheld[i, 2] += torque[i]
-            note_work(book, i, HOLDERS, -torque[i] * spin[i], dt)
-            torque[i] = drag * inertia[i] * spin[i]
+class Moving(NamedTuple):
+    """What kick_drift takes of discs: fields as in arrays.DiscArrays."""
+
+    position: Array
+    angle: Array
+    velocity: Array
+    spin: Array
+    mass: Array
+    inertia: Array
+    force: Array
+    torque: Array
 
 
 @inline
-def note_step(book, velocity, spin, mass, inertia, external_force, external_torque, drag, dt):
-    """Enter the work of external forces (n, 2) N/m and torques (n,) N m/m and of the drag (1/s) over ``dt`` (s) into
-    ``book`` (n, BOOK), and the velocities before the kick; nothing where it is None.
+def withhold(d, drag, first, budget, dt):
+    """Take the force from held components, so that kick_drift leaves their velocity as it is.
+
+    d: DiscArrays or ClumpArrays.  Adds what the holder bears to d.withheld (n, 3) N/m, N/m, N m/m, after clearing it if
+    ``first``.  Overwrites force (n, 2) and torque (n,) there with what balances the background damping ``drag`` (1/s),
+    0 without.  The holder's work over ``dt`` (s) is added to ``budget``, if any.
     """
-    if book is None:
+    for i in range(d.held.shape[0]):
+        if first:
+            d.withheld[i, 0], d.withheld[i, 1], d.withheld[i, 2] = 0.0, 0.0, 0.0
+        for a in range(2):
+            if d.held[i, a]:
+                d.withheld[i, a] += d.force[i, a]
+                add_work(budget, i, HOLDERS, -d.force[i, a] * d.velocity[i, a], dt)
+                d.force[i, a] = drag * d.mass[i] * d.velocity[i, a]
+        if d.held[i, 2]:
+            d.withheld[i, 2] += d.torque[i]
+            add_work(budget, i, HOLDERS, -d.torque[i] * d.spin[i], dt)
+            d.torque[i] = drag * d.inertia[i] * d.spin[i]
+
+
+@inline
+def add_step_work(budget, d, drag, dt):
+    """Add the work of the external forces on DiscArrays ``d`` and of the drag (1/s) over ``dt`` (s) to ``budget``
+    (n, BUDGET), and keep the velocities before the kick in it; nothing where it is None.
+    """
+    if budget is None:
         return
+    velocity, spin, mass, inertia = d.velocity, d.spin, d.mass, d.inertia
+    external_force, external_torque = d.external_force, d.external_torque
     for i in range(mass.shape[0]):
         u, v, w = velocity[i, 0], velocity[i, 1], spin[i]
-        book[i, EXTERNAL] += (external_force[i, 0] * u + external_force[i, 1] * v + external_torque[i] * w) * dt
-        book[i, DRAG] += drag * (mass[i] * (u * u + v * v) + inertia[i] * w * w) * dt
-        book[i, BEFORE_X], book[i, BEFORE_Y], book[i, BEFORE_SPIN] = u, v, w
+        budget[i, EXTERNAL] += (external_force[i, 0] * u + external_force[i, 1] * v + external_torque[i] * w) * dt
+        budget[i, DRAG] += drag * (mass[i] * (u * u + v * v) + inertia[i] * w * w) * dt
+        budget[i, BEFORE_X], budget[i, BEFORE_Y], budget[i, BEFORE_SPIN] = u, v, w
 
 
-@kernel
-def kick_drift(
-    position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt
-):  # fmt: skip
-    """Move all discs one step; True when one has gone further than allowed from its anchor (or is no
-    number).
+@inline
+def kick_drift(d, checked_position, limit_square, drag, dt):
+    """Move all discs one step; True when one has gone further than allowed from where it was listed (or is no number).
 
-    Overwrites position (n, 2) m, angle (n,) rad, velocity (n, 2) m/s, spin (n,) rad/s; with an angle (0,) nothing turns
-    and spin is left as it is.  mass, inertia (n,) kg/m,
-    kg m^2/m;  force (n, 2) N/m, torque (n,) N m/m;  anchor (n, 2) m, limit_square m^2: the list's skin test;
-    drag 1/s: background damping -drag m v and -drag I w, central in time (0: none, to the bit);  dt s.
+    d: DiscArrays or Moving.  Overwrites position, angle, velocity and spin; with an angle (0,) nothing turns and spin
+    is left as it is.  checked_position (n, 2) m, limit_square m^2: the list's skin test;  drag 1/s: background damping
+    -drag m v and -drag I w, central in time (0: none, to the bit);  dt s.
     """
     before = 1.0 - 0.5 * drag * dt
     after = 1.0 / (1.0 + 0.5 * drag * dt)
     moved = False
-    for i in range(mass.shape[0]):
-        per_mass = dt / mass[i]
-        vx = (velocity[i, 0] * before + force[i, 0] * per_mass) * after
-        vy = (velocity[i, 1] * before + force[i, 1] * per_mass) * after
-        velocity[i, 0], velocity[i, 1] = vx, vy
-        x, y = position[i, 0] + dt * vx, position[i, 1] + dt * vy
-        position[i, 0], position[i, 1] = x, y
-        dx, dy = x - anchor[i, 0], y - anchor[i, 1]
+    for i in range(d.mass.shape[0]):
+        per_mass = dt / d.mass[i]
+        vx = (d.velocity[i, 0] * before + d.force[i, 0] * per_mass) * after
+        vy = (d.velocity[i, 1] * before + d.force[i, 1] * per_mass) * after
+        d.velocity[i, 0], d.velocity[i, 1] = vx, vy
+        x, y = d.position[i, 0] + dt * vx, d.position[i, 1] + dt * vy
+        d.position[i, 0], d.position[i, 1] = x, y
+        dx, dy = x - checked_position[i, 0], y - checked_position[i, 1]
         if not (dx * dx + dy * dy <= limit_square):  # also true for nan
             moved = True
-    for i in range(angle.shape[0]):
-        w = (spin[i] * before + torque[i] * (dt / inertia[i])) * after
-        spin[i] = w
-        angle[i] += dt * w
+    for i in range(d.angle.shape[0]):
+        w = (d.spin[i] * before + d.torque[i] * (dt / d.inertia[i])) * after
+        d.spin[i] = w
+        d.angle[i] += dt * w
     return moved
 
 
 @parallel_kernel
-def kick_drift_threads(
-    position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt
-):  # fmt: skip
+def kick_drift_threads(d, checked_position, limit_square, drag, dt):
     """As kick_drift, block by block."""
-    count = mass.shape[0]
+    count = d.mass.shape[0]
     moved = 0
     for b in prange((count + BLOCK - 1) // BLOCK):
         first, last = b * BLOCK, min((b + 1) * BLOCK, count)
-        moved += kick_drift(
-            position[first:last], angle[first:last], velocity[first:last], spin[first:last], mass[first:last],
-            inertia[first:last], force[first:last], torque[first:last], anchor[first:last], limit_square, drag, dt,
+        own = Moving(
+            d.position[first:last], d.angle[first:last], d.velocity[first:last], d.spin[first:last],
+            d.mass[first:last], d.inertia[first:last], d.force[first:last], d.torque[first:last],
         )  # fmt: skip
+        moved += kick_drift(own, checked_position[first:last], limit_square, drag, dt)
     return moved > 0
 
 
 @by_law
-def sweep_kick(
-    position, angle, velocity, spin, mass, inertia, force, torque, anchor,
-    limit_square, drag, dt, sweep,
-):  # fmt: skip
+def move_free(d, checked_position, limit_square, drag, dt, sweep):
     """As kick_drift, by as many threads as ``sweep`` says."""
 
 
-@sweep_kick.of(Serial)
-def _kick_serial(
-    position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt, sweep
-):  # fmt: skip
-    """One loop."""
-    return kick_drift(position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt)
+@move_free.of(Serial)
+def _move_serial(d, checked_position, limit_square, drag, dt, sweep):
+    """One loop over all discs."""
+    return kick_drift(d, checked_position, limit_square, drag, dt)
 
 
-@sweep_kick.of(Threads)
-def _kick_threads(
-    position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt, sweep
-):  # fmt: skip
-    """Blocks."""
-    return kick_drift_threads(
-        position, angle, velocity, spin, mass, inertia, force, torque, anchor, limit_square, drag, dt
-    )
+@move_free.of(Threads)
+def _move_threads(d, checked_position, limit_square, drag, dt, sweep):
+    """Blocks by threads."""
+    return kick_drift_threads(d, checked_position, limit_square, drag, dt)

@@ -84,33 +84,33 @@ def image_straining(dx, dy, cell):
 
 
 @by_law
-def drift(dx, dy, cell):
+def affine_velocity(dx, dy, cell):
     """Velocity (m/s) of the affine motion at (dx, dy) m from where it is zero."""
 
 
-@drift.of(Still)
+@affine_velocity.of(Still)
 def drift_still(dx, dy, cell):
     """None."""
     return 0.0, 0.0
 
 
-@drift.of(Straining)
+@affine_velocity.of(Straining)
 def drift_straining(dx, dy, cell):
     """G d."""
     return cell.gxx * dx + cell.gxy * dy, cell.gyy * dy
 
 
 @by_law
-def note(gx, gy, dx, dy, cell):
+def add_load(gx, gy, dx, dy, cell):
     """Add a contact to the sums of a strained cell: (gx, gy) N/m on i, (dx, dy) m from i to j.  For one thread only."""
 
 
-@note.of(Still)
+@add_load.of(Still)
 def note_still(gx, gy, dx, dy, cell):
     """Nothing to add to."""
 
 
-@note.of(Straining)
+@add_load.of(Straining)
 def note_straining(gx, gy, dx, dy, cell):
     """Overwrites ``cell.load``."""
     cell.load[XX] += gx * dx

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import kernel
-from porescale.dem.bodies.clumps import gather, place_members
-from porescale.dem.contact.law import EXTERNAL, HOLDERS, note_work
+from porescale.dem.bodies.clumps import ClumpArrays, gather, place_members
+from porescale.dem.contact.budget import EXTERNAL, HOLDERS, add_work
 from porescale.dem.motion.affine_strain import affine_kick_drift, any_left, drift_of
 from porescale.dem.motion.control import CLUMP, INDEX, KIND, PUSH, apply_control
 from porescale.dem.motion.leapfrog import withhold
@@ -24,28 +24,14 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-class Arrays(NamedTuple):
+class DriverArrays(NamedTuple):
     """clock (2,): seconds before the step last changed, and steps since;  schedules, points: of the cell's three, the
-    controls' c and the drives' d;  the rest as in Clumps, control.py and servo.py."""
+    controls' c and the drives' d;  clumps: ClumpArrays;  the rest as in control.py, servo.py and drivers.py."""
 
     clock: Floats
     schedules: Floats
     points: Floats
-    start: Integers
-    member: Integers
-    offset: Floats
-    arm: Floats
-    turn: Floats
-    body_position: Floats
-    body_angle: Floats
-    body_velocity: Floats
-    body_spin: Floats
-    body_mass: Floats
-    body_inertia: Floats
-    body_force: Floats
-    body_torque: Floats
-    body_held: NDArray[np.uint8]
-    body_withheld: Floats
+    clumps: ClumpArrays
     control: Integers
     given: Floats
     watched: Integers
@@ -59,17 +45,18 @@ FIRST_CONTROL = 3
 
 
 @kernel
-def watch(a, force, torque, external_force, external_torque):
+def record_loads(a, d):
     """Add what contacts do to every watched body to ``a.watched_load``: all forces on it so far less the external."""
+    c, force, torque, external_force, external_torque = a.clumps, d.force, d.torque, d.external_force, d.external_torque
     for k in range(a.watched.shape[0]):
         i = a.watched[k, 1]
         if a.watched[k, 0]:
-            x, y, moment = a.body_force[i, 0], a.body_force[i, 1], a.body_torque[i]
-            for m in range(a.start[i], a.start[i + 1]):
-                j = a.member[m]
+            x, y, moment = c.force[i, 0], c.force[i, 1], c.torque[i]
+            for m in range(c.start[i], c.start[i + 1]):
+                j = c.member[m]
                 x -= external_force[j, 0]
                 y -= external_force[j, 1]
-                moment -= external_torque[j] + a.arm[m, 0] * external_force[j, 1] - a.arm[m, 1] * external_force[j, 0]
+                moment -= external_torque[j] + c.arm[m, 0] * external_force[j, 1] - c.arm[m, 1] * external_force[j, 0]
         else:
             x, y, moment = force[i, 0] - external_force[i, 0], force[i, 1] - external_force[i, 1], torque[i]
             moment -= external_torque[i]
@@ -79,62 +66,47 @@ def watch(a, force, torque, external_force, external_torque):
 
 
 @kernel
-def govern(
-    a, walls, wall_force, position, velocity, spin, radius, mass, inertia, force, torque, external_force,
-    external_torque, step, dt, drag, first, book,
-):  # fmt: skip
-    """Between forces and kick, step ``step`` of the call: see module.  ``a`` Arrays; the discs' arrays as elsewhere.
+def apply_drivers(a, walls, wall_load, d, step, dt, drag, first):
+    """Between forces and kick, step ``step`` of the call: see module.  a: DriverArrays;  d: DiscArrays.
 
-    first: sums over the steps of a call begin anew.  Overwrites velocities of what is moved as told, forces of what is
-    pushed, velocities of walls (w, WALL), ``a``'s sums and, if there is one, the energy ``book`` (n, BOOK); what
-    holders of discs do enters it in withhold.
+    first: sums over the steps of a call begin anew.  Overwrites velocities of what has a prescribed one, forces of what
+    is pushed, velocities of walls (w, WALL), the sums in ``a`` and, if there is one, the energy budget; what holders of
+    discs do is added by withhold.  wall_load (w, 3) N/m, N m/m.
     """
     time = a.clock[0] + (a.clock[1] + step) * dt
-    gather(a.start, a.member, a.arm, a.body_force, a.body_torque, force, torque)
+    c, budget = a.clumps, d.budget
+    gather(c, d.force, d.torque)
     if first:
         a.given[:, 0] = 0.0
         a.watched_load[:, :] = 0.0
-    watch(a, force, torque, external_force, external_torque)
+    record_loads(a, d)
     schedules = a.schedules[FIRST_CONTROL:]
     for k in range(a.control.shape[0]):
         i, pushed = a.control[k, INDEX], a.control[k, KIND] == PUSH
         if a.control[k, CLUMP]:
-            work = apply_control(
-                a.control, a.given, k, schedules, a.points, a.body_velocity, a.body_spin, a.body_mass, a.body_inertia,
-                a.body_force, a.body_torque, time, dt,
-            )  # fmt: skip
-            note_work(book, a.member[a.start[i]], EXTERNAL if pushed else HOLDERS, work / dt, dt)
+            work = apply_control(a.control, a.given, k, schedules, a.points, c, time, dt)
+            add_work(budget, c.member[c.start[i]], EXTERNAL if pushed else HOLDERS, work / dt, dt)
         else:
-            work = apply_control(
-                a.control, a.given, k, schedules, a.points, velocity, spin, mass, inertia, force, torque, time, dt
-            )
+            work = apply_control(a.control, a.given, k, schedules, a.points, d, time, dt)
             if pushed:
-                note_work(book, i, EXTERNAL, work / dt, dt)
-    withhold(
-        a.body_held, a.body_withheld, a.body_velocity, a.body_spin, a.body_mass, a.body_inertia, a.body_force,
-        a.body_torque, drag, first, None, dt,
-    )  # fmt: skip
+                add_work(budget, i, EXTERNAL, work / dt, dt)
+    withhold(c, drag, first, None, dt)
     drive_walls(
-        a.drive, a.servo, schedules, a.points, a.control.shape[0], walls, wall_force, position, radius, time, dt
+        a.drive, a.servo, schedules, a.points, a.control.shape[0], walls, wall_load, d.position, d.radius, time, dt
     )
 
 
 @kernel
-def carry_bodies(a, walls, position, angle, velocity, spin, anchor, limit_square, drag, dt, moved, cell):
+def move_bodies(a, d, walls, pairs, drag, dt, moved, cell):
     """After the discs have moved: clumps and walls over ``dt`` (s).  Returns whether pairs must be listed anew.
 
-    Overwrites the rows of members, which move_discs has moved as if they were free; ``moved``: what it said.
+    Overwrites the rows of members, which move_discs has moved as if they were free;  moved: its result.
     """
-    if a.body_mass.shape[0]:
+    c = a.clumps
+    if c.mass.shape[0]:
         gxx, gxy, gyy = drift_of(cell)
-        affine_kick_drift(
-            a.body_position, a.body_angle, a.body_velocity, a.body_spin, a.body_mass, a.body_inertia, a.body_force,
-            a.body_torque, gxx, gxy, gyy, drag, dt,
-        )  # fmt: skip
-        place_members(
-            a.start, a.member, a.offset, a.arm, a.turn, a.body_position, a.body_angle, a.body_velocity, a.body_spin,
-            position, angle, velocity, spin, gxx, gxy, gyy,
-        )  # fmt: skip
-        moved = any_left(position, anchor, limit_square, cell)
+        affine_kick_drift(c, gxx, gxy, gyy, drag, dt)
+        place_members(c, d, gxx, gxy, gyy)
+        moved = any_left(d.position, pairs.checked_position, pairs.limit_square, cell)
     move_walls(walls, dt)
     return moved

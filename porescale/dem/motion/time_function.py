@@ -1,4 +1,4 @@
-"""Numbers that change with time as told: constant, wave, table.
+"""Numbers prescribed over time: constant, wave, table.
 
 One row of numbers each, so that kernels read them; tables lie one after the other in an array of points.
 """

@@ -66,7 +66,7 @@ class Compressed(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Press:
+class Compactor:
     """How discs are compressed: in the rectangle ``lower`` to ``upper`` (m), periodic or between walls, under ``law``,
     with ``friction`` between discs while they grow (walls without), density kg/m³, seed of the random start."""
 
@@ -194,7 +194,7 @@ class Press:
         return Compressed(grains, scale, fraction, mean_stress(grains), 0.5 * max_overlap(grains).share)
 
 
-def kept(press: Press, radius: Array, pressure: float | None, folder: Path | None = None) -> Compressed:
+def kept(press: Compactor, radius: Array, pressure: float | None, folder: Path | None = None) -> Compressed:
     """``press.to_pressure``, or ``to_size`` without one; from disk if it was made before, with the bits it had.
 
     folder : of the cache, default that of settled packings.  A damaged file is made anew, a folder that cannot be

@@ -7,83 +7,62 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.dem.arrays import DiscArrays, Pairs, Surfaces
 from porescale.dem.contact.law import KernelLaw
 from porescale.dem.forces.threads import Serial, serial
 from porescale.dem.resting.sleep_kernels import list_part, return_springs
 from porescale.dem.state import State
 from porescale.dem.step import contact_steps
 
-Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 ROOM = 4
 """Pairs per disc that there is room for at first."""
 
 
 @dataclass(eq=False)
-class Part:
+class ActiveSet:
     """m discs of a system, those of ``index`` (m,) in rising order, with copies of what contact steps need.
 
-    origin (p,): places of the part's pairs in the system's list;  held, withheld (m, 3) as in Grains;  load (w, 3),
-    plate_load (p, 2), rectangle_load (r, 2) N/m, N m/m: of these discs on the surfaces, after ``steps``.
+    discs, pairs: as DiscArrays and Pairs;  origin (p,): places of its pairs in the system's list;  wall_spring,
+    plate_spring, rectangle_spring (s, m, c) m: at surfaces;  load (w, 3), plate_load (p, 2), rectangle_load (r, 2) N/m,
+    N m/m: of these discs on the surfaces, after ``steps``.
     """
 
     index: Index
-    position: Array
-    angle: Array
-    velocity: Array
-    spin: Array
-    radius: Array
-    mass: Array
-    inertia: Array
-    force: Array
-    torque: Array
-    external_force: Array
-    external_torque: Array
-    anchor: Array
-    held: NDArray[np.uint8]
-    withheld: Array
-    start: Index
-    partner: NDArray[np.int32]
-    carried: Array
+    discs: DiscArrays
+    pairs: Pairs
     origin: Index
-    wall_spring: Array
-    plate_spring: Array
-    rectangle_spring: Array
-    load: Array
-    plate_load: Array
-    rectangle_load: Array
+    wall_spring: NDArray[np.float64]
+    plate_spring: NDArray[np.float64]
+    rectangle_spring: NDArray[np.float64]
+    load: NDArray[np.float64]
+    plate_load: NDArray[np.float64]
+    rectangle_load: NDArray[np.float64]
     law: KernelLaw
     sweep: Serial
 
     def steps(
-        self, grains: State, count: int, dt: float, drag: float, limit: float, first: bool, surfaces: bool = True
+        self, grains: State, count: int, dt: float, drag: float, limit: float, surfaces: bool = True
     ) -> tuple[int, bool]:
         """Up to ``count`` contact steps of ``dt`` (s): (steps done, whether the system's list must be renewed first).
 
-        limit : m², of the list's skin test;  first : sums of withheld forces begin anew;  surfaces : False leaves out
-        walls, plates and rectangles.
+        limit : m², of the list's skin test;  surfaces : False leaves out walls, plates and rectangles.  Sums of
+        withheld forces begin anew.
         """
-        g = grains
-        walls, plates, rectangles = g.walls, g.plates, g.rectangles
-        if not surfaces:
-            walls, plates, rectangles = walls[:0], plates[:0], rectangles[:0]
+        g, all_or_none = grains, slice(None) if surfaces else slice(0)
+        around = Surfaces(
+            g.walls[all_or_none], g.wall_laws, self.wall_spring, self.load[all_or_none],
+            g.plates[all_or_none], g.plate_laws, self.plate_spring, self.plate_load[all_or_none],
+            g.rectangles[all_or_none], g.rectangle_laws, self.rectangle_spring, self.rectangle_load[all_or_none],
+        )  # fmt: skip
         done, moved = contact_steps(
-            count, dt, drag,
-            self.position, self.angle, self.velocity, self.spin, self.radius, self.mass, self.inertia, self.force,
-            self.torque, self.external_force, self.external_torque,
-            self.start, self.partner, self.carried, self.anchor, limit,
-            self.law,
-            walls, g.wall_laws, self.wall_spring, self.load[: len(walls)],
-            plates, g.plate_laws, self.plate_spring, self.plate_load[: len(plates)],
-            rectangles, g.rectangle_laws, self.rectangle_spring, self.rectangle_load[: len(rectangles)],
-            self.held, self.withheld, first,
-            self.sweep if surfaces else serial(len(self.mass), 0),
-            None, g.cell, None, None,
+            count, dt, drag, True, self.discs, self.pairs._replace(limit_square=limit), self.law, around,
+            self.sweep if surfaces else serial(len(self.index), 0), None, g.cell, None,
         )  # fmt: skip
         return int(done), bool(moved)
 
     def springs_back(self, grains: State) -> None:
-        """Copy the springs at surfaces and the energy book, if any, back to the system."""
+        """Copy the springs at surfaces and the energy budget, if any, back to the system."""
         for own, kept in (
             (self.wall_spring, grains.wall_spring), (self.plate_spring, grains.plate_spring),
             (self.rectangle_spring, grains.rectangle_spring),
@@ -91,12 +70,12 @@ class Part:
             if len(own):
                 return_springs(self.index, kept, own)
         if grains.book is not None:
-            grains.book[self.index] = self.law.book
+            grains.book[self.index] = self.discs.budget
 
 
-def part_of(
+def active_set(
     grains: State, asleep: NDArray[np.uint8], index: Index, *, frozen: bool, pairs: bool = True
-) -> Part:  # fmt: skip
+) -> ActiveSet:  # fmt: skip
     """The discs ``index`` of ``grains``, whose list is up to date, without external loads.
 
     asleep (n,): who sleeps; they are held here.  frozen : pairs are those among sleepers, else those with a disc that
@@ -116,21 +95,15 @@ def part_of(
     held = np.repeat(asleep[index, None], 3, axis=1)
     if len(grains.held):
         held |= grains.held[index]
-    law = grains.contact
-    own = type(law)(
-        law.table, None if law.material is None else law.material[index], law.mass[index],
-        None if law.book is None else law.book[index],
+    own = grains.some_discs(index)._replace(
+        angle=d.angle[index], mass=d.mass[index], inertia=d.inertia[index], external_force=np.zeros((m, 2)),
+        external_torque=np.zeros(m), held=held, withheld=np.zeros((m, 3)),
+        budget=None if grains.book is None else grains.book[index],
     )  # fmt: skip
-    surfaces = len(grains.walls) + len(grains.plates) + len(grains.rectangles)
-    return Part(
-        index=index, position=d.position[index], angle=d.angle[index], velocity=d.velocity[index], spin=d.spin[index],
-        radius=d.radius[index], mass=d.mass[index], inertia=d.inertia[index], force=np.zeros((m, 2)),
-        torque=np.zeros(m), external_force=np.zeros((m, 2)), external_torque=np.zeros(m),
-        anchor=listed.checked_position[index],
-        held=held, withheld=np.zeros((m, 3)), start=start, partner=partner, carried=listed.carried[origin],
-        origin=origin, wall_spring=np.ascontiguousarray(grains.wall_spring[:, index]),
-        plate_spring=np.ascontiguousarray(grains.plate_spring[:, index]),
-        rectangle_spring=np.ascontiguousarray(grains.rectangle_spring[:, index]),
-        load=np.zeros((len(grains.walls), 3)), plate_load=np.zeros((len(grains.plates), 2)),
-        rectangle_load=np.zeros((len(grains.rectangles), 2)), law=own, sweep=serial(m, surfaces),
+    return ActiveSet(
+        index, own, Pairs(start, partner, listed.carried[origin], listed.checked_position[index], 0.0), origin,
+        np.ascontiguousarray(grains.wall_spring[:, index]), np.ascontiguousarray(grains.plate_spring[:, index]),
+        np.ascontiguousarray(grains.rectangle_spring[:, index]),
+        np.zeros((len(grains.walls), 3)), np.zeros((len(grains.plates), 2)), np.zeros((len(grains.rectangles), 2)),
+        grains.contact, serial(m, grains.surface_count),
     )  # fmt: skip

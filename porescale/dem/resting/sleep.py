@@ -3,13 +3,13 @@
 A disc falls asleep when for ``after`` seconds it went slower than a speed and was out of balance by less than half of
 a share of its weight; its velocity is then zero (the energy taken is counted, ``removed``).  Contacts among sleepers
 are frozen: their forces are worked out once.  Discs that move, and the sleepers they are listed with, are a system of
-their own (asleep_part.py), in which the same kernel does the same contact steps; sleepers are held there.  A sleeper
+their own (active_set.py), in which the same kernel does the same contact steps; sleepers are held there.  A sleeper
 wakes, its neighbours with it, as soon as its contacts and external forces are out of balance by more than ``share`` of
 its weight, be it by a blow, by a neighbour that leaves or by the fluid.  So what is left out is never out of balance by
 more than that share: it stands within  share W/k  of where its springs balance, a share of its own overlap.
 
 All sleep ends while a wall, plate or rectangle moves or comes or goes (plates above all discs do not count).
-One thread works; results are the same at any number.  Clumps, frames, bonds and strained cells do not know sleep.
+One thread works; results are the same at any number.  Clumps, frames, bonds and strained cells are without sleep.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
-from porescale.dem.contact.law import BEFORE_SPIN, BEFORE_X, DRAG
+from porescale.dem.contact.budget import BEFORE_SPIN, BEFORE_X, DRAG
 from porescale.dem.forces.rectangle import VELOCITY_X, VELOCITY_Y
 from porescale.dem.forces.walls import LOW, PRESENT, VELOCITY, VX, WALL
 from porescale.dem.listing import current_pairs
-from porescale.dem.resting.active_set import Part, part_of
+from porescale.dem.resting.active_set import ActiveSet, active_set
 from porescale.dem.resting.sleep_kernels import (
     ASLEEP,
     any_speed,
@@ -34,6 +34,7 @@ from porescale.dem.resting.sleep_kernels import (
     find_border,
     put_back,
     rest_of,
+    return_history,
     take_out,
     wake,
 )
@@ -72,7 +73,7 @@ class Sleep:
         self._some = False
         self._looked = grains.steps  # steps of the system at the last look
         self._surfaces = self._surfaces_of(grains)
-        self._part: Part | None = None  # as the sets of sleepers and the list were when it was made
+        self._part: ActiveSet | None = None  # as the sets of sleepers and the list were when it was made
         self._builds = self._looks = -1
         self._deep = np.zeros(0, np.int64)  # sleepers whom nobody who moves is listed with
         self._loads = np.zeros((0, 3)), np.zeros((0, 2)), np.zeros((0, 2))  # of those on the surfaces
@@ -101,7 +102,7 @@ class Sleep:
             part = self._part
             assert part
             self._take_out(grains, part)
-            done, grains.stale = part.steps(grains, left, dt, drag, grains.pairs.skin_margin**2, True)
+            done, grains.stale = part.steps(grains, left, dt, drag, grains.pairs.skin_margin**2)
             calls = self._put_back(grains, part, done, left == count)
             left -= done
             grains.steps += done
@@ -164,7 +165,9 @@ class Sleep:
                 self._divide(grains, dt)
                 self._builds = pairs.builds
             elif self._looks != pairs.looks:  # by this step, or by who looked at the list since the last
-                np.take(pairs.checked_position, self._part.index, axis=0, out=self._part.anchor, mode="clip")
+                np.take(
+                    pairs.checked_position, self._part.index, axis=0, out=self._part.pairs.checked_position, mode="clip"
+                )
             self._looks = pairs.looks
             d = grains.discs
             if not disturbed(
@@ -185,34 +188,27 @@ class Sleep:
         """The discs that move and those beside them as a part; of all others the balance of their frozen contacts."""
         find_border(self.asleep, grains.pairs.start, grains.pairs.partner, self._role)
         sleepers = np.flatnonzero(self.asleep)
-        among = part_of(grains, self.asleep, sleepers, frozen=True)
-        among.steps(grains, 1, dt, 0.0, np.inf, True, surfaces=False)
+        among = active_set(grains, self.asleep, sleepers, frozen=True)
+        among.steps(grains, 1, dt, 0.0, np.inf, surfaces=False)
         self.balance[:] = 0.0
-        self.balance[sleepers] = among.withheld
+        self.balance[sleepers] = among.discs.withheld
         self._deep = np.flatnonzero(self._role == 0)
-        against = part_of(grains, self.asleep, self._deep, frozen=True, pairs=False)
-        against.steps(grains, 1, dt, 0.0, np.inf, True)
-        self.balance[self._deep] += against.withheld
+        against = active_set(grains, self.asleep, self._deep, frozen=True, pairs=False)
+        against.steps(grains, 1, dt, 0.0, np.inf)
+        self.balance[self._deep] += against.discs.withheld
         self._loads = against.load, against.plate_load, against.rectangle_load
-        self._part = part_of(grains, self.asleep, np.flatnonzero(self._role), frozen=False)
+        self._part = active_set(grains, self.asleep, np.flatnonzero(self._role), frozen=False)
 
-    def _take_out(self, grains: State, part: Part) -> None:
+    def _take_out(self, grains: State, part: ActiveSet) -> None:
         """Bring the part to the state of the system."""
-        d = grains.discs
-        take_out(
-            part.index, self.asleep, self.balance, d.position, d.angle, d.velocity, d.spin, grains.external_force,
-            grains.external_torque, part.position, part.angle, part.velocity, part.spin, part.external_force,
-            part.external_torque,
-        )  # fmt: skip
+        take_out(part.index, self.asleep, self.balance, grains.disc_arrays(), part.discs)
 
-    def _put_back(self, grains: State, part: Part, done: int, first: bool) -> int:
+    def _put_back(self, grains: State, part: ActiveSet, done: int, first: bool) -> int:
         """Bring the system to the state of the part after ``done`` steps; how many sleepers are called."""
-        d = grains.discs
+        return_history(part.origin, grains.pairs.carried, part.pairs.history)
         calls: int = put_back(
-            part.index, self.asleep, d.position, d.angle, d.velocity, d.spin, d.force, d.torque,
-            part.position, part.angle, part.velocity, part.spin, part.force, part.torque, part.withheld, done,
-            d.radius, self.allowed, self.called, part.origin, grains.pairs.carried, part.carried,
-        )  # fmt: skip
+            part.index, self.asleep, grains.disc_arrays(), part.discs, done, self.allowed, self.called
+        )
         part.springs_back(grains)
         np.add(part.load, self._loads[0], out=grains.wall_load)
         np.add(part.plate_load, self._loads[1], out=grains.plate_force)
@@ -220,7 +216,7 @@ class Sleep:
         if len(grains.held):
             grains.withheld[:] *= not first
             by_owner = grains.held[part.index].any(axis=1)
-            grains.withheld[part.index[by_owner]] += part.withheld[by_owner]
+            grains.withheld[part.index[by_owner]] += part.discs.withheld[by_owner]
         return calls
 
     def state(self) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Kernels of discs that sleep (asleep.py): who rests, who is disturbed, and the list of what must be worked out."""
+"""Kernels of discs that sleep (sleep.py): who rests, who is disturbed, and the list of what must be worked out."""
 
 from __future__ import annotations
 
@@ -125,58 +125,56 @@ def list_part(asleep, frozen, index, number, start, partner, part_start, part_pa
 
 
 @kernel
-def take_out(
-    index, asleep, balance, position, angle, velocity, spin, external_force, external_torque,
-    part_position, part_angle, part_velocity, part_spin, part_external, part_external_torque,
-):  # fmt: skip
-    """Copy state and external loads of discs ``index`` (m,) to the arrays of a part.
+def take_out(index, asleep, balance, d, part):
+    """Copy state and external loads of discs ``index`` (m,) of ``d`` to ``part``, both DiscArrays.
 
     To the external loads of sleepers what their contacts with other sleepers do is added, ``balance`` (n, 3).
     """
     for m in range(index.shape[0]):
         i = index[m]
         for a in range(2):
-            part_position[m, a] = position[i, a]
-            part_velocity[m, a] = velocity[i, a]
-            part_external[m, a] = external_force[i, a]
-        part_angle[m], part_spin[m], part_external_torque[m] = angle[i], spin[i], external_torque[i]
+            part.position[m, a] = d.position[i, a]
+            part.velocity[m, a] = d.velocity[i, a]
+            part.external_force[m, a] = d.external_force[i, a]
+        part.angle[m], part.spin[m], part.external_torque[m] = d.angle[i], d.spin[i], d.external_torque[i]
         if asleep[i] == ASLEEP:
-            part_external[m, 0] += balance[i, 0]
-            part_external[m, 1] += balance[i, 1]
-            part_external_torque[m] += balance[i, 2]
+            part.external_force[m, 0] += balance[i, 0]
+            part.external_force[m, 1] += balance[i, 1]
+            part.external_torque[m] += balance[i, 2]
 
 
 @kernel
-def put_back(
-    index, asleep, position, angle, velocity, spin, force, torque,
-    part_position, part_angle, part_velocity, part_spin, part_force, part_torque, withheld, count, radius, allowed,
-    called, origin, carried, part_carried,
-):  # fmt: skip
-    """Copy the state of a part, after ``count`` steps, back to those of the discs ``index`` (m,) that do not sleep.
+def put_back(index, asleep, d, part, count, allowed, called):
+    """Copy the state of ``part``, after ``count`` steps, back to the discs ``index`` (m,) of ``d`` that do not sleep.
 
-    Of those that do, ``withheld`` (m, 3), summed over the steps, is what they are out of balance by: its mean
-    overwrites their force and torque; whoever has more than ``allowed`` (n,) N/m is ``called`` (n,).  Returns how many.
-    The springs of its pairs overwrite those of ``origin`` (p,) in the list.
+    Of those that do, ``part.withheld`` (m, 3), summed over the steps, is what they are out of balance by: its mean
+    overwrites their force and torque; those with more than ``allowed`` (n,) N/m are ``called`` (n,).  Returns how many.
     """
-    for k in range(origin.shape[0]):
-        for a in range(carried.shape[1]):
-            carried[origin[k], a] = part_carried[k, a]
     calls = 0
     for m in range(index.shape[0]):
         i = index[m]
         if asleep[i] == ASLEEP:
-            fx, fy, moment = withheld[m, 0] / count, withheld[m, 1] / count, withheld[m, 2] / count
-            force[i, 0], force[i, 1], torque[i] = fx, fy, moment
-            if beyond(fx, fy, moment, radius[i], allowed[i]):
+            fx, fy = part.withheld[m, 0] / count, part.withheld[m, 1] / count
+            moment = part.withheld[m, 2] / count
+            d.force[i, 0], d.force[i, 1], d.torque[i] = fx, fy, moment
+            if beyond(fx, fy, moment, d.radius[i], allowed[i]):
                 called[i] = 1
                 calls += 1
         else:
             for a in range(2):
-                position[i, a] = part_position[m, a]
-                velocity[i, a] = part_velocity[m, a]
-                force[i, a] = part_force[m, a]
-            angle[i], spin[i], torque[i] = part_angle[m], part_spin[m], part_torque[m]
+                d.position[i, a] = part.position[m, a]
+                d.velocity[i, a] = part.velocity[m, a]
+                d.force[i, a] = part.force[m, a]
+            d.angle[i], d.spin[i], d.torque[i] = part.angle[m], part.spin[m], part.torque[m]
     return calls
+
+
+@kernel
+def return_history(origin, history, part_history):
+    """Copy the springs of a part's pairs (p, s) m back to rows ``origin`` (p,) of ``history``."""
+    for k in range(origin.shape[0]):
+        for a in range(history.shape[1]):
+            history[origin[k], a] = part_history[k, a]
 
 
 @kernel

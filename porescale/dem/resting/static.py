@@ -22,7 +22,7 @@ def resting(held, velocity, spin):
 
 @kernel
 def clear(position, radius, start, partner, walls, cell):
-    """Whether no listed pair touches, and no disc a wall (w, 4 or wider): as in forces.py and walls.py."""
+    """Whether no listed pair touches, and no disc a wall (w, 4 or wider): as in forces/pairs.py and forces/walls.py."""
     for i in range(radius.shape[0]):
         for k in range(start[i], start[i + 1]):
             j = partner[k]
@@ -54,21 +54,19 @@ def unchanged(position, radius, walls, last_position, last_radius, last_walls):
 
 
 @kernel
-def bear(
-    count, held, velocity, spin, position, radius, walls, last_position, last_radius, last_walls, force, torque,
-    withheld,
-):  # fmt: skip
+def bear(count, d, walls, last):
     """Whether all discs are held and at rest, and they and the walls as they were last; if so, what ``count`` steps
     write.
 
-    force (n, 2) N/m, torque (n,) N m/m: from outside;  withheld (n, 3): overwritten with the mean over the steps,
-    rounded as they round it.  Returning False, it writes nothing.
+    d: DiscArrays;  walls (w, WALL);  last: StaticState.  Overwrites d.withheld (n, 3) with the mean of the external
+    loads over the steps, rounded as they round it.  Returning False, it writes nothing.
     """
-    if not resting(held, velocity, spin):
+    if not resting(d.held, d.velocity, d.spin):
         return False
-    if not unchanged(position, radius, walls, last_position, last_radius, last_walls):
+    if not unchanged(d.position, d.radius, walls, last.position, last.radius, last.walls):
         return False
-    for i in range(spin.shape[0]):
+    force, torque, withheld = d.external_force, d.external_torque, d.withheld
+    for i in range(d.spin.shape[0]):
         fx, fy, moment = 0.0, 0.0, 0.0
         for _ in range(count):
             fx += force[i, 0]
@@ -106,11 +104,7 @@ def leave_out(grains: State, last: StaticState, dt: float, count: int, drag: flo
     """
     if dt != last.dt or drag != last.drag or not count > 0 or others_are_about(grains):
         return False
-    d = grains.discs
-    if not bear(
-        count, grains.held, d.velocity, d.spin, d.position, d.radius, grains.walls, last.position, last.radius,
-        last.walls, grains.external_force, grains.external_torque, grains.withheld,
-    ):  # fmt: skip
+    if not bear(count, grains.disc_arrays(), grains.walls, last):
         return False
     grains.steps += count
     grains.steps_of_dt += count

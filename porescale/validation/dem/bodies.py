@@ -101,8 +101,9 @@ def stored(grains: Grains) -> float:
     """Elastic energy of a strained cell now, J/m."""
     (width, _), (tilt, height) = grains.steering.edges()
     now = Straining(width, height, tilt, 0.0, 0.0, 0.0, np.zeros(LOAD))
-    d, pairs = grains.discs, grains.current_pairs()
-    parts = elastic_pairs(d.position, d.radius, pairs.start, pairs.partner, pairs.carried, grains.contact, now)
+    d, material = grains.discs, grains.material
+    grains.current_pairs()
+    parts = elastic_pairs(d.position, d.radius, material, grains.pair_arrays(), grains.contact, now)
     return float(sum(parts))
 
 

@@ -21,7 +21,7 @@ from porescale.common.evidence.validations import Measured, Validations
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import Discs
 from porescale.dem.measures.network import stiffness
-from porescale.dem.prepare.compaction import Press
+from porescale.dem.prepare.compaction import Compactor
 from porescale.dem.prepare.rock import Curve, Kind, Rock, load, rock
 from porescale.dem.prepare.tessellate import area, delaunay, voronoi
 
@@ -58,7 +58,7 @@ def packing(
     radius = np.random.default_rng(seed).uniform(0.375, 0.625, count) * DIAMETER
     height = math.sqrt(float(np.sum(np.pi * radius**2)) / (0.84 * shape))
     size = (shape * height, height)
-    press = Press((0.0, 0.0), size, law(), (False, False), friction, DENSITY, seed)
+    press = Compactor((0.0, 0.0), size, law(), (False, False), friction, DENSITY, seed)
     # p = n F d/2 over the area of a disc, n contacts of force F a disc, packed to 0.84; n is 3.15 with the walls.
     pressure = 3.15 * 0.84 / math.pi * TENSION / DIAMETER
     return press.to_pressure(radius, pressure).grains.discs, size

@@ -92,7 +92,7 @@ def test_kernels_run_as_plain_python(monkeypatch):
     soil.v[:] = 0.01 * np.sin(soil.x)
     flow.begin(1e-4)
     kernels = velocity_gradients, deform, accelerate
-    arrays = ("record", "matrix", "density", "stress", "separation_strain", "plastic_shear", "acceleration")
+    arrays = ("record", "matrix", "density", "stress", "separation_strain", "plastic_shear", "acceleration", "spread")
     first = {name: getattr(soil, name).copy() for name in arrays}
     made = (soil.force, soil.stress, soil.acceleration, soil.spread, soil.drift)
     choices = Choices(0.0, -9.8, 1.0, False, 100.0, 0.0, 4.0, law.spacing)

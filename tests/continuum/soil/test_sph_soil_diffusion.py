@@ -160,7 +160,7 @@ STRAINED = np.array([[3.0, 20.0], [2.0, -1.5]])
 def density_after(flow, monkeypatch, steps=100, step=1e-4):
     """Densities over those at the start, (soil,), of soil strained evenly, and what det F makes of them."""
 
-    def even(soil, start, split, partner, record, *_):
+    def even(soil, record, *_):
         record[:, GXX:] = STRAINED.ravel()
 
     monkeypatch.setattr(flow_module, "velocity_gradients", even)  # exact in corners, too

@@ -220,13 +220,10 @@ def test_kernels_do_the_same_as_plain_python():
         t, d = grains.steering.clumps, grains.discs
         d.force[:] = np.arange(2 * d.count).reshape(-1, 2)
         run = clumps.gather.py_func if plain else clumps.gather
-        run(t.start, t.member, t.arm, t.force, t.torque, d.force, d.torque)
+        run(t.arrays(), d.force, d.torque)
         t.angle += 0.3
         run = clumps.place_members.py_func if plain else clumps.place_members
-        run(
-            t.start, t.member, t.offset, t.arm, t.turn, t.position, t.angle, t.velocity, t.spin, d.position, d.angle,
-            d.velocity, d.spin, 0.1, 0.2, 0.3,
-        )  # fmt: skip
+        run(t.arrays(), grains.disc_arrays(), 0.1, 0.2, 0.3)
         made.append((t.force, t.torque, d.position, d.velocity, d.angle))
     for one, other in zip(*made, strict=True):
         np.testing.assert_array_equal(one, other)

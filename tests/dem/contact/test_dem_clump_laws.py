@@ -49,7 +49,7 @@ def test_a_clump_bounces_off_as_its_own_mass_under_hertz(speed):
     assert abs(clumps.spin[0]) * RADIUS < 1e-14  # round-off
     # The twin that must fail: damped as the member alone, half as heavy, it keeps more.
     grains = upright(SOFT, 0.5 * speed * dt)
-    grains.contact = grains.contact._replace(mass=grains.discs.mass)
+    grains.body_mass = grains.discs.mass
     grains.steering.clumps.velocity[0, 1] = -speed
     grains.steering.clumps.place(grains.discs)
     grains.step(dt, count=1300)
@@ -58,11 +58,11 @@ def test_a_clump_bounces_off_as_its_own_mass_under_hertz(speed):
 
 def test_a_law_that_is_set_after_clumps_were_bound_knows_their_mass():
     grains = upright(Linear(STIFFNESS), 0.0)
-    assert grains.contact.mass.tolist() == pytest.approx([2.0 * MASS] * 2)
+    assert grains.body_mass.tolist() == pytest.approx([2.0 * MASS] * 2)
     other = upright(SOFT, 0.0)
-    before = other.contact.mass.copy()
+    before = other.body_mass.copy()
     other.set_law(replace(SOFT, friction=0.3))
-    np.testing.assert_array_equal(other.contact.mass, before)
+    np.testing.assert_array_equal(other.body_mass, before)
 
 
 @pytest.mark.slow  # compiles the contact loop for laws of its own

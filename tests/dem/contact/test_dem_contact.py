@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from porescale.common.core.errors import InputError
-from porescale.dem.contact.law import LinearSliding, contact, coulomb
+from porescale.dem.contact.law import Relative, contact, coulomb
 from porescale.dem.contact.linear import Linear
 from porescale.dem.timestep import packing_limit, stable_step
 
@@ -89,8 +89,9 @@ def test_safe_step_respects_stability_and_resolves_the_contact():
 def at_contact(law, overlap, closing, slip=0.0, spring=0.0, dt=1e-3, compiled=True):
     """(normal, tangential, spring) of a contact of unit mass and radius."""
     function = contact if compiled else contact.py_func
-    kind = LinearSliding(law.row()[None, None], None, np.ones(1), None)
-    normal, tangential, _, spring, _ = function(overlap, closing, slip, 0.0, spring, 0.0, 1.0, 1.0, dt, law.row(), kind)
+    kind = law.kernel(law.row()[None, None], 1.0, None)
+    seen = Relative(overlap, closing, slip, 0.0, 1.0)
+    normal, tangential, _, spring, _ = function(seen, spring, 0.0, 1.0, dt, law.row(), kind)
     return normal, tangential, spring
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from porescale.common.core.errors import InputError
 from porescale.dem.contact.hertz import Hertz
-from porescale.dem.contact.law import contact
+from porescale.dem.contact.law import Relative, contact
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Materials
 from porescale.dem.discs import make_discs
@@ -28,7 +28,7 @@ def test_hertz_and_rolling_follow_the_slow_twin(resistance):
     young, poisson, e, mu, dt = 1e8, 0.3, 0.6, 0.4, 1e-5
     law = Hertz.of(young, poisson, e, mu, rolling_friction=resistance)
     slow = HertzContact(young, poisson, 0.01, 0.02, 0.8, 3.0, law.damping_ratio, mu, resistance)
-    kernel = law.kind(law.rolls)(law.row()[None, None], None, np.ones(1), None)
+    kernel = law.kernel(law.row()[None, None], 1.0, 1.0 if law.rolls else None)
     radius, mass = 0.01 * 0.02 / 0.03, 0.8 * 3.0 / 3.8
     spring = roll = 0.0
     rng = np.random.default_rng(0)
@@ -39,7 +39,7 @@ def test_hertz_and_rolling_follow_the_slow_twin(resistance):
     limits = set()
     for d, c, s, w in zip(overlap, closing, slips, turns, strict=True):
         normal, tangential, resisting, spring, roll = contact.py_func(
-            d, c, s, radius * w, spring, roll, radius, mass, dt, law.row(), kernel
+            Relative(d, c, s, radius * w, radius), spring, roll, mass, dt, law.row(), kernel
         )
         exact = slow.step(d, c, s, w, dt)
         # Some twenty operations each and a spring that is a sum of up to 399 terms.
@@ -51,8 +51,8 @@ def test_hertz_and_rolling_follow_the_slow_twin(resistance):
 
 def test_keeping_the_spring_on_loading_is_another_law():  # the twin that must fail
     law = Hertz.of(1e8, 0.3, friction=10.0)
-    kernel = law.kind(False)(law.row()[None, None], None, np.ones(1), None)
-    loads = contact.py_func(4e-5, 3.0, 0.0, 0.0, 1e-6, 0.0, 0.01, 1.0, 1e-5, law.row(), kernel)
+    kernel = law.kernel(law.row()[None, None], 1.0, None)
+    loads = contact.py_func(Relative(4e-5, 3.0, 0.0, 0.0, 0.01), 1e-6, 0.0, 1.0, 1e-5, law.row(), kernel)
     kept = 8.0 * law.shear_modulus * math.sqrt(0.01 * 4e-5) * 1e-6
     assert -loads[1] == pytest.approx(0.5 * kept)  # d from 1e-5 to 4e-5: the force stays, the spring halves
 

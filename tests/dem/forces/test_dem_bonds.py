@@ -147,7 +147,7 @@ def test_kernels_do_the_same_as_plain_python(compiled):
     )
     back = np.zeros(len(made.back))
     run = bonds.pressing if compiled else bonds.pressing.py_func
-    run(d.position, d.radius, made.ends, listed, grains.contact, grains.cell, back)
+    run(d.position, d.radius, grains.body_mass, grains.material, made.ends, listed, grains.contact, grains.cell, back)
     np.testing.assert_array_equal(back, made.back)
     # Forces that are equal and opposite sum to nothing; energies are those of k d^2.
     np.testing.assert_allclose(force.sum(axis=0), 0.0, atol=1e-12 * np.abs(back).max())

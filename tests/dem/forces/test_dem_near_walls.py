@@ -7,9 +7,9 @@ import pytest
 
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
-from porescale.dem.forces.walls import NX, PX, RUN, Box, ask_near, runs_of
+from porescale.dem.forces.walls import NX, PX, RUN, Box, mark_near, runs_of
 from porescale.dem.grains import Grains
-from porescale.dem.step import ASK_AGAIN, WAY
+from porescale.dem.step import MARK_AGAIN, WAY
 
 SMOOTH, ROUGH = Linear(1e5, 2.0), Linear(1e5, 2.0, 2.5e4, 1.0, 0.5)
 DT = 1e-5
@@ -31,7 +31,7 @@ def test_a_run_is_near_a_wall_when_one_of_its_discs_is(count):
     near, way = np.full((len(walls), runs_of(count)), 2, np.uint8), 0.01
     gap = np.einsum("nwk,wk->wn", position[:, None] - walls[:, PX : PX + 2], walls[:, NX : NX + 2]) - radius
     slow = [[(gap[w, k : k + RUN] <= way).any() for k in range(0, count, RUN)] for w in range(len(walls))]
-    ask_near.py_func(position, radius, walls, way, near)
+    mark_near.py_func(position, radius, walls, way, near)
     np.testing.assert_array_equal(near, np.array(slow).reshape(near.shape))
     if count > RUN:
         assert 0 < near.sum() < near.size
@@ -41,7 +41,7 @@ def test_a_disc_that_is_nowhere_is_near_every_wall():
     near = np.zeros((4, 2), np.uint8)
     position = np.full((RUN + 1, 2), 0.5)
     position[RUN] = np.nan
-    ask_near.py_func(position, np.full(RUN + 1, 0.01), Box((0.0, 0.0), (1.0, 1.0)).walls()[1], 0.01, near)
+    mark_near.py_func(position, np.full(RUN + 1, 0.01), Box((0.0, 0.0), (1.0, 1.0)).walls()[1], 0.01, near)
     np.testing.assert_array_equal(near, [[0, 1]] * 4)
 
 
@@ -74,10 +74,10 @@ def test_asked_without_the_way_discs_go_a_touching_one_is_left_out():  # the twi
     start, steps = d.position.copy(), 50
     d.velocity[0] = (-room / (steps * DT), 0.0)  # to the left by no more than the list allows; the gap is a fifth
     with_way, without = np.zeros((4, 1), np.uint8), np.zeros((4, 1), np.uint8)
-    ask_near.py_func(start, d.radius, grains.walls, WAY * room, with_way)
-    ask_near.py_func(start, d.radius, grains.walls, 0.0, without)
+    mark_near.py_func(start, d.radius, grains.walls, WAY * room, with_way)
+    mark_near.py_func(start, d.radius, grains.walls, 0.0, without)
     builds = grains.pairs.builds
-    assert steps >= ASK_AGAIN
+    assert steps >= MARK_AGAIN
     grains.step(DT, count=steps // 2)
     assert grains.pairs.builds == builds
     assert grains.wall_load[0, 0] < 0.0

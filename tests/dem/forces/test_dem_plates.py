@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from porescale.common.core.errors import Unstable
-from porescale.dem import step as integrate
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
+from porescale.dem.finite import first_without_number
 from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.measures import survey as measure
@@ -41,14 +41,7 @@ def test_the_energy_in_the_spring_of_a_plate_is_counted():
     grains.plate_spring[0, 0] = 1e-3
     assert measure.elastic_energy(grains) == pytest.approx(0.5 * 1e6 * 2e-3**2 + 0.5 * 3e5 * 1e-3**2, rel=1e-12)
     np.testing.assert_allclose(
-        measure.survey_plates.py_func(
-            grains.discs.position,
-            grains.discs.radius,
-            grains.plates,
-            grains.plate_laws,
-            grains.plate_spring,
-            grains.contact,
-        ),
+        measure.survey_plates.py_func(grains.disc_arrays(), *grains.surface("plate")[:3], grains.contact),
         (0.2, 0, 0, 2.15),
         rtol=1e-12,
     )
@@ -113,11 +106,11 @@ def test_a_disc_may_pass_below_a_rising_plate():
 
 def test_the_first_disc_without_a_number_is_found_position_first():
     position, velocity, spin, angle = np.zeros((4, 2)), np.zeros((4, 2)), np.zeros(4), np.zeros(4)
-    for find in (integrate.first_without_number, integrate.first_without_number.py_func):
+    for find in (first_without_number, first_without_number.py_func):
         assert find(position, velocity, spin, angle) == (-1, -1)
     for at, column in (((angle, 1), 3), ((spin, 1), 2), ((velocity, (2, 1)), 1), ((position, (3, 0)), 0)):
         at[0][at[1]] = np.inf if column else np.nan
-        for find in (integrate.first_without_number, integrate.first_without_number.py_func):
+        for find in (first_without_number, first_without_number.py_func):
             assert find(position, velocity, spin, angle) == (np.ravel(at[1])[0], column)
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from porescale.common.core.errors import InputError
-from porescale.dem.contact.law import LinearSliding
-from porescale.dem.contact.linear import Linear
+from porescale.dem.arrays import contact_arrays
+from porescale.dem.contact.linear import Linear, LinearKernel
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.rectangle import Rectangle, add_rectangle_forces
 from porescale.dem.forces.walls import Box
@@ -56,26 +56,24 @@ def test_a_moving_face_gives_twice_its_speed():
 
 def test_a_rectangle_gets_what_the_disc_gets_less():
     discs = make_discs([(0.44, 0.5)], 0.05, 1.0, [(0.1, 0.2)])
-    force, torque, spring, on = np.zeros((1, 2)), np.zeros(1), np.zeros((1, 1, 1)), np.zeros((1, 2))
+    row, spring, on = RUBBING.row()[None, None], np.zeros((1, 1, 1)), np.zeros((1, 2))
     box = np.array([Rectangle((0.1, 0.2), (0.4, 0.8)).row()])
     for kernel in (add_rectangle_forces, add_rectangle_forces.py_func):
-        force[:] = 0.0
-        kernel(discs.position, discs.velocity, discs.spin, discs.radius, force, torque, box, RUBBING.row()[None, None],
-               spring, on, LinearSliding(RUBBING.row()[None, None], None, discs.mass, None), 1e-4)  # fmt: skip
-        assert force[0, 0] > 0.0
-        np.testing.assert_array_equal(on, -force)
+        found = contact_arrays(discs.position, discs.velocity, discs.spin, discs.radius, discs.mass)
+        kernel(found, box, row, spring, on, 0, 0, 1, LinearKernel(row, 1.0, None), 1e-4)
+        assert found.force[0, 0] > 0.0
+        np.testing.assert_array_equal(on, -found.force)
 
 
 @pytest.mark.parametrize("inside", [(0.11, 0.5), (0.39, 0.5), (0.25, 0.21), (0.25, 0.79)])
 def test_a_centre_inside_is_pushed_out_through_the_nearest_face(inside):
     discs = make_discs([inside], 0.05, 1.0)
-    force, torque, spring, on = np.zeros((1, 2)), np.zeros(1), np.zeros((1, 1, 1)), np.zeros((1, 2))
+    row, spring, on = LAW.row()[None, None], np.zeros((1, 1, 1)), np.zeros((1, 2))
     box = np.array([Rectangle((0.1, 0.2), (0.4, 0.8)).row()])
-    row = LAW.row()[None, None]
-    add_rectangle_forces(discs.position, discs.velocity, discs.spin, discs.radius, force, torque, box, row,
-                         spring, on, LinearSliding(row, None, discs.mass, None), 1e-4)  # fmt: skip
+    found = contact_arrays(discs.position, discs.velocity, discs.spin, discs.radius, discs.mass)
+    add_rectangle_forces(found, box, row, spring, on, 0, 0, 1, LinearKernel(row, 1.0, None), 1e-4)
     out = np.sign(np.array(inside) - (0.25, 0.5)) * np.array([abs(inside[0] - 0.25) > 0.1, abs(inside[1] - 0.5) > 0.2])
-    np.testing.assert_allclose(force[0], out * 1e5 * 0.06, rtol=1e-12)
+    np.testing.assert_allclose(found.force[0], out * 1e5 * 0.06, rtol=1e-12)
 
 
 def test_a_state_goes_on_bit_for_bit():

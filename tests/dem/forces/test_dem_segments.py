@@ -120,8 +120,7 @@ def test_forces_are_those_of_the_potential_and_count_corners_once(compiled):
         d, table = grains.discs, grains.steering.clumps
         d.force[:], d.torque[:] = 0.0, 0.0
         listed = segments_now(grains)
-        law = grains.law_of(np.arange(d.count))
-        run(d.position, d.velocity, d.spin, d.radius, d.force, d.torque, listed, law, 1e-9, Still(0.0, 0.0))
+        run(grains.disc_arrays(), listed, grains.contact, 1e-9, Still(0.0, 0.0))
         bodies = [(np.array([0]), tuple(d.position[0]))]
         bodies += [(table.discs_of(c), tuple(table.position[c])) for c in range(table.count)]
         ends = [tuple(row) for row in grains.segments.ends.tolist()]
@@ -133,7 +132,7 @@ def test_forces_are_those_of_the_potential_and_count_corners_once(compiled):
             # Forces up to K d = 6e5; terms that cancel in the twin leave round-off of a dozen such.
             np.testing.assert_allclose([*d.force[own].sum(axis=0), moment], wanted, atol=6e5 * 1e-14)
         if compiled:
-            normal = segments.survey_segments(d.position, d.radius, listed, grains.contact, grains.cell)[3]
+            normal = segments.survey_segments(d.position, d.radius, None, listed, grains.contact, grains.cell)[3]
             exact_energy = slow.potential(d.position, d.radius, grains.segments.group, ends, K)
             assert normal == pytest.approx(exact_energy, abs=6e5 * 1e-14)
     assert met > 3

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from porescale.common.core.errors import InputError
+from porescale.dem.arrays import contact_arrays
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
@@ -153,7 +154,10 @@ def test_kernels_do_the_same_as_plain_python():
         state = [np.full((2, 2), 0.5), np.full(2, 0.2), np.full(2, 3.0), np.full(2, 0.1), np.ones((2, 2)), np.ones(2)]
         given = np.zeros((3, 2))
         for k in range(3):
-            run(control.apply_control)(table, given, k, rows, points, *state, 0.1, 1e-3)
+            bodies = contact_arrays(np.zeros((2, 2)), state[0], state[1], np.ones(2), np.ones(2))._replace(
+                mass=state[2], inertia=state[3], force=state[4], torque=state[5]
+            )
+            run(control.apply_control)(table, given, k, rows, points, bodies, 0.1, 1e-3)
         walls = np.array([[0.0, 0.0, 0.0, 1.0, 0, 0, 0], [1.0, 0.0, -0.6, 0.8, 0, 0, 0]])
         drive = np.array([[0, servo.BY_STRESS, 0, 1], [1, servo.GIVEN_TURN, -1, -1]], np.int64)
         numbers = np.array([[1e5, 3.0, 0.5, 0.2, 0.0, 0.01], [0.0] * 6])

@@ -63,10 +63,9 @@ def test_the_choice_of_images_changes_no_force():
     for position, lean in ((d.position, tilt), (d.position + turns @ cell, tilt), (d.position, tilt - 2 * width)):
         force, torque, load = np.zeros((d.count, 2)), np.zeros(d.count), np.zeros(5)
         now = Straining(width, height, lean, -0.3, 2.0, 0.2, load)
-        forces.pair_forces(
-            position, d.velocity, d.spin, d.radius, force, torque, pairs.start, pairs.partner, pairs.carried.copy(),
-            grains.contact, 1e-5, now,
-        )  # fmt: skip
+        discs = grains.disc_arrays()._replace(position=position, force=force, torque=torque)
+        listed = grains.pair_arrays()._replace(history=pairs.carried.copy())
+        forces.pair_forces(discs, listed, grains.contact, 1e-5, now)
         sums.append((force, torque, load))
     # Distances of 1e-2 m from numbers of up to 1 m: eps each, times k.
     for other in sums[1:]:
@@ -84,10 +83,10 @@ def test_images_without_the_tilt_are_other_forces():  # the twin that must fail
     found = []
     for lean in (tilt, 0.0):
         force, torque = np.zeros((d.count, 2)), np.zeros(d.count)
-        forces.pair_forces(
-            d.position, d.velocity, d.spin, d.radius, force, torque, pairs.start, pairs.partner, pairs.carried.copy(),
-            grains.contact, 1e-5, Straining(width, height, lean, 0.0, 2.0, 0.0, np.zeros(5)),
-        )  # fmt: skip
+        discs = grains.disc_arrays()._replace(force=force, torque=torque)
+        listed = grains.pair_arrays()._replace(history=pairs.carried.copy())
+        now = Straining(width, height, lean, 0.0, 2.0, 0.0, np.zeros(5))
+        forces.pair_forces(discs, listed, grains.contact, 1e-5, now)
         found.append(force)
     assert np.abs(found[0] - found[1]).max() > 1.0
 
@@ -241,15 +240,10 @@ def test_kernels_do_the_same_as_plain_python():
         run = (lambda kernel: kernel.py_func) if plain else (lambda kernel: kernel)
         load = np.zeros(5)
         now = Straining(*(float(v) for v in cell.state[:3]), 0.1, 0.2, 0.3, load)
-        pairs = grains.pairs
-        run(forces.pair_forces)(
-            d.position, d.velocity, d.spin, d.radius, d.force, d.torque, pairs.start, pairs.partner, pairs.carried,
-            grains.contact, 1e-5, now,
-        )  # fmt: skip
+        discs = grains.disc_arrays()
+        run(forces.pair_forces)(discs, grains.pair_arrays(), grains.contact, 1e-5, now)
         run(strain.steer_deforming)(d.velocity, d.mass, 1, 1e-5, cell)
-        run(strain.affine_kick_drift)(
-            d.position, d.angle, d.velocity, d.spin, d.mass, d.inertia, d.force, d.torque, 0.1, 0.2, 0.3, 0.4, 1e-5
-        )
+        run(strain.affine_kick_drift)(discs, 0.1, 0.2, 0.3, 0.4, 1e-5)
         run(strain.strain)(cell.state, 1e-5)
         room = run(strain.room_square)(cell.state)
         left = run(strain.left_affine)(d.position, grains.pairs.list_position, room, cell.state)

@@ -16,7 +16,7 @@ from porescale.dem.measures.stress import contact_stress
 from porescale.dem.prepare.compaction import (
     BALANCE,
     NEAR,
-    Press,
+    Compactor,
     kept,
     mean_stress,
     out_of_balance,
@@ -34,7 +34,7 @@ def sizes(count=150):
 
 
 def pressed(friction, periodic=True):
-    return Press((0.0, 0.0), SIZE, LAW, (periodic, periodic), friction, seed=2).to_pressure(sizes(), 1000.0)
+    return Compactor((0.0, 0.0), SIZE, LAW, (periodic, periodic), friction, seed=2).to_pressure(sizes(), 1000.0)
 
 
 def test_pressure_is_reached_at_rest_and_friction_makes_it_loose():
@@ -56,9 +56,9 @@ def test_pressure_is_reached_at_rest_and_friction_makes_it_loose():
 
 
 def test_a_packing_from_disk_has_the_bits_it_was_made_with(tmp_path, monkeypatch):
-    press = Press((0.0, 0.0), SIZE, LAW, friction=0.5, seed=2)
+    press = Compactor((0.0, 0.0), SIZE, LAW, friction=0.5, seed=2)
     made = kept(press, sizes(), 1000.0, tmp_path)
-    monkeypatch.setattr(Press, "to_pressure", None)  # it must not be pressed again
+    monkeypatch.setattr(Compactor, "to_pressure", None)  # it must not be pressed again
     found = kept(press, sizes(), 1000.0, tmp_path)
     assert found[1:] == made[1:]
     for grains in (made.grains, found.grains):
@@ -80,7 +80,7 @@ def test_walls_hold_a_packing_too():
 
 
 def test_a_size_gives_its_fraction_and_too_much_of_it_is_refused():
-    press = Press((0.0, 0.0), SIZE, LAW, seed=2)
+    press = Compactor((0.0, 0.0), SIZE, LAW, seed=2)
     area = np.pi * np.sum(sizes() ** 2)
     small = sizes() * np.sqrt(0.78 * SIZE[0] * SIZE[1] / area)
     made = press.to_size(small)
@@ -95,7 +95,7 @@ def test_a_size_gives_its_fraction_and_too_much_of_it_is_refused():
 
 def test_sizes_of_one_to_ten_are_packed():
     radius = graded_radii(((0.2e-3, 0.0), (2e-3, 100.0)), 0.8 * SIZE[0] * SIZE[1])
-    made = Press((0.0, 0.0), SIZE, LAW, seed=1).to_pressure(radius, 1000.0)
+    made = Compactor((0.0, 0.0), SIZE, LAW, seed=1).to_pressure(radius, 1000.0)
     assert radius.max() / radius.min() > 7.0
     assert made.fraction > 0.85  # small discs fill the pores of large ones: denser than equal sizes
     np.testing.assert_allclose(made.grains.discs.radius / radius, made.scale, rtol=1e-12)

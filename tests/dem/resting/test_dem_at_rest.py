@@ -14,6 +14,7 @@ from porescale.dem.forces.walls import PY, Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.motion.periodic_cell import Still
 from porescale.dem.resting.static import bear, clear, resting, unchanged
+from porescale.dem.state import StaticState
 from porescale.validation.coupling import setups as lab
 
 LAW = Linear(1e4, 1.0, 2.5e3, 0.5, 0.5)
@@ -282,12 +283,13 @@ def test_the_kernels_say_the_same_compiled_or_not():
         withheld = np.zeros((3, 3))
         assert rest(grains.held, d.velocity, d.spin)
         assert touch(d.position, d.radius, pairs.start, pairs.partner, walls, Still(0.0, 0.0))
-        outcome = given, torque, withheld
+        discs = grains.disc_arrays()
+        discs = discs._replace(external_force=given, external_torque=torque, withheld=withheld)
         for other in others:
             assert not alike(d.position, d.radius, walls, *other)
-            assert not do(7, grains.held, d.velocity, d.spin, d.position, d.radius, walls, *other, *outcome)
+            assert not do(7, discs, walls, StaticState(*other, 1e-5, 0.0))
             np.testing.assert_array_equal(withheld, 0.0)
         assert alike(d.position, d.radius, walls, *last)
-        assert do(7, grains.held, d.velocity, d.spin, d.position, d.radius, walls, *last, *outcome)
+        assert do(7, discs, walls, StaticState(*last, 1e-5, 0.0))
         results.append(withheld)
     np.testing.assert_array_equal(*results)
