@@ -143,9 +143,8 @@ def saturated_row(y, planes, rows, patches, motion, periodic_x, ramp, row_load, 
     """Row ``y`` of the lattice: rasterize its bodies, collide, take their loads.  Plain fluid outside of what the
     bodies cover.
 
-    planes: the row's nine slots;  ramp, row_load, scratch, weights: one thread's of ``RowWork``, handed on one by one
-    since a tuple of them made in the loop over threads costs 8 % of the sweep;  laws: of weight, solid and fluid
-    operator.  Overwrites the slots and row_load of the bodies in the row.
+    planes: the row's nine slots;  ramp, row_load, scratch, weights: one thread's of ``RowWork``;  laws: of weight,
+    solid and fluid operator.  Overwrites the slots and row_load of the bodies in the row.
     """
     law = laws[2]
     n = planes[0].shape[0]
