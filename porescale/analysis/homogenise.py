@@ -15,6 +15,7 @@ from porescale.builders.initial.contact_laws import MaterialPlan
 from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema.sections import scene_as_dict, validate
+from porescale.dem.contact.choose import LAWS
 from porescale.dem.contact.linear import Linear
 from porescale.dem.prepare.compaction import DEEPEST
 from porescale.scene.measures.homogenise import Homogenise
@@ -70,7 +71,7 @@ def judge(scene: Scene) -> None:
     if scene.grains is None or scene.grains.packing is None:
         repair = "add [grains.packing]: sizes, density and the way they are packed"
         raise InputError(Fault("grains.packing", None, "is missing: there is no packing to measure", repair=repair))
-    if scene.contact and scene.contact.law != "linear":
+    if scene.contact and not LAWS[scene.contact.law].compresses:
         problem = "packings are compressed under the linear law only"
         faults.append(Fault("contact.law", scene.contact.law, problem, repair='take "linear"'))
     for name in ("clump", "polygon", "segment", "rock", "bonds"):

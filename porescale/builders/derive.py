@@ -24,6 +24,7 @@ from porescale.builders.initial.placed import by_hand, placed
 from porescale.builders.initial.rock import rock_frames
 from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError
+from porescale.dem.contact.choose import LAWS
 from porescale.dem.contact.materials import Law
 from porescale.dem.discs import make_discs
 from porescale.dem.timestep import packing_limit, stable_step
@@ -219,7 +220,7 @@ def _contact_step(
     if steps > MANY:
         problem = f"takes {steps:.3g} contact steps of {wanted:.3g} s"
         repair = "lower contact.stiffness, give the grains a size in metres, or shorten the step of the fluid"
-        key, unit = ("stiffness", "N/m") if contact.law == "linear" else ("young", "Pa")
+        key, unit = LAWS[contact.law].required
         what = getattr(contact, key)
         faults.append(Fault(f"contact.{key}", what, f"{problem} in a step of the fluid", unit, repair=repair))
     if step > limit:

@@ -231,6 +231,46 @@ def rule_6_kernels_stand_on_kernels(tree: Tree) -> Iterator[str]:
                 yield f"{tree.named[module].path}: stands on {other}"
 
 
+LAW_FOLDERS = (
+    "porescale.lbm.collision", "porescale.coupling.solid", "porescale.coupling.weighting", "porescale.dem.contact",
+    "continuum_sph.water.eos",
+)  # fmt: skip
+"""Folders of laws whose names stand for nothing else (sides of the box are words: wall, slip)."""
+
+
+def law_names(tree: Tree) -> set[str]:
+    """What the files of the law folders call their laws: ``name="…"``, ``name = "…"`` or ``name: … = "…"``."""
+    found = set()
+    for source in tree.modules:
+        if not inside(source.module, *LAW_FOLDERS):
+            continue
+        for node in ast.walk(source.tree):
+            if isinstance(node, ast.keyword) and node.arg == "name":
+                value: ast.AST | None = node.value
+            elif (isinstance(node, ast.AnnAssign) and getattr(node.target, "id", "") == "name") or (
+                isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "name"
+            ):
+                value = node.value
+            else:
+                continue
+            if isinstance(value, ast.Constant) and isinstance(value.value, str):
+                found.add(value.value)
+    return found - {"wall"}
+
+
+def rule_7_laws_decide_themselves(tree: Tree) -> Iterator[str]:
+    """No comparison with the name of a law decides anything outside the folder of the law; evidence may choose."""
+    names = law_names(tree)
+    for source in tree.modules:
+        if inside(source.module, *LAW_FOLDERS) or source.module.split(".")[1:2] in ([it] for it in EVIDENCE):
+            continue
+        for node in ast.walk(source.tree):
+            if isinstance(node, ast.Compare):
+                for it in ast.walk(node):
+                    if isinstance(it, ast.Constant) and it.value in names:
+                        yield f"{source.at(node)}: compares with {it.value!r}"
+
+
 def rule_8_stubs_are_contracts(tree: Tree) -> Iterator[str]:
     """A function whose bodies stand in other files, chosen by a law's type, stands in a ``law.py``: the contract."""
     for source in tree.modules:

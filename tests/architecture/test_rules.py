@@ -78,6 +78,14 @@ WRONG = [
             "porescale.builders.report": "X = 1",
         },
     ),
+    (
+        rules.rule_7_laws_decide_themselves,
+        {"porescale.dem.contact.law_of_glue": 'name: str = "glue"', "porescale.builders.build": 'x = y.law == "glue"'},
+    ),
+    (
+        rules.rule_7_laws_decide_themselves,
+        {"porescale.lbm.collision.new": 'OPERATOR = Row(name="new")', "porescale.lbm.fluid": 'x = y in ("new", "old")'},
+    ),
     (rules.rule_8_stubs_are_contracts, {"porescale.dem.step": BODY_ELSEWHERE}),
 ]
 PRESENT = (

@@ -5,6 +5,7 @@ from __future__ import annotations
 from porescale.builders.checks.polygons_in_fluid import check_in_fluid
 from porescale.builders.initial.walls import moving_sides, wall_names
 from porescale.common.core.errors import Fault
+from porescale.dem.contact.choose import LAWS
 from porescale.scene.domain import SIDES
 from porescale.scene.scene import Scene
 
@@ -61,7 +62,7 @@ def check_rock(scene: Scene) -> list[Fault]:
     if packing is None or packing.pressure is None:
         repair = "add [grains.packing] with pressure, or pressure to it"
         faults.append(Fault("rock", None, "is made of a packing that was pressed together", repair=repair))
-    if scene.contact and scene.contact.law != "linear":
+    if scene.contact and not LAWS[scene.contact.law].compresses:
         faults.append(Fault("contact.law", scene.contact.law, "rock is bonded under the linear law", "", "linear"))
     if packing and scene.rock.gap and scene.rock.gap > 0.2 * packing.diameter:
         problem = "leaves little of polygons as large as the packing's discs"

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from porescale.builders.checks.wall_places import across_walls
 from porescale.builders.initial.frames import Placed
 from porescale.common.core.errors import Fault, InputError
+from porescale.dem.contact.choose import LAWS
 from porescale.dem.contact.materials import Law
 from porescale.dem.discs import Discs
 from porescale.dem.motion.control import Control, Moved, schedule_of
@@ -79,11 +80,11 @@ def _out_of_the_box(scene: Scene, placed: Sequence[Placed]) -> list[Fault]:
 def _too_thin(scene: Scene, placed: Sequence[Placed]) -> list[Fault]:
     """Frames without thickness that can touch: nothing would push them apart.  Hertz's law needs one everywhere."""
     bare = [it for it in placed if it.frame.thickness == 0.0]
-    hertz = scene.contact is not None and scene.contact.law == "hertz"
-    if not bare or not (hertz or (len(bare) > 1 and any(it.free for it in bare))):
+    needs_radius = scene.contact is not None and LAWS[scene.contact.law].needs_radius
+    if not bare or not (needs_radius or (len(bare) > 1 and any(it.free for it in bare))):
         return []
     problem = "two segments without thickness go through each other"
-    if hertz:
+    if needs_radius:
         problem = "the law of Hertz needs a radius of corners"
     size = float(np.ptp(np.array(bare[0].frame.corners), axis=0).max())
     repair = f"give it one, such as {0.02 * size:.2g} m"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from porescale.common.core.errors import Fault
+from porescale.dem.contact.choose import LAWS
 from porescale.scene.packing import SAME
 from porescale.scene.scene import Scene
 
@@ -12,7 +13,7 @@ def check_compressed(scene: Scene, faults: list[Fault]) -> None:
     packing = scene.grains.packing if scene.grains else None
     if packing is None or not packing.compress or scene.rock:
         return
-    if scene.contact and scene.contact.law != "linear":
+    if scene.contact and not LAWS[scene.contact.law].compresses:
         problem = "packings are compressed under the linear law only"
         faults.append(Fault("contact.law", scene.contact.law, problem, repair='let it settle, or take "linear"'))
     domain = scene.domain

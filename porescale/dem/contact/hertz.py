@@ -107,6 +107,7 @@ class Hertz:
     damping_keys: ClassVar[tuple[str, ...]] = ("damping_ratio", "restitution")
     of_materials: ClassVar[tuple[str, ...]] = ("young", "poisson")
     needs_radius: ClassVar = True
+    compresses: ClassVar = False
 
     modulus: float
     shear_modulus: float = 0.0

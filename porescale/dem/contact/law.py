@@ -112,6 +112,8 @@ class ContactLaw(Protocol):
     """Keys that follow from two materials, and are not given for a pair."""
     needs_radius: ClassVar[bool]
     """Whether points, corners without thickness, have no contact."""
+    compresses: ClassVar[bool]
+    """Whether packings are compressed, and rock is bonded, under this law: it has one stiffness."""
 
     def __hash__(self) -> int:
         """Laws are values: equal ones have the same hash."""

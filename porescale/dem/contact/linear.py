@@ -81,6 +81,7 @@ class Linear:
     damping_keys: ClassVar[tuple[str, ...]] = ("damping", "restitution")
     of_materials: ClassVar[tuple[str, ...]] = ()
     needs_radius: ClassVar = False
+    compresses: ClassVar = True
 
     stiffness: float
     damping: float = 0.0
