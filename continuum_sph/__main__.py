@@ -1,4 +1,4 @@
-"""``python -m continuum_sph``."""
+"""Entry point of the command ``python -m continuum_sph``."""
 
 import sys
 

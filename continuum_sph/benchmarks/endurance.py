@@ -68,7 +68,7 @@ class Tank:
         self.model, self._names = model, dict(names)
 
     def advance(self, steps: int) -> None:
-        """More steps."""
+        """Advance the model by a number of steps."""
         self.model.advance(steps)
 
     def check(self) -> None:
@@ -90,7 +90,7 @@ class Box:
         self._size = float((layer.mass[:n, None] * np.abs(layer.v[:n])).sum())
 
     def advance(self, steps: int) -> None:
-        """More steps."""
+        """Advance the flow by a number of steps."""
         for _ in range(steps):
             self.flow.advance()
 

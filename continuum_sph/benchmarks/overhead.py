@@ -58,7 +58,7 @@ def added(name: str, because: str = "", **more: Any) -> SceneKind:
     """A scene with something more, beside water alone."""
 
     def make() -> BuiltScene:
-        """Both scenes, started."""
+        """The scene with the addition and water alone, both after their warm-up steps."""
         it = scene(**more)
         own, other = started(it), started(scene())
         return BuiltScene(own, parts_of(it), own.flow.layer.fluid, own.advance, other.advance)
@@ -105,7 +105,7 @@ def in_soil(other: Table, **more: Any) -> Callable[[], BuiltScene]:
     """Soil with more in its pores, beside soil with an ``other``."""
 
     def make() -> BuiltScene:
-        """Both scenes, started."""
+        """The scene with ``more`` and that with ``other``, both after their warm-up steps."""
         it = ground(**more)
         made, count = settled(it)
         return BuiltScene(made, parts_of(it), count, made.advance, settled(ground(**other))[0].advance)

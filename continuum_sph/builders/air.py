@@ -46,7 +46,7 @@ class AirPart(Part):
         self.flow = flow
 
     def row(self) -> dict[str, float]:
-        """See `air_row`."""
+        """Columns of the air in series.csv, see `air_row`."""
         return air_row(self.flow)
 
 

@@ -13,18 +13,18 @@ class System(Protocol):
 
     @property
     def step(self) -> int:
-        """Steps done."""
+        """Number of steps done since time 0."""
 
     @property
     def time(self) -> float:
-        """Time reached, s."""
+        """Time reached, in seconds."""
 
     @property
     def next_step(self) -> float:
         """Length of the next step, s."""
 
     def advance(self) -> None:
-        """Do a step."""
+        """Advance the state by one time step."""
 
 
 @dataclass

@@ -33,7 +33,7 @@ class InclusionPart(Part):
         self.flow = flow
 
     def row(self) -> dict[str, float]:
-        """See `inclusion_row`."""
+        """Columns of the second fluid in series.csv, see `inclusion_row`."""
         return inclusion_row(self.flow)
 
 

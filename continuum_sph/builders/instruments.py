@@ -89,7 +89,7 @@ def discharge(level: LevelSection, cloud: MeasuredWater, share: Floats) -> float
 
 
 def probe_row(probes: tuple[ProbeSection, ...], cloud: MeasuredWater) -> dict[str, float]:
-    """Columns of probes.csv."""
+    """Columns of probes.csv: pressure (Pa) and velocity (m/s) at each probe."""
     row = {}
     for k, probe in enumerate(probes):
         name = probe.name or f"probe {k}"
@@ -101,7 +101,7 @@ def probe_row(probes: tuple[ProbeSection, ...], cloud: MeasuredWater) -> dict[st
 
 
 def level_row(levels: tuple[LevelSection, ...], cloud: MeasuredWater) -> dict[str, float]:
-    """Columns of levels.csv."""
+    """Columns of levels.csv: height of the water surface at each level, m."""
     return {f"{level.name or f'level {k}'} (m)": surface_height(level, cloud) for k, level in enumerate(levels)}
 
 
@@ -117,7 +117,7 @@ class WaterInstruments(Part):
         self.probes, self.levels, self.flow, self.width = probes, levels, flow, width
 
     def measured(self) -> MeasuredWater:
-        """The water now."""
+        """Positions, volumes, pressures and velocities of the water particles at the present time."""
         layer, law = self.flow.layer, self.flow.law
         n = layer.fluid
         return MeasuredWater(

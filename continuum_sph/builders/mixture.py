@@ -35,7 +35,7 @@ class PoreWaterPart(WaterPart):
     key = "water"
 
     def show(self, snapshot: Snapshot) -> None:
-        """Nothing: see `MixturePart.show`."""
+        """Show nothing: `MixturePart.show` writes the particles of both layers."""
 
 
 class WetSoilPart(SoilPart):
@@ -48,7 +48,7 @@ class WetSoilPart(SoilPart):
         return {f"soil: {name}": value for name, value in super().row().items()}
 
     def show(self, snapshot: Snapshot) -> None:
-        """Nothing: see `MixturePart.show`."""
+        """Show nothing: `MixturePart.show` writes the particles of both layers."""
 
 
 class MixturePart(Part):

@@ -38,7 +38,7 @@ class ExitGradientPart(Part):
         self.pile, self.flow, self.weight = pile, flow, weight
 
     def row(self) -> dict[str, float]:
-        """i_E."""
+        """The column of the exit gradient i_E at the sheet pile."""
         return {NAME: exit_gradient(self.pile, self.flow, self.weight)}
 
 

@@ -147,7 +147,7 @@ class SoilPart(Part):
         return Cloud(soil.x[:n].copy(), data, units)
 
     def show(self, snapshot: Snapshot) -> None:
-        """All particles."""
+        """Add all particles, soil and walls, to the snapshot."""
         snapshot.clouds["particles"] = self.cloud()
 
     def state(self) -> dict[str, Any]:

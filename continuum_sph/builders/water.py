@@ -54,7 +54,7 @@ class WaterPart(Part):
 
     @property
     def now(self) -> Now:
-        """For messages."""
+        """Step, time (s) and repair that error messages give."""
         return Now(self.flow.step, self.flow.time, REPAIR)
 
     def inside(self) -> NDArray[np.bool_]:
@@ -131,7 +131,7 @@ class WaterPart(Part):
         return Cloud(layer.x[:n].copy(), data, units)
 
     def show(self, snapshot: Snapshot) -> None:
-        """All particles."""
+        """Add all particles, water and walls, to the snapshot."""
         snapshot.clouds["particles"] = self.cloud()
 
     def state(self) -> dict[str, Any]:

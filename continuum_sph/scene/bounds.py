@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 SMALLEST, LARGEST = 1e-6, 1e5
-"""Lengths, m."""
+"""Smallest and largest length that a scene may give, m."""
 WEAKEST = 1e-6
 """Gravity other than none, m/s²."""
 MOST = 100_000_000
-"""Particles: 60 GB."""
+"""Largest number of particles of a scene: 60 GB of memory."""
 WHOLE = 1e-6
 """Share of a spacing by which a length may miss a whole number of them."""
 

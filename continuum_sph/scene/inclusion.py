@@ -17,7 +17,7 @@ else:
 
 
 class Disc(Section):
-    """A disc."""
+    """A disc filled with the second fluid at the start."""
 
     x: float = quantity("m", ge=0, le=LARGEST, help="centre")
     y: float = quantity("m", ge=0, le=LARGEST, help="centre, above the floor")

@@ -66,7 +66,7 @@ class Pores(Section):
 
 
 class MaterialFile(Section):
-    """A material file."""
+    """The contents of a material file, see `porescale homogenise`."""
 
     format: int
     soil: Taken

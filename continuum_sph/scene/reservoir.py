@@ -30,7 +30,7 @@ class ReservoirSection(Section):
 
     @property
     def highest(self) -> float:
-        """Highest level, m."""
+        """Highest level of the table, m; 0 without one."""
         return max((level for _, level in self.table), default=0.0)
 
     def faults(self, key: str, width: float, height: float, spacing: float) -> list[Fault]:

@@ -97,5 +97,5 @@ class Overlap:
 
     @property
     def rows(self) -> tuple[NDArray[np.int64], NDArray[np.int32], Floats]:
-        """start, partner, weight."""
+        """The list with its weights: start (n + 1,), partner (pairs,) and weight (pairs,) of the kernel."""
         return self.pairs.start, self.pairs.partner, self.weight

@@ -78,7 +78,7 @@ class Skeleton:
 
     @property
     def count(self) -> int:
-        """Soil particles."""
+        """Number of soil particles."""
         return len(self.x)
 
 
@@ -107,16 +107,16 @@ class Frame:
         self.skeleton = Skeleton(x, v, acceleration, force, np.full(count, np.inf), grains, k)
 
     def start(self) -> None:
-        """Nothing to do."""
+        """Do nothing: held ground has no accelerations."""
 
     def begin(self, step: float) -> None:
-        """Nothing to do."""
+        """Do nothing: held ground does not move."""
 
     def strain(self, step: float) -> None:
-        """Nothing to do."""
+        """Do nothing: held ground does not deform."""
 
     def push(self) -> None:
-        """Nothing to do."""
+        """Do nothing: held ground is not accelerated."""
 
     def end(self, step: float) -> None:
-        """Nothing to do."""
+        """Do nothing: held ground has no velocity."""

@@ -60,12 +60,12 @@ class Seepage:
 
     @property
     def step(self) -> int:
-        """Steps done."""
+        """Number of steps done since time 0."""
         return self.water.step
 
     @property
     def time(self) -> float:
-        """s."""
+        """Time reached, in seconds."""
         return self.water.time
 
     @property
@@ -87,7 +87,7 @@ class Seepage:
         water.last_steps = (self.next_step, self.next_step)
 
     def advance(self) -> None:
-        """One step."""
+        """Advance water and soil by one time step."""
         water, ground, step = self.water, self.ground, self.next_step
         water.update_slip()  # accelerations are those of the end of the last step
         water.drag(0.5 * step)

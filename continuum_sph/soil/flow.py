@@ -128,7 +128,7 @@ class SoilFlow:
         self.sound_rate = float(max_sound2) ** 0.5 / law.smoothing.length
 
     def push(self) -> None:
-        """Accelerations."""
+        """Compute the accelerations of the soil particles, m/s²."""
         soil, law = self.soil, self.law
         if self.before_force is not None:
             self.before_force(self)

@@ -70,14 +70,14 @@ class Material:
 
     @property
     def area_modulus(self) -> float:
-        """B/E."""
+        """Area modulus over Young's modulus, B/E."""
         if self.printed:
             return 0.5 / (1.0 - self.poisson)
         return 0.5 / ((1.0 + self.poisson) * (1.0 - 2.0 * self.poisson))
 
     @property
     def shear_modulus(self) -> float:
-        """G/E."""
+        """Shear modulus over Young's modulus, G/E."""
         return 0.5 / (1.0 + self.poisson)
 
     @property

@@ -62,7 +62,7 @@ class Soil:
 
     @property
     def count(self) -> int:
-        """All particles."""
+        """Number of all particles, soil and walls."""
         return len(self.x)
 
     @property

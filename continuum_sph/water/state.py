@@ -75,7 +75,7 @@ class Layer:
 
     @property
     def count(self) -> int:
-        """All particles."""
+        """Number of all particles, fluid and walls."""
         return len(self.x)
 
     KEPT = ("x", "v", "mass", "density", "acceleration", "rate", "rate_before", "smoothed", "drift", "pressure",

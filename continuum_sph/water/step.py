@@ -180,7 +180,7 @@ class Flow:
         self.last_steps = (self.next_step, self.next_step)
 
     def advance(self) -> None:
-        """One step."""
+        """Advance the flow by one time step."""
         step, self.together = self.next_step, True
         self.evaluate(step, self.begin(step))
         self.together = False

@@ -39,7 +39,7 @@ class Known:
 
     @property
     def mean(self) -> float:
-        """Of the values."""
+        """Mean of the values, in ``unit``."""
         return float(np.mean(self.values))
 
     @property

@@ -46,7 +46,7 @@ def bench_lbm(size: int | None, threads: int, dtype: Dtype) -> Work:
     steps = steps_of(side**2)
 
     def run() -> None:
-        """The steps."""
+        """Advance the fluid by ``steps`` steps."""
         for _ in range(steps):
             fluid.advance()
 

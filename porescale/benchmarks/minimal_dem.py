@@ -204,7 +204,7 @@ class PlainDiscs:
         self._spring, self._limit = grains.wall_spring.copy(), (0.5 * own.skin) ** 2
 
     def advance(self, count: int) -> None:
-        """So many steps."""
+        """Advance the discs by ``count`` contact steps."""
         while count > 0:
             count -= self._some(count)
             if count > 0:

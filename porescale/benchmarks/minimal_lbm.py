@@ -109,7 +109,7 @@ class PlainWater:
         self._flat = self.populations.reshape(-1)
 
     def advance(self, steps: int) -> None:
-        """So many steps."""
+        """Advance the water by ``steps`` steps."""
         for _ in range(steps):
             plain_step(self.populations, self.step % 2, self.even, self.odd)
             self.close()

@@ -39,7 +39,7 @@ def scene(width: float, height: float, **sections: Any) -> Scene:
 
 
 def water(**more: Any) -> Scene:
-    """Water alone."""
+    """A scene of water alone, at rest, with ``more`` sections."""
     return scene(CELLS * 1e-3, CELLS * 1e-3, fluid=FLUID | {"velocity": (0.0, 0.0)}, **more)
 
 

@@ -54,7 +54,7 @@ def looking() -> BuiltScene:
     populations, row, largest = made.fluid.populations, np.zeros(made.fluid.nx), np.zeros(made.fluid.ny)
 
     def look(steps: int) -> None:
-        """So many times."""
+        """Search the largest population of every row ``steps`` times."""
         for _ in range(steps):
             largest_of_rows(populations, row, largest)
 

@@ -19,7 +19,7 @@ from porescale.scene.bodies.segments import PolygonBody, SegmentBody
 from porescale.scene.scene import Scene
 
 WEEK = 7 * 86400.0
-"""s."""
+"""Seconds in a week."""
 
 
 def report(scene: Scene) -> Report:

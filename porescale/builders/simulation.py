@@ -34,12 +34,12 @@ class Simulation:
 
     @property
     def step(self) -> int:
-        """Steps done."""
+        """Number of steps done since time 0."""
         return self.clock.step
 
     @property
     def time(self) -> float:
-        """s."""
+        """Time reached, in seconds."""
         return self.clock.time
 
     @property

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 FILMS = (".mp4", ".avi", ".mov", ".mkv", ".webm")
-"""Endings of films."""
+"""File name endings that are read as films."""
 
 
 def command() -> App:

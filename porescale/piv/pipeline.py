@@ -47,7 +47,7 @@ class Measurement:
 
     @cached_property
     def pairs(self) -> int:
-        """Pairs of frames."""
+        """Number of pairs of frames of the film."""
         return max(0, self.shots.film.count() - 1)
 
     @property

@@ -8,16 +8,16 @@ from __future__ import annotations
 from typing import Any
 
 LENGTH: Any = {"ge": 1e-9, "le": 1e3}
-"""m."""
+"""Range of lengths, m."""
 PLACE: Any = {"ge": -1e3, "le": 1e3}
-"""m."""
+"""Range of coordinates, m."""
 SPEED: Any = {"ge": -1e4, "le": 1e4}
-"""m/s."""
+"""Range of velocity components, m/s."""
 SPIN: Any = {"ge": -1e7, "le": 1e7}
-"""rad/s."""
+"""Range of angular velocities, rad/s."""
 TIME: Any = {"ge": 1e-12, "le": 1e9}
-"""s."""
+"""Range of times, s."""
 DENSITY: Any = {"ge": 1e-3, "le": 1e5}
-"""kg/m^3."""
+"""Range of densities, kg/m^3."""
 FRICTION: Any = {"ge": 0, "le": 1e3}
-"""Coefficient of friction."""
+"""Range of the coefficient of friction."""

@@ -15,15 +15,15 @@ class Pressed(Protocol):
 
     @property
     def stress(self) -> TimeFunction | None:
-        """Pa."""
+        """Prescribed stress on the wall, Pa; None if not given."""
 
     @property
     def force(self) -> TimeFunction | None:
-        """N/m."""
+        """Prescribed force on the wall, N/m; None if not given."""
 
     @property
     def fastest(self) -> float | None:
-        """m/s."""
+        """Upper bound of the wall's speed, m/s; None if not given."""
 
 
 def check_servo(it: Pressed, moves: bool) -> list[Fault]:

@@ -65,7 +65,7 @@ class TrappedAir:
 
     @property
     def spacing(self) -> float:
-        """m."""
+        """Spacing of the particles, m."""
         return self.height / self.rows
 
     def resisted(self, depth: float, speed: float) -> float:

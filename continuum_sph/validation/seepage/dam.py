@@ -47,7 +47,7 @@ class Given(Protocol):
 
     @property
     def permeability(self) -> float:
-        """m/s."""
+        """Permeability k of the ground, m/s."""
 
     @property
     def sound_speed(self) -> float:

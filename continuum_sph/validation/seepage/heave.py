@@ -64,12 +64,12 @@ class Heave:
 
     @property
     def spacing(self) -> float:
-        """m."""
+        """Spacing of the particles, m."""
         return self.depth / self.rows
 
     @property
     def buried(self) -> float:
-        """s, m."""
+        """Depth s of the pile in the ground, m."""
         return self.share * self.depth
 
     @property

@@ -77,7 +77,7 @@ class Levee:
 
     @property
     def spacing(self) -> float:
-        """m."""
+        """Spacing of the particles, m."""
         return self.height / self.rows
 
     def whole(self, length: float) -> float:

@@ -133,13 +133,13 @@ class SheetPile:
 
     @property
     def discharge(self) -> float:
-        """q/(k h)."""
+        """Exact discharge per depth over conductivity and head, q/(k h)."""
         m = np.sin(0.5 * np.pi * self.share)
         return float(ellipk(1.0 - m * m) / (2.0 * ellipk(m * m)))
 
     @property
     def exit_gradient(self) -> float:
-        """i_E T/h."""
+        """Exact exit gradient over head and depth of the ground, i_E T/h."""
         m = np.sin(0.5 * np.pi * self.share)
         return float(np.pi / (4.0 * ellipk(m * m) * m))
 

@@ -43,12 +43,12 @@ class WetSlope:
 
     @property
     def buoyant(self) -> float:
-        """γ'/g, kg/m³."""
+        """Buoyant density of the soil, γ'/g, kg/m³."""
         return (1.0 - self.porosity) * (GRAINS - WATER)
 
     @property
     def whole(self) -> float:
-        """γ_sat/g, kg/m³."""
+        """Density of the saturated soil, γ_sat/g, kg/m³."""
         return self.porosity * WATER + (1.0 - self.porosity) * GRAINS
 
     def driving(self, seeping: bool) -> float:

@@ -42,7 +42,7 @@ class Element:
         return found
 
     def take(self, across: float, upright: float, shear: float = 0.0, turn: float = 0.0) -> None:
-        """Strain it so."""
+        """Apply the strain and rotation of `after`: stress, opening and plastic strain are overwritten."""
         *stress, self.opening, flow = self.after(across, upright, shear, turn)
         self.stress, self.plastic = tuple(stress), self.plastic + flow
         self.strain += across, upright

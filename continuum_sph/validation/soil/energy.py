@@ -54,7 +54,7 @@ class Book:
         return -float((record[:, VOLUME] * strained).sum())
 
     def advance(self) -> None:
-        """One step."""
+        """Advance the flow by one time step, and add its energies to the budget."""
         flow, soil, law = self.flow, self.flow.soil, self.flow.law
         n, step, lean = soil.soil, flow.next_step, np.array(law.gravity)
         mass, turned = soil.mass[:n], self.turned

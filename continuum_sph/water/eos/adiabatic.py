@@ -32,7 +32,7 @@ class AdiabaticNumbers(NamedTuple):
 
 @pressure_of.of(AdiabaticNumbers)
 def pressure_of_gas(ratio, law):
-    """See `liquid.tait`."""
+    """Pressure above p0 (Pa) and (c/c0)² at ``ratio`` ρ/ρ0, see `liquid.tait`."""
     return tait(ratio, law.base, law.exponent)
 
 
@@ -63,12 +63,12 @@ class AdiabaticGas:
 
     @property
     def least_density(self) -> float:
-        """kg/m³."""
+        """Least density of the fluid, kg/m³."""
         return FLOOR * self.density
 
     @property
     def numbers(self) -> AdiabaticNumbers:
-        """What kernels take."""
+        """The numbers of this equation of state that kernels take."""
         return AdiabaticNumbers(self.density, self.sound_speed, self.least_density, self.base, self.exponent)
 
     def pressure(self, density: Floats) -> Floats:
@@ -82,7 +82,7 @@ class AdiabaticGas:
         return found
 
     def sound_speed_at(self, density: Floats) -> Floats:
-        """c0 (ρ/ρ0)^((γ-1)/2), m/s."""
+        """Speed of sound at a density (kg/m³): c0 (ρ/ρ0)^((γ-1)/2), m/s."""
         speed: Floats = self.sound_speed * np.maximum(density / self.density, 0.0) ** (0.5 * (self.exponent - 1.0))
         return speed
 

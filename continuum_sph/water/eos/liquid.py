@@ -45,7 +45,7 @@ def tait(ratio, stiffness, exponent):
 
 @pressure_of.of(TaitNumbers)
 def pressure_of_tait(ratio, law):
-    """See `tait`."""
+    """Pressure above that of the air (Pa) and (c/c0)² at ``ratio`` ρ/ρ0, see `tait`."""
     return tait(ratio, law.stiffness, law.exponent)
 
 
@@ -74,17 +74,17 @@ class Tait:
 
     @property
     def stiffness(self) -> float:
-        """B, Pa."""
+        """Stiffness of the equation of state, B = ρ0 c0²/γ, Pa."""
         return self.density * self.sound_speed**2 / self.exponent
 
     @property
     def least_density(self) -> float:
-        """kg/m³."""
+        """Least density of the fluid, kg/m³."""
         return FLOOR * self.density
 
     @property
     def numbers(self) -> TaitNumbers:
-        """What kernels take."""
+        """The numbers of this equation of state that kernels take."""
         return TaitNumbers(self.density, self.sound_speed, self.least_density, self.stiffness, self.exponent)
 
     def pressure(self, density: Floats) -> Floats:
@@ -96,7 +96,7 @@ class Tait:
         return self.density * (1.0 + pressure / self.stiffness) ** (1.0 / self.exponent)
 
     def sound_speed_at(self, density: Floats) -> Floats:
-        """c0 (ρ/ρ0)^((γ-1)/2), m/s."""
+        """Speed of sound at a density (kg/m³): c0 (ρ/ρ0)^((γ-1)/2), m/s."""
         speed: Floats = self.sound_speed * np.maximum(density / self.density, 0.0) ** (0.5 * (self.exponent - 1.0))
         return speed
 

@@ -42,7 +42,7 @@ def printed_gas(ratio, pressure0, exponent):
 
 @pressure_of.of(PrintedNumbers)
 def pressure_of_printed(ratio, law):
-    """See `printed_gas`."""
+    """Pressure above p0 (Pa) and (c/c0)² at ``ratio`` ρ/ρ0, see `printed_gas`."""
     return printed_gas(ratio, law.base, law.exponent)
 
 
@@ -52,7 +52,7 @@ class PrintedGas(AdiabaticGas):
 
     @property
     def numbers(self) -> PrintedNumbers:  # type: ignore[override]
-        """What kernels take."""
+        """The numbers of this equation of state that kernels take."""
         return PrintedNumbers(self.density, self.sound_speed, self.least_density, self.base, self.exponent)
 
     def pressure(self, density: Floats) -> Floats:

@@ -47,7 +47,7 @@ class MaterialPlan:
         return self.contact.wall_material if self.contact else ""
 
     def density(self, name: str = "") -> float:
-        """kg/m³."""
+        """Density of the material of this name, of the first material without a name, kg/m³."""
         for it in self.materials:
             if it.name == (name or self.materials[0].name):
                 return self.density_of_grains if it.density is None else it.density

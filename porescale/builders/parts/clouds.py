@@ -49,7 +49,7 @@ class GrainCloud(Part):
 
 
 class FrameCloud(Part):
-    """Bodies of segments."""
+    """Rigid bodies of segments, as a cloud of points in snapshots."""
 
     def __init__(self, grains: Grains, frames: Sequence[Placed]) -> None:
         self.grains, self.frames = grains, frames

@@ -45,7 +45,7 @@ class CoupledPart(FluidPart):
             raise fault
 
     def _solid(self, solid: Array) -> dict[str, Array]:
-        """The solid fraction."""
+        """The solid fraction of every cell, as float32."""
         return {"solid_fraction": solid.astype(np.float32)}
 
     def state(self) -> dict[str, Any]:

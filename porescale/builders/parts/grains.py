@@ -23,7 +23,7 @@ class GrainsPart(Stepper):
         return cls(system.clock, system.grains, system.weight)
 
     def advance(self) -> None:
-        """A contact step."""
+        """Advance the grains by one contact step."""
         self.grains.step(self.clock.seconds, self.weight)
 
     @property

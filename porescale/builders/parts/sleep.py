@@ -1,4 +1,4 @@
-"""Grains that sleep."""
+"""The part of a scene whose grains may sleep: their number and the energy taken, in series.csv."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 STRENGTHS = np.logspace(-3, 6, 46)
-"""Candidates for s."""
+"""Candidates for the smoothing parameter s."""
 
 
 @lru_cache(maxsize=64)

@@ -16,7 +16,7 @@ from porescale.piv.fields.of_run import fields_of_film
 from porescale.piv.images.film import Film
 
 COLOURS = {"valid": (255, 213, 74), "replaced": (217, 95, 2)}
-"""RGB of arrows."""
+"""RGB colours of the arrows, by kind of vector."""
 APART = 16
 """Pixels between arrows, at least."""
 SHIFT = 4

@@ -45,7 +45,7 @@ class Vortex:
     gamma: float
 
     def as_dict(self) -> dict[str, Any]:
-        """JSON-able."""
+        """The vortex as a dictionary of values that JSON can hold."""
         return {**asdict(self), "sign": 1 if self.circulation > 0 else -1}
 
 

@@ -163,7 +163,7 @@ def past_discs(size: tuple[int, int], peak: float, discs: Discs, layer: float = 
         return found
 
     def velocity(x: Array, y: Array) -> tuple[Array, Array]:
-        """(dpsi/dy, -dpsi/dx)."""
+        """Velocity (dpsi/dy, -dpsi/dx) at the points (x, y), in px per frame."""
         known = bells(x, y)
         open_, ox, oy = np.ones_like(x), np.zeros_like(x), np.zeros_like(x)  # prod (1 - c) and its slopes
         for c, cx, cy in known:

@@ -1,1 +1,1 @@
-""""""
+"""Sections of the bodies of a scene."""

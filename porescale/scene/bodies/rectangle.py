@@ -43,7 +43,7 @@ class Rectangle(Section):
 
     @property
     def fastest(self) -> float:
-        """Speed, m/s."""
+        """Magnitude of the prescribed velocity, m/s."""
         return float((self.velocity[0] ** 2 + self.velocity[1] ** 2) ** 0.5)
 
     def travelled(self, time: float) -> tuple[float, float]:

@@ -1,1 +1,1 @@
-""""""
+"""Sections of what is measured during a run."""

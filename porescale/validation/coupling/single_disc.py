@@ -89,7 +89,7 @@ def exact_release(ratio: float, time: float) -> float:
     """
 
     def transform(p: NDArray[np.complexfloating]) -> NDArray[np.complexfloating]:
-        """V(p)."""
+        """Laplace transform V(p) of the velocity."""
         z = np.sqrt(p)
         return np.asarray(1 / (p**2 * (ratio + 1 + 4 * kve(1, z) / (z * kve(0, z)))))
 
@@ -158,7 +158,7 @@ def exact_spin_down(ratio: float, time: float) -> float:
     """
 
     def transform(p: NDArray[np.complexfloating]) -> NDArray[np.complexfloating]:
-        """W(p)."""
+        """Laplace transform W(p) of the spin."""
         z = np.sqrt(p)
         return np.asarray(ratio / (ratio * p + 8 + 4 * z * kve(0, z) / kve(1, z)))
 

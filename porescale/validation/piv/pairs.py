@@ -228,7 +228,7 @@ def quintic_row() -> Measured:
     tolerance=1e-3,
 )
 def still_row() -> Measured:
-    """Largest displacement, px."""
+    """Largest displacement measured between a picture and itself, px."""
     found = still()
     return Measured(0.0, found, found)
 
