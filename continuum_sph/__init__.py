@@ -18,7 +18,7 @@ __all__ = ["Scene", "Simulation", "__version__", "load", "open_run"]
 
 
 def __getattr__(name: str) -> Any:
-    """The API of a handful of names, imported when first asked for: --help must not wait for a compiler."""
+    """The API of a handful of names, imported at first use, so that --help needs no compilation."""
     if name == "load":
         from continuum_sph.scene.sections import load_scene
 

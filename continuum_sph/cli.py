@@ -35,7 +35,7 @@ def template() -> str:
 
 
 def build(scene: Scene) -> Model:
-    """The simulation of a scene that `report` does not refuse."""
+    """The simulation of a scene that passes `report`."""
     from continuum_sph.builders.simulation import Simulation
 
     return Simulation(scene)
@@ -72,7 +72,7 @@ def drive(
 
 
 def check_resume(folder: Path, card: dict[str, Any]) -> None:
-    """InputError where the run in ``folder`` cannot be gone on with as ``card`` asks."""
+    """InputError where the run in ``folder`` cannot be gone on with as ``card`` requests."""
     from porescale.common.record.drive import check_resume
     from porescale.common.schema.migrations import completing
 

@@ -72,7 +72,7 @@ class Tank:
         self.model.advance(steps)
 
     def check(self) -> None:
-        """As a run checks."""
+        """Check the state as a run does; raises Unstable."""
         self.model.check()
 
     def read(self) -> Mapping[str, float]:

@@ -21,16 +21,17 @@ from porescale.common.schema.sections import validate
 WATER = 1.002e-3  # Pa s
 TANK, COLUMN = (1.5, 1.2), (0.5, 1.0)  # m, wide and high
 FALL = (2.0 * GRAVITY * COLUMN[1]) ** 0.5  # m/s, from the top of the columns
-CHECKED = 20  # steps between two looks at whether all is in sense
+CHECKED = 20  # steps between two checks of the state
 JUDGED = 0.25  # s: the front of the columns has come half a metre, and has as far to go to the wall
 SPACING = 0.05  # m
 NEAR = 0.5 * SPACING  # m: particles of this size resolve a front no better
-CLOSED = 0.01  # of the energy at the start, by which its book may be off
+CLOSED = 0.01  # of the energy at the start: tolerance of the energy budget
 
 
 def driven(model: Simulation, end: float, judged: bool = False) -> str | Verdict:
-    """Take ``model`` to ``end`` (s) and state the outcome; Unstable where it leaves sense.  ``judged``: by how far
-    water has run at JUDGED and by its book of energies."""
+    """Take ``model`` to ``end`` (s) and state the outcome; Unstable where its state is out of bounds.
+
+    judged : by how far water has run at JUDGED and by its book of energies."""
     model.flow.layer.keep_budget()
     start = budget(model.flow)["energy balance"]
     fastest, way = 0.0, None

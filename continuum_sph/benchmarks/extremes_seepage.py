@@ -9,7 +9,7 @@ from continuum_sph.soil import SoilFlow
 from continuum_sph.validation.seepage.saturated_box import energies, saturated_box
 from porescale.common.evidence.extremes import Extreme, Extremes
 
-CHECKED = 20  # steps between two looks at the energies
+CHECKED = 20  # steps between two checks of the energies
 SPEED = 0.05  # m/s, of the stirring: strains of 0.2 %
 
 

@@ -1,7 +1,7 @@
 """The smallest kernels that do the job of water alone: one liquid, closed walls that slip; nothing is chosen.
 
 They are what `study parts` holds a column of water against: the step of `step.py` with Wendland's kernel, γ = 7,
-artificial viscosity without β, hydrostatic density diffusion, and no book of energies; with XSPH, if the water has it,
+artificial viscosity without β, hydrostatic density diffusion, and no energy budget; with XSPH, if the water has it,
 and compiled without where it has not.  Sums run in the order of `rates`; the pair list is the one that everybody has.
 """
 

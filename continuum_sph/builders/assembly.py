@@ -1,4 +1,4 @@
-"""What a scene is made into: something that moves, and the parts that say what it does."""
+"""What a scene is built into: a system that advances in time, and the parts that record it."""
 
 from __future__ import annotations
 

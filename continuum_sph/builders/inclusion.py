@@ -86,7 +86,7 @@ def circularity(x: Floats, fluid: NDArray[np.int64], spacing: float) -> float:
 
     Its outline is where the ``fluid`` (n,), 0 or 1, of the particles at ``x`` (n, 2) m, averaged over a kernel of
     SMOOTH ``spacing`` (m), is one half; area and perimeter are both the outline's.  Particles strewn over exact shapes
-    say how good that is: a disc of ten spacings and more has 0.996 to 0.999; an ellipse whose ends are as blunt as four
+    give the accuracy: a disc of ten spacings and more has 0.996 to 0.999; an ellipse whose ends are as blunt as four
     spacings is right to 0.5 %; sharper corners are cut off, which makes the shape too round.
     """
     h = SMOOTH * spacing

@@ -126,7 +126,7 @@ class WaterInstruments(Part):
         )  # fmt: skip
 
     def tables(self) -> dict[str, dict[str, float]]:
-        """A row of each table that the scene wants."""
+        """A row of each table that the scene requests."""
         cloud, found = self.measured(), {}
         if self.probes:
             found["probes"] = probe_row(self.probes, cloud)

@@ -1,4 +1,4 @@
-"""Soil with water in its pores: what both layers together say of themselves, and when they make no sense any more."""
+"""Soil with water in its pores: what is recorded of both layers together, and checks of their state."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class WetSoilPart(SoilPart):
     key = "soil"
 
     def row(self) -> dict[str, float]:
-        """As of soil alone."""
+        """The columns of soil alone, with the prefix "soil: "."""
         return {f"soil: {name}": value for name, value in super().row().items()}
 
     def show(self, snapshot: Snapshot) -> None:
@@ -58,7 +58,7 @@ class MixturePart(Part):
         self.flow, self.water, self.soil, self.air = flow, water, soil, air
 
     def check(self) -> None:
-        """Raise Unstable when the pores have left what makes sense, or the next step is longer than it may be."""
+        """Raise Unstable when the pores are out of bounds, or the next step exceeds the stable one."""
         both, flow, layer = self.flow, self.flow.water, self.flow.water.layer
         now = Now(both.step, both.time, REPAIR)
         recorded = {"porosity about": ("", flow.porosity), "room about": ("", flow.room),
@@ -110,8 +110,8 @@ class MixturePart(Part):
 
 
 class PoreInstruments(Part):
-    """Water in pores, phreatic.csv, and probes.csv and levels.csv where a scene wants them: of the water, its surface
-    in soil too, and its flow to the right through each strip."""
+    """Water in pores, phreatic.csv, and probes.csv and levels.csv where a scene requests them: of the water, its
+    surface in soil too, and its flow to the right through each strip."""
 
     def __init__(self, scene: Scene, flow: PoreFlow) -> None:
         self.probes, self.levels, self.flow, self.width = scene.probe, scene.level, flow, scene.inner[0]

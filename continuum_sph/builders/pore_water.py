@@ -28,7 +28,7 @@ Floats = NDArray[np.float64]
 
 
 def pore_law(scene: Scene) -> Law:
-    """What the water of a scene with soil obeys.
+    """Parameters of the water in a scene with soil.
 
     Gradients are corrected, as those of the soil are: total stress is in balance where pressure and effective stress
     cancel, and would not by 2.6 % of both.  Density diffusion takes departures from linear fields only: any other lets

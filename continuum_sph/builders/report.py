@@ -1,4 +1,4 @@
-"""What `check` says about a scene before it runs."""
+"""The report of `check` on a scene before it runs."""
 
 from __future__ import annotations
 

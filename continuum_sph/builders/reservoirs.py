@@ -1,4 +1,4 @@
-"""Water kept at levels: the reservoirs of a scene, and what they say of themselves."""
+"""Water kept at levels: the reservoirs of a scene, and what is recorded of them."""
 
 from __future__ import annotations
 

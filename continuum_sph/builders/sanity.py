@@ -1,4 +1,4 @@
-"""Whether particles still make sense: finite numbers, one particle in a place, no jumps, a step within its rules."""
+"""Checks of particles: finite values, distinct positions, no jumps, a step within its bounds."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Now(NamedTuple):
 
 
 def advance_one(advance: Callable[[], object], now: Now) -> None:
-    """Do a step; Unstable when a position is no number any more, which the search for neighbours says."""
+    """Advance one step; raise Unstable when the neighbour search finds a position that is not finite."""
     try:
         advance()
     except ValueError as error:
@@ -94,7 +94,7 @@ def place(x: Floats, at: int) -> str:
 
 
 class JumpCheck:
-    """Where particles were at the last check, and the way of the fastest since.
+    """Positions of particles at the last check, and the distance covered by the fastest since.
 
     A particle that came farther than `FARTHER` such ways and a spacing did not go there.  strips : (left, right) m of
     reservoirs, whose particles come and go.
@@ -106,13 +106,13 @@ class JumpCheck:
         self.reset()
 
     def reset(self) -> None:
-        """Forget where they were."""
+        """Discard the stored positions."""
         self._seen: Floats | None = None
         self._there: NDArray[np.bool_] | None = None
         self._way, self._time, self._max_speed = 0.0, -1.0, 0.0
 
     def add_time(self, time: float, max_speed: float) -> None:
-        """It is ``time`` (s) now, and the fastest goes at ``max_speed``, m/s."""
+        """Add a step that ends at ``time`` (s), with the largest speed ``max_speed``, m/s."""
         if self._time >= 0.0:
             self._way += (time - self._time) * max(max_speed, self._max_speed)
         self._time, self._max_speed = time, max_speed

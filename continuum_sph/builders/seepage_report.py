@@ -1,4 +1,4 @@
-"""What `check` says about a scene of soil and water before it runs."""
+"""The report of `check` on a scene of soil and water before it runs."""
 
 from __future__ import annotations
 

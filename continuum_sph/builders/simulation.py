@@ -37,7 +37,7 @@ class Simulation:
         self._take_time()
 
     def _take_time(self) -> None:
-        """Steps done, time reached (s) and length of the next step (s), for whoever drives; parts follow."""
+        """Steps done, time reached (s) and length of the next step (s), for the run loop; parts follow."""
         self.step: int = self.flow.step
         self.time: float = self.flow.time
         self.step_seconds: float = self.flow.next_step
@@ -55,7 +55,7 @@ class Simulation:
             self._take_time()
 
     def check(self) -> None:
-        """Raise Unstable when a part has left what makes sense."""
+        """Raise Unstable when the state of a part is not finite or out of bounds."""
         for part in self.parts:
             part.check()
 

@@ -1,4 +1,4 @@
-"""Soil in a tank: particles, what they obey, what they say of themselves, and when they make no sense any more."""
+"""Soil in a tank: particles, their material law, what is recorded of them, and checks of their state."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ Floats = NDArray[np.float64]
 NO_PILE = np.zeros((0, 2)), np.zeros((0, 4)), np.zeros(0, np.int64)
 REPAIR = "raise soil.stiffness or soil.numerics.damping, or lower numerics.courant"
 LEAST = float(np.finfo(np.float64).tiny)  # of what is above zero
-DEEPEST = 0.5  # of a porosity at the start, left when soil is pressed together beyond sense
+DEEPEST = 0.5  # of a porosity at the start, left when soil is compressed out of bounds
 
 
 class SoilPart(Part):
@@ -95,7 +95,7 @@ class SoilPart(Part):
         return moved
 
     def row(self) -> dict[str, float]:
-        """Where the soil is, how it moves, how it bears its weight, and how the step was chosen."""
+        """Columns of the soil: position, motion, stress, and how the step was chosen."""
         flow, soil, n = self.flow, self.flow.soil, self.flow.soil.soil
         half, gravity = 0.5 * flow.law.spacing, -flow.law.gravity[1]
         x, v, mass, stress = soil.x[:n], soil.v[:n], soil.mass[:n], soil.stress[:n]
@@ -201,7 +201,7 @@ def placed(
     number = np.zeros(count, np.int64)
     beside = (walls[:, 0] < 0.0) | (walls[:, 0] > width)
     below = walls[:, 1] < 0.0
-    # In a corner both walls reverse what they meet, which is what a wall that holds does.
+    # In a corner both walls reverse the velocity, as a no-slip wall does.
     slips = {"hold": HOLDING, "slip": SLIPPING}
     kinds = np.where(beside, slips.get(sides, HOLDING), slips[floor])
     number[n:] = np.where(beside & below, HOLDING, kinds)
@@ -264,7 +264,7 @@ def damping_of(section: SoilSection, numerics: NumericsSection) -> float:
 
 
 def soil_law(scene: Scene) -> SoilLaw:
-    """What the soil of a scene obeys."""
+    """Parameters of the soil of a scene."""
     section, numerics = soil_section(scene), scene.numerics
     choice, material = section.numerics, material_of(section)
     # What stops the slowest swing of a column of this height, period 4 H/c, within one of its periods.

@@ -1,4 +1,4 @@
-"""Water in a tank: particles, what they obey, what they say of themselves, and when they make no sense any more."""
+"""Water in a tank: particles, their flow equations, what is recorded of them, and checks of their state."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ class WaterPart(Part):
         require_step(flow.next_step, limits, RULES, layer.x, layer.acceleration, layer.density, now)
 
     def row(self) -> dict[str, float]:
-        """Where the water is, and its energies."""
+        """Columns of the water: position and energies."""
         layer, tait = self.flow.layer, water_state(self.scene)
         n, half = layer.fluid, 0.5 * self.scene.numerics.spacing
         x, v, mass = layer.x[:n], layer.v[:n], layer.mass[:n]
@@ -173,7 +173,7 @@ def water_state(scene: Scene) -> Tait:
 
 
 def water_law(scene: Scene) -> Law:
-    """What the particles of a scene obey."""
+    """Parameters of the fluid particles of a scene."""
     numerics, water, state, second = scene.numerics, scene.water, water_state(scene), scene.inclusion
     return Law(
         smoothing=Smoothing(numerics.kernel, numerics.smoothing_ratio * numerics.spacing),

@@ -1,4 +1,4 @@
-"""What `check` says about water before it runs."""
+"""The report of `check` on the water of a scene before it runs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ BYTES = 560  # per particle, walls included: 420 to 500 in plain columns, the sm
 
 
 def water_report(scene: Scene) -> Report:
-    """Resolution, sound, steps and cost; warns above Mach 0.1 and refuses above 0.3 (InputError)."""
+    """Resolution, sound, steps and cost; a warning above Mach 0.1, InputError above 0.3."""
     law, spacing = water_law(scene), scene.numerics.spacing
     tait, h, viscosity = water_state(scene), law.smoothing.length, scene.water.viscosity
     out = Report(scene.title or "water in a tank")
@@ -97,7 +97,7 @@ def _warn(scene: Scene, mach: float, out: Report) -> None:
 
 
 # Mean height of a column of 0.5 m by 1 m after its collapse in a tank of 1.5 m, from 2 to 4 s, spacing 0.05 m, over
-# what it must be at rest: 1.04 to 1.21 with neither, 0.86 to 1.37 with both, and as said below
+# what it must be at rest: 1.04 to 1.21 with neither, 0.86 to 1.37 with both, and as stated below
 def _warn_of_volume(numerics: NumericsSection, out: Report) -> None:
     """Warn of choices that let splashing water gain or lose volume."""
     corrected, shifted = numerics.gradient == "corrected", numerics.shifting > 0.0

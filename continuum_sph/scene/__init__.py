@@ -1,1 +1,1 @@
-"""Scenes of the continuum: typed sections, particles made from them, what is known of them, trials and validations."""
+"""Scenes of the continuum: typed sections, particles and quantities derived from them, trials and validations."""

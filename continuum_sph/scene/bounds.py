@@ -1,4 +1,4 @@
-"""Bounds of the sections: no flow of water that anyone computes lies outside, and inside every product is a number."""
+"""Bounds of the sections: wider than any flow of water in practice, and inside them every product is finite."""
 
 from __future__ import annotations
 

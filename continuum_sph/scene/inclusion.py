@@ -27,7 +27,7 @@ class Disc(Section):
 class InclusionSection(Section):
     """A second fluid, in discs within the water: bubbles or drops.
 
-    law : "liquid" (eq. 41), as stiff as the water unless sound_speed says otherwise; gas under the pressure of the air,
+    law : "liquid" (eq. 41), as stiff as the water unless sound_speed is given; gas under the pressure of the air,
     "adiabatic", or "printed" (eqs 39, 40); or another file of `continuum_sph.water.eos`;  surface_tension : σ against
     the water;  cohesion : a of eq. 54 within it.
     """

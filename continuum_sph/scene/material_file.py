@@ -1,7 +1,7 @@
 """[soil] material = "material.toml": numbers of a soil as its grains have them, from the file that measures them.
 
-What the scene says itself wins.  k is not that of the water that somebody measured with: it follows from K of the file
-and the scene's own water, k = K ρ g/μ.  The card keeps where the numbers come from, and how far they are known.
+Values given in the scene take precedence.  k is not that of the test's own water: it follows from K of the file
+and the scene's own water, k = K ρ g/μ.  The card keeps where the numbers come from, and their standard errors.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from porescale.common.schema.sections import Refused, Section, quantity, validat
 FORMAT = 1
 """Of the files that are read here."""
 DENSITY, VISCOSITY = 1000.0, 1.002e-3
-"""Of the water of a scene that does not say its own, kg/m³ and Pa s: the defaults of [water]."""
+"""Density and viscosity of the water of a scene that gives none, kg/m³ and Pa s: the defaults of [water]."""
 
 
 class Known(Section):
@@ -77,7 +77,7 @@ class MaterialFile(Section):
 
 
 class Origin(Section):
-    """Where numbers of the soil come from: file and its SHA-256, what it says of itself, means and standard errors."""
+    """Where numbers of the soil come from: file and its SHA-256, its own description, means and standard errors."""
 
     file: str
     sha256: str
@@ -131,7 +131,7 @@ def speed(intrinsic: float, water: Any) -> float:
     given = water if isinstance(water, Mapping) else {}
 
     def number(key: str, unit: str, usual: float) -> float:
-        """A quantity of the water in ``unit``, ``usual`` where it is not given or makes no sense."""
+        """A quantity of the water in ``unit``, ``usual`` where it is not given or not valid."""
         try:
             found = to_si(given.get(key, usual), unit)
         except (TypeError, ValueError):

@@ -9,7 +9,7 @@ from porescale.common.schema.sections import Section, quantity
 
 
 class ReservoirSection(Section):
-    """A strip of open water kept at a level, by water let in or out over its surface; both are booked.
+    """A strip of open water kept at a level, by water let in or out over its surface; both are recorded.
 
     The water may stand at ``level`` for ever, or follow ``rise``, a table of (time s, level m), straight lines between
     its rows: two rows close in time are a sudden rise.  A level at ``bottom`` takes out whatever comes.  The strip

@@ -42,11 +42,11 @@ class Body(Section):
 
 
 class SoilNumerics(Section):
-    """What keeps particles of soil calm and evenly spread; see `continuum_sph.soil.momentum`.
+    """Numerics that damp the noise of soil particles and keep them evenly spaced; see `continuum_sph.soil.momentum`.
 
     Maeda & Sakai 2004: gradient "plain", damping_of "approach" with 0.001, neither diffusion nor parting.
-    damping_viscosity : what damping takes goes as alpha, the speed of sound c and h; told as their product it stays
-    the same whatever the stiffness and the spacing are, and with it how far a tongue of soil slides.
+    damping_viscosity : damping goes as alpha, the speed of sound c and h; prescribed as their product it is the same
+    whatever the stiffness and the spacing are, and with it how far a tongue of soil slides.
     """
 
     gradient: Literal["corrected", "plain"] = "corrected"

@@ -37,12 +37,13 @@ that this takes from the water is given to the soil particles by the same weight
 interpolation factors φ <= 1 the pair of velocities is multiplied by 1 - (1 - e^(-κT)) (a + b φ²), a + b = 1, which lies
 between 0 and 1 for every T.
 
-Eq. 46 of Maeda & Sakai 2004 as printed, drag n ρ_f g/k on a water layer of full density that does not feel the grains
-(ψ = 0), has the conductivity k/n: such layers consolidate 1/n times too fast, and water feels no step of porosity.
+Eq. 46 of Maeda & Sakai 2004 as printed, drag n ρ_f g/k on a water layer of full density without the volume of the
+grains (ψ = 0), has the conductivity k/n: such layers consolidate 1/n times too fast, and a step of porosity has no
+effect on the water.
 
-Parts: `Skeleton`, what water sees of soil (`skeleton`);  `Overlap`, who lies near whom (`overlap`);  `PoreFlow`, a
-`Flow` of water in it (`pores`);  `Drain`, faces of given pressure (`drain`);  `Supply`, water kept at levels (`level`);
-`Seepage`, both layers moving (`step`).
+Parts: `Skeleton`, the soil as the water equations need it (`skeleton`);  `Overlap`, neighbours across layers
+(`overlap`);  `PoreFlow`, a `Flow` of water in it (`pores`);  `Drain`, faces of given pressure (`drain`);
+`Supply`, water kept at levels (`level`);  `Seepage`, both layers moving (`step`).
 """
 
 from continuum_sph.seepage.pores import PoreFlow

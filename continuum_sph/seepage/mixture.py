@@ -23,7 +23,7 @@ V^grains/k, s/m;  Σ m W, kg/m³;  its own density kg/m³, mass kg/m and what st
 (m/s) and acceleration (m/s²) less the soil's mean by r W."""
 LINES = 14
 LEAST_ROOM = 0.2  # of a kernel: a particle in a right-angled corner has a quarter
-LEAST_POROSITY = 0.05  # grains that crowd beyond this leave the water no more volume
+LEAST_POROSITY = 0.05  # grains packed more densely leave the water the volume of this porosity
 
 
 @parallel_kernel

@@ -91,7 +91,7 @@ class Overlap:
         overlap_weights(pairs.start, pairs.partner, self.x, self.weight, self.length, *pairs.period)
 
     def _make_room(self) -> None:
-        """For the weights of the list."""
+        """Enlarge ``weight`` where the list has outgrown it."""
         if len(self.weight) < len(self.pairs.partner) + LANES:
             self.weight = np.zeros(len(self.pairs.partner) * 3 // 2 + LANES)
 

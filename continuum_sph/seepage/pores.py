@@ -1,4 +1,4 @@
-"""Water among grains: a `Flow` that sees the soil's particles; derivation: `continuum_sph.seepage`."""
+"""Pore water: a `Flow` coupled to the soil's particles; derivation: `continuum_sph.seepage`."""
 
 from __future__ import annotations
 
@@ -59,14 +59,14 @@ class PoreFlow(Flow):
         self.heat = np.zeros(fluid + self.skeleton.count)
 
     def begin(self, step: float) -> float:
-        """As of water alone; what lies behind open faces goes along."""
+        """Begin a step as a flow of water alone does; particles behind open faces are moved with it."""
         layer, near = self.layer, self.near(self.law.smoothing.kind)
         for face in self.drains:
             follow(face.rows, near, layer.x, layer.v, *face.normal, step)
         return super().begin(step)
 
     def evaluate(self, step: float, ratio: float) -> None:
-        """As of water alone, of the mixture; forces of the water on the soil beside."""
+        """Evaluate rates and forces of the mixture, as `Flow.evaluate` does; forces of the water on the soil beside."""
         layer, soil = self.layer, self.skeleton
         x, length = layer.x[: layer.fluid], self.law.smoothing.length
         self.overlap.update(x, soil.x)
@@ -81,13 +81,13 @@ class PoreFlow(Flow):
         )  # fmt: skip
 
     def sum_pairs(self, half: float) -> None:
-        """As of water alone, of the mixture."""
+        """Sum over pairs as `Flow.sum_pairs` does, for the mixture."""
         super().sum_pairs(half)
         if self.law.shifting > 0.0:
             keep_place_density(self.layer.fluid, self.pores, self.density_gradient, self.layer.drift, self.layer.rate)
 
     def update_walls(self, step: float, ratio: float) -> None:
-        """What the water sees of walls, of grains and of open faces, a ``step`` (s) on."""
+        """Update walls, grains and open faces in the water's equations, a ``step`` (s) on."""
         super().update_walls(step, ratio)
         layer, pairs, smoothing = self.layer, self.pairs, self.law.smoothing
         how = (smoothing.length, *pairs.period)

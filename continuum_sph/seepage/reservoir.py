@@ -1,4 +1,4 @@
-"""Water kept at a level: strips of open water in which particles come and go, every one of them booked.
+"""Water kept at a level: strips of open water in which particles enter and leave, each one recorded.
 
 What stands in a strip is measured by its weight,
 
@@ -11,7 +11,7 @@ the level already; while more than half a particle is over the highest of the st
 takes out whatever comes.
 
 Arrays keep their lengths: particles that are not in the tank have no mass and wait at berths of their own over it, so
-far from each other and from all else that they meet nobody.  Rows without mass are the only memory of who waits.
+far from each other and from all else that they have no neighbours.  A row without mass is a waiting particle.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ class Reservoir:
     """A strip whose water is kept at a level.
 
     left, right, bottom : m;  times (k,) s and levels (k,) m : straight lines between them, constant before and after;
-    walls : whether each end lies at a wall of the tank;  let_in, let_out : mass booked so far, kg/m;  level : of the
+    walls : whether each end lies at a wall of the tank;  let_in, let_out : mass recorded so far, kg/m;  level : of the
     last step, m.
     """
 
@@ -196,7 +196,7 @@ class Supply:
         return True
 
     def state(self) -> dict[str, Any]:
-        """What was booked; who waits is known by its mass."""
+        """The mass let in and out of each reservoir, kg/m; waiting particles are those without mass."""
         return {
             "let_in": np.array([pool.let_in for pool in self.reservoirs]),
             "let_out": np.array([pool.let_out for pool in self.reservoirs]),

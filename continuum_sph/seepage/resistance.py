@@ -39,7 +39,7 @@ class Resistance:
 
     @property
     def number(self) -> int:
-        """The law by the number that kernels know it by."""
+        """Number of the law in kernels."""
         return LAWS.index(self.law)
 
     @property

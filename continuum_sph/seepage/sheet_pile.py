@@ -39,7 +39,7 @@ NONE, AT_REST = np.zeros(0, np.int64), np.zeros((0, 2))
 
 @inline
 def side_of(x, y, at, bottom):
-    """From which side a point (x, y) sees a pile in x = ``at`` that ends at ``bottom``, all m."""
+    """On which side of a pile in x = ``at``, that ends at ``bottom``, a point (x, y) lies, all m."""
     if y < bottom:
         return UNDER
     return LEFT if x < at else RIGHT
@@ -171,19 +171,19 @@ class CutPairList(PairList):
         self.last = np.zeros((free, 2))
 
     def update(self, x: Floats, reach: Floats) -> bool:
-        """As of any list, after particles that have entered the pile are put on its surface: overwrites ``x``."""
+        """Update the list, after particles that have entered the pile are put on its surface: overwrites ``x``."""
         if not self.builds:
             self.last[:] = x[: len(self.last)]
         self.stopped += keep_out(x, self.v, self.last, self.at, self.bottom, self.half)
         return super().update(x, reach)
 
     def build(self, x: Floats, reach: Floats) -> None:
-        """As of any list, of what sees each other."""
+        """Build the list without the pairs that the pile separates."""
         super().build(x, reach)
         self._publish(cut_pairs(x, self.side, self.start, self.partner, self.at, self.bottom))
 
     def state(self) -> dict[str, NDArray[np.generic]]:
-        """Copies of everything that decides what the list says next."""
+        """Copies of everything that determines the next state of the list."""
         return super().state() | {"last": self.last.copy()}
 
     def restore(self, state: dict[str, NDArray[np.generic]]) -> None:

@@ -1,4 +1,4 @@
-"""What water sees of soil: where its grains are, how they move and how hard it is to flow between them."""
+"""The soil as the water equations need it: positions, velocities and permeability of its grains."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class Skeleton:
 
 
 def skeleton_of(flow: SoilFlow, density: float, permeability: Floats | float) -> Skeleton:
-    """What water sees of a soil flow whose grains have ``density`` (kg/m³) and which has ``permeability`` k (m/s)."""
+    """The skeleton of a soil flow whose grains have ``density`` (kg/m³) and which has ``permeability`` k (m/s)."""
     soil, n = flow.soil, flow.soil.soil
     k = np.broadcast_to(np.asarray(permeability, np.float64), n).copy()
     mass = soil.mass[:n]

@@ -5,7 +5,7 @@
 What there is
   `Soil`      the state: arrays, soil particles first, wall particles after them
   `Material`  elasticity, strength, weight and porosity of one kind of soil: a row of the table that kernels read
-  `SoilLaw`   what all particles obey: smoothing, gravity, damping, corrections, walls
+  `SoilLaw`   parameters of all particles: smoothing, gravity, damping, corrections, walls
   `SoilFlow`  a soil, its law and its pairs, moving
 
 How to use it.  Fill a `Soil`, make a `SoilFlow`, set ``lower``, ``upper`` (surfaces of the walls) and call ``start``.
@@ -13,7 +13,7 @@ Then ``advance()`` does one step of length ``next_step``; ``advance(step)`` does
 Other layers act through ``soil.force`` (soil, 2), N per metre of depth on each particle: set ``flow.before_force`` to a
 function of the flow that overwrites it; it is called once a step, when positions, densities and effective stresses are
 those of the end of the step, just before accelerations.  To put something else between the parts of a step (an implicit
-drag, say) call the parts themselves, which is all that ``advance`` does:
+drag, for example) call the parts themselves, which is all that ``advance`` does:
 
     flow.begin(step)      half kick and drift
     flow.strain(step)     velocity gradients, densities, stresses at the new positions

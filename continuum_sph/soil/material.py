@@ -3,7 +3,7 @@
 E = E0 (p/p0)^m and G = E/2(1+ν) with the mean stress p = (σ_xx + σ_yy)/2 (eq. 42 of Maeda & Sakai 2004).  Of the area
 modulus B, dp = B dε_v, there are two: "plane strain", E/2(1+ν)(1-2ν), which keeps σ_zz = 2ν p as plane strain does, and
 "printed", E/2(1-ν) of eq. 43, which is that of plane stress.  A column that cannot widen has the modulus B + G and the
-stress ratio K0 = (B - G)/(B + G): ν/(1-ν) in plane strain, ν with the printed modulus as long as soil stays elastic.
+stress ratio K0 = (B - G)/(B + G): ν/(1-ν) in plane strain, ν with the modulus of eq. 43 as long as soil stays elastic.
 
 Strength: τ_f = p sin φ + c cos φ for the radius τ of Mohr's circle in the plane, Mohr-Coulomb while σ_zz lies between
 the other two.  That of Maeda & Sakai 2004, τ_f = p tan φ_d, is the same with
@@ -98,7 +98,7 @@ class Material:
         return float(self.stiffness * (max(pressure, self.least) / self.reference) ** self.exponent)
 
     def row(self) -> Floats:
-        """Its line of the table, (13,)."""
+        """The material's row of the table that kernels take, (13,)."""
         across = 0.0 if self.printed else 2.0 * self.poisson
         # Tension beyond the tip of the cone, c cot φ, cannot be.
         tension = min(

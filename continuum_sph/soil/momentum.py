@@ -3,13 +3,13 @@
 m_i dv_i/dt = -Σ V_i V_j (σ_i K_i + σ_j K_j)·∇_i W + Σ m_i m_j α c̄ h (w·x)/{(x² + 0.01 h²) ρ̄} ∇_i W + f_i + m_i g
 
 With K = 1 the first is eq. 33 of Maeda & Sakai 2004 but for V_j/ρ_i in place of m_j/ρ_i² and m_j/ρ_j²; with the K of
-`velocity_gradients` it does the work that these say, of a velocity field of any kind.
+`velocity_gradients` it does the work that these gradients imply, for any velocity field.
 
 w is the velocity difference of the pair less what the mean of both gradients makes of their distance: the part that
-gradients, and so stress, do not see.  Zig-zags in it would live on as nothing resists them.  Eq. 36 damps the whole
-difference where particles approach, and with it flow itself.
+gradients, and so stress, do not contain.  Zig-zags in it would persist, as nothing resists them.  Eq. 36 damps the
+whole difference where particles approach, and with it flow itself.
 
-Zig-zags in stress push nothing and so live on too.  Stress diffuses, dσ_i/dt = -χ h² γ' Σ V_j (σ_j - σ_i) (1/r) W', but
+Zig-zags in stress cause no force and persist too.  Stress diffuses, dσ_i/dt = -χ h² γ' Σ V_j (σ_j - σ_i) (1/r) W', but
 at the rate of shear strain γ' (mean of the pair), not of sound as in Feng, Fourtakas, Rogers & Lombardi,
 Comput. Geotech. 138 (2021) 104356 and its kin: what is smoothed at the rate of sound must be strained anew for ever to
 carry its weight, so soil at rest creeps.  In the same way particles nearer than a spacing are moved apart, by x_ij A γ'

@@ -39,8 +39,8 @@ from porescale.common.compiled.jit import parallel_kernel, prange
 
 
 class Straining(NamedTuple):
-    """step, s;  spreading: for how long diffusion lasts, s;  spin: 1, or -1 to turn stress as eq. 38 is printed;  most:
-    shear strain of a step that `accelerate` follows."""
+    """step, s;  spreading: for how long diffusion lasts, s;  spin: 1, or -1 for the sign of eq. 38 in Maeda & Sakai
+    2004;  most: shear strain of a step that `accelerate` follows."""
 
     step: Any
     spreading: Any

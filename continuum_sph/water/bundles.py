@@ -18,7 +18,7 @@ from porescale.common.neighbors.cells import minimum_image
 
 
 class Neighbours(NamedTuple):
-    """Who is near whom, and the kernel of the sums over them.
+    """The neighbour list, and the kernel of the sums over it.
 
     start (n + 1,), split (n,), partner (m,): a full list; partners of particle i are
     ``partner[start[i]:start[i + 1]]``, those that are walls from ``split[i]`` on;  period_x, period_y: m, 0 where the
@@ -40,7 +40,7 @@ class Fluids(NamedTuple):
 
     table (m, 9): a row for each, see `fluids`;  properties (fluid, 2): number and viscosity (Pa s) of each particle's,
     None for one fluid;  lengths (n, 2): smoothing length of each particle, m, in the first column, None where all have
-    the same;  mass (n,) kg/m, None where nothing asks for it.
+    the same;  mass (n,) kg/m, None where it is not needed.
     """
 
     table: Any
@@ -86,7 +86,7 @@ class Gradients(NamedTuple):
     """What `neighbourhood_moments` makes.
 
     matrix (fluid, 4): gradient correction, None for plain gradients;  density (fluid, 2) kg/m⁴: gradient of density
-    within the fluid, None where neither diffusion nor shifting asks for it;  drift (fluid, 2) m/s: shifting velocity,
+    within the fluid, None where neither diffusion nor shifting needs it;  drift (fluid, 2) m/s: shifting velocity,
     None without shifting.
     """
 
@@ -113,7 +113,7 @@ def nearest_image(d, period, inverse):
 
 @inline
 def image(d, period):
-    """The same of one distance."""
+    """The component ``d`` of a distance vector, m, to the nearest periodic image."""
     if period is None:
         return d
     return minimum_image(d, period)
@@ -121,7 +121,7 @@ def image(d, period):
 
 @inline
 def scaled(value, factor):
-    """Their product; None where ``value`` is."""
+    """The product of ``value`` and ``factor``; None where ``value`` is."""
     if value is None:
         return None
     return value * factor
@@ -137,7 +137,7 @@ def plus_scaled(value, factor, more):
 
 @inline
 def plus(value, more):
-    """Their sum; ``value`` itself where ``more`` is None."""
+    """The sum of ``value`` and ``more``; ``value`` itself where ``more`` is None."""
     if more is None:
         return value
     return value + more

@@ -1,4 +1,4 @@
-"""Fluids of a flow: each a state law, a viscosity and what else its particles obey, as one row of a table of numbers.
+"""Fluids of a flow: each a state law, a viscosity and its other parameters, as one row of a table of numbers.
 
 A layer's particles carry the number of their fluid, their material; kernels read its row.
 """
@@ -30,7 +30,7 @@ class Fluid:
     cohesion: float = 0.0
 
     def row(self) -> Floats:
-        """Its line of the table, (6,)."""
+        """The fluid's row of the table that kernels take, (6,)."""
         state = self.state
         return np.array(
             [

@@ -1,4 +1,4 @@
-"""A flow without a next step: the error that says where, for whoever drives it."""
+"""A flow without a next step: the error that names the place, for the run loop."""
 
 from __future__ import annotations
 

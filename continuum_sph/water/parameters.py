@@ -1,4 +1,4 @@
-"""What the particles of a flow obey, in numbers, and the steps that it allows."""
+"""Parameters of the particles of a flow, and the time steps that they allow."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ z³ - z² + s (3z² - 3z + 1) = 0, whose root z = -1 is at s = 2/7, and it grows
 
 @dataclass(frozen=True)
 class Law:
-    """What the particles obey; numbers in SI.
+    """Parameters of the particles of a flow, in SI.
 
     smoothing : kernel and h;  spacing : of the particles, m;  fluids : by the numbers that particles carry;
     gravity : (x, y) m/s²;  alpha, beta, softening : artificial viscosity;  diffusion : δ, and noise, what it takes for
@@ -86,7 +86,7 @@ class Law:
 
     @cached_property
     def bounds(self) -> tuple[float, float, float, float]:
-        """What `limits` knows before a step: number of the first bound, least c/h (1/s), third and fourth bound (s)."""
+        """Constants of `limits`: number of the first bound, least c/h (1/s), third and fourth bound (s)."""
         h, infinite = self.smoothing.length, math.inf
         thickest = max(fluid.viscosity / fluid.state.density for fluid in self.fluids)
         if len(self.fluids) > 1:

@@ -100,7 +100,7 @@ class Smoothing:
 
     @property
     def kind(self) -> int:
-        """The number by which kernels know it."""
+        """Number of the smoothing function in kernels."""
         return NAMES.index(self.name)
 
     @property

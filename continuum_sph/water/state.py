@@ -24,7 +24,7 @@ class Layer:
     x (n, 2) m;  v (n, 2) m/s, of walls the wall's own;  mass (n,) kg per metre of depth;
     density (fluid,) kg/m³;  material (n,) number of the particle's fluid, of a wall particle 1 where fluid slips past
     walls that else hold it;  the rest is made of these: pressure (n,) Pa and what the pass over pairs reads,
-    of which ghost, properties, lengths, matrix and facing have no rows unless a flow asks for them.
+    of which ghost, properties, lengths, matrix and facing have no rows unless a flow needs them.
     """
 
     fluid: int

@@ -13,7 +13,7 @@ does when a takes
 instead: D extrapolated in a straight line from the last two mid-steps to this one (r = 1 at equal steps).  For sound
 of frequency ω the amplification per step is then a root of z²(z - 1)² + (ωΔt)²(3z² - 3z + 1) = 0, inside the unit
 circle for ωΔt < 0.7, with damping 1 - (ωΔt)⁴/2; with D alone (no extrapolation) it is outside for every Δt.  Only a
-sees ρ*; ρ itself is never extrapolated.
+uses ρ*; ρ itself is never extrapolated.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ class Flow:
         self.marked = False
 
     def choose(self) -> None:
-        """What kernels take: the arrays of what the law asks for, None in place of the others."""
+        """What kernels take: the arrays that the law needs, None in place of the others."""
         layer, law = self.layer, self.law
         self.table = table(law.fluids)
         several, shifted, xsph = len(law.fluids) > 1, law.shifting > 0.0, law.xsph > 0.0
@@ -126,7 +126,7 @@ class Flow:
             lengths=layer.lengths if law.varied else None,
             mass=layer.mass if layer.has_budget or cohesive else None,
         )
-        # XSPH asks for the kernel twice a pair, and is 2 % faster with Wendland's compiled in (alone it is no faster).
+        # XSPH evaluates the kernel twice a pair, and is 2 % faster with Wendland's compiled in (alone it is no faster).
         self.kind = None if law.xsph > 0.0 and law.smoothing.kind == WENDLAND else law.smoothing.kind
         self.choices = Choices(
             gravity_x=law.gravity[0] or None,

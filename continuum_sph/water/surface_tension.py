@@ -7,7 +7,7 @@ motion of the lighter fluid, so each particle takes the mean of its neighbourhoo
 Source: Brackbill, Kothe & Zemach, J. Comput. Phys. 100 (1992) 335; as particles Morris, Int. J. Numer. Methods Fluids
 33 (2000) 333.
 
-The force is what a particle feels of a partner in the other fluid whose pressure is higher or lower by σ κ_j, summed
+The force is that on a particle from a partner in the other fluid whose pressure is higher or lower by σ κ_j, summed
 as pressures are: -(σ/ρ_i) Σ V_j κ_j (m_j - m_i) ∇_i W, m the numbers of the fluids.  With the partner's κ this is
 -σ{∇(κ m) - m_i ∇κ}: the first part is a gradient, which pressure takes over however wide the strip is, the second the
 force of a sharp interface, both to the digit for the sums that pressure has.  A smeared σ κ ∇c instead (κ_i in the
@@ -62,7 +62,7 @@ def colours(fluid, record, near, material, beside, colour):
     """
     for i in prange(fluid):
         if beside[i] != 2:
-            colour[i] = material[i]  # all that it sees is of its own
+            colour[i] = material[i]  # all its neighbours are of its own fluid
             continue
         weight = record[i, VOLUME] * kernel_value(near.kind, 0.0, near.h)
         below = weight

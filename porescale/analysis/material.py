@@ -1,4 +1,4 @@
-"""A material file: what packings of grains show of the soil they make, with how far each number is known.  TOML.
+"""A material file: what packings of grains show of the soil they make, with the standard error of each number.  TOML.
 
 format          1
 [soil]          numbers that a scene of the continuum takes over: density (of grains per whole volume), porosity,
@@ -44,7 +44,7 @@ class Known:
 
     @property
     def deviation(self) -> float:
-        """Of a single packing (n - 1)."""
+        """Standard deviation of a single packing (n - 1), in ``unit``."""
         return float(np.std(self.values, ddof=1))
 
     @property
@@ -53,7 +53,7 @@ class Known:
         return self.deviation / math.sqrt(len(self.values))
 
     def table(self) -> dict[str, Any]:
-        """As the file has it."""
+        """The number as a table of the material file."""
         return {"mean": self.mean, "standard_error": self.error, "deviation": self.deviation,
                 "values": list(self.values), "unit": self.unit}  # fmt: skip
 

@@ -8,7 +8,7 @@ permeameter: body force less pressure gradient, fitted to the mean pressure of t
 
 Compared to  Gebart 1992, flow across regular arrays of cylinders of solid fraction c,
 K/R² = C (sqrt(c_max/c) - 1)^(5/2),  square C = 16/(9 pi sqrt 2), c_max = pi/4,  hexagonal 16/(9 pi sqrt 6) and
-pi/(2 sqrt 3);  and Kozeny & Carman,  K/R² = (1 - c)³/(4 k c²),  k = 5.  R, d and c are what the fluid sees: lambda
+pi/(2 sqrt 3);  and Kozeny & Carman,  K/R² = (1 - c)³/(4 k c²),  k = 5.  R, d and c are those used in the fluid: lambda
 times the grains'.
 """
 
@@ -43,9 +43,9 @@ KOZENY = 5.0
 
 @dataclass(frozen=True)
 class Measured:
-    """Permeability of a window.  Lengths and areas as the measurement was asked for: m.
+    """Permeability of a window.  Lengths in the unit of the input: m.
 
-    permeability : K, m²;  relative : K/d²;  solid_fraction : c of what the fluid sees;  diameter : mean d of it, m;
+    permeability : K, m²;  relative : K/d²;  solid_fraction : c of the discs in the fluid;  diameter : mean d of it, m;
     cells : per diameter;  steady : whether the flux was;  steps : of the lattice.
     """
 
@@ -84,7 +84,7 @@ def measure(
     laws: Mapping[str, Any] | None = None,
     solid_laws: Mapping[str, Any] | None = None,
 ) -> Measured:
-    """Permeability of the discs at ``position`` (n, 2) m with the ``radius`` (n,) m that the fluid sees.
+    """Permeability of the discs at ``position`` (n, 2) m with the ``radius`` (n,) m used in the fluid.
 
     lower, upper : corners of the window, m;  spacing : of the lattice, m;  direction : of the flow, "x" or "y";
     periodic : whether the window is a whole period along x and y;  walls : whether a no-slip wall stands at its lower

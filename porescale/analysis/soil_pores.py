@@ -1,6 +1,6 @@
 """The permeability of a specimen as it stands before its test, on two lattices: what the grid leaves open is measured.
 
-Flow along y through the whole periodic cell, discs with the radius that the fluid sees, lambda times theirs.  The error
+Flow along y through the whole periodic cell, discs with the radius used in the fluid, lambda times theirs.  The error
 of the lattice is of second order, so that it is a third of what half the cells change.
 """
 
@@ -13,7 +13,7 @@ ORDER = 2
 
 
 def flow_numbers(position: Array, radius: Array, side: float, cells: int) -> dict[str, float]:
-    """K (m²) and what belongs to it of discs at ``position`` (n, 2) m with the ``radius`` (n,) m that the fluid sees.
+    """K (m²) and what belongs to it of discs at ``position`` (n, 2) m with the ``radius`` (n,) m used in the fluid.
 
     side : of the periodic cell, m;  cells : per mean hydraulic diameter.  "lattice error" is relative.
     """
@@ -30,6 +30,6 @@ def flow_numbers(position: Array, radius: Array, side: float, cells: int) -> dic
 
 
 def _through(position: Array, radius: Array, side: float, cells: float) -> Measured:
-    """On the lattice nearest to ``cells`` per diameter that the cell holds whole."""
+    """Permeability on the lattice nearest to ``cells`` per diameter that the cell holds whole."""
     spacing = side / round(side * cells / (2.0 * float(radius.mean())))
     return measure(position, radius, (0.0, 0.0), (side, side), spacing, direction="y", periodic=(True, True))

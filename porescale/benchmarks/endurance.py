@@ -50,7 +50,7 @@ class Watched:
             self.coupled.advance()
 
     def check(self) -> None:
-        """As a run checks."""
+        """Check the state as a run does; raises Unstable."""
         self.coupled.grains.check()
         self._sense.check(self.coupled.fluid.step, float(self.coupled.fluid.step))
 

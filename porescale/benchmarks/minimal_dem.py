@@ -1,7 +1,7 @@
 """The smallest kernels that do the job of dry discs: one linear law as numbers, walls, a half list; nothing is chosen.
 
 They are what `study parts` holds scenes of grains against, with friction and without: without friction discs do not
-turn, and contacts remember nothing.  Law and step as in contact/law.py and kick.py; releases at zero force.
+turn, and contacts have no history.  Law and step as in contact/law.py and kick.py; releases at zero force.
 """
 
 from __future__ import annotations

@@ -272,7 +272,7 @@ class PlainWet:
     """The water and the discs of ``coupled`` in a closed box, before an even step, by the smallest kernels for them.
 
     They go on from where they are now; ``coupled`` stays as it is.  water, dry: the two; discs that need a virtual
-    mass, clumps and other bodies are not known.
+    mass, clumps and other bodies are not supported.
     """
 
     def __init__(self, coupled: Coupled) -> None:

@@ -1,4 +1,4 @@
-"""Kinds of scenes of fluid and grains for `study parts`: each built from a scene, as anybody's would be."""
+"""Kinds of scenes of fluid and grains for `study parts`: each built from a scene, as a user's scene is."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ GRAINS = (0.09, 0.045)
 """Width and height of the pile, m: some 1500 grains."""
 DIAMETER = 1.5e-3
 WARM = 2000
-"""Steps before timing, an even number: kernels are there, and who may sleep sleeps."""
+"""Steps before timing, an even number: kernels are compiled, and grains that may sleep sleep."""
 Table = dict[str, Any]
 
 FLUID: Table = {"viscosity": 1e-4, "spacing": 1e-3, "relaxation_time": 0.8}
@@ -101,7 +101,7 @@ def without(it: Scene) -> Callable[[Simulation], Callable[[int], object]]:
 
 
 def nothing_moves(made: Simulation) -> Callable[[int], object]:
-    """The same cells with their fluid step and nothing else: no contacts, no motion of discs."""
+    """The same cells with the fluid step alone: no contacts, no motion of discs."""
     twin = deepcopy(made)
     assert twin.coupled
     assert twin.fluid

@@ -1,7 +1,7 @@
 """Kinds of scenes for `study parts` in which little happens: a pile that sleeps under water, and water at rest.
 
-Cells of water at rest are not left out.  At rest shifted populations are zero and a step leaves them so, but whoever
-moves sends sound through all the water within some hundred steps, and what it leaves fades with the viscosity of the
+Cells of water at rest are not left out.  At rest shifted populations are zero and a step leaves them so, but a moving
+body sends sound through all the water within some hundred steps, and what it leaves fades with the viscosity of the
 longest waves: in a collapse hardly a cell goes slower than 1e-6 cells a step from then on (tests/validation holds
 it), though a look at all cells costs but a share of a step.
 """
@@ -24,7 +24,7 @@ PILE = (0.03, 0.02)
 """Width and height, m: some 300 grains, 10 cells each."""
 DIAMETER = 1.5e-3
 WARM = 3000
-"""Steps before timing: who may sleep sleeps."""
+"""Steps before timing: grains that may sleep sleep."""
 FLUID: Table = {"viscosity": 1e-4, "spacing": 1.5e-4, "relaxation_time": 0.8}
 CONTACT: Table = {"stiffness": 5e5, "tangential_stiffness": 1.25e5, "restitution": 0.5, "friction": 0.5}
 

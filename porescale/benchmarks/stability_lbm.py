@@ -23,7 +23,7 @@ from porescale.validation.lbm.channels import one_thread
 STABILITY = Stability()
 
 LOOK_EVERY = 50
-"""Steps between two looks whether it still makes sense."""
+"""Steps between two checks of the state."""
 
 MAGICS = {"trt": {"trt 3/16": 3 / 16, "trt 1/4": 1 / 4}}
 """Operators whose magic parameter is varied."""
@@ -69,7 +69,7 @@ def laws(quick: bool) -> list[str]:
 
 
 def lasts(fluid: Fluid, steps: int) -> bool:
-    """Advance; whether it made sense all along, with a look every 50 steps."""
+    """Advance; whether the state stayed finite and in bounds, checked every 50 steps."""
     with np.errstate(over="ignore", invalid="ignore"), one_thread():
         for step in range(1, steps + 1):
             fluid.advance()

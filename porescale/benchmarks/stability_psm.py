@@ -94,7 +94,7 @@ def immersed(
 
 
 def lasts(coupled: Coupled, steps: int, fastest: float = WORST_MACH * SOUND) -> bool:
-    """Advance; whether fluid and discs made sense all along, no disc faster than ``fastest``; looks every 50 steps."""
+    """Advance; whether fluid and discs stayed in bounds, no disc faster than ``fastest``, checked every 50 steps."""
     velocity = coupled.grains.discs.velocity
     with np.errstate(over="ignore", invalid="ignore"), one_thread():
         for step in range(1, steps + 1):

@@ -26,7 +26,7 @@ def load_scene(path: str | Path, *, quality: str | None = None, settings: Sequen
 
 
 def build(scene: Scene) -> Simulation:
-    """The simulation of ``scene`` at time 0; raises InputError for what the scene must not ask.
+    """The simulation of ``scene`` at time 0; raises InputError for what the scene must not request.
 
     A packing is settled first, or read from the cache; that can take seconds.
     """

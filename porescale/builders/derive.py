@@ -34,7 +34,7 @@ from porescale.scene.fluid import Fluid
 from porescale.scene.lattice import is_whole
 
 MANY = 1e6
-"""Contact steps in a step of the fluid beyond which somebody slipped in a unit."""
+"""Contact steps in a step of the fluid beyond which a unit is probably wrong."""
 
 
 @dataclass(frozen=True)
@@ -140,7 +140,7 @@ def _with_frames(
 
 
 def _loads(scene: Scene, faults: list[Fault]) -> None:
-    """Grains whose loads are asked for must exist."""
+    """Grains whose loads are requested must exist."""
     count = grain_count(scene) - len(scene.disc)
     for number in scene.loads.grains if scene.loads else ():
         if not 0 <= number < count:

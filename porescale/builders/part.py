@@ -1,7 +1,7 @@
 """What a simulation is a list of: parts, each built from its section and driven through time with the others.
 
 In every step: ``before`` of all parts, ``advance`` of the one that carries the physics, the clock, ``after`` of all.
-Records ask each part for its columns, tables and arrays; checkpoints for its state.  A part of an absent section is
+Records take from each part its columns, tables and arrays; checkpoints for its state.  A part of an absent section is
 neither built nor imported.
 """
 
@@ -73,7 +73,7 @@ class Part:
         """Add grids and clouds, or arrays of those that are there, to a snapshot."""
 
     def check(self) -> None:
-        """Raise Unstable, naming cell or grain, quantity and step, where the state is beyond sense."""
+        """Raise Unstable, naming cell or grain, quantity and step, where the state is not finite or out of bounds."""
 
     def state(self) -> dict[str, Any]:
         """What is needed to go on bit for bit, by keys of the checkpoint that no other part has."""
@@ -104,7 +104,7 @@ class Stepper(Part, ABC):
             self.clock.put(self.clock.step + 1)
 
     def fields(self) -> Fields:
-        """Of a simulation with fluid."""
+        """Fields of a simulation with fluid; raises TypeError without fluid."""
         raise TypeError("a simulation without fluid has no fields of it")
 
     @abstractmethod

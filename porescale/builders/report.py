@@ -1,4 +1,4 @@
-"""What ``check`` says of a scene: every derived number, the regime, the parts that will be built, and the cost."""
+"""The report of ``check`` on a scene: every derived number, the regime, the parts that will be built, and the cost."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """`Scene` with all that its sections must not import: checks between them, names of operators, readers of files.
 
-Whoever reads a scene takes it from here; without its checks it refuses.
+Scenes are read with this class; without its checks it raises an error.
 """
 
 from __future__ import annotations

@@ -76,7 +76,7 @@ class Simulation:
         return self.stepper.fields()
 
     def check(self) -> None:
-        """Raise Unstable, naming cell or grain, quantity and step, when the state is beyond sense."""
+        """Raise Unstable, naming cell or grain, quantity and step, when the state is not finite or out of bounds."""
         for part in self.parts:
             part.check()
 

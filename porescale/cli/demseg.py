@@ -164,7 +164,7 @@ def convert(
 
 
 def _refuse_what_scenes_refuse(text: str) -> None:
-    """InputError where the scene of a deck is beyond what scenes allow."""
+    """InputError where the scene of a deck exceeds the limits of scenes."""
     from tempfile import TemporaryDirectory
 
     from porescale.builders.scene import Scene

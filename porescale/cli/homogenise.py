@@ -42,7 +42,7 @@ def homogenise(
     """Measure the soil that a scene's packing makes: strength, stiffness, porosity and permeability, with error bars.
 
     Several packings are compressed in periodic cells (biaxial tests) and flow is driven through them, as [homogenise]
-    of the scene says.  material.toml is what `[soil] material = "material.toml"` of a continuum-sph scene reads;
+    of the scene gives.  material.toml is what `[soil] material = "material.toml"` of a continuum-sph scene reads;
     homogenise.csv and .png show what it stands on.  What was stopped goes on when called again.
     """
     require_scene(scene)
@@ -167,7 +167,7 @@ def write(
 def about(
     scene: Tables, command: str, ends: Sequence[Ended], rows: Sequence[Mapping[str, float]], seeds: Sequence[int]
 ) -> dict[str, Any]:
-    """Where the numbers come from: [made] of the material file."""
+    """Origin of the numbers: [made] of the material file."""
     from porescale.analysis.homogenise import HARD, asked_of, packing_of, pressure_of, stiffness_over_pressure
     from porescale.builders.initial.contact_laws import MaterialPlan
     from porescale.common.core.machine import machine

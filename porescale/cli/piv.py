@@ -55,7 +55,7 @@ def synth(
     window: Annotated[int, Parameter(help="of the grid that exact.csv is given on, px")] = 16,
     overlap: Annotated[float, Parameter(help="of its windows")] = 0.5,
 ) -> int:
-    """Write a pair of pictures whose displacement is known exactly: a.png, b.png, mask.png, exact.csv, pair.json."""
+    """Write a pair of pictures of exact displacement: a.png, b.png, mask.png, exact.csv, pair.json."""
     import cv2
     import numpy as np
 

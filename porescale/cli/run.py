@@ -70,7 +70,7 @@ def drive(
 
 
 def check_resume(folder: Path, card: dict[str, Any]) -> None:
-    """InputError where the run in ``folder`` cannot be gone on with as ``card`` asks."""
+    """InputError where the run in ``folder`` cannot be gone on with as ``card`` requests."""
     from porescale.common.record.drive import check_resume
     from porescale.common.schema.migrations import completing
 

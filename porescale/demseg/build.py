@@ -1,13 +1,13 @@
 """A deck as a system of grains.
 
-Choices where the tutorial is silent, or contradicts itself:
+Choices where the DEMseg tutorial (Matsushima) gives nothing, or contradicts itself:
 - Contacts hold until the overlap is gone (``release`` "overlap"), as its e = exp(-pi h/sqrt(1 - h^2)) has it.
 - Walls of the domain are of the first material; unlike materials mix as in dem/contact/materials.py.
-- Segments that make no polygon weigh ``rod`` times their length: 2 thick, and 0.1 where thick is 0.  The record printed
+- Segments that make no polygon weigh ``rod`` times their length: 2 thick, and 0.1 where thick is 0.  The output listed
   in I-3 (thick 0, length 5, density 2.5, force 1e4: x = -2.99982 after 10 steps of 2e-5 and -2.99933 after 20) means a
   mass of 1.25, so a width of 0.1.
 - Mode 0: as many discs as fill the domain to the void ratio when their radii are uniform between the two bounds (582 in
-  I-7, as there), each radius from its own share of the range, at random and without overlap (the tutorial's overlap
+  I-7, as there), each radius from its own share of the range, at random and without overlap (those of DEMseg overlap
   and fly apart).
 """
 
@@ -95,7 +95,7 @@ def laws(deck: Deck, release: str) -> Linear | Materials:
 
 
 def build(deck: Deck, options: Options) -> Built:
-    """The grains of a deck with bodies, without bonds; the energy book is kept.  Raises InputError as parts do."""
+    """The grains of a deck with bodies, without bonds; an energy budget is kept.  Raises InputError as parts do."""
     round_ones = [body for body in deck.bodies if body.discs]
     rows = np.array([disc for body in round_ones for disc in body.discs]).reshape(-1, 4)
     sizes = [len(body.discs) for body in round_ones]

@@ -3,7 +3,7 @@
 Scenes have discs, clumps, bodies of segments, materials, walls, controls and bonds; their domain begins at the origin.
 Their bodies are in another order: discs, clumps, segments, polygons, so sums are added up otherwise and runs agree to
 round-off, as long as it does not grow.  Scenes have no angle at the start, which is left out: nothing depends on it.
-Decks that go on from another run (jclid 1) are refused: scenes do not start with springs that are stretched.
+Decks that go on from another run (jclid 1) raise an error: scenes do not start with springs that are stretched.
 """
 
 from __future__ import annotations

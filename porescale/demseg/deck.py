@@ -185,7 +185,7 @@ def _boundary(file: Reader, deck: Deck) -> Deck:
     file.must(jclid in (NEW, GO_ON, BONDED), "jclid", jclid, "0 (new), 1 (goes on), 3 (bonds)")
     for name, value in zip(names[1:], counts, strict=True):
         file.must(value >= (name != "iloop"), name, value, "0 or more" if name == "iloop" else "1 or more")
-    most = len(deck.bodies) or MOST_BODIES  # how many mode 0 makes is known later
+    most = len(deck.bodies) or MOST_BODIES  # that of mode 0 follows later
     (npfd,) = file.record(("npfd", int))
     file.must(0 <= npfd <= most, "npfd", npfd, f"0 to {most}")
     file.must(npfd == 0 or deck.random is None, "npfd", npfd, "0 with mode 0, which numbers bodies as it makes them")

@@ -26,7 +26,7 @@ class Reader:
     """The records of one file, from its first on.
 
     Raises InputError, naming file, line, field and what was expected, at the first value that is missing, is no number,
-    or is one too many; values that make no sense are collected by ``must``, see ``done``.
+    or is one too many; values that are not valid are collected by ``must``, see ``done``.
     """
 
     def __init__(self, path: Path) -> None:

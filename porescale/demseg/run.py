@@ -3,8 +3,8 @@
 energy.dat (tutorial I-2): step, then
     enrg potential;  enva kinetic;  enka elastic, bonds included;  enca lost in dashpots;  enfr lost in friction;
     enxd work of bodies with prescribed motion;  enxf work of prescribed forces;  err what does not balance.
-f-d_curve.dat (I-3): step, body, force x, place x, force y, place y, moment, angle, the order of the printed numbers
-(the text beside them has force and place the other way round); forces are those of contacts.
+f-d_curve.dat (I-3): step, body, force x, place x, force y, place y, moment, angle, the order of the numbers in DEMseg's
+output (the text beside them has force and place the other way round); forces are those of contacts.
 Both every nprn2 steps and at both ends, written anew, whole or absent, every nprn1 steps; steps count on from iloop.
 At the end: new_in_gm.dat, new_in_bc.dat (jclid 1), new_in_cf.dat (see state.py) and new_in_cf0.dat (see tension.py),
 for the next run, without new_.

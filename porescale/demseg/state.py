@@ -1,7 +1,7 @@
 """in_cf.dat: the whole state of a run as text, from which the next one goes on bit for bit.
 
-The tutorial does not print its layout; ours: for every array a line ``name type length length …`` (no length: a single
-number), then its numbers, eight a line, that read back to the same bits.  Names are those of the model's state, parts
+The DEMseg tutorial does not give its layout; here for every array a line ``name type length length …`` (no length: a
+single number), then its numbers, eight a line, read back bit for bit.  Names are those of the model's state, parts
 of parts joined by "/".  Types: float64, int64, int32, uint8.
 """
 

@@ -3,7 +3,7 @@
 For each point that has some, a line with its number and how many, then as many lines with the number of the other and
 the tension, the force of the contact with its sign turned.  Points are the discs, in the order of in_gm.dat, then the
 ends of segments, those that coincide once; a number beyond the points is a segment.  Each bond stands there twice.
-With discs only that is the layout that the tutorial prints; it prints none for segments.
+With discs only that is the layout of the DEMseg tutorial, which gives none for segments.
 """
 
 from __future__ import annotations

@@ -72,7 +72,7 @@ def first_touch(made: Trace) -> float:
 
 def fallen(folder: Path, factor: int = 10) -> tuple[Trace, dict[str, float]]:
     """The deck in ``folder`` of something that falls and bounces, and what is measured of it: mass, inertia where it
-    is a rigid body, first touch, and what the energy book lacks, at the deck's step and at a ``factor``-th of it."""
+    is a rigid body, first touch, and error of the energy budget, at the deck's step and at a ``factor``-th of it."""
     made, fine = trace(folder), trace(folder, finer(read_deck(folder), factor))
     grains = made.model.grains
     if grains.steering is None or not len(grains.steering.clumps.mass):

@@ -19,7 +19,7 @@ ALONE = 0.6
 
 
 def cracks(snapshot: Snapshot) -> list[Line]:
-    """Where bonds broke between bodies that are still near: along what touched.
+    """Lines of broken bonds between bodies that are still near, along their former contact.
 
     The bonds of two polygons stand at the ends of their common side: the crack goes from one to the other.  A single
     bond is a line across it.
@@ -49,7 +49,7 @@ def cracks(snapshot: Snapshot) -> list[Line]:
 
 
 def _through(points: Array) -> Line:
-    """From one of the points (k, 2) to the other that are furthest apart along their longest side."""
+    """Line between the two of the points (k, 2) that are furthest apart along their longest side."""
     axis = int(np.ptp(points, axis=0).argmax())
     return _line(points[points[:, axis].argmin()], points[points[:, axis].argmax()])
 

@@ -43,7 +43,7 @@ class Sampler:
         return np.asarray((values.reshape(-1)[self._index] * self._weight).sum(axis=0))
 
     def in_fluid(self, values: Array, solid: Array) -> Array:
-        """The same with every cell counted by its fluid share 1 - ``solid`` (ny, nx), as pressure must be.
+        """Interpolated ``values`` (ny, nx), (n,), weighted by the fluid share 1 - ``solid`` (ny, nx) of cells.
 
         Not a number where all four cells are solid: inside grains there is none.
         """

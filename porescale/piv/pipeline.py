@@ -62,7 +62,7 @@ class Measurement:
 
     @property
     def spacing(self) -> float:
-        """Time between two fields, s; frames where the interval is not known."""
+        """Time between two fields, s; in frames where the interval is not given."""
         return (self.interval or 1.0) * self.shots.film.step
 
     def time(self, number: int) -> float:
@@ -85,7 +85,7 @@ class Measurement:
             found = measured(self.shots, self.settings, warn if self.pairs > 1 else None)
 
         def finished(vectors: Vectors) -> Field:
-            """Vectors as a field of the whole picture, in metres where both scales are known."""
+            """Vectors as a field of the whole picture, in metres where both scales are given."""
             field = in_pixels(vectors, corner(film))
             return field if pixel is None or interval is None else in_metres(field, rows, pixel, interval * film.step)
 

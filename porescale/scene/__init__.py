@@ -1,1 +1,1 @@
-"""Scenes: typed sections, what they imply, and the simulation assembled from just the parts they ask for."""
+"""Scenes: typed sections, what they imply, and the simulation assembled from just the parts they request."""

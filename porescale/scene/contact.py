@@ -28,7 +28,7 @@ LAWS: list[str] = []
 
 
 class Touch(Section):
-    """Numbers of a contact law, per metre of depth.  Left out: as said above it, in [contact] or by the mixing rule."""
+    """Numbers of a contact law, per metre of depth.  Left out: those above it, of [contact] or the mixing rule."""
 
     stiffness: float | None = quantity("N/m", None, ge=1e-6, le=1e15, help="normal stiffness per metre of depth")
     damping: float | None = quantity("N s/m", None, **DASHPOT, help="normal damping per metre of depth")
@@ -63,7 +63,7 @@ class Pair(Touch):
 
 
 class Material(Touch):
-    """A material: what it says in place of [contact], and its density in place of that of [grains].
+    """A material: its values in place of those of [contact], and its density in place of that of [grains].
 
     Between unlike materials stiffnesses are in series, 2 k1 k2/(k1 + k2), the damping ratio is the mean, friction the
     smaller one; like materials have their own law.

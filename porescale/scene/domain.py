@@ -84,7 +84,7 @@ class Side(Section):
 
     @property
     def boundary(self) -> Boundary:
-        """Its kind, with all that follows from it."""
+        """The boundary condition of the side's kind."""
         return boundary(self.kind)
 
     @property

@@ -31,8 +31,8 @@ def is_whole(length: float, spacing: float) -> bool:
 def disagreements(given: Mapping[str, float], width: float, height: float) -> list[Fault]:
     """A fault for each of the four ``given`` numbers if they disagree, keys as in NAMES; none if they agree.
 
-    Each says what the others imply, and how many cells the box is then wide; that of the spacing also names a round
-    spacing that divides the box.  width, height : of the box, 0 where not known.
+    Each gives what the others imply, and how many cells the box is then wide; that of the spacing also names a round
+    spacing that divides the box.  width, height : of the box, 0 where not given.
     """
     follows = implied(**given)
     if all(abs(follows[name] - given[name]) <= AGREEMENT * given[name] for name in NAMES):

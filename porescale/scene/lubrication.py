@@ -8,7 +8,7 @@ from porescale.common.schema.sections import Section, quantity
 class Lubrication(Section):
     """Squeeze films between grains, and at walls, that are too thin for the lattice: their normal force is added.
 
-    The gap is that between the radii that the fluid sees.
+    The gap is that between the radii used in the fluid.
     """
 
     gap: float = quantity("", 1.0, gt=0, le=10, help="gap in cells below which films are corrected")

@@ -56,12 +56,12 @@ class Packing(Section):
 
 
 SAME = 1e-9
-"""Relative difference within which two keys that say the same agree."""
+"""Relative difference within which two keys of the same quantity agree."""
 
 
 def with_consequences(table: Any) -> Any:
     """The section [grains.packing] with what follows from its keys: the fraction from a void ratio, the mean diameter
-    from a grading curve, no settling of what is compressed.  Raises Refused where a key says otherwise."""
+    from a grading curve, no settling of what is compressed.  Raises Refused where a key contradicts it."""
     if not isinstance(table, Mapping):
         return table
     made, faults = dict(table), []
@@ -104,8 +104,8 @@ def require_curve(curve: tuple[tuple[float, float], ...]) -> tuple[tuple[float, 
 
 
 def _mean_of(curve: Any, table: Mapping[str, Any]) -> float | None:
-    """Mean diameter of the grains of a curve in the rectangle of ``table``; None where either is at fault, as others
-    say."""
+    """Mean diameter of the grains of a curve in the rectangle of ``table``; None where either is at fault, which
+    other checks report."""
     numbers = [_number(table.get(key), "m") for key in ("width", "height")]
     fraction = _number(table.get("packing_fraction", 0.81))
     try:

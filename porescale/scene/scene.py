@@ -92,7 +92,7 @@ class Scene(Section):
     @pydantic.field_validator("fluid")
     @classmethod
     def _agreed(cls, fluid: Fluid | None, info: pydantic.ValidationInfo) -> Fluid | None:
-        """Four numbers of a lattice must agree; said here, since their repair depends on the box."""
+        """Four numbers of a lattice must agree; checked here, since their repair depends on the box."""
         if fluid is None or any(getattr(fluid, name) is None for name in NAMES):
             return fluid
         domain = info.data.get("domain")  # absent where it is itself at fault

@@ -11,7 +11,7 @@ SERVO = {"stress": ("Pa", "stress on the wall"), "force": ("N/m", "force on the 
 
 
 class Pressed(Protocol):
-    """What a servo-controlled wall says, side or not."""
+    """The prescribed load of a servo-controlled wall, also of a side of the domain."""
 
     @property
     def stress(self) -> TimeFunction | None:

@@ -7,7 +7,7 @@ from porescale.common.schema.sections import Section, quantity
 
 class Sleep(Section):
     """Grains fall asleep that are slow and in balance, and wake when they are out of balance by ``share`` of their
-    weight (in fluid: less lift): dem/resting/sleep.py.  Off without this section; series.csv says how many sleep.
+    weight (in fluid: less lift): dem/resting/sleep.py.  Off without this section; series.csv gives how many sleep.
     """
 
     share: float = quantity("", 0.05, gt=0, le=0.5, help="share of a grain's weight by which it may be out of balance")

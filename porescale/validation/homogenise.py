@@ -1,4 +1,4 @@
-"""Validations of `porescale homogenise`: a soil that is known, an array whose drag is, discs of a paper."""
+"""Validations of `porescale homogenise`: a Mohr-Coulomb soil, an array of cylinders, discs of da Cruz et al. 2005."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ VALIDATIONS = Validations()
 
 PRESSURE, STIFFNESS, POISSON = 1e4, 5e6, 0.3
 FRICTION, DILATANCY = math.radians(24.0), math.radians(6.0)
-"""Of the soil that is known: Pa, rad."""
+"""Parameters of the given Mohr-Coulomb soil: Pa, rad."""
 ROWS = 3000
 DRAG = 51.53
 """F/(mu U) of a square array of cylinders of solid fraction 0.2, Stokes flow (Sangani & Acrivos 1982)."""
@@ -87,7 +87,7 @@ def critical_angle(friction: float, seed: int, grains: int = 300) -> float:
     tolerance=1e-11,
 )
 def known_soil() -> Measured:
-    """Numbers of a test made up of a soil whose numbers are known, over those."""
+    """Parameters found from a synthetic test of a given soil, over those of the soil."""
     found = known_numbers(known_test())
     return Measured([1.0] * len(found), found, max(abs(value - 1.0) for value in found))
 

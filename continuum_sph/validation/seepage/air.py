@@ -168,7 +168,7 @@ VALIDATIONS = Validations()
 
 CLOSED, OPEN = TrappedAir(), TrappedAir(chamber=0.15)
 WATCHED = 0.3  # s: the air bears less than the water on the soil, so the front is level
-PLACE = 0.25  # spacings to which a front is known: a tenth of the 2.5 between rows of water in pores
+PLACE = 0.25  # spacings to which a front is located: a tenth of the 2.5 between rows of water in pores
 
 
 @functools.cache

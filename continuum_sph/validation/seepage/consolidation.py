@@ -60,7 +60,7 @@ class Consolidation:
 
 
 def loaded_column(given: Consolidation) -> SoilFlow:
-    """Its soil under the uniform stress u0 that its surface bears, without water, at rest."""
+    """The soil layer under the uniform stress u0 that its surface bears, without water, at rest."""
     spacing = given.height / given.rows
     material = Material(
         given.stiffness, (1.0 - given.porosity) * GRAINS, given.poisson, yields=False, porosity=given.porosity

@@ -51,11 +51,11 @@ class Given(Protocol):
 
     @property
     def sound_speed(self) -> float:
-        """Of the water, m/s."""
+        """Speed of sound of the water, m/s."""
 
     @property
     def ratio(self) -> float:
-        """Of smoothing length to spacing."""
+        """Ratio of smoothing length to spacing."""
 
 
 def held_between(
@@ -126,7 +126,7 @@ class Dam:
         return self.upstream * np.array(SURFACE[shape])
 
     def build(self, **options: float | bool) -> Seepage:
-        """At rest, reservoirs full."""
+        """The model at rest, with full reservoirs."""
         spacing = self.upstream / self.rows
         face, end = self.basin, self.basin + self.length
         size = end + self.basin, 1.2 * self.upstream
@@ -221,7 +221,7 @@ BOOKINGS = 1000  # particles in the tank, and those that come and go, at most
 
 
 def unbooked(steps: int = 2400) -> float:
-    """Change of the mass of a dam's water that no reservoir has booked, over its mass."""
+    """Change of the mass of a dam's water that no reservoir has recorded, over its mass."""
     both = Dam(rows=9, length=0.5).build()
     layer, supply = both.water.layer, both.supply
     assert supply is not None
@@ -241,6 +241,6 @@ def unbooked(steps: int = 2400) -> float:
     slow=True,
 )
 def mass_row() -> Measured:
-    """Mass gained beside the books over the mass of the water, let in on one side of a dam and out on the other."""
+    """Mass gained without a record over the mass of the water, let in on one side of a dam and out on the other."""
     found = unbooked()
     return Measured(0.0, found, found)

@@ -27,7 +27,7 @@ STIFF = 10.0  # K_w/(n M) of the water: what soil squeezes out is not stored
 
 
 def rests(rise: Floats, most: float) -> bool:
-    """Whether ground whose ``rise`` (3,) is known at the ends of three thirds of a time rises less in the last than in
+    """Whether ground whose ``rise`` (3,) is given at the ends of three thirds of a time rises less in the last than in
     the one before, and by less than ``most`` in all."""
     before, then, now = rise
     return bool(now - then < then - before and now < most)
@@ -154,8 +154,8 @@ class Heave:
         return chosen
 
     def course(self, every: float = 0.01) -> Iterator[tuple[float, float, float, Simulation]]:
-        """(time s, head over i_c s, mean rise of the prism's surface over s since it stood calm, the model), ``every``
-        so many seconds until the head is its last."""
+        """(time s, head over i_c s, mean rise of the prism's surface over s since the time ``calm``, the model), every
+        ``every`` seconds until the head is its last."""
         model, due = Simulation(self.scene), self.calm
         while model.time < self.end:
             model.advance(1)
@@ -257,7 +257,7 @@ RISING = {CALM: 0.6493, replace(CALM, share=0.75): 0.3934}
 
 @functools.cache
 def rising(given: Heave, known: float) -> float:
-    """Mean of the exit gradient of the series over the last four fifths of a run, over what is ``known`` of it."""
+    """Mean of the exit gradient of the series over the last four fifths of a run, over the exact value ``known``."""
     table = np.array([(head, model.series()[NAME]) for _, head, _, model in given.course(0.02)])
     head, gradient = table[len(table) // 5 :].T
     return float((gradient / (head * given.critical * given.share * known)).mean())

@@ -24,7 +24,7 @@ Floats = NDArray[np.float64]
 WATER = 1000.0  # kg/m³
 STIFF = 10.0  # K_w/(n M) of the water
 GRAINS = 2650.0  # kg/m³
-GRAVITY = 9.8  # m/s², of the paper
+GRAVITY = 9.8  # m/s², of Maeda & Sakai 2004
 CALM = 4.0
 """χ γ'H/E of the diffusion of stress.  Of particles that slide past each other the strain is uneven, and stress by E
 times that; diffusion takes it away within a shear strain that goes as 1/χ, so what is left goes as E/χ.  It bears load,

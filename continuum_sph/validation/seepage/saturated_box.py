@@ -61,7 +61,7 @@ def saturated_box(
 
 
 def momentum(both: Seepage) -> Floats:
-    """Of both layers, (2,) kg/s."""
+    """Linear momentum of both layers, (2,) kg/s."""
     layer, soil = both.water.layer, both.water.skeleton
     water: Floats = (layer.mass[: layer.fluid, None] * layer.v[: layer.fluid]).sum(axis=0)
     grains: Floats = (soil.mass[:, None] * soil.v).sum(axis=0)
@@ -98,7 +98,7 @@ def momentum_row() -> Measured:
 
 
 def energies(both: Seepage, ground: SoilFlow) -> dict[str, float]:
-    """Of both layers, J/m: kinetic, compressive, elastic (of a linear material), heat of drag, and their sum.
+    """Energies of both layers, J/m: kinetic, compressive, elastic (of a linear material), heat of drag, and their sum.
 
     Elastic energy per volume: p²/2B + τ²/2G, p and τ centre and radius of Mohr's circle in the plane.
     """

@@ -162,7 +162,7 @@ WITHIN = "or 1/24 T, q by 1.9 % of itself; kernels 1.3 spacings wide round off t
 
 
 def flow_row(name: str, source: str, found: Callable[[], tuple[float, float]]) -> None:
-    """Add the row of the steady flow around a pile; ``found`` gives q and i_E over what is known of them."""
+    """Add the row of the steady flow around a pile; ``found`` gives q and i_E over their exact values."""
 
     @VALIDATIONS.row(
         name,

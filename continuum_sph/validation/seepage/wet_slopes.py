@@ -60,7 +60,7 @@ class WetSlope:
         return math.degrees(math.atan(self.friction / self.driving(self.seeping)))
 
     def acceleration(self, seeping: bool | None = None) -> float:
-        """Of soil and water beyond the limit, m/s², less than none below;  seeping: other than its own."""
+        """Acceleration of soil and water beyond the limit, m/s², negative below it;  seeping: other than its own."""
         tilt, seeping = math.radians(self.degrees), self.seeping if seeping is None else seeping
         return (
             GRAVITY * self.buoyant / self.whole

@@ -75,7 +75,7 @@ def kept(corrected: bool = True, seconds: float = 0.1, one_sided: bool = False) 
     """(change of linear momentum over Σ m |v|, change of angular momentum over its start) of a stressed block of 10 by
     6 particles that is let go spinning at 20 rad/s.
 
-    one_sided : forget half of the forces on the first particle.
+    one_sided : leave out half of the forces on the first particle.
     """
     spacing = 0.1
     x = square_lattice((-0.5, -0.3), (0.5, 0.3), spacing)

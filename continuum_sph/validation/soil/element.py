@@ -133,7 +133,7 @@ def rest_ratio(modulus: str, yields: bool = True) -> float:
     tolerance=100 * EPS,
 )
 def rest_row() -> Measured:
-    """K0 with the plane-strain modulus, with the printed one, and with the printed one without yield."""
+    """K0 with the plane-strain modulus, with eq. 43 of Maeda & Sakai 2004, and with the latter without yield."""
     wanted = [POISSON / (1.0 - POISSON), 1.0 / 3.0, POISSON]
     found = [rest_ratio("plane strain"), rest_ratio("printed"), rest_ratio("printed", yields=False)]
     return Measured(wanted, found, max(abs(a - b) for a, b in zip(found, wanted, strict=True)))

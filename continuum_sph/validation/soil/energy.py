@@ -31,7 +31,7 @@ GIVEN = ("parting", "walls")  # what energy comes from; the others are what it g
 
 
 class Book:
-    """Moves a flow step by step and books its energies, J/m: ``turned`` over by name, and ``start`` of both kinds."""
+    """Moves a flow step by step and adds up its energies, J/m: ``turned`` over by name, and ``start`` of both kinds."""
 
     def __init__(self, flow: SoilFlow) -> None:
         self.flow, soil = flow, flow.soil
@@ -97,13 +97,13 @@ def released_column(rows: int = 10, stiffness: float = 1e6, viscosity: float | N
 
 
 def run_out(stiffness: float, viscosity: float | None, rows: int = 10, seconds: float = 0.6) -> float:
-    """Where the front of the column is after ``seconds``, m."""
+    """Position of the front of the column after ``seconds``, m."""
     flow = run_until(released_column(rows, stiffness, viscosity), seconds)
     return float(flow.soil.x[: flow.soil.soil, 0].max()) + 0.5 * flow.law.spacing
 
 
 def collapse(seconds: float = 0.3) -> Book:
-    """The book of the column, collapsing for ``seconds``."""
+    """The energy budget of the column, collapsing for ``seconds``."""
     book = Book(released_column())
     while book.flow.time < seconds:
         book.advance()
@@ -120,7 +120,7 @@ def collapse(seconds: float = 0.3) -> Book:
     slow=True,
 )
 def energy_row() -> Measured:
-    """What is missing in the book of a collapse, 0.3 s, over what was lost."""
+    """Error of the energy budget of a collapse, 0.3 s, over what was lost."""
     found = collapse().missing()
     return Measured(0.0, found, abs(found))
 

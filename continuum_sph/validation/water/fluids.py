@@ -224,7 +224,7 @@ def restoring(across: int, tension: float = TENSION) -> tuple[float, float]:
     angle = np.linspace(0.0, 2.0 * np.pi, 4001)
 
     def girth(stretch: float) -> float:
-        """Of an ellipse with the half axes R s and R/s, m."""
+        """Circumference of an ellipse with the half axes R s and R/s, m."""
         x, y = SWINGING_FLUIDS * stretch * np.cos(angle), SWINGING_FLUIDS / stretch * np.sin(angle)
         return float(np.hypot(np.diff(x), np.diff(y)).sum())
 

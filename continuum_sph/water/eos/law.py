@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 
 
 class Given(NamedTuple):
-    """What a scene says of a fluid.
+    """The properties of a fluid that a scene gives.
 
     density : ρ0, kg/m³, under the pressure of the air;  sound_speed : c0, m/s, None where it is not given;
     pressure : p0 of the air, Pa;  exponent : γ, None where it is not given;  stiffness : B of the water about it, Pa.
@@ -36,7 +36,7 @@ class StateLaw(Protocol):
 
     @classmethod
     def of(cls, given: Given) -> Self:
-        """The law of what a scene says."""
+        """The equation of state with the properties that a scene gives."""
 
     @property
     def density(self) -> float:

@@ -67,7 +67,7 @@ class Tait:
 
     @classmethod
     def of(cls, given: Given) -> Self:
-        """As stiff as the water where no speed of sound is given."""
+        """A liquid with the stiffness of the water where no speed of sound is given."""
         exponent = given.exponent or EXPONENT
         as_stiff = (given.stiffness * exponent / given.density) ** 0.5
         return cls(given.density, given.sound_speed or as_stiff, exponent)

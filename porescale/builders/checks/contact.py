@@ -77,7 +77,7 @@ def _check_kind(key: str, section: Touch, name: str) -> list[Fault]:
 
 
 def _check_complete(key: str, numbers: dict[str, float], contact: Contact) -> list[Fault]:
-    """What a law needs is there, and what it says has an effect."""
+    """Faults of a law's numbers: missing ones, and those without effect."""
     law, faults = LAWS[contact.law], []
     needed, unit = law.required
     if needed not in numbers:

@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 MOST = 0.25
-"""Overlap over the sum of radius and thickness up to which bodies may start: a system beyond 0.3 is beyond sense."""
+"""Overlap over the sum of radius and thickness up to which bodies may start: a system beyond 0.3 is out of bounds."""
 EDGE = 1e-9
 """Relative slack of places at the edge of the box."""
 LOOKS = 201
 """Moments at which the way of a container is looked at."""
 WAVES = 0.5
-"""Share of the way to the middle of two segments that the speed to expect may press them: beyond, there is a word."""
+"""Share of the way to the middle of two segments that the speed to expect may press them: beyond, a warning."""
 
 
 def check_frames(scene: Scene, placed: Sequence[Placed], discs: Discs, names: Sequence[str]) -> list[Fault]:
@@ -147,7 +147,7 @@ class _Shape:
         return np.where(self.holds(points), np.inf, depth)
 
     def distance(self, points: Array) -> Array:
-        """From points (n, 2) m to the nearest side, m."""
+        """Distance from points (n, 2) m to the nearest side, m."""
         nearest = np.full(len(points), np.inf)
         for a, b in self.sides:
             way, gone = b - a, points - a

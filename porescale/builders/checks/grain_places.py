@@ -1,4 +1,4 @@
-"""Where a scene puts its grains: inside the box, clear of each other and of the gate, or refused by name."""
+"""Where a scene puts its grains: inside the box, clear of each other and of the gate, or an error naming it."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def check_grain_places(scene: Scene, sizes: tuple[float, float, float] | None, f
 def require_apart(discs: Discs, scene: Scene, packed: int) -> None:
     """InputError naming the deepest overlap of a disc placed by hand; the first ``packed`` are the packing's.
 
-    What the packing's own contacts are is for its settling to say.
+    Contacts within the packing are checked when it settles.
     """
     faults: list[Fault] = []
     names, _, _ = placed(scene)
@@ -144,7 +144,7 @@ def _check_packing(packing: Packing, domain: Domain, gate: Gate | None, faults: 
         problem = "is denser than discs can be placed at random"
         key, repair = "grains.packing.packing_fraction", "let it settle, or lower it"
         faults.append(Fault(key, packing.packing_fraction, problem, "", f"<= {DENSEST:g}", repair))
-    # Settling starts from a looser placement: as high as dem.settle.Pile.top says.
+    # Settling starts from a looser placement: as high as dem.settle.Pile.top.
     head = packing.bottom + packing.packing_fraction * packing.height / Pile.fraction + packing.diameter
     if packing.settle and top <= domain.height * (1 + EDGE) < head:
         problem = f"is placed up to {head:.4g} m before it settles, above the box of {domain.height:g} m"

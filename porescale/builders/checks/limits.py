@@ -23,7 +23,7 @@ momentum's memory of some hundred steps, is about a hundredth of it."""
 
 
 def thin(scales: Scales, speed: float, operator: str, *, eddies: bool, lid: bool) -> str:
-    """Where a speed (m/s) is more than the viscosity damps, what is known and what repairs it; "" where not."""
+    """Where a speed (m/s) is more than the viscosity damps, the measured limit and a repair; "" where not."""
     reynolds, holds = speed * scales.spacing / scales.viscosity, limits.cell_reynolds(operator, eddies=eddies, lid=lid)
     if reynolds <= holds:
         return ""
@@ -41,7 +41,7 @@ def thin(scales: Scales, speed: float, operator: str, *, eddies: bool, lid: bool
 
 
 def light(ratio: float, cells: float, solid_operator: str, weighting: str, spacing: float) -> str:
-    """Where free grains of a density ratio and size (cells per diameter) are not known to last, and what repairs it."""
+    """Where free grains of a density ratio and size (cells per diameter) are beyond the stability limit; a repair."""
     least = limits.lightest(cells, solid_operator, weighting)
     if ratio >= least:
         return ""
@@ -59,7 +59,7 @@ def light(ratio: float, cells: float, solid_operator: str, weighting: str, spaci
 def coarse(cells: float, solid_operator: str, weighting: str, spacing: float, solid_fraction: float = 0.0) -> str:
     """Where bodies have too few cells per diameter for their drag to be within a tenth, and what repairs it.
 
-    solid_fraction : of a bed, as the fluid sees it; 0 for single bodies.
+    solid_fraction : of a bed, with the radii used in the fluid; 0 for single bodies.
     """
     name = f"{solid_operator} {weighting}"
     needed = limits.CELLS_RIGHT.get(name, max(limits.CELLS_RIGHT.values()))

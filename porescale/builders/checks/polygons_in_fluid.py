@@ -65,7 +65,7 @@ def too_few_cells(placed: Sequence[Placed], spacing: float) -> str:
 
 
 def too_light(placed: Sequence[Placed], spacing: float, density: float) -> str:
-    """A warning where a free polygon is lighter than is known to hold in fluid of ``density`` (kg/m³), or nothing."""
+    """A warning where a free polygon is below the stability limit in fluid of ``density`` (kg/m³), or nothing."""
     for it, width in zip(placed, widths(placed), strict=True):
         least = next((ratio for cells, ratio in LIGHTEST if width / spacing >= cells), 1.0)
         own = it.frame.mass_properties()

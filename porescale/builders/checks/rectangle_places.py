@@ -109,7 +109,7 @@ def _in_the_way(k: int, what: str, time: float) -> Fault:
 
 
 def _check_box(scene: Scene, faults: list[Fault]) -> None:
-    """It must come into the box and leave some of it free, be no longer than a period, and keep off open sides."""
+    """A rectangle must enter the box, leave part of it free, fit in a period, and not reach open sides."""
     d, end = scene.domain, scene.time.end
     size = d.width, d.height
     slack = EDGE * max(size)
@@ -174,7 +174,7 @@ def _check_packing(scene: Scene, faults: list[Fault]) -> None:
 
 
 def _check_discs(scene: Scene, places: Array, radii: Array, names: Sequence[str], faults: list[Fault]) -> None:
-    """No disc starts in a rectangle, and one that is held, who would not give way, does not come into one."""
+    """No disc starts in a rectangle, and no held disc, which cannot give way, moves into one."""
     held = {f"disc[{j}]": it for j, it in enumerate(scene.disc)}
     for k, it in enumerate(scene.rectangle):
         for name, place, radius in zip(names, places, radii, strict=True):
@@ -193,11 +193,11 @@ def _check_discs(scene: Scene, places: Array, radii: Array, names: Sequence[str]
 def nearest(it: Rectangle, path: Body, place: Array, t0: float, t1: float) -> float:
     """Smallest distance (m) of a centre, from ``place`` along ``path``, to a rectangle between t0 and t1 (s).
 
-    The distance to what is convex is convex along a line: the smaller of two thirds says where to go on.
+    The distance to what is convex is convex along a line: ternary search keeps the side of the smaller value.
     """
 
     def distance(time: float) -> float:
-        """At a ``time`` (s), m."""
+        """Distance at a ``time`` (s), m."""
         at = np.asarray(place) + path.travelled(time)
         gone = np.asarray(it.travelled(time))
         return float(np.hypot(*(at - np.clip(at, it.lower + gone, it.upper + gone))))
@@ -212,7 +212,7 @@ def nearest(it: Rectangle, path: Body, place: Array, t0: float, t1: float) -> fl
 
 
 def require_free_of_rectangles(sections: Sequence[Rectangle], discs: Discs) -> None:
-    """InputError naming the first disc, of a packing that has settled say, that a rectangle is in."""
+    """InputError naming the first disc, for example of a settled packing, that overlaps a rectangle."""
     for k, it in enumerate(sections):
         off = discs.position - np.clip(discs.position, it.lower, it.upper)
         inside = np.hypot(*off.T) < discs.radius * (1 - 0.1)

@@ -191,7 +191,7 @@ def check_regime(
 
 
 def _check_operator(scene: Scene, scales: Scales, speed: float, sizes: Sizes | None, warnings: list[str]) -> None:
-    """Where the operators that the scene names are known to ring, to blow up or to be beside their purpose."""
+    """Where the operators that the scene names oscillate, diverge or do not suit the scene."""
     assert scene.fluid
     fluid, lid = scene.fluid, any(side.speed for side in scene.domain.sides.values())
     doubt = thin(scales, speed, fluid.operator, eddies=fluid.smagorinsky is not None, lid=lid)

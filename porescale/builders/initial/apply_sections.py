@@ -22,7 +22,7 @@ from porescale.scene.time_function import TimeFunction
 
 
 def apply_sections(scene: Scene, grains: Grains, mass: float, placed: Sequence[Placed] = ()) -> list[str]:
-    """Give ``grains``, all discs in place, what the scene asks for; nothing is made of what it does not name.
+    """Give ``grains``, all discs in place, what the scene requests; what it does not name is not built.
 
     mass (kg/m): of a mean grain, whose restitution is meant where a material gives one;  placed: its frames, whose
     corners come last.  Returns the names of the bodies that are recorded.
@@ -38,7 +38,7 @@ def apply_sections(scene: Scene, grains: Grains, mass: float, placed: Sequence[P
             grains.material = np.array(numbers + own, np.uint8)
         grains.set_law(materials)
     elif scene.output.energy:
-        grains.set_law(grains.law, grains.wall_law)  # kernels find the book beside the law
+        grains.set_law(grains.law, grains.wall_law)  # kernels take the energy budget with the law
     if scene.clump or placed:
         add_clumps(scene, grains, placed)
     recorded = add_controls(scene, grains, placed) if scene.control or placed else []

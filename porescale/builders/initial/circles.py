@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 
 def grains_of(circles: Circles, folder: Path | None) -> list[dict[str, float | str]]:
-    """Entries of [[grains.grain]] that say the same; raises InputError with keys of [grains]."""
+    """The circles as entries of [[grains.grain]]; raises InputError with keys of [grains]."""
     path = (folder or Path()) / circles.file
     try:
         if path.suffix.lower() in STILLS:

@@ -37,7 +37,7 @@ class MaterialPlan:
 
     @classmethod
     def of(cls, scene: Scene) -> MaterialPlan:
-        """Of a scene with [grains]."""
+        """The materials of a scene with [grains]."""
         assert scene.grains
         return cls(scene.contact, scene.material, scene.grains.density)
 

@@ -22,7 +22,7 @@ def body_of(scene: Scene, it: Controlled) -> int | ClumpNumber:
 
 
 def add_controls(scene: Scene, grains: Grains, placed: Sequence[Placed] = ()) -> list[str]:
-    """Prescribe the motion of bodies, and record those that say so: their names, in the order of the record."""
+    """Prescribe the motion of bodies, and record those that request it: their names, in the order of the record."""
     own = prescribe_motion(grains, placed) if placed else []
     for it in scene.control:
         grains.steering.control(body_of(scene, it), *map(control_of, (it.x, it.y, it.rotation)))

@@ -56,7 +56,7 @@ def lattice_sides(domain: Domain, scales: Scales, cells: tuple[int, int]) -> Sid
 def coupled_of(
     scene: Scene, derived: Derived, fluid: Fluid, grains: Grains, rectangles: Sequence[Rectangle]
 ) -> Coupled:
-    """Fluid and grains, each as large to the other as the scene says: grains by lambda, held discs as they are."""
+    """Fluid and grains, coupled with the radii of the scene: grains times lambda, held discs unchanged."""
     assert scene.fluid
     assert derived.scales
     ratio = np.ones(grains.discs.count)

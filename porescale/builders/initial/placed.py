@@ -1,4 +1,4 @@
-"""What is placed by hand and free: grains, and the discs of clumps; who is who by number."""
+"""Free bodies placed by hand: grains, and the discs of clumps, with their numbers."""
 
 from __future__ import annotations
 

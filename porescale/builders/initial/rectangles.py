@@ -16,7 +16,7 @@ from porescale.scene.packing import Packing
 
 
 def on_the_lattice(sections: Sequence[Rectangle], scales: Scales) -> list[LatticeRectangle]:
-    """The rectangles as the fluid sees them, at rest at the start: they set off in the first step."""
+    """The rectangles as bodies in the fluid, at rest at the start: they move from the first step on."""
     h = scales.spacing
     return [LatticeRectangle(np.array(it.lower) / h, np.array(it.upper) / h) for it in sections]
 

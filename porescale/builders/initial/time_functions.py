@@ -17,7 +17,7 @@ def schedule_of(function: TimeFunction) -> Schedule:
 
 
 def schedule_or_zero(function: TimeFunction | None) -> Schedule:
-    """The same, zero where there is none."""
+    """The schedule of a function of time, zero where there is none."""
     return schedule_of(function) if function else 0.0
 
 

@@ -55,7 +55,7 @@ def _press(grains: Grains, name: str, it: Pressed, over: dict[str, Any]) -> None
 
 
 def middles(grains: Grains) -> list[tuple[float, float]]:
-    """Points about which the moments on walls are said, where they are now, m: the middle of a side, the point of a
+    """Points about which the moments on walls are given, where they are now, m: the middle of a side, the point of a
     free wall."""
     (left, bottom), (right, top) = grains.box.lower, grains.box.upper
     x, y = 0.5 * (left + right), 0.5 * (bottom + top)
@@ -67,7 +67,7 @@ def middles(grains: Grains) -> list[tuple[float, float]]:
 
 
 class WallPlaces:
-    """Where the walls of a scene are that move: columns of forces.csv."""
+    """Positions of the moving walls of a scene: columns of forces.csv."""
 
     def __init__(self, domain: Domain, walls: Sequence[Wall]) -> None:
         self.sides, self.walls = moving_sides(domain), dict(zip(wall_names(walls), walls, strict=True))

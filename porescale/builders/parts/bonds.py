@@ -72,7 +72,7 @@ class BondsPart(Part):
 
     @classmethod
     def build(cls, system: System) -> BondsPart:
-        """Of a scene with [bonds] or [rock], whose pieces are all bonded at the start."""
+        """The part of a scene with [bonds] or [rock], whose pieces are all bonded at the start."""
         scene = system.scene
         assert system.grains
         whole = [("rock", Bonds(bodies=(), known=()))] if scene.rock else []

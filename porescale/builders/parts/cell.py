@@ -1,4 +1,4 @@
-"""The strained cell of a dry scene: its strain, and what it says in series.csv."""
+"""The strained cell of a dry scene: its strain, and its columns of series.csv."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class CellPart(Part):
 
     @classmethod
     def build(cls, system: System) -> CellPart:
-        """Of a scene with [cell]."""
+        """The part of a scene with [cell]."""
         assert system.grains
         return cls(system.clock, system.grains)
 

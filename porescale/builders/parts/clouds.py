@@ -26,7 +26,7 @@ class GrainCloud(Part):
 
     @classmethod
     def build(cls, system: System, motion: Motion | None = None) -> GrainCloud:
-        """Of a system with grains; ``motion`` : of a strained cell."""
+        """The part of a system with grains; ``motion`` : of a strained cell."""
         assert system.grains
         return cls(system.grains, system.coupled.hydraulic_radius if system.coupled else None, motion)
 
@@ -56,7 +56,7 @@ class FrameCloud(Part):
 
     @classmethod
     def build(cls, system: System) -> FrameCloud:
-        """Of a system with frames."""
+        """The part of a system with frames."""
         assert system.grains
         return cls(system.grains, system.frames)
 

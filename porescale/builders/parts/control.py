@@ -18,7 +18,7 @@ class ControlPart(Part):
 
     @classmethod
     def build(cls, system: System) -> ControlPart:
-        """Of a system in which bodies are recorded, the plates of a rock not counted."""
+        """The part of a system in which bodies are recorded, the plates of a rock not counted."""
         assert system.grains
         return cls(system.clock, system.grains, system.recorded[: -2 if has_plates(system.scene) else None])
 

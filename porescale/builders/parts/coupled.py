@@ -30,11 +30,11 @@ class CoupledPart(FluidPart):
         self.coupled.advance()
 
     def fields(self) -> Fields:
-        """Of the fluid between the grains."""
+        """Velocity and pressure fields of the fluid between the grains."""
         return self.coupled.fields()
 
     def check(self) -> None:
-        """Raise Unstable where fluid or grains are beyond sense; of both, the fluid is named."""
+        """Raise Unstable where fluid or grains are not finite or out of bounds; of both, the fluid is named."""
         fault = None
         try:
             self.coupled.grains.check()

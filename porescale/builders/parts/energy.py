@@ -18,7 +18,7 @@ class EnergyPart(Part):
 
     @classmethod
     def build(cls, system: System) -> EnergyPart:
-        """Of a system with grains."""
+        """The part of a system with grains."""
         assert system.grains
         return cls(system.grains, system.scene.gravity)
 

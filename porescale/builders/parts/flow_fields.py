@@ -42,7 +42,7 @@ def fluid_row(excess: Array, ux: Array, uy: Array, solid: Array, scales: Scales)
 
 
 UNITS = {"vorticity": "1/s", "stream_function": "m²/s"}
-"""Fields that a scene may ask for besides velocity and pressure, and their units."""
+"""Fields that a scene may request besides velocity and pressure, and their units."""
 
 
 def derived_fields(

@@ -39,7 +39,7 @@ class FlowInstruments(Part):
 
     @classmethod
     def build(cls, system: System, fluid: FluidPart) -> FlowInstruments:
-        """Of a system with fluid that is measured."""
+        """The part of a system with fluid that is measured."""
         return cls(system.clock, fluid, system)
 
     def tables(self) -> dict[str, Row]:
@@ -89,7 +89,7 @@ class _Section:
         self.at = Sampler(midpoints(section.start, section.end, max(1, round(self.length / spacing))), *grid)
 
     def integral(self, ux: Array, uy: Array) -> float:
-        """Of a flow (ny, nx) through the section, m²/s."""
+        """Volume flux of a flow (ny, nx) through the section, m²/s."""
         across = self.normal[0] * self.at.of(ux) + self.normal[1] * self.at.of(uy)
         return float(across.mean()) * self.length
 

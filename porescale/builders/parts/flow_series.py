@@ -18,7 +18,7 @@ class FlowSeries(Part):
 
     @classmethod
     def build(cls, system: System, fluid: FluidPart) -> FlowSeries:
-        """Of a system with fluid."""
+        """The part of a system with fluid."""
         grains = system.scene.grains
         return cls(fluid, grains.hydraulic_radius_ratio if grains else None)
 

@@ -1,4 +1,4 @@
-"""The fluid of a scene without grains: its steps, its fields in snapshots, and whether it still makes sense."""
+"""The fluid of a scene without grains: its steps, its fields in snapshots, and checks of its state."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class FluidPart(Stepper):
 
     @classmethod
     def build(cls, system: System) -> FluidPart:
-        """Of a system with fluid."""
+        """The part of a system with fluid."""
         fluid, scales, section = system.fluid, system.derived.scales, system.scene.fluid
         assert fluid
         assert scales
@@ -44,7 +44,7 @@ class FluidPart(Stepper):
         self.fluid.advance()
 
     def explained(self, error: Unstable) -> Unstable:
-        """Where both are beyond sense the lattice is named: it throws the grains, not they it."""
+        """Where fluid and grains both diverge, the error names the fluid: it is the cause."""
         self.sense.check(self.clock.step, self.clock.time)
         return self.clock.in_steps(error)
 
@@ -55,7 +55,7 @@ class FluidPart(Stepper):
         return (rho - 1) * s.density, ux * s.velocity, uy * s.velocity, np.zeros_like(rho)
 
     def check(self) -> None:
-        """Raise Unstable where the fluid is beyond sense."""
+        """Raise Unstable where the fluid is not finite or out of bounds."""
         self.sense.check(self.clock.step, self.clock.time)
 
     def show(self, snapshot: Snapshot) -> None:

@@ -26,7 +26,7 @@ class GatePart(Part):
 
     @classmethod
     def build(cls, system: System) -> GatePart:
-        """Of a scene with [gate]; puts its plate into the fluid, while the grains have theirs."""
+        """The part of a scene with [gate]; adds its plate to the fluid, as the grains have theirs."""
         derived, fluid = system.derived, system.fluid
         assert system.scene.gate
         plate = fluid.add_plate(derived.gate_column or 0) if fluid else None

@@ -1,6 +1,6 @@
 """What a scene measures on its grains: rows of regions.csv and forces.csv, contacts and coarse-grained fields.
 
-A scene that asks for none of it computes none of it.  Everything is taken from the list of contacts that the next
+Nothing is computed unless the scene requests it.  Everything is taken from the list of contacts that the next
 contact step would use, and changes nothing.
 """
 
@@ -66,12 +66,12 @@ class GrainInstruments(Part):
 
     @classmethod
     def build(cls, system: System) -> GrainInstruments:
-        """Of a system with grains that are measured."""
+        """The part of a system with grains that are measured."""
         assert system.grains
         return cls(system.clock, system.grains, system.frames, system.scene)
 
     def tables(self) -> dict[str, Row]:
-        """A row of regions.csv and of forces.csv, where the scene asks for them."""
+        """A row of regions.csv and of forces.csv, where the scene requests them."""
         tables: dict[str, Row] = {}
         if not (self.regions or self.walls):
             return tables
@@ -114,7 +114,7 @@ class GrainInstruments(Part):
         return row
 
     def show(self, snapshot: Snapshot) -> None:
-        """Contacts, what they say of each grain, and fields, where the scene asks for them."""
+        """Contacts, quantities of each grain from them, and fields, where the scene requests them."""
         if not (self.contacts or self.coarse_graining):
             return
         found = contacts(self.grains)
@@ -199,7 +199,7 @@ def _moving(grains: Grains, region: Region, weight: Array) -> Motion:
 def region_row(
     grains: Grains, found: Contacts, region: Region, loose: Array, held: Array, placed: Sequence[Placed] = ()
 ) -> Row:
-    """What is known of a region, by column with unit.
+    """The quantities of a region, by column with unit.
 
     A region stays where it is, also in a strained cell, whose images are measured wherever they reach into it.
     Porosity and velocities weigh discs by their area and mass inside, members of clumps by their share of it; polygons

@@ -37,7 +37,7 @@ class GrainSeries(Part):
 
     @classmethod
     def build(cls, system: System) -> GrainSeries:
-        """Of a system with grains that are free."""
+        """The part of a system with grains that are free."""
         assert system.grains
         return cls(system.grains, system.frames, system.held, system.scene.domain.width)
 
@@ -73,7 +73,7 @@ class GrainSeries(Part):
         return coordination_of_bodies(self.grains, self.placed, self.held)
 
     def state(self) -> dict[str, Any]:
-        """Where the front started."""
+        """Position of the front at the start."""
         return {"watch": {"start": self.start, "leftward": self.leftward}}
 
     def restore(self, state: dict[str, Any]) -> None:

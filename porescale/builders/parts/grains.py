@@ -1,4 +1,4 @@
-"""Dry grains: their steps, and whether they still make sense."""
+"""Dry grains: their steps, and checks of their state."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class GrainsPart(Stepper):
 
     @classmethod
     def build(cls, system: System) -> GrainsPart:
-        """Of a system of grains alone."""
+        """The part of a system of grains alone."""
         assert system.grains
         return cls(system.clock, system.grains, system.weight)
 
@@ -41,11 +41,11 @@ class GrainsPart(Stepper):
             self.clock.put(self.grains.steps - before)
 
     def explained(self, error: Unstable) -> Unstable:
-        """In steps of the simulation."""
+        """The ``error`` with its step counted in steps of the simulation."""
         return self.clock.in_steps(error)
 
     def check(self) -> None:
-        """Raise Unstable where a grain is beyond sense."""
+        """Raise Unstable where a grain is not finite or out of bounds."""
         try:
             self.grains.check()
         except Unstable as error:

@@ -32,7 +32,7 @@ class RectanglesPart(Part):
 
     @classmethod
     def build(cls, system: System) -> RectanglesPart:
-        """Of a scene with [[rectangle]]."""
+        """The part of a scene with [[rectangle]]."""
         sections, domain = system.scene.rectangle, system.scene.domain
         closed = not any(side.open for side in domain.sides.values())
         wanted = [it.make_good for it in sections if it.make_good is not None]

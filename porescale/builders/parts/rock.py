@@ -23,7 +23,7 @@ class RockPart(Part):
 
     @classmethod
     def build(cls, system: System, bonds: BondsPart) -> RockPart:
-        """Of a scene with [rock] and plates, whose pieces are bonded."""
+        """The part of a scene with [rock] and plates, whose pieces are bonded."""
         scene = system.scene
         assert scene.rock
         assert scene.grains

@@ -18,7 +18,7 @@ class SleepPart(Part):
 
     @classmethod
     def build(cls, system: System) -> SleepPart:
-        """Of a scene with [sleep]: lets the grains sleep, by their weight less lift."""
+        """The part of a scene with [sleep]: lets the grains sleep, by their weight less lift."""
         grains, section = system.grains, system.scene.sleep
         assert grains
         assert section

@@ -38,7 +38,7 @@ FLAT = 1e-6
 """Share of the largest variance of grey levels, or of their slopes, below which there is nothing to see."""
 ROUND = 0.01
 """Determinant of H over its squared trace, 1/4 for round spots and 0 for straight edges, from which both components are
-known.
+determined.
 """
 LEAST_FREE = np.float32(0.25)
 """Share of the spots' freedom that is left at least, when variances are judged."""

@@ -52,7 +52,7 @@ class Grid:
         return spread(self.coefficients(values), *self.axes())
 
     def axes(self, every: int = 1) -> tuple[Axis, Axis]:
-        """From coefficients to the middles of blocks of ``every`` px a side (1: pixels), down and across."""
+        """Interpolation from coefficients to centres of blocks of ``every`` px a side (1: pixels), down and across."""
         down, across = (
             _axis(self.start, self.step, n, side, every) for n, side in zip(self.shape, self.size, strict=True)
         )
@@ -101,7 +101,7 @@ def _slopes(step: int, count: int) -> Array:
 
 
 class Axis(NamedTuple):
-    """From values on a line of centres to pixels: coefficients (m, n) of cubic B-splines one step apart, straight
+    """Interpolation from a line of centres to pixels: coefficients (m, n) of cubic B-splines one step apart, straight
     beyond the ends; at pixel p those from first[p] on count with weights[:, p].  at (m,) : where the B-splines are, px.
     """
 

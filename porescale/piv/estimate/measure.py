@@ -195,7 +195,7 @@ def measure_ready(
 
 class Fitted(NamedTuple):
     """A fitted field.  grid : of its knots;  c (2, m, n) : coefficients of u and v;  lost (ny, nx) : knots of the fluid
-    that failed validation;  known : what the pictures determine of the last update.
+    that failed validation;  known : the part of the last update that the pictures determine.
     """
 
     grid: Grid

@@ -37,7 +37,7 @@ class Correlated:
 
 
 class Paths(NamedTuple):
-    """Where each pixel of the pictures at mid time comes from in the first and in the second: x, y float32, px.
+    """Positions of each pixel at mid time in the first and in the second picture: x, y float32, px.
 
     reach : no path goes further than this, px.
     """
@@ -109,7 +109,7 @@ def correlation_pass(
 
 
 def places(way: tuple[Single, Single]) -> tuple[Single, Single]:
-    """Where each pixel comes from, for OpenCV."""
+    """Source position of each pixel, px, for OpenCV."""
     rows, columns = way[0].shape
     x, y = np.arange(columns, dtype=np.float32), np.arange(rows, dtype=np.float32)[:, None]
     return np.asarray(way[0] + x, np.float32), np.asarray(way[1] + y, np.float32)

@@ -74,7 +74,7 @@ def of_solids(x: Array, y: Array, solid: NDArray[np.bool_]) -> Surface:
     """The top, in each column, of the bodies that a gap of one cell at most parts from the lowest solid of all.
 
     solid (ny, nx), rows from the top down, y (ny,) rising or falling; rows are as high as they are apart, so that a
-    height is known to half of that.  Columns that are solid as far as there are rows are walls.
+    height is accurate to half of that.  Columns that are solid as far as there are rows are walls.
     """
     rows = solid[::-1]  # from the floor up
     down = float(y[-1] - y[-2]) if len(y) > 1 else 1.0

@@ -80,7 +80,7 @@ def shooting(run: Run, shot: Shooting) -> Shooting:
     """``shot`` with the picture's size from the run's domain.  InputError where there is nothing to film."""
     grid = grid_of(run)
     (dx, dy), (ny, nx) = grid.spacing, grid.shape
-    most = 1e9 * shot.scale  # beyond all sense, but a whole number of pixels
+    most = 1e9 * shot.scale  # far out of bounds, but a whole number of pixels
     size = tuple(round(min(side, most) / shot.scale) if shot.scale > 0 else 0 for side in (ny * dy, nx * dx))
     faults = []
     if min(size) < 32 or max(size) > LARGEST:

@@ -37,7 +37,7 @@ class Discs(NamedTuple):
         return found
 
     def distance(self, x: Array, y: Array) -> Array:
-        """From points to the nearest rim, px, negative inside; infinite where there is no disc."""
+        """Distance from points to the nearest rim, px, negative inside; infinite where there is no disc."""
         found = np.full(np.broadcast(x, y).shape, np.inf)
         for a, b, r in zip(self.x, self.y, self.radius, strict=True):
             np.minimum(found, np.hypot(x - a, y - b) - r, out=found)
@@ -56,7 +56,7 @@ class Flow:
     discs: Discs = NO_DISCS
 
     def carried(self, x: Array, y: Array, time: float) -> tuple[Array, Array]:
-        """Where the material at x, y is after ``time`` intervals: Runge-Kutta of fourth order."""
+        """Position of the material at x, y after ``time`` intervals: Runge-Kutta of fourth order."""
         steps = max(1, round(2 * STEPS * abs(time)))
         h = time / steps
         x, y = np.array(x, float), np.array(y, float)

@@ -89,7 +89,7 @@ class Between:
         return found
 
     def carried(self, x: Array, y: Array, start: float, end: float) -> tuple[Array, Array]:
-        """Where points at ``start`` s are at ``end`` s: Runge-Kutta of fourth order, half a cell a step, out of
+        """Positions at ``end`` s of points at ``start`` s: Runge-Kutta of fourth order, half a cell a step, out of
         grains.
         """
         u, v = self.flow(x, y, start)

@@ -1,4 +1,4 @@
-"""Synthetic pictures of tracers whose displacement is known exactly."""
+"""Synthetic pictures of tracers of exact displacement."""
 
 from __future__ import annotations
 

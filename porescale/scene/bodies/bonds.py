@@ -15,7 +15,7 @@ class Bonds(Section):
     """Bonds between bodies that touch at a time: the force of each contact is cancelled from then on, until it is gone.
 
     A bond breaks in tension at k d0, with d0 the overlap when it was made.  ``factor`` makes bonds stronger than that,
-    or weaker, and what stood at rest then moves; ``tension`` says it by the mean back tension.  Never with walls.
+    or weaker, and what stood at rest then moves; ``tension`` gives it by the mean back tension.  Never with walls.
     """
 
     at: float = quantity("s", 0.0, ge=0, le=1e9, help="time at which they are made")

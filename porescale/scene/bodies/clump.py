@@ -15,7 +15,7 @@ class Clump(Section):
     """Rigid bodies of discs that may overlap, all alike: placed by hand, as many as there are points.
 
     Mass, centroid and moment of inertia are those of the union of the discs at the density of the material, or of
-    [grains]; or mass and inertia are given.  In fluid they displace that union of discs of the radius that it sees.
+    [grains]; or mass and inertia are given.  In fluid they displace that union of discs of the fluid's radius.
     """
 
     discs: tuple[tuple[float, float, float], ...] = quantity(
@@ -56,7 +56,7 @@ class Clump(Section):
         return self
 
     def turned(self, copy: int, point: tuple[float, float]) -> tuple[float, float]:
-        """Where ``point`` of the body is, in the box, in a copy of it; both m."""
+        """Position in the box of a ``point`` of the body, in one of its copies; both m."""
         (x, y), angle = self.at[copy], self.angle[copy] if self.angle else 0.0
         c, s = math.cos(angle), math.sin(angle)
         return x + c * point[0] - s * point[1], y + s * point[0] + c * point[1]

@@ -11,7 +11,7 @@ from porescale.scene.ranges import LENGTH, PLACE, SPEED
 class Disc(Section):
     """A disc that is held: fixed where it is, or towed with a velocity and a spin that nothing changes.
 
-    The fluid sees it at its full radius.  It pushes grains and is not pushed.
+    In the fluid it has its full radius.  It pushes grains and is not pushed.
     """
 
     x: float = quantity("m", **PLACE, help="centre at the start")

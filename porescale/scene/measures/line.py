@@ -32,5 +32,5 @@ class Line(Segment):
 class Flux(Segment):
     """A straight section through which the volume flux is recorded over time: flux.csv.
 
-    Positive from left to right for one who looks from ``start`` to ``end``: upwards means to the right.
+    Positive from left to right seen in the direction from ``start`` to ``end``: upwards means to the right.
     """

@@ -52,7 +52,7 @@ def immersed_clumps(
 
 
 def sunk(coupled: Coupled, steps: int) -> Coupled:
-    """The same after some steps."""
+    """The coupled system after ``steps`` steps."""
     with one_thread():
         for _ in range(steps):
             coupled.advance()
@@ -105,7 +105,7 @@ EPS = 2.0**-52
     tolerance=1000 * EPS,
 )
 def momentum() -> Measured:
-    """Error of the book over sum m |v| at the start: two clumps that collide in a periodic box."""
+    """Error of the momentum budget over sum m |v| at the start: two clumps that collide in a periodic box."""
     error = momentum_error_of_clumps()
     return Measured(0.0, error, error)
 

@@ -60,7 +60,7 @@ def mass() -> Measured:
 
 
 def momentum_error(acceleration: tuple[float, float], steps: int, *, inner_mass: bool = True) -> float:
-    """Largest error of the momentum book over sum m |v| at the start: colliding discs in a periodic box."""
+    """Largest error of the momentum budget over sum m |v| at the start: colliding discs in a periodic box."""
     coupled = handful(acceleration=acceleration)
     if not inner_mass:
         without_inner_mass(coupled)
@@ -80,7 +80,7 @@ def momentum_error(acceleration: tuple[float, float], steps: int, *, inner_mass:
     tolerance=2500 * EPS,
 )
 def momentum() -> Measured:
-    """Error of the book over sum m |v| at the start: colliding discs in a periodic box, with and without weights."""
+    """Error of the momentum budget over sum m |v| at the start: discs in a periodic box, with and without weights."""
     errors = [momentum_error(acceleration, STEPS) for acceleration in ((0.0, 0.0), FALL)]
     return Measured(0.0, errors, max(errors))
 

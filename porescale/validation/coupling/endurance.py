@@ -11,7 +11,7 @@ from porescale.common.evidence.validations import Measured, Validations
 VALIDATIONS = Validations()
 
 TINY = 1e-300
-"""What is allowed where nothing is, so that anything is far beyond it."""
+"""Tolerance where the reference is zero, so that any value other than zero exceeds it."""
 SHORT = 20_000
 DOWN = 60_000
 """Steps; the heap has come down by the 12th of 20 marks, 36 000 steps."""

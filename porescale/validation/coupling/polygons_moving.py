@@ -116,7 +116,7 @@ def neutral() -> Measured:
 def momentum_error(steps: int, ratio: float = 2.0, g: float = -1e-5, *, inside: bool = True) -> float:
     """Largest error of the momentum budget over sum m |v| at the start: colliding polygons and discs in a periodic box.
 
-    inside: or else the fluid inside the polygons, and their virtual masses, are left out of the book.
+    inside: or else the fluid inside the polygons, and their virtual masses, are left out of the budget.
     """
     coupled = three(ratio, [(0.04, 0.01), (-0.04, 0.0), (0.0, -0.04)], [0.002, -0.004, 0.01], g)
     polygons = coupled.polygons
@@ -143,7 +143,7 @@ def momentum_error(steps: int, ratio: float = 2.0, g: float = -1e-5, *, inside: 
     tolerance=2000 * EPS,
 )
 def momentum() -> Measured:
-    """Error of the book over sum m |v| at the start: colliding polygons and discs in a periodic box under gravity."""
+    """Error of the momentum budget over sum m |v| at the start: polygons and discs in a periodic box under gravity."""
     errors = [momentum_error(400, ratio) for ratio in (2.0, 0.5)]
     return Measured([0.0, 0.0], errors, max(errors))
 

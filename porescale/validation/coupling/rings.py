@@ -101,7 +101,7 @@ def couette_torque(
 @dataclass(frozen=True)
 class Lift:
     """What a lifting gate leaves: extremes of the density on the way, and spread at the end; mass lost over the gate's
-    area; largest difference between mass and book."""
+    area; largest error of the mass budget."""
 
     lowest: float
     highest: float
@@ -135,7 +135,7 @@ def lift_gate(
                 density = fluid.fields()[0]
                 lowest, highest = min(lowest, float(density.min())), max(highest, float(density.max()))
                 off = max(off, abs(fluid.mass_excess() - start - wet.mass_through_sides))
-                if not 0.1 < lowest <= highest < 10:  # beyond sense, as it is known to go wrong
+                if not 0.1 < lowest <= highest < 10:  # out of bounds, an expected divergence
                     break
     density = fluid.fields()[0]
     lost = start - fluid.mass_excess()

@@ -120,7 +120,7 @@ def release(
 ) -> list[float]:
     """v/((s - 1) g a²/nu) of a disc of density ratio s released from rest, at ``times`` nu t/a².
 
-    A closed box ``width`` diameters wide; so light a weight that the flow is linear.  Velocities live half a step back.
+    A closed box ``width`` diameters wide; so light a weight that the flow is linear.  Velocities are half a step old.
     """
     a, nu = diameter / 2, viscosity(relaxation_time)
     unit = 1e-5

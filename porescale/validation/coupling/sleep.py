@@ -29,7 +29,7 @@ AFTER = 300.0
 RESTED = 6000
 """Steps until all sleep."""
 LOOK = 20
-"""Steps between looks at who is out of balance."""
+"""Steps between checks for grains out of balance."""
 CURRENT = 0.1
 """Speed of the water above the heap when it begins to flow, cells per step."""
 
@@ -109,7 +109,7 @@ SMALL = 2.5
 def collapsed(share: float | None = None, nudge: float = 0.0, steps: int = 8000) -> Array:
     """A column of 28 discs at a wall, let go under water: (run-out, mean height) of what lies in the end, in radii.
 
-    share : of their weight by which sleepers may be out of balance; None: nobody sleeps.  nudge : cells, of one disc.
+    share : of their weight by which sleepers may be out of balance; None: no grain sleeps.  nudge : cells, of one disc.
     """
     rng = np.random.default_rng(2)
     across, high = COLUMN

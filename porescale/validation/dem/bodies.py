@@ -53,7 +53,7 @@ def random_cell(
 
 
 def clumped_cell(law: Linear, seed: int, side: int = 6, *, energy: bool = False) -> Grains:
-    """The same, with a smaller disc bound to the rim of every third one."""
+    """The cell of `random_cell` with a smaller disc bound to the rim of every third one."""
     rng = np.random.default_rng(seed)
     plain, few = random_cell(law, seed, side), side**2 // 3
     angle = rng.uniform(0.0, 2.0 * math.pi, few)
@@ -130,7 +130,7 @@ def dumbbell_bounce(
 
 
 def dumbbell_exact(angle: float, spin: float = 0.0) -> tuple[float, float]:
-    """The same by impulse: J = -2 v_n/(1/M + a^2/I) upwards at the lower end, a = -r cos(angle) from the centroid."""
+    """Exact `dumbbell_bounce`: J = -2 v_n/(1/M + a^2/I) up at the lower end, a = -r cos(angle) from the centroid."""
     mass = 2.0 * MASS
     inertia = 2.0 * (0.5 * MASS * RADIUS**2 + MASS * RADIUS**2)
     arm = -RADIUS * math.cos(angle)

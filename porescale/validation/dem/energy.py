@@ -55,9 +55,11 @@ def energy_order() -> Measured:
 
 
 def repose(settling: int = 12_000, running: int = 100_000, seed: int = 1) -> tuple[Grains, dict[str, float]]:
-    """The tutorial's 582 discs (I-7, cgs: cm, g, s, erg/cm): settled in a box, which then opens down to a toe of 4 cm.
+    """The 582 discs of the DEMseg tutorial (I-7, cgs): settled in a box, which then opens down to a toe of 4 cm.
 
-    Returns the grains at the end and their energy book.
+    Units: cm, g, s, erg/cm.
+
+    Returns the grains at the end and their energy budget.
     """
     rng = np.random.default_rng(seed)
     count, side = 582, 22
@@ -128,7 +130,7 @@ def shaken(drives: tuple[str, ...], seed: int, law: Linear = LAW) -> Grains:
 
 
 def book_of(drives: tuple[str, ...], steps_per_contact: float, seed: int, law: Linear = LAW) -> dict[str, float]:
-    """Energy book of a box after 60 over the rate of a contact; steps in the contact of two whole discs."""
+    """Energy budget of a box after 60 over the rate of a contact; steps in the contact of two whole discs."""
     grains = shaken(drives, seed, law)
     dt = math.pi / (math.sqrt(2.0) * RATE * steps_per_contact)
     weights = np.column_stack((np.zeros(grains.discs.count), -GRAVITY * grains.discs.mass))

@@ -79,7 +79,7 @@ def hertz_force() -> Measured:
     tolerance=1e-3,
 )
 def hertz_overlap() -> Measured:
-    """The same, contact kept until the overlap is zero."""
+    """Parting over approach speed, with the contact kept until the overlap is zero."""
     return hertz_restitution("overlap")
 
 

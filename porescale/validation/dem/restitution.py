@@ -73,7 +73,7 @@ def restitution_force() -> Measured:
     tolerance=1e-3,
 )
 def restitution_overlap() -> Measured:
-    """The same, contact kept until the overlap is zero."""
+    """Parting over approach speed, with the contact kept until the overlap is zero."""
     return _restitution("overlap", RATIOS)
 
 

@@ -1,8 +1,8 @@
-"""Validations of rock made of bonded discs, triangles and cells: what it bears, against the tutorial's own samples.
+"""Validations of rock made of bonded discs, triangles and cells: what it bears, against samples of DEMseg.
 
-Rock of the tutorial's numbers: what its samples bear, over the naive estimate.
+Rock with the parameters of the DEMseg tutorial (Matsushima): strength of its samples over the naive estimate.
 
-Tutorial II-4: 304 discs of 4 cm mean diameter, k_n 1e7 N/m, k_s a quarter of it, mean back tension 0.774 kN; triangles
+DEMseg tutorial, II-4: 304 discs, mean diameter 4 cm, k_n 1e7 N/m, k_s a quarter, mean back tension 0.774 kN; triangles
 and cells of the same packing, whose sides overlap by 0.08 mm.  Friction (tan 27 degrees, as in its part I), the packing
 and the sample's shape it does not give; the case cases/rock shows the effect of each.
 
@@ -32,9 +32,9 @@ STIFFNESS = 1e7  # N/m
 TENSION = 774.0  # N/m, mean back tension
 GAP, PRESSED = 4e-3, 8e-5  # m
 GAPS: dict[Kind, float] = {"discs": 0.0, "triangles": 1e-3, "cells": GAP}
-"""The tutorial's 1 mm, but for cells, see above."""
+"""Gaps, m: the 1 mm of the DEMseg tutorial, but for cells, see above."""
 PREPARED = 0.2
-"""Friction while discs are packed: the tutorial's were thrown in at random and settled, neither dense nor loose."""
+"""Friction while discs are packed: those of DEMseg were placed at random and settled, neither dense nor loose."""
 SLENDER = 2.0
 """Length over height of samples in which a plane of shear, 58 degrees steep, can pass between the plates."""
 LOADS = {"discs": (0.006, -0.01), "triangles": (0.006, -0.035), "cells": (0.004, -0.035)}
@@ -43,7 +43,7 @@ RATE = 0.01  # 1/s: a wave crosses the sample some hundred times before it break
 
 
 def law() -> Linear:
-    """Of the tutorial, with dashpots at 0.3 of critical for two discs of mean size."""
+    """Contact law of the DEMseg tutorial, with dashpots at 0.3 of critical for two discs of mean size."""
     mass = 0.5 * math.pi * (0.5 * DIAMETER) ** 2 * DENSITY
     dashpot = 0.6 * math.sqrt(STIFFNESS * mass)
     return Linear(STIFFNESS, dashpot, 0.25 * STIFFNESS, 0.5 * dashpot, math.tan(math.radians(27.0)))
@@ -107,7 +107,7 @@ VALIDATIONS = Validations()
 
 TUTORIAL = "Matsushima, DEMseg tutorial II-4"
 PACKINGS = 4
-SEEDS, FEW = 150, 80  # a half and a quarter of the tutorial's, for the time it takes
+SEEDS, FEW = 150, 80  # a half and a quarter of those of DEMseg, to save time
 FAST = 0.05  # 1/s: of polygons; strengths are 1 % from those at 0.02
 
 

@@ -64,7 +64,7 @@ def weights(discs: Discs, gravity: float = GRAVITY) -> Array:
 
 
 def bouncing(what: str, steps_per_contact: float, rule: str = "outline", seconds: float = 0.5) -> Array:
-    """Energy book of a ``what`` ("segment", "polygon" or "disc") that bounces on a container with edges up and down.
+    """Energy budget of a ``what`` ("segment", "polygon" or "disc") that bounces on a container with edges up and down.
 
     It falls 3 radii, turning, off the middle, and hits edges and sides with its own; two walls keep it there.  Returns
     the residual at 100 moments over the most kinetic energy.

@@ -100,7 +100,7 @@ FLOOR = 60.0 * RADIUS  # m, from wall to wall
 def collapsed(share: float | None = None, nudge: float = 0.0, seconds: float = 0.5) -> Array:
     """A column of 54 discs beside a wall, let go: (run-out, mean height) of what lies in the end, in radii.
 
-    share : of their weight by which sleepers may be out of balance; None: nobody sleeps.  nudge : m, of one disc.
+    share : of their weight by which sleepers may be out of balance; None: no grain sleeps.  nudge : m, of one disc.
     """
     rng = np.random.default_rng(2)
     across, high = COLUMN

@@ -29,7 +29,7 @@ def chain(count: int, law: Linear | None = None) -> Grains:
 def chain_frequency(mode: int, count: int = 32, steps: int = 2000) -> float:
     """Frequency over sqrt(k/m) of a standing wave with ``mode`` waves on the ring.
 
-    Its amplitude obeys A(t - s) + A(t + s) = 2 cos(w s) A(t) at any phase; s is about a tenth of a period.
+    Its amplitude satisfies A(t - s) + A(t + s) = 2 cos(w s) A(t) at any phase; s is about a tenth of a period.
     """
     grains = chain(count)
     shape = np.cos(2.0 * math.pi * mode * np.arange(count) / count)

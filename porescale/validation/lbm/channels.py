@@ -40,7 +40,7 @@ def one_thread() -> Iterator[None]:
 def steady_steps(height: int, viscosity: float, magic: float) -> int:
     """Steps until a channel is steady to round-off: slowest viscous mode, and the memory of both halves.
 
-    Between walls one cell apart the halves forget three times more slowly (measured: e in 9 steps at tau 3.5).
+    Between walls one cell apart the halves' transient decays three times more slowly (measured: e in 9 steps, tau 3.5).
     """
     tau = relaxation_time(viscosity)
     return math.ceil(MEMORY * (height**2 / (math.pi**2 * viscosity) + 3 * (tau + 1 / antisymmetric_rate(tau, magic))))

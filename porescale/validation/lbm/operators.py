@@ -25,8 +25,8 @@ PERIODIC = Sides("periodic", "periodic", "periodic", "periodic")
 def wave_viscosity(operator: str, frame: float, *, cells: int = 32, tau: float = 0.6, size: float = 1e-4) -> float:
     """Viscosity over that of the relaxation time, from the decay of a shear wave that is carried along x.
 
-    The wave, v = size sin(2 pi x/cells), moves with the fluid at ``frame``; a quarter of its life is left to forget
-    the start, half of it is measured.
+    The wave, v = size sin(2 pi x/cells), moves with the fluid at ``frame``; a quarter of its decay time is left out,
+    half of it is measured.
     """
     k = 2 * math.pi / cells
     fluid = Fluid(cells, 4, tau, operator=operator, sides=PERIODIC)
@@ -149,7 +149,7 @@ def frame_central() -> Measured:
     tolerance=float(WAVE_NUMBER**2 * (3 + 1) * FRAMES[-1] ** 2),
 )
 def frame_trt() -> Measured:
-    """The same of two relaxation times, against the known defect."""
+    """Viscosity in a moving frame with two relaxation times, against the exact defect."""
     rest = wave_viscosity("trt", 0.0, cells=CELLS)
     found = [wave_viscosity("trt", frame, cells=CELLS) / rest for frame in FRAMES]
     exact = [1 - 3 * frame**2 for frame in FRAMES]
