@@ -76,7 +76,7 @@ class Tank:
         self.model.check()
 
     def read(self) -> Mapping[str, float]:
-        """Chosen columns of the series."""
+        """The columns of series.csv that the study follows."""
         row = self.model.series()
         return {name: row[column] for name, column in self._names.items()}
 

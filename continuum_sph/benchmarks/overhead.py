@@ -95,7 +95,7 @@ def settled(it: Scene) -> tuple[Simulation, int]:
 
 
 def soil_beside_water() -> BuiltScene:
-    """As many particles of soil as there are of water."""
+    """The scene of soil alone beside that of water alone, with equal numbers of particles."""
     it = ground()
     made, count = settled(it)
     return BuiltScene(made, parts_of(it), count, made.advance, started(scene()).advance)

@@ -27,7 +27,7 @@ TOUCH = 1.6  # spacings: particles nearer belong together; neighbours across a d
 
 
 class InclusionPart(Part):
-    """Columns of the second fluid."""
+    """Columns of the second fluid in series.csv."""
 
     def __init__(self, flow: Flow) -> None:
         self.flow = flow

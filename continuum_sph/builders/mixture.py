@@ -101,11 +101,11 @@ class MixturePart(Part):
         snapshot.clouds |= {"particles": whole, "water": water, "soil": soil} | ({"air": air} if self.air else {})
 
     def state(self) -> dict[str, Any]:
-        """The step that both take."""
+        """State of the part: the next time step of both layers, s."""
         return {"next_step": self.flow.next_step}
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Go on with that step."""
+        """Restore the next time step from a state."""
         self.flow.next_step = float(state["next_step"])
 
 
@@ -123,7 +123,7 @@ class PoreInstruments(Part):
         return {"water in pores (kg/m)": float(flow.layer.mass[:n][inside].sum())}
 
     def tables(self) -> dict[str, dict[str, float]]:
-        """A row of each table."""
+        """A row of each table of the instruments."""
         flow, layer, law, n = self.flow, self.flow.layer, self.flow.law, self.flow.layer.fluid
         there = (layer.mass[:n] > 0.0) & (layer.material[:n] != GAS)
         volume = layer.mass[:n] / (flow.porosity * layer.density)

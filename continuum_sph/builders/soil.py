@@ -162,7 +162,7 @@ class SoilPart(Part):
 
 
 def assemble(scene: Scene) -> Assembly:
-    """Soil in a tank."""
+    """Build the flow and the parts of a scene of soil in a tank."""
     flow = soil_flow(scene)
     return Assembly(flow, [SoilPart(scene, flow)], REPAIR)
 

@@ -151,7 +151,7 @@ class WaterSteps(Part):
         self.flow = flow
 
     def row(self) -> dict[str, float]:
-        """Steps that each rule limited."""
+        """Number of steps that each stability criterion has limited."""
         return {f"steps limited by {rule} ()": float(k) for rule, k in zip(RULES, self.flow.limited, strict=True)}
 
 

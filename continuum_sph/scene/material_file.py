@@ -46,7 +46,7 @@ class Taken(Section):
 
 
 class Strength(Section):
-    """Angles of one state."""
+    """Friction and dilatancy angle of the soil in one state."""
 
     friction_angle: float = quantity("rad", ge=0)
     dilatancy_angle: float = quantity("rad", ge=0)

@@ -135,7 +135,7 @@ class PoreFlow(Flow):
 
     @property
     def room(self) -> Floats:
-        """Ω at water particles, (fluid,)."""
+        """Volume share Ω at the water particles, (fluid,)."""
         return self.pores[ROOM, : self.layer.fluid]
 
     def saturation(self) -> Floats:

@@ -114,7 +114,7 @@ class Reservoir:
 
     @property
     def width(self) -> float:
-        """∫ w dx, m."""
+        """Effective width of the strip, ∫ w dx, m."""
         return self.right - self.left - 0.5 * sum(self.ramps)
 
     def wanted(self, time: float) -> float:

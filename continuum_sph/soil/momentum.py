@@ -99,7 +99,7 @@ def accelerate(soil, record, facing, force, stress, acceleration, spread, drift,
 
 @inline
 def soil_forces(i, record, stress, near, choices):
-    """Of partners of particle i in the soil: (acceleration (x, y) m/s²;  diffusion of stress, Pa/s: xx, yy, xy, zz;
+    """Sums over soil partners of particle i: (acceleration (x, y) m/s²;  diffusion of stress, Pa/s: xx, yy, xy, zz;
     that of volume over spacing², 1/s;  sums of spacing recovery (x, y) m/s over A/2).
 
     The arguments: of `accelerate`.

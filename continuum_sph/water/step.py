@@ -276,7 +276,7 @@ class Flow:
             self.marked = False
 
     def pull(self) -> None:
-        """Surface tension between two fluids."""
+        """Add the accelerations of surface tension between two fluids."""
         layer, law = self.layer, self.law
         near = self.near(law.smoothing.kind)
         where = (layer.fluid, layer.record, near)

@@ -92,7 +92,7 @@ def without(it: Scene) -> Callable[[Simulation], Callable[[int], object]]:
     """A scene that lacks a part."""
 
     def other(made: Simulation) -> Callable[[int], object]:
-        """Steps of the scene, warm."""
+        """The ``advance`` of the other scene, after its warm-up steps."""
         twin = build(it)
         twin.advance(WARM)
         return twin.advance

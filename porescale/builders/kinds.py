@@ -33,7 +33,7 @@ def _one(kind: type[P], parts: Parts) -> P:
 
 
 def stepper_of(system: System) -> Stepper:
-    """Fluid, dry grains, or both."""
+    """The part that advances a system: fluid, dry grains, or both."""
     if system.coupled:
         from porescale.builders.parts.coupled import CoupledPart
 

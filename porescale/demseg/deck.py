@@ -1,6 +1,6 @@
 """What a deck holds: in_gm.dat (grains) and in_bc.dat (the run), read and written.
 
-in_gm.dat, one record a line (tutorial I-2, I-7):
+in_gm.dat, one record a line (DEMseg tutorial I-2, I-7):
     mode mode2 mode3
     dt gx gy
     nmat

@@ -1,6 +1,6 @@
 """A deck driven through time: the model that porescale/runs drives, and the files that DEMseg leaves.
 
-energy.dat (tutorial I-2): step, then
+energy.dat (DEMseg tutorial I-2): step, then
     enrg potential;  enva kinetic;  enka elastic, bonds included;  enca lost in dashpots;  enfr lost in friction;
     enxd work of bodies with prescribed motion;  enxf work of prescribed forces;  err what does not balance.
 f-d_curve.dat (I-3): step, body, force x, place x, force y, place y, moment, angle, the order of the numbers in DEMseg's

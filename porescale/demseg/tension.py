@@ -1,4 +1,4 @@
-"""in_cf0.dat: back tensions, by which a run with jclid 3 is bonded (tutorial II-3), read and written.
+"""in_cf0.dat: back tensions, by which a run with jclid 3 is bonded (DEMseg II-3), read and written.
 
 For each point that has some, a line with its number and how many, then as many lines with the number of the other and
 the tension, the force of the contact with its sign turned.  Points are the discs, in the order of in_gm.dat, then the

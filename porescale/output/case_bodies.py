@@ -34,7 +34,7 @@ class Shot:
 
 
 def shot(grains: Grains) -> Shot:
-    """The grains as they are."""
+    """The present state of the grains as a shot."""
     whole = np.zeros(0, np.uint8) if grains.bonds is None else grains.bonds.whole.copy()
     return Shot(grains.discs.position.copy(), whole)
 

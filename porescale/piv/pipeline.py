@@ -52,7 +52,7 @@ class Measurement:
 
     @property
     def total(self) -> int:
-        """Fields that there will be."""
+        """Number of fields that the measurement returns."""
         return 1 if self.average else self.pairs
 
     @cached_property

@@ -51,7 +51,7 @@ class Touch(Section):
     rolling_damping_ratio: float | None = quantity("", None, **RATIO, help="left out: that of the normal")
 
     def numbers(self) -> dict[str, float]:
-        """What is given, by key."""
+        """The numbers that are given, by key."""
         values = {key: getattr(self, key) for key in Touch.model_fields}
         return {key: value for key, value in values.items() if value is not None}
 

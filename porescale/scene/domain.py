@@ -79,7 +79,7 @@ class Side(Section):
 
     @property
     def open(self) -> bool:
-        """Whether fluid passes it."""
+        """Whether fluid passes through the side."""
         return self.boundary.passes
 
     @property

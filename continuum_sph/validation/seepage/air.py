@@ -149,7 +149,7 @@ class TrappedAir:
         return float(self.height - heights[full[0]]) if full.size else 0.0
 
     def run(self, time: float) -> Seepage:
-        """The column at ``time`` (s)."""
+        """Advance the column to ``time`` (s), and return it."""
         both = self.build()
         while both.time < time:
             both.advance()

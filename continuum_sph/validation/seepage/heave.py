@@ -98,7 +98,7 @@ class Heave:
 
     @property
     def scene(self) -> Scene:
-        """The scene of it."""
+        """The scene of this heave test."""
         side, spacing = round(self.reach * self.rows), self.spacing
         width, beside = (2 * side + 1) * spacing, side * spacing
         level = self.depth + round(self.cover * self.rows) * spacing

@@ -155,7 +155,7 @@ class Imbibition:
         face.point = (0.0, float(behind.mean()) - 0.5 * layers * self.height / self.rows)
 
     def reached(self, both: Seepage) -> float:
-        """Way (m) of the front."""
+        """Depth (m) that the wetting front has reached."""
         return self.height - half_full(both, self.rows, self.columns, self.height)
 
 

@@ -109,7 +109,7 @@ class Levee:
 
     @property
     def damping(self) -> float:
-        """α of the soil."""
+        """Damping coefficient α of the soil."""
         return min(FIRMEST, self.braked * math.sqrt(SOFT / self.stiffness))
 
     def table(self) -> dict[str, Any]:

@@ -40,7 +40,7 @@ class Book:
         self.start = self.mechanical()
 
     def mechanical(self) -> float:
-        """Kinetic and potential energy."""
+        """Sum of kinetic and potential energy, J/m."""
         soil, n = self.flow.soil, self.flow.soil.soil
         mass, lean = soil.mass[:n], np.array(self.flow.law.gravity)
         return float((mass * (0.5 * (soil.v[:n] ** 2).sum(axis=1) - soil.x[:n] @ lean)).sum())

@@ -44,7 +44,7 @@ class StateLaw(Protocol):
 
     @property
     def sound_speed(self) -> float:
-        """c0, m/s, at ρ0."""
+        """Speed of sound c0 at the density ρ0, m/s."""
 
     @property
     def least_density(self) -> float:

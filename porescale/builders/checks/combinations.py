@@ -39,7 +39,7 @@ def check_cell(scene: Scene) -> list[Fault]:
 
 
 def check_bonds(scene: Scene) -> list[Fault]:
-    """What bonds cannot be beside."""
+    """Faults of sections that do not go together with [[bonds]]."""
     if not scene.bonds:
         return []
     beside_them = {"fluid": scene.fluid, "cell": scene.cell}
@@ -55,7 +55,7 @@ def check_bonds(scene: Scene) -> list[Fault]:
 
 
 def check_rock(scene: Scene) -> list[Fault]:
-    """What a rock needs."""
+    """Faults of a [rock] whose required sections or keys are missing."""
     if scene.rock is None:
         return []
     faults, packing = [], scene.grains.packing if scene.grains else None

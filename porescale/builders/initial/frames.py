@@ -109,7 +109,7 @@ def _of_section(fault: Fault, key: str) -> Fault:
 
 
 def _made(plan: MaterialPlan, key: str, kind: Kind, section: SegmentBody | PolygonBody | Container) -> list[Placed]:
-    """The copies of one section."""
+    """The bodies of all copies of one section."""
     number = plan.number(section.material, wall=kind == "container")
     more: dict[str, Any] = {"material": number}
     if isinstance(section, Container):

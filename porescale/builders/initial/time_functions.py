@@ -8,7 +8,7 @@ from porescale.scene.time_function import Component, TimeFunction
 
 
 def schedule_of(function: TimeFunction) -> Schedule:
-    """A number over time."""
+    """The schedule of a function of time."""
     if function.times:
         return Table(function.times, function.values)
     if function.amplitude:

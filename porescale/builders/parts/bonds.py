@@ -134,7 +134,7 @@ class BondsPart(Part):
         return [body for body in bodies if inside(body)]
 
     def row(self) -> Row:
-        """Columns of the series."""
+        """Columns of the bonds in series.csv."""
         bonds = self.grains.bonds
         there = 0 if bonds is None else int(np.sum(bonds.back > 0.0))
         whole = 0 if bonds is None else bonds.count
@@ -149,7 +149,7 @@ class BondsPart(Part):
         return {"bonds_made": self.made}
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take up a state."""
+        """Restore the state of a checkpoint."""
         self.made = int(state["bonds_made"])
 
     def cloud(self) -> Cloud:

@@ -38,7 +38,7 @@ class CellPart(Part):
         return {"shear": self.shear}
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take up a state."""
+        """Restore the state of a checkpoint."""
         self.shear = float(state["shear"])
 
     def row(self) -> Row:

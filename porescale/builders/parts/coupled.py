@@ -20,13 +20,13 @@ class CoupledPart(FluidPart):
     """A step of the fluid, with as many contact steps of the grains as go into it."""
 
     def __init__(self, clock: Clock, fluid: Fluid, scales: Scales, sense: DivergenceCheck, system: System) -> None:
-        """``system`` : with both."""
+        """``system`` : with fluid and grains."""
         super().__init__(clock, fluid, scales, sense, system)
         assert system.coupled
         self.coupled = system.coupled
 
     def advance(self) -> None:
-        """A step of both."""
+        """Advance fluid and grains by one step of the fluid."""
         self.coupled.advance()
 
     def fields(self) -> Fields:
@@ -53,6 +53,6 @@ class CoupledPart(FluidPart):
         return {"mass": self.mass, "coupled": self.coupled.state()}
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take up a state."""
+        """Restore the state of a checkpoint."""
         self.mass = float(state["mass"])
         self.coupled.restore(state["coupled"])

@@ -23,7 +23,7 @@ class FlowSeries(Part):
         return cls(fluid, grains.hydraulic_radius_ratio if grains else None)
 
     def row(self) -> Row:
-        """Columns of the series."""
+        """Columns of the fluid in series.csv."""
         part, lattice = self.fluid, self.fluid.fluid
         change = (lattice.mass_excess() - part.mass) / (lattice.nx * lattice.ny)
         return {**fluid_row(*part.fields(), part.scales), **self.first, "fluid mass change ()": change}

@@ -40,7 +40,7 @@ class FluidPart(Stepper):
         return cls(system.clock, fluid, scales, sense, system)
 
     def advance(self) -> None:
-        """A step of the lattice."""
+        """Advance the fluid by one lattice step."""
         self.fluid.advance()
 
     def explained(self, error: Unstable) -> Unstable:
@@ -79,6 +79,6 @@ class FluidPart(Stepper):
         return {"mass": self.mass, "fluid": self.fluid.state()}
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take up a state."""
+        """Restore the state of a checkpoint."""
         self.mass = float(state["mass"])
         self.fluid.restore(state["fluid"])

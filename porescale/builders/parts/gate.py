@@ -35,7 +35,7 @@ class GatePart(Part):
 
     @property
     def idle(self) -> bool:
-        """Once it has vanished."""
+        """Whether the gate has vanished, so that no motion is left."""
         return self.open and self.lift_speed is None
 
     def before(self) -> None:

@@ -51,7 +51,7 @@ class GrainSeries(Part):
         return float((x - r).min() if self.leftward else (x + r).max())
 
     def row(self) -> Row:
-        """Columns of the series."""
+        """Columns of the grains in series.csv."""
         discs, front = self.free(), self.front()
         x, y = centre_of_mass(discs)
         return {
@@ -77,5 +77,5 @@ class GrainSeries(Part):
         return {"watch": {"start": self.start, "leftward": self.leftward}}
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take up a state."""
+        """Restore the state of a checkpoint."""
         self.start, self.leftward = float(state["watch"]["start"]), bool(state["watch"]["leftward"])

@@ -56,5 +56,5 @@ class GrainsPart(Stepper):
         return {"mass": 0.0, "grains": self.grains.state()}
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take up a state."""
+        """Restore the state of a checkpoint."""
         self.grains.restore(state["grains"])

@@ -81,6 +81,6 @@ class RectanglesPart(Part):
         return {"made_good": self.made_good}
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take up a state."""
+        """Restore the state of a checkpoint."""
         self.made_good = float(state["made_good"])
         self.after()

@@ -28,7 +28,7 @@ class SleepPart(Part):
         return cls(grains.sleep)
 
     def row(self) -> Row:
-        """Columns of the series."""
+        """Columns of the sleeping grains in series.csv."""
         return {
             "grains asleep ()": float(self.sleepers.count),
             "energy taken by sleep (J/m)": float(self.sleepers.removed.sum()),

@@ -40,11 +40,11 @@ class Shots:
 
     @cached_property
     def _still(self) -> Single | None:
-        """The background, looked for once."""
+        """The background of the film, computed once; None without one."""
         return background(self.film, self.background)
 
     def pairs(self) -> Iterator[tuple[tuple[NDArray[Any], Mask | None], tuple[NDArray[Any], Mask | None]]]:
-        """Each frame with the next."""
+        """Pairs of each frame with the next, with their masks."""
         last = None
         for shot in self.frames():
             if last is not None:

@@ -88,7 +88,7 @@ class Film:
         return sum(1 for _ in self._chosen())
 
     def _chosen(self) -> Iterator[tuple[int, Picture]]:
-        """Number and whole frame."""
+        """The chosen frames: number and whole picture."""
         if not self.moving:
             for number in range(len(self.files))[self.start : self.end : self.step]:
                 yield number, picture(self.files[number])

@@ -76,7 +76,7 @@ class Flow:
 
 
 def uniform(u: float, v: float) -> Flow:
-    """The same displacement everywhere."""
+    """A flow of uniform displacement (u, v), px."""
     return Flow("uniform", lambda x, y: (np.full_like(x, u), np.full_like(y, v)))
 
 

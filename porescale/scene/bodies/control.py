@@ -43,6 +43,6 @@ class Controlled(Section):
 
     @property
     def called(self) -> str:
-        """Name in the columns."""
+        """Name of the body in the columns of forces.csv."""
         kind, number = self.of
         return self.name or f"{kind} {number}"

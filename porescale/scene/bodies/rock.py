@@ -50,5 +50,5 @@ class Rock(Section):
 
     @property
     def polygons(self) -> bool:
-        """Whether it is of polygons."""
+        """Whether the rock consists of polygons."""
         return self.kind != "discs"

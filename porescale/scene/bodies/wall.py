@@ -56,5 +56,5 @@ class Wall(Section):
 
     @property
     def moves(self) -> bool:
-        """Whether it has a velocity."""
+        """Whether the wall has a prescribed velocity."""
         return any(it is not None for it in (self.velocity_x, self.velocity_y, self.turning))

@@ -11,7 +11,7 @@ from porescale.scene.ranges import LENGTH, PLACE
 
 
 class Window(Section):
-    """A part of the bed."""
+    """The rectangle of the bed that is measured."""
 
     left: float = quantity("m", **PLACE, help="left edge")
     bottom: float = quantity("m", **PLACE, help="lower edge")

@@ -119,5 +119,5 @@ def fast() -> Measured:
     slow=True,
 )
 def fast_in_all_directions() -> Measured:
-    """Mean drag coefficients of ``SLOW_STARTS``."""
+    """Mean drag coefficients of the runs in ``SLOW_STARTS``."""
     return fast_starts(SLOW_STARTS)

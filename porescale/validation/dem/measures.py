@@ -33,7 +33,7 @@ COLUMN = 12
 
 
 def square_lattice_porosity(lower: tuple[float, float], upper: tuple[float, float]) -> float:
-    """Of touching discs of diameter 1 at half numbers, periodic over 8 x 6, in a rectangle (corners in diameters)."""
+    """Porosity of touching discs of diameter 1 at half numbers, periodic over 8 x 6, in a rectangle (in diameters)."""
     at = np.stack(np.meshgrid(np.arange(8) + 0.5, np.arange(6) + 0.5), axis=-1).reshape(-1, 2)
     return porosity(Region(lower, upper), at, np.full(len(at), 0.5), (8.0, 6.0))
 

@@ -53,7 +53,7 @@ def hilly(crests: int = 4, slope: float = 0.3) -> Frame:
 
 
 def hold(grains: Grains, *clumps: int) -> None:
-    """Let these clumps stand still."""
+    """Hold the clumps of these numbers at rest."""
     for clump in clumps:
         grains.steering.control(Clump(clump), REST, REST, REST)
 

@@ -50,7 +50,7 @@ def heap(seed: int = 1) -> tuple[Grains, Array]:
 
 
 def asleep(grains: Grains, weights: Array, share: float = SHARE, after: float = AFTER) -> Sleep:
-    """Let the discs sleep."""
+    """Allow the discs to sleep; returns their `Sleep`."""
     grains.sleep = Sleep(grains, np.hypot(weights[:, 0], weights[:, 1]), share, after)
     return grains.sleep
 

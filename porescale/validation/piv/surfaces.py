@@ -39,6 +39,6 @@ def pile(step: float) -> tuple[list[float], list[float]]:
     tolerance=0.006,
 )
 def surface() -> Measured:
-    """Areas over the exact one."""
+    """Areas below a pile of discs, px²; the error is the largest relative one."""
     found, exact = pile(1.0)
     return Measured(exact, found, max(abs(a / b - 1) for a, b in zip(found, exact, strict=True)))
