@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.builders.soil import soil_section
+from continuum_sph.builders.soil import material_of, soil_section
 from continuum_sph.scene.material_file import speed
 from continuum_sph.scene.sections import Scene as SoilScene
 from continuum_sph.scene.soil import SoilSection
@@ -133,7 +133,7 @@ def measure(beds: int, columns: int) -> tuple[dict[str, float], Figure]:
     k = speed(wanted, {"density": scene.fluid.density, "viscosity": scene.fluid.density * scene.fluid.viscosity})
     through = np.array([bed(seed) for seed in range(1, beds + 1)]) / wanted
     across = darcy(soil, k, 0.2)
-    _, rows = biaxial(soil.material, soil.reference, 0.05, 2000)
+    _, rows = biaxial(material_of(soil), soil.reference, 0.05, 2000)
     strong = (rows[-1, 2] - rows[-1, 3]) / (rows[-1, 2] + rows[-1, 3])
     angle, error = origin.measured["critical_friction_angle"]
     fell = [grains_fall(seed) for seed in range(1, columns + 1)]

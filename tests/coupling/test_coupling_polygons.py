@@ -27,7 +27,7 @@ from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
 from porescale.validation.coupling import polygons as outlines
 from porescale.validation.coupling import polygons_moving, setups
-from tests.reference.memory import peak
+from tests.reference.memory import growth
 from tests.reference.polygons import fractions_of
 
 EPS = np.finfo(float).eps
@@ -234,8 +234,9 @@ def test_two_threads_give_the_bits_of_one():
 @pytest.mark.usefixtures("one_thread")
 def test_a_step_allocates_nothing_that_grows():
     coupled = flight(steps=4)
-    held = peak(lambda: [coupled.advance() for _ in range(5)])
-    assert held < 20_000  # views and numbers; a field of the box has 18 432 bytes
+    assert (
+        growth(coupled.advance, steps=5) < 18_432
+    )  # views and numbers of a step; a field of the box has as many bytes
 
 
 def test_corners_share_force_torque_and_weight_of_their_polygon():

@@ -65,8 +65,8 @@ FAULTS: dict[str, Callable[[Simulation], None]] = {
     "soil stress inf": put(f"{SOIL}stress", (50, 1), INF),
     **{f"soil {name} {value:g}": put(f"{SOIL}{name}", at, value) for name, at, value in (
         ("x", (50, 0), NAN), ("x", (50, 1), INF), ("v", (50, 0), NAN), ("v", (50, 1), -1e4), ("density", 50, NAN),
-        ("density", 50, 0.0), ("density", 50, 5e3), ("mass", 50, NAN), ("plastic", 50, NAN), ("opening", 50, NAN),
-        ("acceleration", (50, 0), NAN), ("drift", (50, 0), NAN))},
+        ("density", 50, 0.0), ("density", 50, 5e3), ("mass", 50, NAN), ("plastic_shear", 50, NAN),
+        ("separation_strain", 50, NAN), ("acceleration", (50, 0), NAN), ("drift", (50, 0), NAN))},
     "soil thrown up": put(f"{SOIL}x", (50, 1), 3.0),
     "soil thrown through the wall": put(f"{SOIL}x", (50, 0), -1.0),
     "soil thrown aside": put(f"{SOIL}x", (50, 0), 1.0),

@@ -35,8 +35,8 @@ FAULTS: dict[str, Callable[[Simulation], None]] = {
         ("v", (AT, 1), -1e4), ("density", AT, NAN), ("density", AT, INF), ("density", AT, 0.0), ("density", AT, -1.0),
         ("density", AT, -1600.0), ("density", AT, 1.0), ("density", AT, 5e3), ("mass", AT, NAN), ("mass", AT, -1.0),
         ("mass", AT, 0.0), ("acceleration", (AT, 0), NAN), ("acceleration", (AT, 1), 1e9), ("drift", (AT, 0), NAN),
-        ("drift", (AT, 0), 1e3), ("force", (AT, 0), NAN), ("spread", (AT, 0), NAN), ("plastic", AT, NAN),
-        ("opening", AT, NAN), ("opening", AT, -2.0), ("length", AT, NAN))},
+        ("drift", (AT, 0), 1e3), ("force", (AT, 0), NAN), ("spread", (AT, 0), NAN), ("plastic_shear", AT, NAN),
+        ("separation_strain", AT, NAN), ("separation_strain", AT, -2.0), ("length", AT, NAN))},
     **{f"stress {k} {value:g}": put(f"{SAND}stress", (AT, k), value) for k in range(4) for value in (NAN, 1e12)},
     "stress inf": put(f"{SAND}stress", (AT, 1), INF),
     "stress pulls": put(f"{SAND}stress", (AT, 1), -1e9),
@@ -58,8 +58,8 @@ def test_a_fault_in_dry_soil_is_found(sliding, name):
 NAMED = {
     "x nan": "position", "v inf": "velocity", "v 1000": "speed", "density nan": "density", "density -1": "density",
     "density 5000": "porosity", "mass -1": "mass", "mass 0": "mass", "acceleration nan": "acceleration",
-    "plastic nan": "plastic strain", "opening -2": "opening", "stress 0 nan": "stress", "stress 2 1e+12": "stress",
-    "stress pulls": "stress", "thrown up": "way since the last look",
+    "plastic_shear nan": "plastic strain", "separation_strain -2": "opening", "stress 0 nan": "stress",
+    "stress 2 1e+12": "stress", "stress pulls": "stress", "thrown up": "way since the last look",
 }  # fmt: skip
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from continuum_sph.cli import PACKAGE as CONTINUUM
+from porescale.builders.initial.circles import grains_of
 from porescale.cli.main import PACKAGE as PORESCALE
 from porescale.common.cli.sweep import expected
 from porescale.common.core.errors import Fault, InputError
@@ -136,7 +137,7 @@ READERS: dict[str, Read] = {
     "run:grains.vtkhdf": lambda file: whole_run(file.parent),
     "of grains:circles.csv": lambda file: read_circles(file, "m"),
     "of grains:packing.h5": read_packing,
-    "of grains:circles.png": lambda file: Circles(file=file.name, **SIZES).grains(file.parent),
+    "of grains:circles.png": lambda file: grains_of(Circles(file=file.name, **SIZES), file.parent),
     "of a run:checkpoint.h5": read_checkpoint,
     "of film:field.csv": read_field,
     "of film:field.txt": read_field,

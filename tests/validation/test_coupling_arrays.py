@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from porescale.cli.main import PACKAGE
 from porescale.coupling import psm as saturated
+from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.validation.coupling import arrays as lab
 from porescale.validation.coupling import arrays as verify_arrays
 from porescale.validation.coupling.setups import Method
@@ -84,7 +86,7 @@ def test_places_are_spread_over_a_quarter_of_a_cell():
 
 
 def without_shift(monkeypatch):
-    monkeypatch.setattr(saturated, "RADIUS_SHIFT", 0.0)
+    monkeypatch.setitem(SOLID_OPERATORS, "exact-wall", replace(SOLID_OPERATORS["exact-wall"], radius_shift=0.0))
 
 
 def without_correction(monkeypatch):
@@ -169,6 +171,7 @@ def test_discs_of_printed_operators_turn_too_easily():
 @pytest.mark.slow
 def test_a_shift_that_does_not_follow_the_magic_parameter_fails_with_another_operator(monkeypatch):
     # BGK at tau 0.8: magic 0.09
-    monkeypatch.setattr(saturated, "RADIUS_SHIFT", verify_arrays.SHIFT / 0.09)
+    shifted = replace(SOLID_OPERATORS["exact-wall"], radius_shift=verify_arrays.SHIFT / 0.09)
+    monkeypatch.setitem(SOLID_OPERATORS, "exact-wall", shifted)
     found = verify_arrays.square((0.2,), (0.8,), np.inf, count=2, method=Method(operator="bgk"))
     assert found.error > 2 * tolerance("square_array_by_any_operator")

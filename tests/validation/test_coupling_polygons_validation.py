@@ -6,12 +6,13 @@ That the rows hold is in test_coupling_validation.py.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from porescale.cli.main import PACKAGE
-from porescale.coupling import psm as saturated
+from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.validation.coupling import arrays as verify_arrays
 from porescale.validation.coupling import polygons, polygons_moving
 from porescale.validation.coupling import polygons as verify_polygons
@@ -67,7 +68,7 @@ def test_fractions_by_points_do_not_add_up_to_the_area():
 
 
 def test_squares_without_tips_let_too_much_through(monkeypatch):
-    monkeypatch.setattr(saturated, "RADIUS_SHIFT", 0.0)
+    monkeypatch.setitem(SOLID_OPERATORS, "exact-wall", replace(SOLID_OPERATORS["exact-wall"], radius_shift=0.0))
     found = polygons.array_drag(verify_polygons.square(0.1, 20.0), 32, places=[(0.3, 0.1)])[0]
     assert found / verify_polygons.SQUARES[20] < 1 - 3 * tolerance("square_arrays_of_squares")
 

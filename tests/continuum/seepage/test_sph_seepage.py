@@ -39,9 +39,9 @@ def plain():
     """Compiled functions take vectors only from kernels: here they are plain."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(overlaps, "kernel_value", kernel_value.py_func)
-        patch.setattr(overlaps, "closeness", overlap_kernel.py_func)
-        patch.setattr(mixture, "closeness", overlap_kernel.py_func)
-        patch.setattr(exchange, "relaxed", relaxation.py_func)
+        patch.setattr(overlaps, "overlap_kernel", overlap_kernel.py_func)
+        patch.setattr(mixture, "overlap_kernel", overlap_kernel.py_func)
+        patch.setattr(exchange, "relaxation", relaxation.py_func)
         patch.setattr(exchange, "drag", drag.py_func)
         yield
 

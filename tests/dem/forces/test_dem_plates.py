@@ -123,12 +123,12 @@ def test_a_step_that_rebuilds_the_list_makes_no_array():
     weights = np.zeros((discs.count, 2))
     for _ in range(4):  # compiles, and lets the buffers of both lists grow
         discs.position += rng.normal(0.0, 0.05 / side, places.shape)
-        grains._stale = True
+        grains.stale = True
         grains.step(1e-6, weights)
     builds = grains.pairs.builds
     discs.position += 0.5 / side  # all go together: the pairs stay
     grains.pairs.list_position[0] -= 1.0  # but one seems to have come from far, so the list is rebuilt
-    grains._stale = True
+    grains.stale = True
     held = peak(lambda: grains.step(1e-6, weights))
     assert grains.pairs.builds == builds + 1
     assert held < discs.count  # not even a flag for each disc
