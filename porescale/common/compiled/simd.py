@@ -21,7 +21,7 @@ LANES = 4  # twice as many are 2 % faster where vectors are that wide (measured)
 WORDS = 32  # that `store_sorted` compares at once: a row of partners
 COLUMNS = 8  # that `gather_rows` reads of a record
 CODE = f"{__package__}.simd_code"
-"""What these functions are in kernels."""
+"""Module with the compiled form of these functions."""
 
 
 def sqrt(a: Any) -> Any:

@@ -56,11 +56,11 @@ class Forgiving(io.RawIOBase):
             return size or 0
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """As of any file."""
+        """Move the position in the file, as of any binary file; returns the new one."""
         return self._file.seek(offset, whence)
 
     def tell(self) -> int:
-        """As of any file."""
+        """Position in the file, bytes from its beginning."""
         return self._file.tell()
 
     def seekable(self) -> bool:

@@ -31,10 +31,10 @@ ASK_EVERY = 100
 
 
 class Lasting(Protocol):
-    """Something that goes on."""
+    """A system that can be advanced and checked, as long as the study runs."""
 
     def advance(self, steps: int) -> None:
-        """So many steps more."""
+        """Advance by ``steps`` steps."""
 
     def check(self) -> None:
         """Unstable where something is wrong."""
@@ -65,7 +65,7 @@ class Endurance:
     share: float = 1.0
 
     def steps(self, asked: int) -> int:
-        """How many it does."""
+        """Number of steps out of ``asked`` ones that this row does."""
         return max(MARKS, round(self.share * asked))
 
 

@@ -16,7 +16,7 @@ from porescale.common.evidence.files import finite
 from porescale.common.evidence.register import Register
 
 RIGHT, STABLE, UNSTABLE = "right", "stable", "unstable"
-"""The verdicts."""
+"""Verdicts on a run: accurate, only stable, or unstable."""
 
 
 @dataclass(frozen=True)

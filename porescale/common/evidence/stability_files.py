@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 NAME = "stability"
 SIGNS = {RIGHT: "●", STABLE: "○", UNSTABLE: "×"}
-"""A verdict in the table."""
+"""Sign of each verdict in the table."""
 COLOURS = {RIGHT: "#2c7fb8", STABLE: "#fec44f", UNSTABLE: "#a50f15"}
 """A verdict in the picture: three hues that stay apart without colour, too."""
 
@@ -116,7 +116,7 @@ def picture(flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> bytes:
 
 
 def _height(flow: Flow, quick: bool) -> float:
-    """Of its panel, inches."""
+    """Height of the panel of ``flow``, inches."""
     return 1.4 + 0.09 * flow.count(quick)
 
 

@@ -105,7 +105,7 @@ def tables(state: State, place: str = "") -> Iterator[tuple[str, State]]:
 
 
 def _no_numbers(part: State) -> str:
-    """What holds no number."""
+    """Text that names the first value with nan in it; "" where there is none."""
     for name, value in part.items():
         kind = value.dtype.kind if isinstance(value, np.ndarray) else "f" if isinstance(value, float) else ""
         if kind == "f" and name not in NOT_YET and np.isnan(value).any():

@@ -25,7 +25,7 @@ FORMAT = 1
 CHUNK_BYTES = 4 << 20
 """Stored in pieces of at most 4 MiB: large enough for disk speed, small against memory."""
 PLAIN = tuple(np.dtype(code).str for code in "bhilBHILefd")
-"""Types stored as HDF5 has them."""
+"""Types of arrays that HDF5 stores unchanged."""
 
 
 def write_checkpoint(path: Path, content: dict[str, Any]) -> None:

@@ -59,7 +59,7 @@ class Cost:
         return self.earlier + max(0.0, time.process_time() - self.began - self.stepping)
 
     def state(self) -> dict[str, Any]:
-        """What a checkpoint keeps."""
+        """Seconds counted so far, for a checkpoint."""
         return {
             "steps": self.steps, "core_seconds": self.core_seconds, "besides": self.besides(),
             "paced_steps": self.paced_steps, "paced_seconds": self.paced_seconds,

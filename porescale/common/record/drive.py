@@ -124,7 +124,7 @@ def check_resume(
 
 @dataclass
 class _Run:
-    """What the loop works with."""
+    """Model, record and counters that the loop over steps works with."""
 
     model: Model
     duration: float

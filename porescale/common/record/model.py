@@ -103,11 +103,11 @@ class Model(Protocol):
 
     @property
     def step(self) -> int:
-        """Steps done."""
+        """Number of steps done."""
 
     @property
     def time(self) -> float:
-        """Time reached, s."""
+        """Simulated time reached, s."""
 
     @property
     def step_seconds(self) -> float:

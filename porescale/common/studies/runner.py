@@ -134,7 +134,7 @@ class Campaign:
                 raise
 
     def _unless_stopped(self, point: Point) -> Ended:
-        """`one`, until one of them raised."""
+        """Run the point with `one`, unless another point has raised."""
         if self._stopped:
             return Ended(point, self.place(point), CODES[130], {})
         try:

@@ -139,7 +139,7 @@ def distance(values: NDArray[Any], truth: NDArray[Any], scale: float) -> float:
 
 
 def rms(values: Any) -> float:
-    """Root of the mean square."""
+    """Root mean square of ``values``."""
     return float(np.sqrt(np.mean(np.square(np.asarray(values, float)))))
 
 

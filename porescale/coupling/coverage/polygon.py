@@ -216,7 +216,7 @@ class Polygons:
 
     @property
     def count(self) -> int:
-        """Number of polygons."""
+        """Number of polygons that cover cells."""
         return len(self.angle)
 
     def fit(self, fluid: Fluid, shift: float, discs: int) -> Integers:

@@ -34,7 +34,7 @@ class Ring(Shape):
 
     @property
     def place(self) -> Array:
-        """The centre."""
+        """Centre of the ring, (2,) cells: the array that motion overwrites."""
         return self._centre
 
     def size(self, fluid: Fluid, shift: float) -> tuple[int, int]:

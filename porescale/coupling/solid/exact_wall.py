@@ -74,13 +74,13 @@ is_soft.of(ExactWall)(sharp)
 
 @is_soft.of(SoftWall)
 def _soft(solid):
-    """Yes."""
+    """``is_soft`` of a law with soft rims: True."""
     return True
 
 
 @force_share.of(ExactWall, SoftWall)
 def _whole(b, solid):
-    """All of it."""
+    """``force_share``: 1, the body force acts in the whole cell."""
     return numbers(b).one
 
 
@@ -108,7 +108,7 @@ def _rates(k, e, b, theta, solid):
 
 @rates.of(ExactWall)
 def _rates_of_sharp_rims(e, b, theta, slip_x, slip_y, solid):
-    """With k of the fluid."""
+    """``rates`` at the relaxation time of the fluid: rims are sharp."""
     return _rates(solid.k, e, b, theta, solid)
 
 

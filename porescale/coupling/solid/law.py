@@ -91,7 +91,7 @@ def free_share(b, solid):
 
 @inline
 def sharp(solid):
-    """``is_soft``: no."""
+    """``is_soft`` of a law with sharp rims: False."""
     return False
 
 

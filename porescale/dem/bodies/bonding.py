@@ -96,7 +96,7 @@ def pieces(grains: State, whole: NDArray[np.uint8] | None = None) -> Index:
 
 
 def _chosen(grains: State, bodies: Iterable[int | Clump] | None) -> NDArray[np.bool_]:
-    """Which discs belong to ``bodies``."""
+    """Mask (n,) of the discs that belong to ``bodies``; all discs where it is None."""
     chosen = np.full(grains.discs.count, bodies is None)
     for body in () if bodies is None else bodies:
         if isinstance(body, Clump):

@@ -126,7 +126,7 @@ class Clumps:
 
     @property
     def count(self) -> int:
-        """Number of clumps."""
+        """Number of clumps of the system."""
         return len(self.mass)
 
     @cached_property

@@ -18,7 +18,7 @@ BUDGET = 12
 
 @inline
 def has_budget(budget):
-    """Whether there is an energy budget."""
+    """Whether ``budget`` is an energy budget; else it is None."""
     return budget is not None
 
 

@@ -68,7 +68,7 @@ def _stiffness(overlap, radius, mass, p, law):
 
 @stiffness_scale.of(HertzKernel)
 def _stiffness_scale(overlap, radius, law):
-    """Radius of the contact area, m."""
+    """Factor on the stiffness: radius of the contact area, m."""
     return np.sqrt(radius * overlap)
 
 

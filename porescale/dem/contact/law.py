@@ -60,27 +60,27 @@ class Springs(Protocol):
 
     @property
     def stiffness(self) -> float:
-        """Normal stiffness."""
+        """Stiffness of the normal spring, N/m per metre of depth."""
 
     @property
     def damping(self) -> float:
-        """Normal dashpot."""
+        """Coefficient of the normal dashpot, N s/m per metre of depth."""
 
     @property
     def tangential_stiffness(self) -> float:
-        """Tangential stiffness."""
+        """Stiffness of the tangential spring, N/m per metre of depth."""
 
     @property
     def tangential_damping(self) -> float:
-        """Tangential dashpot."""
+        """Coefficient of the tangential dashpot, N s/m per metre of depth."""
 
     @property
     def rolling_stiffness(self) -> float:
-        """Rolling stiffness."""
+        """Stiffness of the rolling spring, N/m per metre of depth."""
 
     @property
     def rolling_damping(self) -> float:
-        """Rolling dashpot."""
+        """Coefficient of the rolling dashpot, N s/m per metre of depth."""
 
     @property
     def rolls(self) -> bool:
@@ -95,9 +95,9 @@ class ContactLaw(Protocol):
     """
 
     name: ClassVar[str]
-    """In scenes: [contact] law."""
+    """Name of the law in scenes, [contact] law."""
     order: ClassVar[int]
-    """Place in lists."""
+    """Position of the law in lists of all contact laws."""
     purpose: ClassVar[str]
     """What it is good for, one line."""
     kernel: ClassVar[type[KernelLaw]]
@@ -107,7 +107,7 @@ class ContactLaw(Protocol):
     required: ClassVar[tuple[str, str]]
     """The key that must be given, and its unit."""
     damping_keys: ClassVar[tuple[str, ...]]
-    """Keys of which exactly one damps."""
+    """Keys of [contact] that give the damping; exactly one of them is given."""
     of_materials: ClassVar[tuple[str, ...]]
     """Keys that follow from two materials, and are not given for a pair."""
     needs_radius: ClassVar[bool]
@@ -120,7 +120,7 @@ class ContactLaw(Protocol):
 
     @property
     def friction(self) -> float:
-        """Friction coefficient."""
+        """Coulomb friction coefficient of the contact, -."""
 
     @property
     def rolling_friction(self) -> float:
@@ -279,7 +279,7 @@ def moments(found, arm_i, arm_j, radius, law):
 
 @inline
 def load_if(friction, rolling, history, k):
-    """As load_history."""
+    """(spring, rolling spring) of contact k, m; 0 for those that ``friction`` and ``rolling`` leave out."""
     if friction is None:
         return 0.0, 0.0
     if rolling is None:
@@ -295,7 +295,7 @@ def load_history(history, k, law):
 
 @inline
 def store_if(friction, rolling, history, k, spring, roll):
-    """As store_history."""
+    """Overwrite row k of ``history`` with the springs (m) that ``friction`` and ``rolling`` do not leave out."""
     if friction is not None:
         history[k, 0] = spring
         if rolling is not None:

@@ -43,13 +43,13 @@ def _stiffness(overlap, radius, mass, p, law):
 
 @stiffness_scale.of(LinearKernel)
 def _stiffness_scale(overlap, radius, law):
-    """One at every overlap."""
+    """Factor on the stiffness: 1 at every overlap."""
     return 1.0
 
 
 @history_scaling.of(LinearKernel)
 def _history_scaling(overlap, closing, dt, law):
-    """Springs keep their length."""
+    """Factor on the springs as the overlap changes: 1, they keep their length."""
     return 1.0
 
 

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 STATE = ("corner", "corner_memory", "near", "near_memory")
-"""Names of what a listing leaves."""
+"""Names of the arrays of a segment list that a checkpoint stores."""
 
 
 class SegmentList:

@@ -46,7 +46,7 @@ side and 26 % the floor; 14 % with runs of 8, but twice as many flags to read.""
 
 @inline
 def runs_of(count):
-    """Runs of so many discs."""
+    """Number of runs that ``count`` discs make; the last one may be shorter."""
     return (count + RUN - 1) // RUN
 
 

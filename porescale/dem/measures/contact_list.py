@@ -49,7 +49,7 @@ class Contacts:
 
     @property
     def count(self) -> int:
-        """Number of contacts."""
+        """Number of contacts in the list."""
         return len(self.first)
 
     @property

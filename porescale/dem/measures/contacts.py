@@ -114,7 +114,7 @@ def _material(grains: State, discs: Index) -> NDArray[Any]:
 
 
 def _wall(grains: State) -> list[Touched]:
-    """Straight sides."""
+    """Contacts of the discs with each straight wall; one entry per wall."""
     d = grains.discs
     made: list[Touched] = []
     for w, row in enumerate(grains.walls):
@@ -126,7 +126,7 @@ def _wall(grains: State) -> list[Touched]:
 
 
 def _plate(grains: State) -> list[Touched]:
-    """Upright plates; one that is gone touches nothing."""
+    """Contacts of the discs with each upright plate; none with a plate that was removed."""
     x, y = grains.discs.position.T
     made: list[Touched] = []
     for w, row in enumerate(grains.plates):

@@ -48,7 +48,7 @@ class Table:
 
 
 Schedule = Constant | Sine | Table | float
-"""A number stands for a constant."""
+"""A time function; a plain number stands for a constant."""
 
 
 def schedule_rows(schedules: Sequence[Schedule]) -> tuple[Array, Array]:

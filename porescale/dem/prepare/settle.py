@@ -268,7 +268,7 @@ def weights_of(discs: Discs, density: float, gravity: float = GRAVITY) -> Array:
 
 
 def cache_folder() -> Path:
-    """Where packings are kept."""
+    """Folder in which settled packings are cached."""
     return cache_root() / "packings"
 
 

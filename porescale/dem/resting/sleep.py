@@ -43,7 +43,7 @@ from porescale.dem.state import State
 Array = NDArray[np.float64]
 
 LOOK = 32
-"""Contact steps between looks at who rests: an oscillation in a contact takes 20 to 60."""
+"""Contact steps between checks for resting discs: an oscillation in a contact takes 20 to 60."""
 AFTER = 100.0
 """Oscillations of the hardest contact for which a disc must rest before it sleeps."""
 
@@ -80,11 +80,11 @@ class Sleep:
 
     @property
     def count(self) -> int:
-        """How many sleep."""
+        """Number of sleeping discs."""
         return int(np.count_nonzero(self.asleep))
 
     def wake_all(self) -> None:
-        """Nobody sleeps, and nobody has rested."""
+        """Wake all discs, and set their times at rest to zero."""
         self.asleep[:], self.quiet[:] = 0, 0.0
         self._some, self._part = False, None
 

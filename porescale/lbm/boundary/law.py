@@ -39,10 +39,10 @@ class OwnLinks(Protocol):
         (odd) in the flat populations;  force: body force density."""
 
     def state(self) -> dict[str, Any]:
-        """What can change between steps."""
+        """The quantities of these links that can change between steps, for a checkpoint."""
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take up a state."""
+        """Overwrite these quantities with those of ``state``."""
 
 
 class Boundary(Protocol):
@@ -74,7 +74,7 @@ class Boundary(Protocol):
 
     @property
     def closed(self) -> bool:
-        """Whether it holds the fluid back."""
+        """Whether no fluid crosses a side of this kind."""
         return not (self.passes or self.periodic)
 
     def partner(self, bounds: Any, link: Link) -> tuple[int, float]:

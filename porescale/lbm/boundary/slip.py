@@ -13,7 +13,7 @@ from porescale.lbm.lattice import CX, CY, direction
 
 
 class Slip(Boundary):
-    """Specular reflection."""
+    """Free slip, by specular reflection of the populations."""
 
     name = "slip"
     purpose = "holds the fluid and lets it slide: a flat surface of water, a line of symmetry"

@@ -15,7 +15,7 @@ from porescale.lbm.lattice import CX, CY, OPPOSITE, WEIGHTS
 
 
 class Wall(Boundary):
-    """Bounce-back, with ``speed`` along itself."""
+    """Half-way bounce-back at a wall that may slide along itself with ``speed``, lattice units."""
 
     name = "wall"
     purpose = "holds the fluid and stops it, or drags it along"
