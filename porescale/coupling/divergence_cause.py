@@ -33,7 +33,7 @@ class Circumstances:
 
 
 def likely_cause(now: Circumstances) -> str:
-    """The circumstance that is furthest beyond what is known to hold, with its repair, in one line.
+    """The circumstance that is furthest beyond its verified range, with its repair, in one line.
 
     What is wrong from the start comes first: grains with an operator, or of a weight, that cannot last.  Speed and
     pressure may be the first signs of these.

@@ -156,7 +156,7 @@ class Saturated:
 
     @property
     def covered(self) -> Array:
-        """Sum of the solid fractions, and of fraction times velocity (x, y), (3, ny, nx); made when asked for."""
+        """Sum of the solid fractions, and of fraction times velocity (x, y), (3, ny, nx); computed on request."""
         if self._covered is None:
             self._covered = np.zeros((3, *self._shape), self._work.scratch.dtype)
         return self._covered
@@ -205,7 +205,7 @@ class Saturated:
         return self.bodies.restore_mass(fluid, self._patches) if self.bodies else 0.0
 
     def _place(self, centre: Array, velocity: Array, spin: Array) -> Motion:
-        """Fill the bodies' patches, and list what lies in which row; how they all move.
+        """Fill the bodies' patches, list the covered rows, and return how they all move.
 
         Where there are discs only and none has moved since, all of that is there already.
         """

@@ -201,7 +201,8 @@ class Grains(State):
         return float(row[X]), float(row[LOW]), float(row[HIGH])
 
     def check(self) -> None:
-        """Raise Unstable, naming grain, quantity and step, when the state makes no sense; see sanity.py."""
+        """Raise Unstable, naming grain, quantity and step, when the state is not finite or out of bounds; see
+        sanity.py."""
         sanity.check(self)
 
     def state(self) -> dict[str, Any]:

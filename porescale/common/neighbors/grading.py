@@ -1,4 +1,4 @@
-"""Sizes of discs: grading curves met to within one disc, and lognormal sizes.  Pure geometry.
+"""Sizes of discs: grading curves matched to within one disc, and lognormal sizes.  Pure geometry.
 
 Mass is area here: discs of one density.
 """

@@ -1,6 +1,6 @@
 """Whether a checkpoint can be gone on with, checked before a model is built for it, and before one takes it up.
 
-Checksums say that a file holds what was written, not that this makes sense.  What a model takes up goes through
+Checksums say that a file holds what was written, not that this is a valid state.  What a model takes up goes through
 kernels, which do not look whether an index is one: a state is therefore checked by itself first, then beside the state
 of the model that is to take it up.
 """
@@ -38,7 +38,7 @@ NUMBERS = (bool, int, float, np.number, np.bool_)
 
 
 def check_state(folder: Path) -> None:
-    """InputError unless the checkpoint in ``folder`` is one, and of a state that makes sense by itself."""
+    """InputError unless the checkpoint in ``folder`` is one, and of a state that is valid by itself."""
     content = read_checkpoint(folder / CHECKPOINT)
     for name, kind in PARTS:
         if not isinstance(content.get(name), kind):

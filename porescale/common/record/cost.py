@@ -1,6 +1,6 @@
-"""What a run costs whoever waits for the machine: core-seconds of its steps, memory at most.
+"""Computing cost of a run: core-seconds of its steps, memory at most.
 
-Wall-clock time depends on who else works on the machine; the time that the process spent on cores hardly does.  The
+Wall-clock time depends on the load of the machine; the time that the process spent on cores hardly does.  The
 first blocks of every session compile kernels or read them from the cache (steps in place have two kinds, even and odd,
 and the first block is a step long), so that they are left out and the rest stands for them: a run costs
 (core-seconds counted) × (steps)/(steps counted), and besides what rows, snapshots, pictures and film take.

@@ -1,8 +1,8 @@
-"""What ``runs`` drives and records: a model, and what it shows of itself.  Knows no physics.
+"""What ``runs`` drives and records: a model, and its fields for output.  Independent of the physics.
 
 A model is anything that steps through time, can say when it left the range in which it means something, and
-can hand over its whole state.  Grids and clouds are all that the record, the pictures and ParaView need to
-know.
+can return its whole state.  Grids and clouds are all that the record, the pictures and ParaView
+need.
 """
 
 from __future__ import annotations
@@ -117,7 +117,7 @@ class Model(Protocol):
         """Do ``steps`` steps.  May raise Unstable."""
 
     def check(self) -> None:
-        """Raise Unstable when the state is beyond sense (called every 100 steps and before records)."""
+        """Raise Unstable when the state is not finite or out of bounds (called every 100 steps and before records)."""
 
     def series(self) -> dict[str, float]:
         """One row of the series; the same keys every time, with units: "time (s)", "front (m)"."""

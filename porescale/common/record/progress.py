@@ -70,7 +70,7 @@ class Watch:
         self.phase = phase
 
     def say(self, text: str) -> None:
-        """One line for people."""
+        """Print one line of text, unless quiet."""
         if not self.quiet:
             self.console.print(Text(text), highlight=False, soft_wrap=True)
 

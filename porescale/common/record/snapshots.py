@@ -109,7 +109,7 @@ def assemble(folder: Path) -> None:
 
 
 def trim(folder: Path, last: int) -> None:
-    """Forget every snapshot after step ``last``."""
+    """Remove every snapshot after step ``last``."""
     for step, part in parts(folder).items():
         if step > last:
             shutil.rmtree(part)

@@ -113,7 +113,7 @@ class Quantity(Section):
 
 
 class Plan(Section):
-    """Contents of trade.toml."""
+    """All settings that trade.toml holds, checked."""
 
     draft: float | None = quantity("", None, gt=0, help="error of a draft at most")
     base: Settings = pydantic.Field(default_factory=Settings, description="what lies under every point")

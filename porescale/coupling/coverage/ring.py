@@ -38,7 +38,7 @@ class Ring(Shape):
         return self._centre
 
     def size(self, fluid: Fluid, shift: float) -> tuple[int, int]:
-        """The box.  ValueError in a periodic one, where what spins would meet itself spinning elsewhere."""
+        """The box.  ValueError in a periodic one, where the rotating wall would overlap its own image."""
         if any(periodic(fluid)):
             raise ValueError("a ring stands in a box with sides that are not periodic")
         self.hole = self.radius + shift / self.radius

@@ -21,7 +21,7 @@ half-step correction of psm.py.  The body force acts in the whole cell, and the 
 
 Derived here.  E and D are no more than widths of the two turns; the factor 1/2 of the second term, D, E and the radius
 shift were chosen on square arrays of solid fraction 0.1 to 0.6, 10 to 20 cells a diameter, tau 0.52 to
-1.5: drag within 1 % up to 0.3, 1.2 % at 0.4, 5 % at 0.6, converging at second order; nothing else was looked at.
+1.5: drag within 1 % up to 0.3, 1.2 % at 0.4, 5 % at 0.6, converging at second order; no other case was examined.
 """
 
 from typing import NamedTuple

@@ -12,7 +12,7 @@ Both springs are Coulomb elements of their own: first a spring moves with the sl
 |k_t s| <= mu F, which is the reset on sliding; only then the dashpot is added, and the sum is cut to the limit again.
 So the dashpot decides with the spring whether the contact slides, but never enters the stored spring.  Each cut only
 dissipates: a spring lengthens by no more than the slip that did work on it.  (Resetting the spring to the limit with
-the dashpot in the check, as is common, stores energy nobody supplied.)
+the dashpot in the check, as is common, stores energy that no work supplied.)
 
 A law goes into kernels as a flat NamedTuple, its class chosen by the law's file: that says which of the four formulas
 below (``stiffness`` to ``stored_normal``) are compiled.  The absence of ``friction`` or ``rolling`` leaves their part

@@ -1,4 +1,5 @@
-"""Which discs and corners may meet which segments: candidates kept with a skin, and the springs of their contacts.
+"""Pairs of discs or corners and segments that may come into contact: candidates kept with a skin, and the springs of
+their contacts.
 
 Short segments are found among the discs through cells, as points at their middles that reach to their ends.  Long ones,
 such as containers, would make the cells large: they are held against every disc at each listing instead, as DEMseg's

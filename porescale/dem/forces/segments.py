@@ -1,4 +1,4 @@
-"""Forces of line segments with thickness, and of the corners where they meet, on discs and on each other.
+"""Contact forces of line segments with thickness, and of the corners that join them, on discs and on each other.
 
 A segment is all that lies within its thickness t of the line between its ends.  Its ends are discs of radius t, rows
 among the discs ("corners", members of a rigid body), so that all contacts are of a point with a radius, disc or corner,

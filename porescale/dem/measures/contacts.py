@@ -1,6 +1,6 @@
 """Every contact of a system with its force: between discs, and of discs with walls, plates, rectangles, segments.
 
-Forces are not computed by formulas of their own: each contact is handed alone to the kernel that the step uses, with
+Forces are not computed by formulas of their own: each contact is passed alone to the kernel that the step uses, with
 copies of what it carries.  So the list says what the next contact step will use, to the bit, springs included; a
 list taken between two steps sums to ``discs.force`` after the second.  Nothing of the system is changed.
 """

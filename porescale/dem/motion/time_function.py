@@ -52,7 +52,8 @@ Schedule = Constant | Sine | Table | float
 
 
 def schedule_rows(schedules: Sequence[Schedule]) -> tuple[Array, Array]:
-    """Rows (q, COLUMNS) and points (p, 2) of ``schedules``; raises InputError at a number or table without sense."""
+    """Rows (q, COLUMNS) and points (p, 2) of ``schedules``; raises InputError at a number or table that is not finite
+    or not ascending."""
     rows, points = [], np.zeros((0, 2))
     for given in schedules:
         one = given if isinstance(given, Constant | Sine | Table) else Constant(float(given))

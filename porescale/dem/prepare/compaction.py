@@ -55,7 +55,7 @@ COLUMNS = ("x (m)", "y (m)", "radius (m)")
 
 
 class Compressed(NamedTuple):
-    """grains at rest;  scale: radii over those asked for;  fraction: disc area over box area;  pressure Pa;  overlap:
+    """grains at rest;  scale: radii over those requested;  fraction: disc area over box area;  pressure Pa;  overlap:
     the deepest over its smaller diameter."""
 
     grains: Grains

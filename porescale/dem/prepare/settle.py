@@ -193,7 +193,7 @@ def scale_springs(grains: Grains, factor: float) -> None:
 def relax(grains: Grains, law: Law, weights: Array, gravity: float, *, wall_law: Law | None = None) -> None:
     """From rest under one law and weight to rest under ``law`` and ``weights`` (n, 2) N/m.
 
-    The friction forces are carried over in proportion to the weights, so that the packing does not forget
+    The friction forces are carried over in proportion to the weights, so that the packing does not lose
     which way it leans; plates stand still.  ``gravity`` (m/s^2) sets the scale of drag and rest.  Raises
     as come_to_rest.
     """

@@ -1,4 +1,4 @@
-"""Discs that are all held and at rest, and touch nothing: nothing can move, and what holds them bears what acts on
+"""Discs that are all held and at rest, without contacts: nothing can move, and the constraints bear what acts on
 them from outside.  Their contact steps change nothing else, and are left out.
 """
 
