@@ -17,7 +17,7 @@ class Circumstances:
 
     operator, eddies, solid_operator, weighting : the laws;  relaxation_time;  speed : the fastest, of fluid, grains and
     what is moved, cells per step;  density_change : the largest, relative;  density_ratio : of the lightest free
-    grain over the fluid, None without one;  cells_per_diameter : of the smallest grain, as the fluid sees it.
+    grain over the fluid, None without one;  cells_per_diameter : of the smallest grain, at the hydraulic radius.
     """
 
     operator: str

@@ -1,4 +1,4 @@
-"""What a package hands to the workbench to get its commands.  Every part is a function, so that nothing is
+"""Interface of a package to the common commands.  Every part is a function, so that nothing is
 imported before a command needs it: `--help` must not wait for a compiler.
 """
 

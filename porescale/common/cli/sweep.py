@@ -47,8 +47,8 @@ def command(package: Package) -> Callable[..., int]:
     ) -> int:
         """Run a scene with keys varied from a table, and compare the runs.
 
-        Every point has its run folder; sweep.csv, .md and .png compare what expected.toml beside the scene asks for,
-        else how every column of the series ends.  A sweep that was stopped goes on when called again.
+        Every point has its run folder; sweep.csv, .md and .png compare the quantities of expected.toml beside the
+        scene, else how every column of the series ends.  A sweep that was stopped goes on when called again.
         """
         from porescale.common.studies import sweep_files
         from porescale.common.studies.runner import Campaign

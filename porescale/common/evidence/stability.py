@@ -1,7 +1,7 @@
-"""Stability maps: flows tried over ranges of two numbers, once for each law, and what became of them.
+"""Stability maps: flows tried over ranges of two numbers, once for each law, and their verdicts.
 
-Rooms register their flows; `study stability` runs them and writes the map (stability_files.py).  A flow that stayed
-within sense is stable; it is also right if its error is known and at most what the flow tolerates.
+Packages register their flows; `study stability` runs them and writes the map (stability_files.py).  A flow that stayed
+within bounds is stable; it is also right if its error is known and at most the tolerance of the flow.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ class Axis:
 
 @dataclass(frozen=True)
 class Tried:
-    """What a flow came to.
+    """The result of one run of a flow.
 
-    stable : never beyond sense;  error : distance from what is right, >= 0, as the flow defines it, None if it is not
+    stable : never out of bounds;  error : distance from the reference, >= 0, as the flow defines it, None if it is not
     known;  numbers : further ones worth keeping, by name.
     """
 

@@ -1,6 +1,6 @@
 """Whether a checkpoint can be gone on with, checked before a model is built for it, and before one takes it up.
 
-Checksums say that a file holds what was written, not that this is a valid state.  What a model takes up goes through
+Checksums say that a file holds what was written, not that this is a valid state.  What a model restores goes through
 kernels, which do not look whether an index is one: a state is therefore checked by itself first, then beside the state
 of the model that is to take it up.
 """

@@ -1,4 +1,4 @@
-"""How far a run is, for people: a bar with time left on a terminal, a line every ten seconds elsewhere."""
+"""Progress of a run: a bar with time left on a terminal, a line every ten seconds elsewhere."""
 
 from __future__ import annotations
 

@@ -247,7 +247,8 @@ def _column(name: str, array: Array, shape: tuple[int, ...], units: dict[str, st
 
 
 def frames_of(path: Path) -> list[Frame]:
-    """The frames of a file, in time.  OSError when it cannot be read, KeyError when it is not ours."""
+    """The frames of a file, in time.  OSError when it cannot be read, KeyError when it was not written by this
+    module."""
     path = Path(path)
     with h5py.File(path, "r") as file:
         steps, times = file["porescale/step"][...], file["VTKHDF/Steps/Values"][...]

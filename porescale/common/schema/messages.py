@@ -1,4 +1,4 @@
-"""From pydantic's errors to faults for people: dotted keys, units, ranges, and the nearest known name."""
+"""From pydantic's errors to readable faults: dotted keys, units, ranges, and the nearest known name."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def _fault(
     field: FieldInfo | None,
     root: type[BaseModel],
 ) -> Fault:
-    """One pydantic error in our words."""
+    """Fault made from one pydantic error."""
     kind, context, value = item["type"], item.get("ctx", {}), item["input"]
     shown = value if isinstance(value, str | int | float) else None
     marked = next((mark for mark in field.metadata if isinstance(mark, Quantity)), None) if field else None

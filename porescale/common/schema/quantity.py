@@ -97,7 +97,7 @@ class Quantity:
         words, optional = frozenset(_words(source)), _is_optional(source)
 
         def convert(value: Any) -> Any:
-            """The value in SI; Refused where it is no number, has another unit or lies out of range."""
+            """The value in SI; Refused where it is no number, has another unit or is out of range."""
             return None if value is None and optional else self.convert(value, "", words)
 
         return core_schema.no_info_before_validator_function(convert, handler(source))

@@ -1,8 +1,8 @@
-"""A front that was measured, and the point of it that fits what is asked: an error, a time, or both.
+"""A front that was measured, and the point of it that fits the request: an error, a time, or both.
 
 front.json lies beside the scene it was measured for (`study trade` makes it).  What it keeps are core-seconds, of steps
-and besides, of another machine, which hardly depend on who else was at work there; and every point's pace, core-seconds
-of a step of a run that had just begun.  The same beginning is timed here before anything is promised: its wall-clock
+and besides, of another machine, which hardly depend on the load of that machine; and every point's pace, core-seconds
+of a step of a run that had just begun.  The same beginning is timed here before a prediction is given: its wall-clock
 pace over that of the front rescales the steps, start-up is what it took here.
 """
 

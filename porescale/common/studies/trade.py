@@ -1,4 +1,4 @@
-"""Speed against accuracy: how far the runs of a plan are off, what they cost, and which of them nobody beats.
+"""Speed against accuracy: how far the runs of a plan are off, what they cost, and which of them are Pareto-optimal.
 
 The error of a run in one quantity is its distance from the exact value or from the reference run of the same repeat,
 over the quantity's scale; of a curve or field, the rms distance over its places.  That of a run is the rms over

@@ -60,7 +60,7 @@ class Settings(Section):
 
 
 class Variant(Settings):
-    """A point of a knob.  label : in tables and pictures;  but : what the errors asked for do not show, so that no
+    """A point of a knob.  label : in tables and pictures;  but : what the requested errors do not show, so that no
     quality level is made of it."""
 
     label: str = pydantic.Field(min_length=1)
@@ -75,7 +75,7 @@ class Knob(Section):
 
 
 class Quantity(Section):
-    """What is asked of a run; see `porescale.common.studies.quantities`."""
+    """A quantity that runs are compared in; see `porescale.common.studies.quantities`."""
 
     name: str = pydantic.Field(min_length=1)
     unit: str = ""

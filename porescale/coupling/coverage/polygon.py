@@ -190,7 +190,7 @@ def least_width(corners: Array) -> float:
 
 
 class Polygons:
-    """Convex polygons as the fluid sees them, lattice units.
+    """Convex polygons that cover cells of the fluid, lattice units.
 
     corners : of each, (k, 2) cells from what it turns about, either way round.
 

@@ -119,6 +119,6 @@ class SoftRim:
         filter_patches(self.theta, self.theta2, patches)
 
     def follow(self, patches: Patches, ny: int, periodic_y: bool, row_load: NDArray[np.floating]) -> None:
-        """Take up the slip of the step done."""
+        """Store the slip of the step done."""
         sum_rim_slip(patches.corner, patches.height, ny, periodic_y, row_load, self._sums)
         follow_slip(self._sums, SLIP_SHARE, self.slip)

@@ -1,4 +1,4 @@
-"""Bonds of a system: made at the contacts there are, handed to kernels with the segments, and the pieces they hold.
+"""Bonds of a system: made at existing contacts, passed to kernels with the segments, and the fragments they form.
 
 Bonds themselves, and the force they add: forces/bonds.py.
 """

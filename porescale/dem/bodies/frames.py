@@ -233,7 +233,7 @@ def add_frames(
 ) -> None:
     """Make ``frames`` of the last discs of ``grains``, their corners (corner_discs), and clumps of others; see framed.
 
-    Clumps that there were are no more.  clump_bodies : mass and inertia by hand.  Raises InputError as framed does.
+    It replaces the clumps of the discs.  clump_bodies : mass and inertia by hand.  Raises InputError as framed does.
     """
     discs = grains.discs
     if any(each.needs_radius for each in grains.laws) and min(frame.thickness for frame in frames) == 0.0:

@@ -116,7 +116,7 @@ class SegmentList:
         return corner, near[np.lexsort((near[:, 1], near[:, 0]))]
 
     def _strangers(self, one: Index, other: Index) -> NDArray[np.bool_]:
-        """Whether discs are of different bodies."""
+        """Mask of the pairs whose discs belong to different bodies."""
         return np.asarray((self.group[one] < 0) | (self.group[one] != self.group[other]))
 
     def _image(self, difference: Array) -> Array:

@@ -34,7 +34,7 @@ SIDES = ("left", "right", "bottom", "top")
 KINDS = ("solid", "periodic", "open")
 PX, PY, NX, NY, VX, VY, TURN = range(7)
 """Columns of the wall table: a point (m) and the unit normal; velocity of that point (m/s) and rotation about it
-(rad/s), as the contacts see it.
+(rad/s), as used in contacts.
 """
 WALL = 7
 X, LOW, HIGH, VELOCITY, PRESENT = range(5)

@@ -58,14 +58,14 @@ def magic_rate_of(law: Any) -> float:
 
 @half_force.of(TrtWithoutForce)
 def _no_force(law):
-    """None: adding -0 changes nothing, which compilers use."""
+    """Source of a fluid without body force: -0, since adding it changes nothing and compilers remove it."""
     none = -numbers(law.rate).zero
     return none, none
 
 
 @inline
 def magic_rate(rate, law):
-    """w- of a cell with w+ = ``rate``; one division, since with eddies every cell has its own."""
+    """Rate w- of a cell with w+ = ``rate``; one division, since with eddies every cell has its own."""
     c = numbers(rate)
     spread = c.one - c.half * rate  # (tau - 1/2)/tau
     return spread / (c.half * spread + law.magic * rate)
