@@ -18,7 +18,7 @@ _MEASURED = {name: operator.holds for name, operator in OPERATORS.items() if ope
 IN_THE_OPEN = {name: holds.in_the_open for name, holds in _MEASURED.items()}
 """Cell Reynolds number |u|/nu up to which each collision operator holds in the open, see lbm/collision/law.py."""
 IN_THE_OPEN_WITH_EDDIES = {name: holds.in_the_open_with_eddies for name, holds in _MEASURED.items()}
-"""The same with an eddy viscosity."""
+"""The same limits with an eddy viscosity."""
 UNDER_A_LID = {name: holds.under_a_lid for name, holds in _MEASURED.items()}
 """The same under a lid that starts at once."""
 UNDER_A_LID_WITH_EDDIES = {name: holds.under_a_lid_with_eddies for name, holds in _MEASURED.items()}

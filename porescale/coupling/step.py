@@ -111,7 +111,7 @@ class Coupled:
         self.fluid_force, self.fluid_torque = it.fluid_force, it.fluid_torque
 
     def advance(self) -> None:
-        """One fluid step and its contact steps."""
+        """Advance by one fluid step and its contact steps."""
         self._to_lattice()
         seen = self._seen
         self.saturated.advance(self.fluid, self._centre[seen], self._velocity[seen], self._spin[seen])

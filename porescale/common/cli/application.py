@@ -85,5 +85,5 @@ def main(app: App, tokens: Sequence[str] | None = None) -> int:
 
 
 def _say(text: str) -> None:
-    """One line on stderr."""
+    """Write one line to stderr."""
     print(" ".join(text.split()), file=sys.stderr)

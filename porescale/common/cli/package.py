@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
 
 class Outcome(Protocol):
-    """How a run ended."""
+    """Result of a run: how it ended."""
 
     @property
     def outcome(self) -> str:
-        """How it ended: "finished" or "already finished"."""
+        """How the run ended: "finished" or "already finished"."""
 
     @property
     def step(self) -> int:

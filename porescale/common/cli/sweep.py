@@ -136,7 +136,7 @@ def enlist(campaign: Campaign, jobs: int, scheduler: str | None) -> int:
 
 
 def module_of(package: Package) -> str:
-    """What ``python -m`` calls the package."""
+    """Name of the module that ``python -m`` runs for the package."""
     return package.name.replace("-", "_")
 
 
@@ -171,7 +171,7 @@ def columns_at_end(package: Package, ends: Sequence[Ended]) -> list[dict[str, An
 
 
 def say(text: str) -> None:
-    """One line of progress."""
+    """Write one line of progress to stderr."""
     print(text, file=sys.stderr, flush=True)
 
 

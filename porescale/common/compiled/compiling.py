@@ -109,11 +109,11 @@ class _Place(_CacheLocator):
         return str(cache_folder())
 
     def get_source_stamp(self) -> str:
-        """None: the key holds all of it."""
+        """Empty text, since the key already covers the source."""
         return ""
 
     def get_disambiguator(self) -> str:
-        """None: the key holds all of it."""
+        """Empty text, since the key already covers what differs."""
         return ""
 
 

@@ -148,7 +148,7 @@ def by_law(signature: F) -> Any:
         return bodies[type(arguments[-1])](*arguments)
 
     def plain(*arguments: Any) -> Any:
-        """The same in plain Python."""
+        """The function for the given law in plain Python."""
         return bodies[type(arguments[-1])].py_func(*arguments)
 
     def of(*laws: type) -> Callable[[F], F]:

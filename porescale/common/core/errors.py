@@ -65,7 +65,7 @@ class InputError(PorescaleError):
         super().__init__("\n".join(fault.line() for fault in self.faults))
 
     def in_file(self, file: str) -> InputError:
-        """The same faults, each naming ``file``."""
+        """An error with the same faults, each naming ``file``."""
         return InputError([replace(fault, file=fault.file or file) for fault in self.faults])
 
 

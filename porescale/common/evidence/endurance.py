@@ -135,7 +135,7 @@ def _advance(run: Lasting, steps: int, say: Say) -> int:
 
 
 class Endurances(Register[Endurance]):
-    """What a package keeps running."""
+    """Register of the systems that `study endurance` runs."""
 
     what = "flow"
 

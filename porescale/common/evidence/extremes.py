@@ -74,7 +74,7 @@ class Row:
 
 
 class Extremes(Register[Extreme]):
-    """What a package tries, axis after axis."""
+    """Register of the tries of `study extremes`, axis after axis."""
 
     what = "axis"
 

@@ -97,7 +97,7 @@ class Flow:
         return len(self.laws(quick)) * len(self.y.chosen(quick))
 
     def run(self, law: str, y: float, quick: bool) -> list[Row]:
-        """All values of x, in order."""
+        """Run the flow at all values of x, in order; one row each."""
         values = self.x.chosen(quick)
         if not self.monotone:
             return [self._tried(law, x, y) for x in values]

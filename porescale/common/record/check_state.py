@@ -179,6 +179,6 @@ def _integers(rows: Any, dimensions: int) -> bool:
 
 
 def _beyond(name: str, rows: np.ndarray[Any, Any], count: int) -> str:
-    """Which index is none of ``count``."""
+    """Text that names the first index outside 0 to ``count`` - 1; "" where there is none."""
     wrong = (rows < 0) | (rows >= count)
     return f"{name}: {int(rows[wrong][0])} is none of {count}" if wrong.any() else ""

@@ -77,7 +77,7 @@ def _tree(file: h5py.File) -> Any:
 
 
 def _store(group: h5py.Group, name: str, flat: Array) -> h5py.Dataset:
-    """One flat dataset, in checked pieces."""
+    """Write one flat dataset, in pieces with checksums."""
     if flat.size == 0:
         return group.create_dataset(name, data=flat)
     piece = min(flat.size, max(1, CHUNK_BYTES // flat.dtype.itemsize))

@@ -82,7 +82,7 @@ class Watch:
         return spent * (self.end - self.time) / (self.time - self.start)
 
     def line(self) -> str:
-        """Where the run is, in one line."""
+        """Progress of the run as one line of text."""
         share = 100 * self.time / self.end if self.end else 100.0
         text = f"{self.title}: {self.phase}, t = {self.time:.4g} of {self.end:.4g} s ({share:.0f} %)"
         text += f", step {self.step}"

@@ -48,7 +48,7 @@ class Quantity:
         return " and ".join(f"{sign}{bound:g}" for sign, bound in bounds if bound is not None)
 
     def repair(self) -> str:
-        """What to do about a wrong value."""
+        """How to correct a wrong value, as text."""
         what = f"give the {self.help}" if self.help else "give it"
         return f'{what} in {self.unit}, as 1.5 or "1.5 {self.unit}"' if self.unit else f"{what} as a number"
 

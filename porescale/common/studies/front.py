@@ -85,13 +85,13 @@ class Choice:
     core_seconds: float = 0.0
 
     def as_dict(self) -> dict[str, Any]:
-        """What a run card keeps of it."""
+        """The fields that a run card keeps."""
         point = self.point
         return {"label": point.label, "error": point.error, "scatter": point.scatter, "expected_seconds": self.seconds,
                 "slowness": self.slowness}  # fmt: skip
 
     def line(self, front: Front) -> str:
-        """What was picked and what to expect."""
+        """Text with the chosen point and its expected cost and error."""
         point = self.point
         return (
             f"picked {point.label}: error {percent(point.error)} ± {percent(point.scatter)}, about {self.seconds:.3g} s"

@@ -38,7 +38,7 @@ class Picked:
     wrong: tuple[str, ...] = ()
 
     def line(self) -> str:
-        """One line for the terminal."""
+        """The level as one line for the terminal."""
         error = "what others are held against" if self.level == "fine" else f"error {percent(self.point.error)}"
         said = f"{self.level}: {self.point.label}, {self.point.core_seconds:.3g} core-seconds, {error}"
         return said + "".join(f"\n  the scene has {it}" for it in self.wrong)

@@ -262,7 +262,7 @@ def _starts(polygons: Sequence[Array]) -> Integers:
 
 
 def _area(corners: Array) -> float:
-    """By the shoelace formula."""
+    """Area of a polygon (k, 2) by the shoelace formula, cells²."""
     x, y = corners.T
     return 0.5 * float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
 

@@ -25,7 +25,7 @@ from porescale.coupling.coverage.rows import Patches
 from porescale.coupling.load import sum_rim_slip
 
 SLIP_FACTOR = 0.24
-"""Of theta |v - u| in k."""
+"""Factor of theta |v - u| in the slip-dependent part of k."""
 SLIP_SHARE = 0.02
 """Share of a step's rim slip in the one that theta is made from."""
 MARGIN = 4

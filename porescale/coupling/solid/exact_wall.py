@@ -131,7 +131,7 @@ def _missing_momentum(cell, kept, rho, jx, jy):
 
 @blend.of(ExactWall, SoftWall)
 def _blend(f, g, cell, m, rate, solid):
-    """Each part at its own rate."""
+    """Populations after collision, where each part relaxes with its own rate."""
     one = numbers(cell.e).one
     rho = one + m.d
     plus, kept = rates(cell.e, cell.b, cell.theta, m.ux - cell.vx, m.uy - cell.vy, solid)

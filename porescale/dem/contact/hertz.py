@@ -193,7 +193,7 @@ class Hertz:
         return self.rolling_friction > 0.0
 
     def with_friction(self, friction: float) -> Hertz:
-        """The same law with another friction coefficient."""
+        """This law with another friction coefficient."""
         return replace(self, friction=friction)
 
     def row(self) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""A contact as kernels see it: springs, dashpots and sliders round the elastic force of a law.
+"""A contact as kernels take it: springs, dashpots and sliders round the elastic force of a law.
 
 Normal:      F = F_el(d) + g d',  d overlap (m), d' closing speed (m/s), F > 0 pushes apart; two rules for its end:
   release "force"   : F = max(0, ...), never pulls; the contact ends when the force vanishes;
@@ -99,7 +99,7 @@ class ContactLaw(Protocol):
     order: ClassVar[int]
     """Position of the law in lists of all contact laws."""
     purpose: ClassVar[str]
-    """What it is good for, one line."""
+    """What the law is good for, one line."""
     kernel: ClassVar[type[KernelLaw]]
     """Class of the law as kernels take it."""
     keys: ClassVar[tuple[str, ...]]
@@ -143,7 +143,7 @@ class ContactLaw(Protocol):
         """This law with other numbers, by the keys of [contact];  mass (kg/m): effective, of the restitution."""
 
     def with_friction(self, friction: float) -> ContactLaw:
-        """The same law with another friction coefficient."""
+        """This law with another friction coefficient."""
 
     def mixed(self, other: Any) -> ContactLaw:
         """Between unlike materials, each of which has its law with itself; see materials.py for the rule."""

@@ -162,7 +162,7 @@ class Linear:
         return self.rolling_friction > 0.0
 
     def with_friction(self, friction: float) -> Linear:
-        """The same law with another friction coefficient."""
+        """This law with another friction coefficient."""
         return replace(self, friction=friction)
 
     def row(self) -> NDArray[np.float64]:

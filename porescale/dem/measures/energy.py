@@ -9,7 +9,7 @@ ends of a step.  Springs and weights obey that up to the curvature of the path; 
 step, moving surfaces and forces that change from call to call to first order in the step.  What is left is the
 ``residual``.
 
-Everything is said of the last force evaluation: positions a step back, springs and losses as they were left by it.
+All terms refer to the last force evaluation: positions a step back, springs and losses as they were left by it.
 Velocities that an owner writes between steps are no work here: held components are left out of the kinetic energy.
 """
 

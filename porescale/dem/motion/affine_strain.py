@@ -61,7 +61,7 @@ class Deforming(NamedTuple):
 
 @by_law
 def cell_now(cell):
-    """The cell as pairs see it now; clears the load of a strained one."""
+    """The cell as used for pairs now; clears the load of a strained one."""
 
 
 @cell_now.of(Still)

@@ -1,4 +1,4 @@
-"""Periodic cells as pairs see them: one that stands still, or one that is strained.
+"""Periodic cells as used for pairs: one that stands still, or one that is strained.
 
 A strained cell has the edges (width, 0) and (tilt, height).  Velocities of discs are then those relative to the affine
 motion G x of the cell, G = [[gxx, gxy], [0, gyy]] in 1/s, so that every image of a disc has the same velocity, and two

@@ -24,7 +24,7 @@ COLUMNS = 6
 
 @dataclass(frozen=True)
 class Constant:
-    """The same ``value`` at all times."""
+    """A time function with the same ``value`` at all times."""
 
     value: float = 0.0
 

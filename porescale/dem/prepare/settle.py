@@ -45,7 +45,7 @@ CHAIN = 4.0  # strongest contact force over the weight of discs above a diameter
 DRAG = 0.3  # background damping in sqrt(g/d): grains fall at a few times their free-fall speed over d
 ENERGY = 1e-8  # kinetic energy per grain over m g d that counts as rest
 BALANCE = 3e-3  # mean net force over mean weight that counts as rest
-CHUNK = 500  # steps between looks
+CHUNK = 500  # steps between checks
 PATIENCE = 400  # chunks before settling gives up
 UNREADABLE = (OSError, EOFError, ValueError, KeyError, TypeError, RuntimeError, zipfile.BadZipFile, InputError)
 """What reading a packing from disk raises when it is absent, cut short, not an archive, or lacks a part."""

@@ -71,7 +71,7 @@ class Sleep:
         self.balance = np.zeros((count, 3))
         self._role = np.zeros(count, np.uint8)
         self._some = False
-        self._looked = grains.steps  # steps of the system at the last look
+        self._looked = grains.steps  # steps of the system at the last check
         self._surfaces = self._surfaces_of(grains)
         self._part: ActiveSet | None = None  # as the sets of sleepers and the list were when it was made
         self._builds = self._looks = -1

@@ -1,7 +1,7 @@
 """What every kind of side of the box provides.
 
 A kind is one file of this folder with its row in the register, ``BOUNDARY``, an object of a class derived from
-``Boundary``; choose.py finds it.  Most kinds are nothing but a partner: the slot inside the box that a link which
+``Boundary``; choose.py finds it.  Most kinds consist only of a partner: the slot inside the box that a link which
 leaves it is paired with, and what is added on the way (sides.py says how that steps).  A kind that needs more, such as
 the collided populations of a whole cell, settles its links itself (``own_links``).
 """

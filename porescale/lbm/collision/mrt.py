@@ -57,7 +57,7 @@ collide_partial.of(Mrt, EddyMrt)(collide_then_add)
 
 @collide.of(Mrt, EddyMrt)
 def _collide(f, m, rate, law):
-    """Each moment relaxes with its own rate."""
+    """MRT collision: each moment relaxes with its own rate."""
     return relax_moments(f, m, rate, magic_rate(rate, law), law)
 
 

@@ -73,26 +73,26 @@ def magic_rate(rate, law):
 
 @collide.of(Trt, EddyTrt)
 def _collide(f, m, rate, law):
-    """Each half relaxes with its own rate."""
+    """TRT collision: each half of the populations relaxes with its own rate."""
     return relax_halves(f, m, rate, magic_rate(rate, law), law)
 
 
 @collide.of(TrtWithoutForce)
 def _collide_without_force(f, m, rate, law):
-    """The same of fluid that nothing drives."""
+    """TRT collision of fluid without body force."""
     minus = magic_rate(rate, law)
     return relax_by(f, rate, minus, symmetric_equilibrium(m, rate), (minus * m.jx, minus * m.jy))
 
 
 @collide_partial.of(Trt, EddyTrt)
 def _collide_partial(f, m, rate, part, law):
-    """Each half at its own rate."""
+    """Partial TRT collision: each half of the populations relaxes with its own rate."""
     return relax_partial(f, m, rate, magic_rate(rate, law), part, law)
 
 
 @collide_partial.of(TrtWithoutForce)
 def _collide_partial_without_force(f, m, rate, part, law):
-    """The same of fluid that nothing drives."""
+    """Partial TRT collision of fluid without body force."""
     c, own, minus = numbers(rate), magic_rate(rate, law), part.minus
     gain = symmetric_equilibrium(m, part.plus * rate)
     lost = c.one - part.kept - minus * (c.one - own)
