@@ -6,7 +6,7 @@ inside no more than S, the sum of B rho, takes the disc's velocity within a step
 discs.  So the velocity V of the fluid inside follows,  V += beta (U - V), beta = 0.9 min(1, S/m_f),  and m_f dV/dt is
 given back.
 
-The layer of fluid around a light disc that answers within a step throws it to and fro.  It is given that layer as a
+The layer of fluid around a light disc that responds within a step makes it oscillate.  It is given that layer as a
 virtual mass on both sides of its equation of motion, on the right with the acceleration of the step before (Schwarz,
 Kempe & Froehlich 2015, J. Comput. Phys. 281, 591):  (m_p + m_v) a^n = F + m_v a^(n-1);  m_v = 2 pi R_h times 3/4 of a
 cell, less m_p.  The force m_p a^n that moves it then changes by a share m_p/(m_p + m_v) a step; heavier discs, with

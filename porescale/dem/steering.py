@@ -58,7 +58,7 @@ class Steering(Drivers):
         super().__init__(grains.discs, grains.box.period)
 
     def bind(self, members: Sequence[ArrayLike], density: ArrayLike, bodies: Sequence[Body | None] = ()) -> Clumps:
-        """Make clumps of discs, in place of those there were; see Clumps.  Controls and watches of clumps are dropped.
+        """Make clumps of discs, in place of those there were; see Clumps.  Controls and records of clumps are dropped.
 
         Raises InputError as Clumps does, or when a member is held.
         """
@@ -106,7 +106,7 @@ class Steering(Drivers):
         self._compile()
 
     def record(self) -> list[LoadRecord]:
-        """Force and displacement of every watched body now, after a call of step."""
+        """Force and displacement of every recorded body now, after a call of step."""
         rows, count = [], max(self._grains.last_count, 1)
         for k, body in enumerate(self._watched):
             where = self._locate(body)

@@ -75,7 +75,7 @@ class Record:
     def fresh(cls, folder: Path, given: dict[str, Any], *, overwrite: bool = False) -> Record:
         """Start in ``folder``; an older run there is removed, unless it is unfinished, was dear, and not ``overwrite``.
 
-        Its card goes last: a kill before that leaves a folder that is still known as a run's.
+        Its card goes last: a kill before that leaves a folder that is still recognised as a run's.
         """
         if (folder / cards.NAME).exists():
             if not overwrite:

@@ -2,7 +2,7 @@
 
 ``parts/<step>/<name>.vtkhdf`` hold one frame; a part's folder appears by a rename, with all its files.
 They are joined into ``<name>.vtkhdf`` at the end, on resume and on demand, and removed once the joined
-files are in place. Frames are known by their step: a kill at any moment leaves each snapshot in a part, in
+files are in place. Frames are identified by their step: a kill at any moment leaves each snapshot in a part, in
 the joined files or (equal) in both.
 """
 

@@ -29,7 +29,7 @@ class Clump(NamedTuple):
 
 
 class LoadRecord(NamedTuple):
-    """One line of the force-displacement record: of a body, since it was watched."""
+    """One line of the force-displacement record: of a body, since its recording began."""
 
     time: float  # s
     body: int | Clump
