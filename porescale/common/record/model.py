@@ -1,8 +1,7 @@
-"""What ``runs`` drives and records: a model, and its fields for output.  Independent of the physics.
+"""Interface of a model that is run and recorded, and of its fields for output.  Independent of the physics.
 
-A model is anything that steps through time, can say when it left the range in which it means something, and
-can return its whole state.  Grids and clouds are all that the record, the pictures and ParaView
-need.
+A model is anything that steps through time, can check whether its state is valid, and can return its whole
+state.  Grids and clouds are all that the record, the pictures and ParaView need.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Clumps: rigid bodies made of discs that may overlap.
 
-Every member keeps its row among the discs, where contacts, pair list and fluid find it; contacts between
-members of one clump are left out.  A clump's mass is that of the union of its members at one density, exact
+Every member keeps its row among the discs, where contacts, pair list and fluid find it; contacts between members
+of one clump are left out.  A clump's mass is that of the union of its members at one density, exact
 (union.py), or given by hand.  The members' rows hold shares of it, m_i > 0 with
     sum m_i = M,     sum m_i o_i = 0,     sum (m_i |o_i|^2 + I_i) = I,     o_i from the centroid to the member,
 so that sums over discs of momentum, angular momentum, energy and weight are those of the bodies.  Such shares exist as

@@ -112,7 +112,7 @@ def note_still(gx, gy, dx, dy, cell):
 
 @add_load.of(Straining)
 def note_straining(gx, gy, dx, dy, cell):
-    """Add force times branch (N, five sums with the squared branch) of one contact to ``cell.load``."""
+    """Add to ``cell.load`` of one contact the products of force and branch (N) and the squared branch (m²)."""
     cell.load[XX] += gx * dx
     cell.load[XY] += gx * dy
     cell.load[YX] += gy * dx
