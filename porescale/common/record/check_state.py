@@ -23,7 +23,7 @@ PARTS: tuple[tuple[str, type | tuple[type, ...]], ...] = (
     ("state", dict), ("record", dict), ("schedules", dict), ("step", int), ("time", (int, float)),
     ("seconds", (int, float)),
 )  # fmt: skip
-"""What a checkpoint is made of."""
+"""Entries of a checkpoint and their types."""
 AS_LONG = {
     "carried": "partner", "corner_memory": "corner", "near_memory": "near", "back": "ends", "whole": "ends",
     "broken": "ends", "withheld": "held",

@@ -124,7 +124,7 @@ def check_resume(
 
 @dataclass
 class _Run:
-    """Model, record and counters that the loop over steps works with."""
+    """Model, duration (s) and schedules that the loop over steps works with."""
 
     model: Model
     duration: float

@@ -22,7 +22,7 @@ from porescale.common.record.vtkhdf import Frame
 
 PARTS = "parts"
 DAMAGE = (OSError, KeyError, ValueError, RuntimeError, TypeError, AttributeError, IndexError)
-"""What reading a damaged file raises."""
+"""Errors that reading a damaged file raises."""
 
 
 def damaged(folder: Path, error: BaseException) -> InputError:
