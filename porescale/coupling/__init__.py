@@ -1,1 +1,1 @@
-"""What fluid and grains do to each other: partially saturated cells and the loads they give.  Owns no other physics."""
+"""Coupling of fluid and grains: partially saturated cells and hydrodynamic loads.  Contains no other physics."""

@@ -17,7 +17,7 @@ class Circumstances:
 
     operator, eddies, solid_operator, weighting : the laws;  relaxation_time;  speed : the fastest, of fluid, grains and
     what is moved, cells per step;  density_change : the largest, relative;  density_ratio : of the lightest free
-    grain over the fluid, None without one;  cells_per_diameter : of the smallest grain, as the fluid sees it.
+    grain over the fluid, None without one;  cells_per_diameter : of the smallest grain, at the hydraulic radius.
     """
 
     operator: str
@@ -33,7 +33,7 @@ class Circumstances:
 
 
 def likely_cause(now: Circumstances) -> str:
-    """The circumstance that is furthest beyond what is known to hold, with its repair, in one line.
+    """The circumstance that is furthest beyond its verified range, with its repair, in one line.
 
     What is wrong from the start comes first: grains with an operator, or of a weight, that cannot last.  Speed and
     pressure may be the first signs of these.

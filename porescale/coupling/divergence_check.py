@@ -74,7 +74,7 @@ class DivergenceCheck:
         return speed
 
     def _before(self, speed: Array) -> Circumstances:
-        """How it stood before; where nothing had moved yet, the fastest cell that is still within sense."""
+        """The last state within bounds; where nothing had moved yet, the fastest cell that is still within bounds."""
         if self.last.speed > 0:
             return self.last
         within = speed[speed <= WORST_MACH * SOUND]
@@ -116,7 +116,7 @@ def _lightest(coupled: Coupled) -> tuple[float | None, float]:
         return None, 0.0
     inside = displaced(grains, discs.radius, coupled.scales.density).mass
     ratio = discs.mass[free] / inside[free]
-    round_ones = free & (coupled.hydraulic_radius > 0.0)  # corners of polygons are nothing to the fluid
+    round_ones = free & (coupled.hydraulic_radius > 0.0)  # corners of polygons cover no cells
     across = 2 * float(coupled.hydraulic_radius.min(where=round_ones, initial=np.inf)) / coupled.scales.spacing
     if coupled.polygons:
         across = min(across, float(coupled.polygons.polygons.width.min()))

@@ -1,12 +1,12 @@
 """The equation of motion of bodies in fluid: what moves each, and the fluid inside it.
 
 The fluid inside a disc is dragged along, so the sum over its cells contains -m_f dU/dt, m_f = rho0 pi R_h²; it is given
-back with an acceleration known from before, likewise for rotation with m_f R_h²/2 (a rigid disc of fluid).  Of the
+back with the acceleration of the step before, likewise for rotation with m_f R_h²/2 (a rigid disc of fluid).  Of the
 inside no more than S, the sum of B rho, takes the disc's velocity within a step; more given back at once drives light
 discs.  So the velocity V of the fluid inside follows,  V += beta (U - V), beta = 0.9 min(1, S/m_f),  and m_f dV/dt is
 given back.
 
-The layer of fluid around a light disc that answers within a step throws it to and fro.  It is given that layer as a
+The layer of fluid around a light disc that responds within a step makes it oscillate.  It is given that layer as a
 virtual mass on both sides of its equation of motion, on the right with the acceleration of the step before (Schwarz,
 Kempe & Froehlich 2015, J. Comput. Phys. 281, 591):  (m_p + m_v) a^n = F + m_v a^(n-1);  m_v = 2 pi R_h times 3/4 of a
 cell, less m_p.  The force m_p a^n that moves it then changes by a share m_p/(m_p + m_v) a step; heavier discs, with
@@ -139,6 +139,6 @@ class Immersed:
         return {name: getattr(self, name) for name in CARRIED}
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take up a state of the same bodies."""
+        """Restore a state of the same bodies."""
         for name in CARRIED:
             getattr(self, name)[...] = state[name]

@@ -1,10 +1,10 @@
-"""Polygons of the contact model in fluid: where they are, what the fluid does to them, and how that reaches them.
+"""Polygons of the contact model in fluid: their position, the load of the fluid, and how it acts on them.
 
-A polygon is a frame (dem/bodies/frames.py), a rigid body whose corners are rows among the discs.  The fluid sees its
-outline, without the thickness of its segments: bodies that touch keep a film of both thicknesses between them.  Load,
-fluid inside and layer around are those of the body (immersed.py), and so is the equation of motion; what moves it is
-handed to its corners in shares like those of its mass, which add up to the force and the torque about the centroid
-however the body turns in the contact steps.
+A polygon is a frame (dem/bodies/frames.py), a rigid body whose corners are rows among the discs.  Cells are covered by
+its outline, without the thickness of its segments: bodies that touch keep a film of both thicknesses between them.
+Load, fluid inside and layer around are those of the body (immersed.py), and so is the equation of motion; what moves it
+is distributed over its corners in shares like those of its mass, which add up to the force and the torque about the
+centroid however the body turns in the contact steps.
 """
 
 from __future__ import annotations

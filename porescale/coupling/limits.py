@@ -1,4 +1,4 @@
-"""What the map of stability says holds: thresholds for warnings and for naming causes.
+"""Limits of the map of stability: thresholds for warnings and for naming causes.
 
 Each is a row or a column of the tables in docs/stability/stability.md, from which a test derives it again;
 `porescale study stability --out docs/stability` makes the map anew.  What depends on a law stands in the law's own
@@ -18,7 +18,7 @@ _MEASURED = {name: operator.holds for name, operator in OPERATORS.items() if ope
 IN_THE_OPEN = {name: holds.in_the_open for name, holds in _MEASURED.items()}
 """Cell Reynolds number |u|/nu up to which each collision operator holds in the open, see lbm/collision/law.py."""
 IN_THE_OPEN_WITH_EDDIES = {name: holds.in_the_open_with_eddies for name, holds in _MEASURED.items()}
-"""The same with an eddy viscosity."""
+"""The same limits with an eddy viscosity."""
 UNDER_A_LID = {name: holds.under_a_lid for name, holds in _MEASURED.items()}
 """The same under a lid that starts at once."""
 UNDER_A_LID_WITH_EDDIES = {name: holds.under_a_lid_with_eddies for name, holds in _MEASURED.items()}
@@ -40,7 +40,7 @@ BED_RIGHT = {pair: holds.bed for pair, holds in _ON_THE_MAP.items()}
 
 
 def cell_reynolds(operator: str, *, eddies: bool, lid: bool = False) -> float:
-    """Cell Reynolds number |u|/nu up to which an operator is known to hold; the least of all for one not tried.
+    """Cell Reynolds number |u|/nu up to which an operator is verified to be stable; the least of all for one not tried.
 
     lid : whether a wall moves along itself, which is harder at its corners than anything in the open.
     """
@@ -52,7 +52,8 @@ def cell_reynolds(operator: str, *, eddies: bool, lid: bool = False) -> float:
 
 
 def lightest(cells_per_diameter: float, solid_operator: str = "exact-wall", weighting: str = "wall") -> float:
-    """Density ratio from which on free discs of that size are known to hold; 1 below the fewest cells of the map.
+    """Density ratio from which on free discs of that size are verified to be stable; 1 below the fewest cells of the
+    map.
 
     A pair of solid operator and weight that is not in the table counts as the worst that is.
     """

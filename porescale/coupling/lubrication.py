@@ -12,7 +12,7 @@ disc (of mass m), each against a neighbour as light, if C dt <= m/3 (integrate.p
 
     g_min = R* (9 sqrt(2) pi mu dt/m)^(2/3);     thinner ones count as g_min, touching ones as none.
 
-The gap is that between the radii the fluid sees, or else that between the mechanical ones; never both.
+The gap is that between the hydraulic radii, or else that between the mechanical ones; never both.
 """
 
 from __future__ import annotations

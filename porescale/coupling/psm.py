@@ -56,11 +56,11 @@ def row_work(nx: int, row_load: NDArray[np.float64], dtype: np.dtype[Any], *, so
 
 
 class Saturated:
-    """Discs of given radii (cells), convex polygons, rectangles and rings as the fluid sees them.
+    """Discs of given radii (cells), convex polygons, rectangles and rings that cover cells of the fluid.
 
     force (n, 2), torque (n,): loads of the last step on the discs, lattice units; rectangle_force (m, 2), ring_force,
     ring_torque: on the others, what the fluid inside them takes already given back;  entrained (n, 2): mass and moment
-    of inertia of the fluid that took the discs' velocity.  The fluid sees a radius of ``covering_radius`` cells.
+    of inertia of the fluid that took the discs' velocity.  Discs cover cells with the radius ``covering_radius``.
     Rectangles and rings go as their owner says between steps; where they reach through a side of the box it moves with
     them, and ``mass_through_sides`` is what came in (coverage/through_sides.py).  pairs: (p, 2) discs of one rigid body
     that overlap, see coverage/overlap.py.  polygon_load (p, 3), polygon_entrained (p, 2): of the polygons, as of discs;
@@ -156,7 +156,7 @@ class Saturated:
 
     @property
     def covered(self) -> Array:
-        """Sum of the solid fractions, and of fraction times velocity (x, y), (3, ny, nx); made when asked for."""
+        """Sum of the solid fractions, and of fraction times velocity (x, y), (3, ny, nx); computed on request."""
         if self._covered is None:
             self._covered = np.zeros((3, *self._shape), self._work.scratch.dtype)
         return self._covered
@@ -205,7 +205,7 @@ class Saturated:
         return self.bodies.restore_mass(fluid, self._patches) if self.bodies else 0.0
 
     def _place(self, centre: Array, velocity: Array, spin: Array) -> Motion:
-        """Fill the bodies' patches, and list what lies in which row; how they all move.
+        """Fill the bodies' patches, list the covered rows, and return how they all move.
 
         Where there are discs only and none has moved since, all of that is there already.
         """
@@ -288,7 +288,7 @@ class Saturated:
         return state | ({"bodies": self.bodies.state()} if self.bodies else {})
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take up a state of the same discs."""
+        """Restore a state of the same discs."""
         self._slow_load[...], self._shift[...] = state["slow_load"], state["shift"]
         if self.soft_rim:
             self.soft_rim.slip[...] = state["rim_slip"]

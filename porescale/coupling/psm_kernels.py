@@ -155,7 +155,7 @@ def saturated_row(y, planes, rows, patches, motion, periodic_x, ramp, row_load, 
     if left >= right:
         left = n
         right = n
-    # Short loops run cell by cell: the plain ends of the row are whole stretches, or nothing.
+    # Short loops run cell by cell: the plain ends of the row are whole stretches, or empty.
     left, right = left // STRETCH * STRETCH, min((right + STRETCH - 1) // STRETCH * STRETCH, n)
     for end_of_row in range(2):  # one loop for both ends: compiled once
         first, last = (right, n) if end_of_row else (0, left)

@@ -36,11 +36,11 @@ Array = NDArray[np.floating]
 class Coupled:
     """Fluid and grains in one box, lower left corner at the origin.
 
-    hydraulic_ratio : lambda, radius the fluid sees over mechanical radius;  contact_steps : per fluid step;
+    hydraulic_ratio : lambda, hydraulic over mechanical radius;  contact_steps : per fluid step;
     acceleration : of free fall, m/s²;  solid_operator, weighting : by name, see solid/choose.py and
     weighting/choose.py;  soft_rim : for what the fluid passes fast near tau = 1/2 (coverage/soft_rim.py; the fluid
     inside is then that in the shrunk disc);  lubrication : whether films below ``film_gap`` cells are corrected,
-    between the radii the fluid sees.
+    between the hydraulic radii.
 
     After a step: fluid_force (n, 2) N/m and fluid_torque (n,) N m/m, films not included: drag and lift;  force (n, 2)
     N/m, with the weight, and torque (n,) N m/m as the contact steps hold them;  contact_load(): of other discs, walls
@@ -111,7 +111,7 @@ class Coupled:
         self.fluid_force, self.fluid_torque = it.fluid_force, it.fluid_torque
 
     def advance(self) -> None:
-        """One fluid step and its contact steps."""
+        """Advance by one fluid step and its contact steps."""
         self._to_lattice()
         seen = self._seen
         self.saturated.advance(self.fluid, self._centre[seen], self._velocity[seen], self._spin[seen])
@@ -171,7 +171,7 @@ class Coupled:
     def fields(self) -> tuple[Array, Array, Array, Array]:
         """Density excess (kg/m³), velocity (m/s, two arrays) and solid fraction of every cell, each (ny, nx).
 
-        Solid are the discs at the radius that the fluid sees, without what their rims need in the lattice.
+        Solid are the discs at the hydraulic radius, without what their rims need in the lattice.
         """
         self._to_lattice()
         wet, s = self.saturated, self.scales
@@ -201,7 +201,7 @@ class Coupled:
         return state | ({"polygons": self.polygons.state()} if self.polygons else {})
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take up a state of a system made alike."""
+        """Restore a state of a system with the same setup."""
         self.fluid.restore(state["fluid"])
         self.grains.restore(state["grains"])
         self.saturated.restore(state["saturated"])

@@ -1,4 +1,4 @@
 """Discrete elements: discs in contact with each other, with walls and with plates.
 
-SI units, per metre of depth.  Floor 2: knows nothing of fluids, scenes or files.
+SI units, per metre of depth.  Independent of fluids, scenes and files.
 """

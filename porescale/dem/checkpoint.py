@@ -46,7 +46,7 @@ def state_of(grains: State) -> dict[str, Any]:
 
 
 def _start_of_book(grains: State) -> Array:
-    """Copy of the start of the energy book, empty before the first step."""
+    """Copy of the start of the energy budget, empty before the first step."""
     return np.zeros(0) if grains.book_start is None else grains.book_start.copy()
 
 

@@ -37,7 +37,7 @@ class Discs:
 
     @property
     def count(self) -> int:
-        """Number of discs."""
+        """Number of discs of the system."""
         return len(self.radius)
 
     @property
@@ -46,7 +46,7 @@ class Discs:
         return np.pi * self.radius**2
 
     def state(self) -> dict[str, Array]:
-        """Copies of all arrays."""
+        """Copies of all arrays, by the names in FIELDS."""
         return {name: getattr(self, name).copy() for name in FIELDS}
 
     def restore(self, state: dict[str, Array]) -> None:

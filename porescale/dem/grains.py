@@ -164,7 +164,7 @@ class Grains(State):
             self.static = what_stands(self, drag)
 
     def hold(self, disc: int | slice | Array, x: bool = True, y: bool = True, rotation: bool = True) -> None:
-        """Hold these components of the velocity of discs from now on, and let the others go: see steering.hold."""
+        """Hold these components of the velocity of discs from now on, and release the others: see steering.hold."""
         steering.hold(self, disc, x, y, rotation)
 
     def list_up_to(self, gap: float) -> None:
@@ -201,7 +201,8 @@ class Grains(State):
         return float(row[X]), float(row[LOW]), float(row[HIGH])
 
     def check(self) -> None:
-        """Raise Unstable, naming grain, quantity and step, when the state makes no sense; see sanity.py."""
+        """Raise Unstable, naming grain, quantity and step, when the state is not finite or out of bounds; see
+        sanity.py."""
         sanity.check(self)
 
     def state(self) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Whether the state of a system of grains still makes sense."""
+"""Checks that the state of a system of grains is finite and within bounds."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from porescale.dem.listing import current_pairs
 from porescale.dem.measures.survey import max_overlap
 from porescale.dem.state import State
 
-WORST_OVERLAP = 0.3  # of the smaller radius: the linear law and its lever arms mean nothing beyond
+WORST_OVERLAP = 0.3  # of the smaller radius: the linear law and its lever arms are not valid beyond
 WORST_OF_CORNERS = 0.8  # of the thicknesses of two segments: small beside bodies, which go through each other at 1
-WORST_TRAVEL = 0.1  # of the smallest radius in one step: a contact would be met after the fact
+WORST_TRAVEL = 0.1  # of the smallest radius in one step: a contact would be detected too late
 
 
 def check(grains: State) -> None:
-    """Raise Unstable, naming grain, quantity and step, where the state makes no sense.
+    """Raise Unstable, naming grain, quantity and step, where the state is not finite or out of bounds.
 
     That is: a number that is none; a speed beyond 0.1 smallest radii per step; an overlap beyond 30 % of the radius
     (of a corner of a frame: 80 % of the thicknesses); a centre behind a solid side (a corner: by 30 % of its

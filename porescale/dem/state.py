@@ -66,7 +66,7 @@ class State:
     discs, box, material (n,) uint8 or None where there is one;  book (n, BUDGET) or None: energy budget, see
     measures/energy.py, book_start: its values before the first step.
     Laws: law (as given), wall_law, laws_at_walls (one for each material), laws (all in use), contact (as kernels take
-    it), free_law (as steps of free discs take it, None: not known yet), springs: springs of a contact.
+    it), free_law (as steps of free discs take it, None: not computed yet), springs: springs of a contact.
     Walls: wall_names, walls (w, WALL), wall_frictions (None: that of the law), wall_laws (w, m, COLUMNS), wall_spring
     (w, n, s) m, wall_load (w, 3) N/m, N m/m of the last step, with its views wall_force (w, 2) and wall_moment (w,),
     about the walls' points.  Plates: plate_names, plates (p, 5), plate_frictions, plate_laws, plate_spring (p, n, s),

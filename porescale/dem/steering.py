@@ -30,7 +30,7 @@ SHARE = 0.5
 
 
 def hold(grains: State, disc: int | slice | Array, x: bool = True, y: bool = True, rotation: bool = True) -> None:
-    """Hold these components of the velocity of discs (index, slice or mask) from now on, and let the others go.
+    """Hold these components of the velocity of discs (index, slice or mask) from now on, and release the others.
 
     A held component keeps its value until the owner writes another between steps, whatever the forces; they are in
     ``withheld``.  Contacts with other discs go on.
@@ -58,7 +58,7 @@ class Steering(Drivers):
         super().__init__(grains.discs, grains.box.period)
 
     def bind(self, members: Sequence[ArrayLike], density: ArrayLike, bodies: Sequence[Body | None] = ()) -> Clumps:
-        """Make clumps of discs, in place of those there were; see Clumps.  Controls and watches of clumps are dropped.
+        """Make clumps of discs, in place of those there were; see Clumps.  Controls and records of clumps are dropped.
 
         Raises InputError as Clumps does, or when a member is held.
         """
@@ -106,7 +106,7 @@ class Steering(Drivers):
         self._compile()
 
     def record(self) -> list[LoadRecord]:
-        """Force and displacement of every watched body now, after a call of step."""
+        """Force and displacement of every recorded body now, after a call of step."""
         rows, count = [], max(self._grains.last_count, 1)
         for k, body in enumerate(self._watched):
             where = self._locate(body)
@@ -138,7 +138,7 @@ class Steering(Drivers):
 
         The stress acts over ``length`` (m), or over the distance of the two walls that the wall lies ``between``.
         speed (m/s): the fastest it may go;  share: of the stability bound, 0 to 2, see servo.py.  Raises InputError
-        when neither or both of force and stress are given, or the numbers make no sense.
+        when neither or both of force and stress are given, or a number is not finite or out of range.
         """
         if (force is None) == (stress is None):
             raise InputError(Fault(f"{name}.servo", problem="needs either force or stress"))
@@ -191,7 +191,7 @@ class Steering(Drivers):
         pressure (Pa, compression positive) in place of xx and yy, shear_stress (Pa, of the sign of the shear that it
         drives) in place of xy, where not None: the rate follows the stress then, no faster than ``limit`` (1/s).
         Velocities of discs are relative to the cell's from now on, and the box's sides are only where it began: see
-        ``edges``.  Raises InputError when the box is not periodic both ways, or the numbers make no sense.
+        ``edges``.  Raises InputError when the box is not periodic both ways, or a number is not finite or out of range.
         """
         grains = self._grains
         if not all(grains.box.periodic):

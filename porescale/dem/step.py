@@ -1,6 +1,6 @@
 """Time stepping: leap-frog kick and drift, several contact steps in one call.
 
-Velocities live at half steps, positions at whole steps; forces are taken at whole-step positions with the
+Velocities are defined at half steps, positions at whole steps; forces are taken at whole-step positions with the
 velocities of half a step before (lagged damping):
     v(n+1/2) = v(n-1/2) + dt F(x(n), v(n-1/2))/m,      x(n+1) = x(n) + dt v(n+1/2).
 """

@@ -17,12 +17,12 @@ HALVINGS = 60
 
 
 def stiffnesses(hard: Springs) -> tuple[float, float, float]:
-    """Normal, tangential and rolling, N/m."""
+    """Normal, tangential and rolling stiffness, N/m; the last is 0 without rolling resistance."""
     return hard.stiffness, hard.tangential_stiffness, hard.rolling_stiffness * hard.rolls
 
 
 def dampings(hard: Springs) -> tuple[float, float, float]:
-    """Normal, tangential and rolling, N s/m."""
+    """Normal, tangential and rolling dashpot, N s/m; the last is 0 without rolling resistance."""
     return hard.damping, hard.tangential_damping, hard.rolling_damping * hard.rolls
 
 

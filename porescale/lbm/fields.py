@@ -65,7 +65,7 @@ def flux(psi: Array, start: tuple[float, float], end: tuple[float, float]) -> fl
 
 
 def vorticity(ux: Array, uy: Array) -> Array:
-    """dv/dx - du/dy at the inner corners of cells, (ny - 1, nx - 1): circulation around the four cells that meet.
+    """dv/dx - du/dy at the inner corners of cells, (ny - 1, nx - 1): circulation around the corner's four cells.
 
     Differences of means over two cells: second order.
     """

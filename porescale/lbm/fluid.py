@@ -165,7 +165,7 @@ class Fluid:
         }
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take up a state; the same number of plates must be in place."""
+        """Restore a state; the same number of plates must be in place."""
         self.populations[...] = state["populations"]
         self.step = int(state["step"])
         self.links.restore(state.get("rim", {}))

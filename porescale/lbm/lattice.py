@@ -1,4 +1,4 @@
-"""The D2Q9 lattice: directions, weights, and where a population lives between steps.
+"""The D2Q9 lattice: directions, weights, and where a population is stored between steps.
 
 Directions come in opposite pairs, (1, 2), (3, 4), (5, 6), (7, 8), because every operator here works on the even and
 the odd half of a pair.  Populations are stored shifted, h_i = f_i - w_i, so that a fluid at rest is all zeros and
@@ -11,7 +11,7 @@ Storage is one array ``populations`` (9, ny + 2, nx + 2) with a rim of halo cell
     odd    reads h_i at slot [opposite(i), x - c_i], writes it to slot [i, x + c_i]
 
 so each cell always reads and writes the same nine slots, and no order of cells and no number of threads can matter.
-``even_slots`` and ``odd_slots`` of stream.py hand the nine slots of a row to one row kernel, the same for both.
+``even_slots`` and ``odd_slots`` of stream.py pass the nine slots of a row to one row kernel, the same for both.
 """
 
 import numpy as np

@@ -9,7 +9,7 @@ import numpy as np
 from porescale.lbm.fluid import Fluid
 
 WORST_MACH = 0.6
-"""Beyond it the lattice's equilibrium means nothing; populations turn negative near it."""
+"""Beyond it the lattice's equilibrium is not valid; populations turn negative near it."""
 WORST_DENSITY = 0.5
 """Relative density change beyond which the fluid is not what is called a liquid."""
 SOUND = 1 / math.sqrt(3)

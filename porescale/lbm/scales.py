@@ -23,7 +23,7 @@ class Scales:
 
     @property
     def viscosity(self) -> float:
-        """Kinematic viscosity, m²/s."""
+        """Kinematic viscosity of the fluid, m²/s."""
         return (self.relaxation_time - 0.5) / 3 * self.spacing**2 / self.step
 
     @property

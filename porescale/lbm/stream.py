@@ -1,4 +1,4 @@
-"""Sweeps over the lattice: the slots of each row, handed to a row kernel.  See lattice.py for the in-place pattern."""
+"""Sweeps over the lattice: the slots of each row, passed to a row kernel.  See lattice.py for the in-place pattern."""
 
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
 from porescale.lbm.collision.law import collide_row

@@ -52,7 +52,7 @@ def main(app: App, tokens: Sequence[str] | None = None) -> int:
     """Run a command line (``sys.argv`` if None) and give its exit code.
 
     0 done, 1 a check or run failed, 2 wrong use or input, 3 unstable, 130 interrupted.  What people can cause is
-    printed in one line each on stderr; any other exception is a bug of ours and keeps its traceback.
+    printed in one line each on stderr; any other exception is a bug of the package and keeps its traceback.
     """
     try:
         result = app(list(sys.argv[1:] if tokens is None else tokens))
@@ -85,5 +85,5 @@ def main(app: App, tokens: Sequence[str] | None = None) -> int:
 
 
 def _say(text: str) -> None:
-    """One line on stderr."""
+    """Write one line to stderr."""
     print(" ".join(text.split()), file=sys.stderr)

@@ -30,7 +30,7 @@ def require_writable(folder: Path, key: str) -> None:
     except OSError as error:
         raise unusable(folder, key, error) from error
     finally:
-        with suppress(OSError):  # somebody else's folder or file by now, or never made
+        with suppress(OSError):  # replaced by another process, or never made
             probe.unlink()
         with suppress(OSError):
             for part in reversed(made):

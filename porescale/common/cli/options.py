@@ -29,7 +29,7 @@ def use_threads(count: int | None) -> int:
 
 def require_scene(path: Path) -> None:
     """InputError unless ``path`` leads to a TOML file: raised at once, before the sections of a scene and the compiler
-    that their rooms bring along are imported."""
+    that their packages register are imported."""
     from porescale.common.schema import scene_file
 
     scene_file.read(scene_file.find(path))

@@ -1,4 +1,4 @@
-"""What a package hands to the workbench to get its commands.  Every part is a function, so that nothing is
+"""Interface of a package to the common commands.  Every part is a function, so that nothing is
 imported before a command needs it: `--help` must not wait for a compiler.
 """
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
 
 class Outcome(Protocol):
-    """How a run ended."""
+    """Result of a run: how it ended."""
 
     @property
     def outcome(self) -> str:
-        """How it ended: "finished" or "already finished"."""
+        """How the run ended: "finished" or "already finished"."""
 
     @property
     def step(self) -> int:

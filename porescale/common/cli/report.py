@@ -73,7 +73,7 @@ class Report:
 
 
 def shown(value: Any) -> str:
-    """A value for people: six digits of a float, words for booleans, "–" for nothing."""
+    """A value as text: six digits of a float, words for booleans, "–" for nothing."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):

@@ -113,7 +113,7 @@ def check_folder(folder: Path, package: str, *, resume: bool, overwrite: bool) -
 
 
 def _refuse_content(folder: Path, package: str, *, resume: bool, overwrite: bool) -> None:
-    """InputError when what is in ``folder`` does not go with what is asked."""
+    """InputError when what is in ``folder`` does not go with the options."""
     if folder.exists() and not folder.is_dir():
         raise InputError(Fault("--out", str(folder), "is a file", repair="name a folder"))
     if (folder / CARD).is_dir():
@@ -132,7 +132,7 @@ def _refuse_content(folder: Path, package: str, *, resume: bool, overwrite: bool
 
 
 def summary(command: str, name: str, folder: Path, outcome: Outcome) -> str:
-    """What the run cost and where to look, for people."""
+    """Text with the cost of the run and the files to look at."""
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
     speed = f", {outcome.steps_per_second:.4g} steps/s" if outcome.steps_per_second else ""
     names = [path.name for path in folder.iterdir() if path.is_file()] if folder.is_dir() else []

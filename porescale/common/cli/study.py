@@ -43,7 +43,8 @@ def _extremes(package: Package) -> Callable[..., int]:
         threads: Threads = 1,
         json: Json = False,
     ) -> int:
-        """Ask for more and more: what is stable, what is refused before it starts, what is stopped, and why."""
+        """Try more and more extreme input: what is stable, what is refused before it starts, what is stopped, and
+        why."""
         from porescale.common.evidence import extremes as made
 
         assert package.extremes is not None

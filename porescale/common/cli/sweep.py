@@ -47,8 +47,8 @@ def command(package: Package) -> Callable[..., int]:
     ) -> int:
         """Run a scene with keys varied from a table, and compare the runs.
 
-        Every point has its run folder; sweep.csv, .md and .png compare what expected.toml beside the scene asks for,
-        else how every column of the series ends.  A sweep that was stopped goes on when called again.
+        Every point has its run folder; sweep.csv, .md and .png compare the quantities of expected.toml beside the
+        scene, else how every column of the series ends.  A sweep that was stopped goes on when called again.
         """
         from porescale.common.studies import sweep_files
         from porescale.common.studies.runner import Campaign
@@ -136,7 +136,7 @@ def enlist(campaign: Campaign, jobs: int, scheduler: str | None) -> int:
 
 
 def module_of(package: Package) -> str:
-    """What ``python -m`` calls the package."""
+    """Name of the module that ``python -m`` runs for the package."""
     return package.name.replace("-", "_")
 
 
@@ -171,7 +171,7 @@ def columns_at_end(package: Package, ends: Sequence[Ended]) -> list[dict[str, An
 
 
 def say(text: str) -> None:
-    """One line of progress."""
+    """Write one line of progress to stderr."""
     print(text, file=sys.stderr, flush=True)
 
 

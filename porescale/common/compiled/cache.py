@@ -11,7 +11,7 @@ from contextlib import suppress
 from pathlib import Path
 
 DAY = 86400.0
-"""s."""
+"""Seconds of a day."""
 
 
 def cache_root() -> Path:

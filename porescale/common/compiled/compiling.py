@@ -44,7 +44,7 @@ _KEPT = writable(cache_folder())
 _FLAGS: dict[str, Any] = {"error_model": "numpy", "nogil": True}
 _INLINED: Any = {"error_model": "numpy", "nogil": True, "forceinline": True}
 _MEANT = {"prange": (prange, numba.prange), "thread": (thread, vars(numba)["get_thread_id"])}
-"""What kernels import from jit.py under names that numba knows by its own objects only."""
+"""What kernels import from jit.py under names for which numba accepts its own objects only."""
 
 
 def dispatcher(function: FunctionType, options: dict[str, Any]) -> Any:
@@ -109,11 +109,11 @@ class _Place(_CacheLocator):
         return str(cache_folder())
 
     def get_source_stamp(self) -> str:
-        """None: the key holds all of it."""
+        """Empty text, since the key already covers the source."""
         return ""
 
     def get_disambiguator(self) -> str:
-        """None: the key holds all of it."""
+        """Empty text, since the key already covers what differs."""
         return ""
 
 

@@ -106,7 +106,7 @@ class Kernel:
         return self.compiled(*arguments)
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("__"):  # asked by those who want to know what this is
+        if name.startswith("__"):  # special names are looked up by tools that inspect objects
             raise AttributeError(name)
         return getattr(self.compiled, name)
 
@@ -137,9 +137,9 @@ def inline(function: F) -> F:
 def by_law(signature: F) -> Any:
     """Make an inline kernel whose body depends on the type of its last argument, the law: a NamedTuple of numbers.
 
-    A sweep that takes a law and hands it on is compiled once for each law in use, and kept on disk, which it is not for
-    functions as arguments.  ``signature`` lends name and docstring; ``@name.of(Law, ...)`` adds a body.  A law must be
-    flat: loops over threads take no tuples within tuples.
+    A sweep that takes a law and passes it on is compiled once for each law in use, and kept on disk, which it is not
+    for functions as arguments.  ``signature`` lends name and docstring; ``@name.of(Law, ...)`` adds a body.  A law must
+    be flat: loops over threads take no tuples within tuples.
     """
     bodies: dict[type, Any] = {}
 
@@ -148,7 +148,7 @@ def by_law(signature: F) -> Any:
         return bodies[type(arguments[-1])](*arguments)
 
     def plain(*arguments: Any) -> Any:
-        """The same in plain Python."""
+        """The function for the given law in plain Python."""
         return bodies[type(arguments[-1])].py_func(*arguments)
 
     def of(*laws: type) -> Callable[[F], F]:
@@ -193,9 +193,9 @@ def unchecked_view(array: Any, first: Any, count: Any) -> Any:
 
 
 def prefetch(array: Any, at: Any) -> None:
-    """Ask for the entry ``at`` of a contiguous array, counted as if it were flat, to be brought to the nearest cache.
+    """Request that the entry ``at`` of a contiguous array, counted as if it were flat, be brought to the nearest cache.
 
-    For entries that a loop comes to in an order that no machine foresees.  Does nothing else, nor in plain Python.
+    For entries that a loop reaches in an order that no hardware predicts.  Does nothing else, nor in plain Python.
     """
 
 

@@ -1,8 +1,8 @@
 """Several numbers at once: what a loop over a row of partners adds up, a few of them side by side.
 
-A compiler that keeps the order of sums, as ours must, adds the terms of a row one after the other and leaves most of
-the machine idle.  Here the order is part of the program: a row is taken LANES entries at a time, every lane has its own
-sum, and `reduce_add` adds the lanes by halves.  The same bits on any machine, however wide its vectors are.
+A compiler that keeps the order of sums, as is required here, adds the terms of a row one after the other and leaves
+most of the machine idle.  Here the order is part of the program: a row is taken LANES entries at a time, every lane has
+its own sum, and `reduce_add` adds the lanes by halves.  The same bits on any machine, however wide its vectors are.
 
 In kernels what these functions return is a vector of LANES float64 that takes + - * / with its like and with numbers;
 in plain Python it is an array.  Numbers may stand for vectors everywhere.
@@ -21,7 +21,7 @@ LANES = 4  # twice as many are 2 % faster where vectors are that wide (measured)
 WORDS = 32  # that `store_sorted` compares at once: a row of partners
 COLUMNS = 8  # that `gather_rows` reads of a record
 CODE = f"{__package__}.simd_code"
-"""What these functions are in kernels."""
+"""Module with the compiled form of these functions."""
 
 
 def sqrt(a: Any) -> Any:

@@ -291,7 +291,7 @@ def _choose_ascending(line: Any, count: Any, target: Any, first: Any) -> Any:
 def _numbers(builder: Any, listed: Any, first: Any, end: Any, other: Any, before: Any) -> list[Any]:
     """LANES entries of the list from ``first`` on, less ``before``, and ``other`` from ``end`` on.
 
-    All but the last ones of a row are there without asking each.
+    All but the last ones of a row are present without a test of each.
     """
 
     def known(at: Any) -> Any:

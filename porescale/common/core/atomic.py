@@ -107,9 +107,9 @@ def _lives(process: int) -> bool:
 
 @contextmanager
 def owned(folder: Path, *, wait: bool = False) -> Iterator[bool]:
-    """Hold ``folder`` for one writer; the system lets go when the process ends, however it ends.
+    """Hold ``folder`` for one writer; the system releases it when the process ends, however it ends.
 
-    Yields True when held, False when somebody else holds it (or waits for them with ``wait``).
+    Yields True when held, False when another process holds it (or waits for them with ``wait``).
     """
     if fcntl is None:
         yield True

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 LONGEST = 200
-"""Characters of a key or value in a line for people."""
+"""Largest number of characters of a key or value in a message."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Fault:
     file: str = ""
 
     def line(self) -> str:
-        """The fault as one line for people; what was given is shortened where it is long."""
+        """The fault as one line of text; what was given is shortened where it is long."""
         text = f"{self.file}: " if self.file else ""
         text += _shortened(self.key)
         if self.value is not None:
@@ -50,7 +50,7 @@ def _shortened(text: str, longest: int = LONGEST) -> str:
 
 
 class PorescaleError(Exception):
-    """Base of all errors meant for people; ``code`` is the exit code of a command that ends with it."""
+    """Base of all errors with a message to the user; ``code`` is the exit code of a command that ends with it."""
 
     code = 1
 
@@ -65,7 +65,7 @@ class InputError(PorescaleError):
         super().__init__("\n".join(fault.line() for fault in self.faults))
 
     def in_file(self, file: str) -> InputError:
-        """The same faults, each naming ``file``."""
+        """An error with the same faults, each naming ``file``."""
         return InputError([replace(fault, file=fault.file or file) for fault in self.faults])
 
 

@@ -1,8 +1,8 @@
 """HDF5 files that are written whole or not at all, also where the disk is full.
 
 HDF5 cannot close a file whose last writes failed: the library crashes the process (2.0.0, and others before).  Its
-writes therefore go through a file of ours, which remembers the first thing that went wrong, lets the library believe
-that all is well, and raises when the file is closed.
+writes therefore go through a file of ours, which stores the first error, reports success to
+the library, and raises when the file is closed.
 """
 
 from __future__ import annotations
@@ -56,11 +56,11 @@ class Forgiving(io.RawIOBase):
             return size or 0
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """As of any file."""
+        """Move the position in the file, as of any binary file; returns the new one."""
         return self._file.seek(offset, whence)
 
     def tell(self) -> int:
-        """As of any file."""
+        """Position in the file, bytes from its beginning."""
         return self._file.tell()
 
     def seekable(self) -> bool:

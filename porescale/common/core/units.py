@@ -61,7 +61,7 @@ def to_si(value: Any, unit: str) -> float:
     """``value`` in ``unit`` (an SI unit, "" for a plain number), as a float.
 
     Numbers pass unchanged; a string must be a number followed by a unit of the same dimension (a string
-    without a unit passes only where ``unit`` is "").  Raises ValueError, in words for people, on anything
+    without a unit passes only where ``unit`` is "").  Raises ValueError, with a readable message, on anything
     else: booleans, nan, infinities, unknown units, other dimensions.
     """
     if isinstance(value, str):

@@ -1,4 +1,4 @@
 """The version of both packages, from one place: pyproject.toml reads it here."""
 
 VERSION = "0.1.0"
-"""Major, minor, patch."""
+"""Version of porescale: major, minor, patch."""

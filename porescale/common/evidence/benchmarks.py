@@ -122,10 +122,10 @@ class Benchmarks(Register[Benchmark]):
         dtype: Dtype = "float64",
         min_seconds: float = 1.0,
     ) -> Iterator[Row]:
-        """Time the benchmarks named (all without names), one after another, giving each row as it is known.
+        """Time the benchmarks named (all without names), one after another, yielding each row once it is measured.
 
         Raises InputError on unknown names, sizes below 1 and threads that this machine does not have, before anything
-        is timed; a benchmark may refuse more.
+        is timed; a benchmark may check more.
         """
         from porescale.common.compiled.jit import set_threads
 
@@ -188,7 +188,7 @@ def copy_bandwidth(threads: int | None = None, dtype: Dtype = "float64", bytes: 
 
 
 def table(rows: Sequence[Row]) -> Table:
-    """Rows as a table for people."""
+    """Rows as a table for the terminal."""
     from rich.table import Table
     from rich.text import Text
 

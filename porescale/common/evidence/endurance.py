@@ -1,6 +1,6 @@
-"""Endurance: what must not creep in a very long run of something small, watched from mark to mark, memory with it.
+"""Endurance: quantities that must not drift in a very long run of a small system, read from mark to mark, with memory.
 
-Rooms register what lasts; `study endurance` runs it, a million steps by default, and writes a table and a picture.
+Packages register systems; `study endurance` runs it, a million steps by default, and writes a table and a picture.
 Quantities are taken as they are at marks, equal numbers of steps apart; each has a largest distance from its value at
 the first mark that counts, and a reason for it.  The peak of the process's memory must not grow from there on, either,
 and nothing must be found wrong: that is checked as often as in a run.
@@ -24,23 +24,23 @@ NAME = "endurance"
 MARKS = 20
 MEMORY = "peak memory (MiB)"
 GROWTH = 1.0
-"""MiB by which the peak may grow: the interpreter's own books; a leak of a byte a step is as much in a million."""
+"""MiB by which the peak may grow: the interpreter's own memory; a leak of a byte a step is as much in a million."""
 FOUND = "found wrong ()"
 ASK_EVERY = 100
-"""Steps after which it is asked whether all is well: those of a run."""
+"""Steps between checks of the state, as in a run."""
 
 
 class Lasting(Protocol):
-    """Something that goes on."""
+    """A system that can be advanced and checked, as long as the study runs."""
 
     def advance(self, steps: int) -> None:
-        """So many steps more."""
+        """Advance by ``steps`` steps."""
 
     def check(self) -> None:
-        """Unstable where something is wrong."""
+        """Raise Unstable where the state is not finite or out of bounds."""
 
     def read(self) -> Mapping[str, float]:
-        """What is watched, by name with unit."""
+        """The monitored quantities, by name with unit."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Endurance:
     share: float = 1.0
 
     def steps(self, asked: int) -> int:
-        """How many it does."""
+        """Number of steps out of ``asked`` ones that this row does."""
         return max(MARKS, round(self.share * asked))
 
 
@@ -135,7 +135,7 @@ def _advance(run: Lasting, steps: int, say: Say) -> int:
 
 
 class Endurances(Register[Endurance]):
-    """What a package keeps running."""
+    """Register of the systems that `study endurance` runs."""
 
     what = "flow"
 

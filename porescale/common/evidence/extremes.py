@@ -1,8 +1,8 @@
-"""Extremes: a simulator tried from mild to absurd, and how each ends, as a table and a picture.
+"""Extremes: a simulator tried with mild to extreme input, and how each run ends, as a table and a picture.
 
-Rooms register what they try; `study extremes` runs it.  A try is refused before the start (InputError), stopped with
-the place, the criterion and the reason (Unstable), or stable: it came to its end in sense.  Where a number is known it
-is compared as well, and right when that holds.  Any other end is a fault of ours and is not caught.
+Packages register their tries; `study extremes` runs it.  A try is refused before the start (InputError), stopped with
+the place, the criterion and the reason (Unstable), or stable: it ended within bounds.  Where a number is known it
+is compared as well, and right when that holds.  Any other end is a bug and is not caught.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ COLOURS = {
 
 @dataclass(frozen=True)
 class Verdict:
-    """The result of a try whose answer is known: text, and whether it is right."""
+    """The result of a try with a reference value: text, and whether it is right."""
 
     said: str
     right: bool
@@ -74,7 +74,7 @@ class Row:
 
 
 class Extremes(Register[Extreme]):
-    """What a package tries, axis after axis."""
+    """Register of the tries of `study extremes`, axis after axis."""
 
     what = "axis"
 

@@ -1,8 +1,8 @@
 """What each kind of scene builds and costs: parts, bytes, and its time beside the smallest thing that does the same.
 
-Rooms keep those smallest kernels (minimal_*.py) and register kinds; `study parts` times each kind and what it is held
-against in turns, so that a busy machine slows both alike, and writes a table.  Times are those of the one thread, which
-stand still while others have the core.
+Packages keep those smallest kernels (minimal_*.py) and register kinds; `study parts` times each kind and what it is
+held against in turns, so that a busy machine slows both alike, and writes a table.  Times are those of the one thread,
+which stand still while others have the core.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from porescale.common.evidence.timing import core_seconds_of
 
 NAME = "parts"
 DEARER = 1.05
-"""Largest ratio to the smallest kernel that counts as nothing but what a scene requires."""
+"""Largest ratio to the smallest kernel that counts as no overhead."""
 PACKAGES = ("porescale", "continuum_sph")
 SMALLEST = "smallest kernel"
 

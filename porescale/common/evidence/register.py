@@ -54,7 +54,7 @@ class Register(Generic[T]):
 
 
 def choose(asked: Sequence[str], known: Iterable[str], what: str) -> list[str]:
-    """Names in ``known`` that are asked for, in the order of ``known``; all of them if nothing is asked for.
+    """Names in ``known`` that ``asked`` selects, in the order of ``known``; all of them if ``asked`` is empty.
 
     A name stands for itself and for all below it: ``lbm`` for ``lbm.poiseuille``.  Raises InputError with one
     fault for each name that stands for nothing.

@@ -1,7 +1,7 @@
-"""Stability maps: flows tried over ranges of two numbers, once for each law, and what became of them.
+"""Stability maps: flows tried over ranges of two numbers, once for each law, and their verdicts.
 
-Rooms register their flows; `study stability` runs them and writes the map (stability_files.py).  A flow that stayed
-within sense is stable; it is also right if its error is known and at most what the flow tolerates.
+Packages register their flows; `study stability` runs them and writes the map (stability_files.py).  A flow that stayed
+within bounds is stable; it is also right if its error is known and at most the tolerance of the flow.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from porescale.common.evidence.files import finite
 from porescale.common.evidence.register import Register
 
 RIGHT, STABLE, UNSTABLE = "right", "stable", "unstable"
-"""The verdicts."""
+"""Verdicts on a run: accurate, only stable, or unstable."""
 
 
 @dataclass(frozen=True)
@@ -36,9 +36,9 @@ class Axis:
 
 @dataclass(frozen=True)
 class Tried:
-    """What a flow came to.
+    """The result of one run of a flow.
 
-    stable : never beyond sense;  error : distance from what is right, >= 0, as the flow defines it, None if it is not
+    stable : never out of bounds;  error : distance from the reference, >= 0, as the flow defines it, None if it is not
     known;  numbers : further ones worth keeping, by name.
     """
 
@@ -97,7 +97,7 @@ class Flow:
         return len(self.laws(quick)) * len(self.y.chosen(quick))
 
     def run(self, law: str, y: float, quick: bool) -> list[Row]:
-        """All values of x, in order."""
+        """Run the flow at all values of x, in order; one row each."""
         values = self.x.chosen(quick)
         if not self.monotone:
             return [self._tried(law, x, y) for x in values]

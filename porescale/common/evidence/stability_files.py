@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 NAME = "stability"
 SIGNS = {RIGHT: "●", STABLE: "○", UNSTABLE: "×"}
-"""A verdict in the table."""
+"""Sign of each verdict in the table."""
 COLOURS = {RIGHT: "#2c7fb8", STABLE: "#fec44f", UNSTABLE: "#a50f15"}
 """A verdict in the picture: three hues that stay apart without colour, too."""
 
@@ -35,7 +35,7 @@ def write(folder: Path, command: str, version: str, flows: Sequence[Flow], rows:
 
 
 def as_dict(flow: Flow, quick: bool) -> dict[str, Any]:
-    """What a flow is, JSON-able."""
+    """Description of a flow for JSON."""
     axes = {letter: {"name": axis.name, "values": axis.chosen(quick)} for letter, axis in _axes(flow)}
     return {
         "name": flow.name, "title": flow.title, **axes, "laws": list(flow.laws(quick)), "right": flow.right,
@@ -48,7 +48,7 @@ def _axes(flow: Flow) -> tuple[tuple[str, Axis], tuple[str, Axis]]:
 
 
 def csv_text(rows: Sequence[Row]) -> str:
-    """One line for each try."""
+    """CSV text of the map, one line for each try."""
     names = sorted({name for row in rows for name in row.numbers})
     lines = []
     for row in rows:
@@ -116,7 +116,7 @@ def picture(flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> bytes:
 
 
 def _height(flow: Flow, quick: bool) -> float:
-    """Of its panel, inches."""
+    """Height of the panel of ``flow``, inches."""
     return 1.4 + 0.09 * flow.count(quick)
 
 

@@ -1,6 +1,6 @@
 """Validations: numbers the code computes beside numbers known from elsewhere, with reasoned tolerances.
 
-Rooms register theirs; `verify` and the tests run the same rows.
+Packages register theirs; `verify` and the tests run the same rows.
 """
 
 from __future__ import annotations
@@ -124,7 +124,7 @@ class Validations(Register[Validation]):
 
 
 def table(rows: Sequence[Row]) -> Table:
-    """Rows as a table for people: numbers in one line, below it where they come from and why the tolerance."""
+    """Rows as a table for the terminal: numbers in one line, below it where they come from and why the tolerance."""
     from rich.table import Table
     from rich.text import Text
 

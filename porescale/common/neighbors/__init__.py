@@ -1,6 +1,6 @@
 """Points and the distances between them: cells, pair lists, seeded placement.  No physics.
 
-Grains and smoothed particles use the same search; it knows positions and a reach for each, nothing else.
+Grains and smoothed particles use the same search; it takes positions and a reach for each, nothing else.
 """
 
 from __future__ import annotations

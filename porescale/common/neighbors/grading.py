@@ -1,4 +1,4 @@
-"""Sizes of discs: grading curves met to within one disc, and lognormal sizes.  Pure geometry.
+"""Sizes of discs: grading curves matched to within one disc, and lognormal sizes.  Pure geometry.
 
 Mass is area here: discs of one density.
 """
@@ -24,7 +24,7 @@ TAIL = 2.5
 
 
 def check_curve(curve: Curve, key: str = "grading") -> list[Fault]:
-    """What is wrong with a curve."""
+    """Faults of a grading curve; an empty list where it is valid."""
     form = "pairs (diameter, percent finer), both ascending"
     if len(curve) < 2:
         return [Fault(key, len(curve), "has too few points", "", ">= 2", form)]

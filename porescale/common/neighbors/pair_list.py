@@ -23,7 +23,7 @@ SERIAL_BELOW = 20_000  # points; fewer cost less in one thread than a barrier co
 ROW = 256  # entries for a row that is being made, to begin with
 BUILD = 2.0  # steps that a build costs (measured: smoothed water, 20 neighbours)
 LONG = 64  # updates after which a list that still holds may be made anew with a lesser skin
-LEAST = 0.2  # of the largest skin: the rest of a step hardly feels less
+LEAST = 0.2  # of the largest skin: less hardly changes the time of a step
 BLOCK = 2.0  # cutoffs: smaller blocks move more alike, but what is not beside them must stay away
 CELLS_PER_CUTOFF = 2  # half-cutoff cells: a window of 6.25 instead of 9 squared cutoffs to look through
 

@@ -53,7 +53,7 @@ def place(
 
     Either ``radii`` (n,) m, or two of mean ``diameter`` (m), ``count`` and ``packing_fraction`` (disc area
     over box area, at most 0.80): the third follows.  Diameters are uniform in diameter (1 ± spread), with
-    0 <= spread < 1.  A fraction that fixes the count is met as nearly as whole discs allow; ``Placement.fraction``
+    0 <= spread < 1.  A fraction that fixes the count is matched as nearly as whole discs allow; ``Placement.fraction``
     gives what was reached.  Equal discs (spread 0) crystallise above a fraction of about 0.7.
 
     Raises InputError for values out of range, or with the overlap left when the discs do not fit.
@@ -179,7 +179,7 @@ def slide_apart(
                 if periodic[axis]:
                     x[:, axis] %= box[axis]
             return x * unit, sweep
-        # FIRE with the constants of the paper; the longest step stays below 2/sqrt(6), the limit of a
+        # FIRE with the constants of Bitzek et al. 2006; the longest step stays below 2/sqrt(6), the limit of a
         # triangular lattice of unit springs and masses.
         if power > 0.0:
             uphill += 1

@@ -92,7 +92,7 @@ def remaining_skin(x, list_position, reach, list_reach, block, bounds, columns, 
     for row in range(rows):
         for column in range(columns):
             a = row * columns + column
-            if bounds[a, LEFT] > bounds[a, RIGHT]:  # nobody is there
+            if bounds[a, LEFT] > bounds[a, RIGHT]:  # no point in this cell
                 continue
             for side in range(BESIDE.shape[0]):
                 c = column + BESIDE[side, 0]

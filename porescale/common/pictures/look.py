@@ -184,7 +184,7 @@ def time_text(time: float, longest: float, plain: bool = False) -> str:
 
 @dataclass
 class Survey:
-    """What has to be known of all snapshots before the first is painted."""
+    """Properties of all snapshots that are needed before the first is painted."""
 
     look: Look
     field: Scale | None = None

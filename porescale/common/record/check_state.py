@@ -1,6 +1,6 @@
 """Whether a checkpoint can be gone on with, checked before a model is built for it, and before one takes it up.
 
-Checksums say that a file holds what was written, not that this makes sense.  What a model takes up goes through
+Checksums say that a file holds what was written, not that this is a valid state.  What a model restores goes through
 kernels, which do not look whether an index is one: a state is therefore checked by itself first, then beside the state
 of the model that is to take it up.
 """
@@ -23,7 +23,7 @@ PARTS: tuple[tuple[str, type | tuple[type, ...]], ...] = (
     ("state", dict), ("record", dict), ("schedules", dict), ("step", int), ("time", (int, float)),
     ("seconds", (int, float)),
 )  # fmt: skip
-"""What a checkpoint is made of."""
+"""Entries of a checkpoint and their types."""
 AS_LONG = {
     "carried": "partner", "corner_memory": "corner", "near_memory": "near", "back": "ends", "whole": "ends",
     "broken": "ends", "withheld": "held",
@@ -38,7 +38,7 @@ NUMBERS = (bool, int, float, np.number, np.bool_)
 
 
 def check_state(folder: Path) -> None:
-    """InputError unless the checkpoint in ``folder`` is one, and of a state that makes sense by itself."""
+    """InputError unless the checkpoint in ``folder`` is one, and of a state that is valid by itself."""
     content = read_checkpoint(folder / CHECKPOINT)
     for name, kind in PARTS:
         if not isinstance(content.get(name), kind):
@@ -105,7 +105,7 @@ def tables(state: State, place: str = "") -> Iterator[tuple[str, State]]:
 
 
 def _no_numbers(part: State) -> str:
-    """What holds no number."""
+    """Text that names the first value with nan in it; "" where there is none."""
     for name, value in part.items():
         kind = value.dtype.kind if isinstance(value, np.ndarray) else "f" if isinstance(value, float) else ""
         if kind == "f" and name not in NOT_YET and np.isnan(value).any():
@@ -179,6 +179,6 @@ def _integers(rows: Any, dimensions: int) -> bool:
 
 
 def _beyond(name: str, rows: np.ndarray[Any, Any], count: int) -> str:
-    """Which index is none of ``count``."""
+    """Text that names the first index outside 0 to ``count`` - 1; "" where there is none."""
     wrong = (rows < 0) | (rows >= count)
     return f"{name}: {int(rows[wrong][0])} is none of {count}" if wrong.any() else ""

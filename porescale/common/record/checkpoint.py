@@ -25,7 +25,7 @@ FORMAT = 1
 CHUNK_BYTES = 4 << 20
 """Stored in pieces of at most 4 MiB: large enough for disk speed, small against memory."""
 PLAIN = tuple(np.dtype(code).str for code in "bhilBHILefd")
-"""Types stored as HDF5 has them."""
+"""Types of arrays that HDF5 stores unchanged."""
 
 
 def write_checkpoint(path: Path, content: dict[str, Any]) -> None:
@@ -77,7 +77,7 @@ def _tree(file: h5py.File) -> Any:
 
 
 def _store(group: h5py.Group, name: str, flat: Array) -> h5py.Dataset:
-    """One flat dataset, in checked pieces."""
+    """Write one flat dataset, in pieces with checksums."""
     if flat.size == 0:
         return group.create_dataset(name, data=flat)
     piece = min(flat.size, max(1, CHUNK_BYTES // flat.dtype.itemsize))

@@ -1,6 +1,6 @@
-"""What a run costs whoever waits for the machine: core-seconds of its steps, memory at most.
+"""Computing cost of a run: core-seconds of its steps, memory at most.
 
-Wall-clock time depends on who else works on the machine; the time that the process spent on cores hardly does.  The
+Wall-clock time depends on the load of the machine; the time that the process spent on cores hardly does.  The
 first blocks of every session compile kernels or read them from the cache (steps in place have two kinds, even and odd,
 and the first block is a step long), so that they are left out and the rest stands for them: a run costs
 (core-seconds counted) × (steps)/(steps counted), and besides what rows, snapshots, pictures and film take.
@@ -59,7 +59,7 @@ class Cost:
         return self.earlier + max(0.0, time.process_time() - self.began - self.stepping)
 
     def state(self) -> dict[str, Any]:
-        """What a checkpoint keeps."""
+        """Seconds counted so far, for a checkpoint."""
         return {
             "steps": self.steps, "core_seconds": self.core_seconds, "besides": self.besides(),
             "paced_steps": self.paced_steps, "paced_seconds": self.paced_seconds,

@@ -22,7 +22,7 @@ from porescale.common.record.schedule import SLACK, Schedule, positive
 from porescale.common.record.stop import Interrupted, StopRequest, polite_stop
 
 CHECK_EVERY = 100
-"""Steps after which a model is asked at the latest whether it still makes sense."""
+"""Steps after which a model is checked at the latest for a state that is not finite or out of bounds."""
 BLOCK_SECONDS = 0.2
 """Wall-clock length of a block: how long Ctrl-C and the progress bar may have to wait."""
 SAVE_SHARE = 0.02
@@ -70,7 +70,7 @@ def drive(
     resume : go on from the checkpoint, bit for bit as the uninterrupted run; without a checkpoint it starts
     from the beginning, and a finished run is left alone.  The scene must be the same but for keys named in
     ``free``: the duration may grow, intervals may change (they count from time 0).  Keys that came after the run are
-    the same where they do nothing that it did not do, as ``today`` tells.  Other sources or versions than the run had
+    the same where they do nothing that it did not do, by ``today``.  Other sources or versions than the run had
     are warned of on stderr.
 
     overwrite : replace the run in the folder even if it is unfinished and took long (without: InputError); a
@@ -112,10 +112,10 @@ def drive(
 def check_resume(
     folder: Path, card: dict[str, Any], free: Collection[str] = cards.FREE, today: Today | None = None
 ) -> None:
-    """InputError where the run in ``folder`` cannot be gone on with, of which ``card`` asks for (as of `drive`).
+    """InputError where the run in ``folder`` cannot be gone on with, with the ``card`` of this run (as of `drive`).
 
     What can be checked without a model, which may take long to build: whether it is this scene's, and whether its
-    checkpoint is one and makes sense.  Nothing where there is no checkpoint yet.
+    checkpoint is one and valid.  Nothing where there is no checkpoint yet.
     """
     if (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists():
         check_changes(folder, card, free, today)
@@ -124,7 +124,7 @@ def check_resume(
 
 @dataclass
 class _Run:
-    """What the loop works with."""
+    """Model, duration (s) and schedules that the loop over steps works with."""
 
     model: Model
     duration: float

@@ -1,8 +1,7 @@
-"""What ``runs`` drives and records: a model, and what it shows of itself.  Knows no physics.
+"""Interface of a model that is run and recorded, and of its fields for output.  Independent of the physics.
 
-A model is anything that steps through time, can say when it left the range in which it means something, and
-can hand over its whole state.  Grids and clouds are all that the record, the pictures and ParaView need to
-know.
+A model is anything that steps through time, can check whether its state is valid, and can return its whole
+state.  Grids and clouds are all that the record, the pictures and ParaView need.
 """
 
 from __future__ import annotations
@@ -103,11 +102,11 @@ class Model(Protocol):
 
     @property
     def step(self) -> int:
-        """Steps done."""
+        """Number of steps done."""
 
     @property
     def time(self) -> float:
-        """Time reached, s."""
+        """Simulated time reached, s."""
 
     @property
     def step_seconds(self) -> float:
@@ -117,7 +116,7 @@ class Model(Protocol):
         """Do ``steps`` steps.  May raise Unstable."""
 
     def check(self) -> None:
-        """Raise Unstable when the state is beyond sense (called every 100 steps and before records)."""
+        """Raise Unstable when the state is not finite or out of bounds (called every 100 steps and before records)."""
 
     def series(self) -> dict[str, float]:
         """One row of the series; the same keys every time, with units: "time (s)", "front (m)"."""

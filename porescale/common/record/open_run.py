@@ -98,7 +98,7 @@ def open_run(folder: Path | str) -> Run:
 
 
 def _join(folder: Path) -> None:
-    """Join parts where this process may write and nobody else does; else they are read as they are."""
+    """Join parts where this process may write and no other process does; else they are read as they are."""
     try:
         with owned(folder) as held:
             if held:

@@ -1,6 +1,6 @@
 """A part of a simulation: one thing of a scene, with all that it adds to a run.
 
-A simulation is a list of parts.  What a scene does not ask for is no part of its list, and costs neither memory nor
+A simulation is a list of parts.  What a scene does not request is no part of its list, and costs neither memory nor
 time.  The order of the list is the order of the columns of series.csv and of the order in which parts act; states are
 restored from the last part to the first, so that a part may rely on what those after it have restored.
 """
@@ -28,7 +28,7 @@ class Part:
         """Act just after a step."""
 
     def check(self) -> None:
-        """Raise Unstable when the state of the part is beyond sense."""
+        """Raise Unstable when the state of the part is not finite or out of bounds."""
 
     def row(self) -> dict[str, float]:
         """Columns of series.csv, with units in their names; the same every time."""

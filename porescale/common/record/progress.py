@@ -1,4 +1,4 @@
-"""How far a run is, for people: a bar with time left on a terminal, a line every ten seconds elsewhere."""
+"""Progress of a run: a bar with time left on a terminal, a line every ten seconds elsewhere."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class Watch:
         self.phase = phase
 
     def say(self, text: str) -> None:
-        """One line for people."""
+        """Print one line of text, unless quiet."""
         if not self.quiet:
             self.console.print(Text(text), highlight=False, soft_wrap=True)
 
@@ -82,7 +82,7 @@ class Watch:
         return spent * (self.end - self.time) / (self.time - self.start)
 
     def line(self) -> str:
-        """Where the run is, in one line."""
+        """Progress of the run as one line of text."""
         share = 100 * self.time / self.end if self.end else 100.0
         text = f"{self.title}: {self.phase}, t = {self.time:.4g} of {self.end:.4g} s ({share:.0f} %)"
         text += f", step {self.step}"

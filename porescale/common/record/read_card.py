@@ -19,7 +19,7 @@ def read_card(folder: Path, package: object = None) -> dict[str, Any]:
     """The card of the run in ``folder``: a table with the scene as a table in it.
 
     package : whose run it must be, where that matters and the card holds it.  InputError, naming the folder, when
-    there is no card, when it is damaged or none of ours, and when it is another package's.
+    there is no card, when it is damaged or of another program, and when it is another package's.
     """
     folder = Path(folder)
     repair = "name a folder that `run` has written"

@@ -41,7 +41,7 @@ ABANDONED = (cards.RUNNING, cards.INTERRUPTED, cards.FAILED)
 Today = Callable[[Mapping[str, Any]], Mapping[str, Any]]
 """Completes the scene of an older run with the keys that came after it, at what they were before."""
 WORTH_KEEPING = 60.0
-"""An unfinished run that cost more than this many seconds is not overwritten without being asked."""
+"""An unfinished run that cost more than this many seconds is not overwritten without the option for it."""
 
 
 class Gone(PorescaleError):
@@ -75,7 +75,7 @@ class Record:
     def fresh(cls, folder: Path, given: dict[str, Any], *, overwrite: bool = False) -> Record:
         """Start in ``folder``; an older run there is removed, unless it is unfinished, was dear, and not ``overwrite``.
 
-        Its card goes last: a kill before that leaves a folder that is still known as a run's.
+        Its card goes last: a kill before that leaves a folder that is still recognised as a run's.
         """
         if (folder / cards.NAME).exists():
             if not overwrite:
@@ -195,7 +195,7 @@ class Record:
         self.saved_step, self.saved_time = model.step, model.time
 
     def last_good(self) -> str:
-        """Where the last good state lies, for people."""
+        """Text that says where the last valid state is stored."""
         if self.saved_step is None:
             return "no good state was saved"
         where = f"step {self.saved_step}, t = {self.saved_time:.6g} s"

@@ -67,7 +67,7 @@ def require_same_run(folder: Path, reached: Reached, card: Mapping[str, Any]) ->
 def take_up(folder: Path, model: Model, schedules: Mapping[str, Schedule]) -> Saved:
     """Set ``model`` and ``schedules`` to where the checkpoint in ``folder`` left them.
 
-    InputError where the checkpoint is not that of such a model, or of a state that makes no sense.
+    InputError where the checkpoint is not that of such a model, or of a state that is not valid.
     """
     content = read_checkpoint(folder / CHECKPOINT)
     try:

@@ -49,7 +49,7 @@ class Schedule:
         return round(event * self.ratio)
 
     def state(self) -> dict[str, float]:
-        """What a checkpoint keeps."""
+        """Interval and number of events done, for a checkpoint."""
         return {"interval": self.interval, "done": self.done}
 
     def restore(self, state: dict[str, float], time: float) -> None:

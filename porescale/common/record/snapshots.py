@@ -2,7 +2,7 @@
 
 ``parts/<step>/<name>.vtkhdf`` hold one frame; a part's folder appears by a rename, with all its files.
 They are joined into ``<name>.vtkhdf`` at the end, on resume and on demand, and removed once the joined
-files are in place. Frames are known by their step: a kill at any moment leaves each snapshot in a part, in
+files are in place. Frames are identified by their step: a kill at any moment leaves each snapshot in a part, in
 the joined files or (equal) in both.
 """
 
@@ -22,7 +22,7 @@ from porescale.common.record.vtkhdf import Frame
 
 PARTS = "parts"
 DAMAGE = (OSError, KeyError, ValueError, RuntimeError, TypeError, AttributeError, IndexError)
-"""What reading a damaged file raises."""
+"""Errors that reading a damaged file raises."""
 
 
 def damaged(folder: Path, error: BaseException) -> InputError:
@@ -109,7 +109,7 @@ def assemble(folder: Path) -> None:
 
 
 def trim(folder: Path, last: int) -> None:
-    """Forget every snapshot after step ``last``."""
+    """Remove every snapshot after step ``last``."""
     for step, part in parts(folder).items():
         if step > last:
             shutil.rmtree(part)

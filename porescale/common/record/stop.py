@@ -12,13 +12,13 @@ from porescale.common.core.errors import PorescaleError
 
 
 class Interrupted(PorescaleError):
-    """A run was asked to stop; its state is saved.  Exit code 130."""
+    """A stop of the run was requested; its state is saved.  Exit code 130."""
 
     code = 130
 
 
 class StopRequest:
-    """Truthy once somebody asked the run to stop."""
+    """Truthy once a stop of the run was requested."""
 
     def __init__(self) -> None:
         self.asked = False

@@ -27,7 +27,7 @@ from porescale.common.record.read_card import require_format
 from porescale.common.record.vtkhdf_cells import NO_CELLS, TOPOLOGIES, Cells, cells_of, read_cells, with_cells
 
 FORMAT = 1
-"""Of these files."""
+"""Format number that is written into these files."""
 ROWS = 512, 65536
 """Rows of points in a chunk, at least and at most; in between those of a frame: frames are read one by one."""
 FILTERS: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle": True, "fletcher32": True}
@@ -193,7 +193,7 @@ def _root(file: h5py.File, kind: str, ours: str, name: str, steps: Sequence[int]
 
 
 def _dataset(group: h5py.Group, name: str, values: Array, units: str = "1") -> None:
-    """A small dataset, protected."""
+    """Write a small dataset with a checksum and its units."""
     made = group.create_dataset(name, data=values, chunks=values.shape, fletcher32=True)
     made.attrs["units"] = units
 
@@ -208,7 +208,7 @@ def _empty(group: h5py.Group, name: str, rows: int, column: Column, frames: int)
 
 
 def _fill(target: h5py.Dataset, rows: slice, values: Array) -> None:
-    """Write ``values`` unless there are none."""
+    """Write ``values`` into these rows, unless there are none."""
     if len(values):
         target[rows] = values
 
@@ -247,7 +247,8 @@ def _column(name: str, array: Array, shape: tuple[int, ...], units: dict[str, st
 
 
 def frames_of(path: Path) -> list[Frame]:
-    """The frames of a file, in time.  OSError when it cannot be read, KeyError when it is not ours."""
+    """The frames of a file, in time.  OSError when it cannot be read, KeyError when it was not written by this
+    module."""
     path = Path(path)
     with h5py.File(path, "r") as file:
         steps, times = file["porescale/step"][...], file["VTKHDF/Steps/Values"][...]
@@ -285,7 +286,7 @@ def _kind(file: h5py.File) -> str:
 
 
 def _geometry(file: h5py.File) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Origin and spacing in the plane."""
+    """Origin and spacing of a grid in the plane, m."""
     at = file["VTKHDF"].attrs
     return (float(at["Origin"][0]), float(at["Origin"][1])), (
         float(at["Spacing"][0]),
@@ -294,12 +295,12 @@ def _geometry(file: h5py.File) -> tuple[tuple[float, float], tuple[float, float]
 
 
 def _columns(file: h5py.File) -> dict[str, Column]:
-    """The columns of a file."""
+    """Description of the arrays in a file, by name."""
     data = file["VTKHDF"]["CellData" if _kind(file) == "grids" else "PointData"]
     return {key: Column(item.dtype, item.shape[1:], str(item.attrs["units"])) for key, item in data.items()}
 
 
 def _rows(file: h5py.File, index: int) -> slice:
-    """The rows of a cloud's frame."""
+    """Rows of the points of frame ``index`` of a cloud."""
     start = int(file["VTKHDF/Steps/PointOffsets"][index])
     return slice(start, start + int(file["VTKHDF/NumberOfPoints"][index]))

@@ -1,4 +1,4 @@
-"""From pydantic's errors to faults for people: dotted keys, units, ranges, and the nearest known name."""
+"""From pydantic's errors to readable faults: dotted keys, units, ranges, and the nearest known name."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def _fault(
     field: FieldInfo | None,
     root: type[BaseModel],
 ) -> Fault:
-    """One pydantic error in our words."""
+    """Fault made from one pydantic error."""
     kind, context, value = item["type"], item.get("ctx", {}), item["input"]
     shown = value if isinstance(value, str | int | float) else None
     marked = next((mark for mark in field.metadata if isinstance(mark, Quantity)), None) if field else None
@@ -131,7 +131,7 @@ def _fault(
 
 
 def _suggestion(name: str, owners: Sequence[type[BaseModel]], root: type[BaseModel]) -> str:
-    """The nearest known key beside ``name``; else where a key of that name lives; else all known keys."""
+    """The nearest known key beside ``name``; else the section that has a key of that name; else all known keys."""
     known = {alias for owner in owners for alias in _fields(owner)}
     if not difflib.get_close_matches(name, known, n=1, cutoff=0.6):
         elsewhere = [place for place in every_key(root) if place[-1] == name]

@@ -48,7 +48,7 @@ class Quantity:
         return " and ".join(f"{sign}{bound:g}" for sign, bound in bounds if bound is not None)
 
     def repair(self) -> str:
-        """What to do about a wrong value."""
+        """How to correct a wrong value, as text."""
         what = f"give the {self.help}" if self.help else "give it"
         return f'{what} in {self.unit}, as 1.5 or "1.5 {self.unit}"' if self.unit else f"{what} as a number"
 
@@ -97,7 +97,7 @@ class Quantity:
         words, optional = frozenset(_words(source)), _is_optional(source)
 
         def convert(value: Any) -> Any:
-            """The value in SI; Refused where it is no number, has another unit or lies out of range."""
+            """The value in SI; Refused where it is no number, has another unit or is out of range."""
             return None if value is None and optional else self.convert(value, "", words)
 
         return core_schema.no_info_before_validator_function(convert, handler(source))

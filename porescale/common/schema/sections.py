@@ -43,7 +43,7 @@ class Section(BaseModel):
     """Of a scene: sections that it has not and every scene of another program has, and that program."""
     checks: ClassVar[list[Callable[[Any], list[Fault]]]] = []
     """Functions that return what is wrong with a valid section of this very class.  Checks between sections, and those
-    that need physics, are registered here by whoever builds: sections import neither."""
+    that need physics, are registered here by the builders: sections import neither."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=True)
 

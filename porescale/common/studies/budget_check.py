@@ -1,9 +1,10 @@
-"""What `run --error` promises, held against a new run: a benchmark of each package that has a front beside a case.
+"""Predicted error and time of `run --error`, compared with a new run: a benchmark of each package that has a front
+beside a case.
 
-A point of the front, the cheapest if not said which, is begun to rescale its time, and run anew.  Kept is a promise
-whose run takes within 30 % of the time said, from building the model to the last picture, and is off by no more than
-said and scattered, in the quantities whose answers by the reference the front keeps.  Core-seconds of the steps stand
-beside, also rescaled: on a machine that others use, too, seconds promise little.
+A point of the front, the cheapest if not said which, is begun to rescale its time, and run anew.  A prediction is
+kept if the run takes within 30 % of the predicted time, from building the model to the last picture, and its error is
+at most the predicted one plus scatter, in the quantities whose reference values the front keeps.  Core-seconds of the
+steps stand beside, also rescaled: on a shared machine seconds predict little.
 """
 
 from __future__ import annotations
@@ -72,7 +73,7 @@ class Promise:
 
 
 def repeat(package: Package, scene: Path, which: int = 1) -> Promise:
-    """The promise of a point of the front beside ``scene``, 1 the cheapest, and a new run of it."""
+    """Predicted error and time of a point of the front beside ``scene``, 1 the cheapest, and a new run of it."""
     front = read_front(scene)
     asked = replace(front, points=front.points[which - 1 :][:1])
     if not asked.points:
@@ -115,14 +116,15 @@ def error_of(package: Package, front: Front, point: FrontPoint, folder: Path) ->
 
 
 def benchmark(package: Package, case: Path) -> Benchmarks:
-    """The row "promise" of a package, empty where the case has no front."""
+    """The benchmark row "promise" of a package, empty where the case has no front."""
     rows = Benchmarks()
     if not (case / "front.json").is_file():
         return rows
 
     @rows.row("promise")
     def promise(size: int | None, threads: int, dtype: Dtype) -> Work:
-        """Steps of a point of the front beside a case (size: which, 1 the cheapest), and what its promise is worth."""
+        """Steps of a point of the front beside a case (size: which, 1 the cheapest), and how well its prediction
+        holds."""
         scene, which = find(case), size or 1
         points = read_front(scene).points
         point = points[min(which, len(points)) - 1]

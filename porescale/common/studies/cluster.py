@@ -1,4 +1,4 @@
-"""Points over other machines, through dask.distributed: an optional extra, imported when asked for.
+"""Points over other machines, through dask.distributed: an optional extra, imported on request.
 
 Every worker must see the folders of scene and runs under the same paths, and have this package installed.
 """

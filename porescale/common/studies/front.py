@@ -1,8 +1,8 @@
-"""A front that was measured, and the point of it that fits what is asked: an error, a time, or both.
+"""A front that was measured, and the point of it that fits the request: an error, a time, or both.
 
 front.json lies beside the scene it was measured for (`study trade` makes it).  What it keeps are core-seconds, of steps
-and besides, of another machine, which hardly depend on who else was at work there; and every point's pace, core-seconds
-of a step of a run that had just begun.  The same beginning is timed here before anything is promised: its wall-clock
+and besides, of another machine, which hardly depend on the load of that machine; and every point's pace, core-seconds
+of a step of a run that had just begun.  The same beginning is timed here before a prediction is given: its wall-clock
 pace over that of the front rescales the steps, start-up is what it took here.
 """
 
@@ -85,13 +85,13 @@ class Choice:
     core_seconds: float = 0.0
 
     def as_dict(self) -> dict[str, Any]:
-        """What a run card keeps of it."""
+        """The fields that a run card keeps."""
         point = self.point
         return {"label": point.label, "error": point.error, "scatter": point.scatter, "expected_seconds": self.seconds,
                 "slowness": self.slowness}  # fmt: skip
 
     def line(self, front: Front) -> str:
-        """What was picked and what to expect."""
+        """Text with the chosen point and its expected cost and error."""
         point = self.point
         return (
             f"picked {point.label}: error {percent(point.error)} ± {percent(point.scatter)}, about {self.seconds:.3g} s"

@@ -1,11 +1,11 @@
 """Quality levels as points of a front: which ones the rule picks, and whether a scene's levels are those.
 
-draft     the cheapest point that is off by no more than the front says of drafts: ``draft`` of trade.toml, or how far
-          another repeat of the reference is off
+draft     the cheapest point with an error the front allows for drafts: ``draft`` of trade.toml, or the error of
+          another repeat of the reference
 standard  the most accurate point that was tried, the cheapest of them if there are several
-fine      the reference that all were held against
+fine      the reference that all were compared with
 
-Points of which trade.toml says a ``but`` are left out: they are good at what was asked, not at all that a scene shows.
+Points of which trade.toml says a ``but`` are left out: they are accurate in the requested quantities only.
 `study levels SCENE` says so, and fails where the scene's [quality.…] tables are something else.
 """
 
@@ -37,7 +37,7 @@ class Picked:
     wrong: tuple[str, ...] = ()
 
     def line(self) -> str:
-        """One line for the terminal."""
+        """The level as one line for the terminal."""
         error = "what others are held against" if self.level == "fine" else f"error {percent(self.point.error)}"
         said = f"{self.level}: {self.point.label}, {self.point.core_seconds:.3g} core-seconds, {error}"
         return said + "".join(f"\n  the scene has {it}" for it in self.wrong)

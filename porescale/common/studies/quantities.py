@@ -57,7 +57,7 @@ def measured(columns: Columns, row: Mapping[str, Any]) -> float:
 
 
 def _found(time: NDArray[Any], values: NDArray[Any], at: Mapping[str, Any]) -> float:
-    """What a table says where to read."""
+    """Where to read a quantity, as given by a table of trade.toml or expected.toml."""
     for name, of in LATE.items():
         if name in at:
             late = time >= at[name]
@@ -96,7 +96,7 @@ LATE: dict[str, Callable[[NDArray[Any], NDArray[Any]], float]] = {
 
 
 def wrong(row: Mapping[str, Any]) -> str:
-    """What is wrong with how a row says what to read, "" if nothing is; a table may still lack its columns."""
+    """Fault in where a row says to read, "" if there is none; a table may still lack its columns."""
     for key in ("name", "column", "minus", "unit", "file"):
         if not isinstance(row.get(key, ""), str):
             return f"{key} is no text"

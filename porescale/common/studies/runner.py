@@ -1,7 +1,7 @@
 """Points run one after another or side by side, each a process of its own with a run folder of its own.
 
 A campaign that was stopped goes on where it was: finished points are left alone, begun ones resume from their
-checkpoint.  A point that went unstable keeps that verdict until asked again.
+checkpoint.  A point that went unstable keeps that verdict until it is requested again.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ class Campaign:
     def all(self, points: Sequence[Point], jobs: int, say: Callable[[str], object]) -> Iterator[Ended]:
         """Every point, as it ends, ``jobs`` at a time; what was done earlier comes first.
 
-        ``say`` gets how many are done and how long the rest will take.  Ctrl-C and SIGTERM are handed on to what
+        ``say`` gets how many are done and how long the rest will take.  Ctrl-C and SIGTERM are passed on to what
         runs, which then saves its state, and raise KeyboardInterrupt.
         """
         earlier = [self.before(point) for point in points]
@@ -134,7 +134,7 @@ class Campaign:
                 raise
 
     def _unless_stopped(self, point: Point) -> Ended:
-        """`one`, until one of them raised."""
+        """Run the point with `one`, unless another point has raised."""
         if self._stopped:
             return Ended(point, self.place(point), CODES[130], {})
         try:
@@ -161,7 +161,7 @@ class Campaign:
         return process.returncode, said
 
     def _stop(self) -> None:
-        """Hand Ctrl-C on to what runs."""
+        """Pass Ctrl-C on to the running processes."""
         with self._lock:
             self._stopped = True
             for process in self._alive:

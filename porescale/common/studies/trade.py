@@ -1,4 +1,4 @@
-"""Speed against accuracy: how far the runs of a plan are off, what they cost, and which of them nobody beats.
+"""Speed against accuracy: how far the runs of a plan are off, what they cost, and which of them are Pareto-optimal.
 
 The error of a run in one quantity is its distance from the exact value or from the reference run of the same repeat,
 over the quantity's scale; of a curve or field, the rms distance over its places.  That of a run is the rms over
@@ -139,7 +139,7 @@ def distance(values: NDArray[Any], truth: NDArray[Any], scale: float) -> float:
 
 
 def rms(values: Any) -> float:
-    """Root of the mean square."""
+    """Root mean square of ``values``."""
     return float(np.sqrt(np.mean(np.square(np.asarray(values, float)))))
 
 

@@ -56,7 +56,7 @@ def write(
 
 
 def csv_text(points: Sequence[Traded]) -> str:
-    """One line for each point, all digits."""
+    """CSV text with one line for each point, all digits."""
     names = list(points[0].errors) if points else []
     header = ["knob", "label", "outcome", "on front", "error", "scatter", "core-seconds (s)", "seconds (s)",
               "memory (B)", "steps", *names, "quality", "settings"]  # fmt: skip

@@ -60,7 +60,7 @@ class Settings(Section):
 
 
 class Variant(Settings):
-    """A point of a knob.  label : in tables and pictures;  but : what the errors asked for do not show, so that no
+    """A point of a knob.  label : in tables and pictures;  but : what the requested errors do not show, so that no
     quality level is made of it."""
 
     label: str = pydantic.Field(min_length=1)
@@ -68,14 +68,14 @@ class Variant(Settings):
 
 
 class Knob(Section):
-    """One thing that the study varies."""
+    """A parameter that the study varies."""
 
     name: str = pydantic.Field(min_length=1)
     point: tuple[Variant, ...] = pydantic.Field(min_length=1)
 
 
 class Quantity(Section):
-    """What is asked of a run; see `porescale.common.studies.quantities`."""
+    """A quantity that runs are compared in; see `porescale.common.studies.quantities`."""
 
     name: str = pydantic.Field(min_length=1)
     unit: str = ""
@@ -107,13 +107,13 @@ class Quantity(Section):
         return bool(self.along) or "*" in self.column
 
     def row(self) -> dict[str, Any]:
-        """As `measured` takes it."""
+        """The table that `measured` takes for this quantity."""
         made = {"name": self.name, "unit": self.unit, "column": self.column, "at": self.at, "file": self.file}
         return made | {key: value for key in ("minus", "where", "along") if (value := getattr(self, key)) is not None}
 
 
 class Plan(Section):
-    """Everything that trade.toml holds."""
+    """All settings that trade.toml holds, checked."""
 
     draft: float | None = quantity("", None, gt=0, help="error of a draft at most")
     base: Settings = pydantic.Field(default_factory=Settings, description="what lies under every point")

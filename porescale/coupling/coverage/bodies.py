@@ -118,7 +118,7 @@ class Bodies:
         return {"before": self._before, "mass": self.mass}
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take up a state of the same shapes."""
+        """Restore a state of the same shapes."""
         self._before[...], self.mass = state["before"], float(state["mass"])
 
 

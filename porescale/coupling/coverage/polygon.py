@@ -190,7 +190,7 @@ def least_width(corners: Array) -> float:
 
 
 class Polygons:
-    """Convex polygons as the fluid sees them, lattice units.
+    """Convex polygons that cover cells of the fluid, lattice units.
 
     corners : of each, (k, 2) cells from what it turns about, either way round.
 
@@ -216,7 +216,7 @@ class Polygons:
 
     @property
     def count(self) -> int:
-        """Number of polygons."""
+        """Number of polygons that cover cells."""
         return len(self.angle)
 
     def fit(self, fluid: Fluid, shift: float, discs: int) -> Integers:
@@ -262,7 +262,7 @@ def _starts(polygons: Sequence[Array]) -> Integers:
 
 
 def _area(corners: Array) -> float:
-    """By the shoelace formula."""
+    """Area of a polygon (k, 2) by the shoelace formula, cells²."""
     x, y = corners.T
     return 0.5 * float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
 

@@ -31,12 +31,12 @@ class Rectangle(Shape):
 
     @property
     def centre(self) -> Array:
-        """Middle, (2,) cells."""
+        """Centre of the rectangle, (2,) cells."""
         return np.asarray(self.lower + 0.5 * self.extent)
 
     @property
     def place(self) -> Array:
-        """The lower corner."""
+        """Lower left corner, (2,) cells: the array that motion overwrites."""
         return self.lower
 
     def size(self, fluid: Fluid, shift: float) -> tuple[int, int]:

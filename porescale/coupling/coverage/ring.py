@@ -34,11 +34,11 @@ class Ring(Shape):
 
     @property
     def place(self) -> Array:
-        """The centre."""
+        """Centre of the ring, (2,) cells: the array that motion overwrites."""
         return self._centre
 
     def size(self, fluid: Fluid, shift: float) -> tuple[int, int]:
-        """The box.  ValueError in a periodic one, where what spins would meet itself spinning elsewhere."""
+        """The box.  ValueError in a periodic one, where the rotating wall would overlap its own image."""
         if any(periodic(fluid)):
             raise ValueError("a ring stands in a box with sides that are not periodic")
         self.hole = self.radius + shift / self.radius

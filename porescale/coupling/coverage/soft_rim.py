@@ -25,7 +25,7 @@ from porescale.coupling.coverage.rows import Patches
 from porescale.coupling.load import sum_rim_slip
 
 SLIP_FACTOR = 0.24
-"""Of theta |v - u| in k."""
+"""Factor of theta |v - u| in the slip-dependent part of k."""
 SLIP_SHARE = 0.02
 """Share of a step's rim slip in the one that theta is made from."""
 MARGIN = 4
@@ -119,6 +119,6 @@ class SoftRim:
         filter_patches(self.theta, self.theta2, patches)
 
     def follow(self, patches: Patches, ny: int, periodic_y: bool, row_load: NDArray[np.floating]) -> None:
-        """Take up the slip of the step done."""
+        """Store the slip of the step done."""
         sum_rim_slip(patches.corner, patches.height, ny, periodic_y, row_load, self._sums)
         follow_slip(self._sums, SLIP_SHARE, self.slip)

@@ -71,7 +71,7 @@ class SideLinks(NamedTuple):
 
 
 def side_links(fluid: Fluid) -> SideLinks:
-    """Those of a fluid's box."""
+    """Links through the closed sides of a fluid's box."""
     bounds = Bounds(fluid.nx, fluid.ny, fluid.sides)
     number, cell, beside, share, at, across, along, size = [], [], [], [], [], [], [], []
     for k, link in enumerate(bounds.partners()):

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 
 class Holds(NamedTuple):
-    """What the map of stability says of a solid operator with one weight (docs/stability/stability.md).
+    """Limits from the map of stability for a solid operator with one weight (docs/stability/stability.md).
 
     lightest : cells per diameter, and the density ratio from which on a free disc of that size holds (coupling.fall; at
     10 cells also shot at Mach 0.1, coupling.fly; lighter ones than 0.1 were not tried);  cells : per diameter from

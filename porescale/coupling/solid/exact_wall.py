@@ -21,7 +21,7 @@ half-step correction of psm.py.  The body force acts in the whole cell, and the 
 
 Derived here.  E and D are no more than widths of the two turns; the factor 1/2 of the second term, D, E and the radius
 shift were chosen on square arrays of solid fraction 0.1 to 0.6, 10 to 20 cells a diameter, tau 0.52 to
-1.5: drag within 1 % up to 0.3, 1.2 % at 0.4, 5 % at 0.6, converging at second order; nothing else was looked at.
+1.5: drag within 1 % up to 0.3, 1.2 % at 0.4, 5 % at 0.6, converging at second order; no other case was examined.
 """
 
 from typing import NamedTuple
@@ -74,13 +74,13 @@ is_soft.of(ExactWall)(sharp)
 
 @is_soft.of(SoftWall)
 def _soft(solid):
-    """Yes."""
+    """``is_soft`` of a law with soft rims: True."""
     return True
 
 
 @force_share.of(ExactWall, SoftWall)
 def _whole(b, solid):
-    """All of it."""
+    """``force_share``: 1, the body force acts in the whole cell."""
     return numbers(b).one
 
 
@@ -108,7 +108,7 @@ def _rates(k, e, b, theta, solid):
 
 @rates.of(ExactWall)
 def _rates_of_sharp_rims(e, b, theta, slip_x, slip_y, solid):
-    """With k of the fluid."""
+    """``rates`` at the relaxation time of the fluid: rims are sharp."""
     return _rates(solid.k, e, b, theta, solid)
 
 
@@ -131,7 +131,7 @@ def _missing_momentum(cell, kept, rho, jx, jy):
 
 @blend.of(ExactWall, SoftWall)
 def _blend(f, g, cell, m, rate, solid):
-    """Each part at its own rate."""
+    """Populations after collision, where each part relaxes with its own rate."""
     one = numbers(cell.e).one
     rho = one + m.d
     plus, kept = rates(cell.e, cell.b, cell.theta, m.ux - cell.vx, m.uy - cell.vy, solid)

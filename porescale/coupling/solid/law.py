@@ -5,7 +5,7 @@ populations; bodies for that law of the functions of ``SolidLaw``, ``@blend.of(M
 ``SOLID_OPERATOR = SolidOperator(...)``, which choose.py finds (entry.py).
 
 Every operator conserves mass in each cell, and what the fluid loses of momentum the solid gains.  The body force acts
-in a share of the cell, ``force_share``, or a resting disc would feel a force that is not there; rho u = sum f c + h
+in a share of the cell, ``force_share``, or a spurious force would act on a resting disc; rho u = sum f c + h
 with half the force that acts, h.  Those of the literature (Noble & Torczynski 1998) are of the form
 
     f_i* = (1 - B) g_i + B (f_i + Omega^s_i),     g = f + Omega + S, the collided populations of the fluid operator
@@ -91,7 +91,7 @@ def free_share(b, solid):
 
 @inline
 def sharp(solid):
-    """``is_soft``: no."""
+    """``is_soft`` of a law with sharp rims: False."""
     return False
 
 

@@ -28,7 +28,7 @@ class SoftWallWeight(NamedTuple):
 
 @weight.of(WallWeight)
 def _weight(solid, theta, slip_x, slip_y, law):
-    """With k of the fluid."""
+    """Weight of cells with the relaxation time of the fluid: rims are sharp."""
     c = numbers(solid)
     e = min(c.one, solid)
     t = c.one - e
@@ -38,7 +38,7 @@ def _weight(solid, theta, slip_x, slip_y, law):
 
 @weight.of(SoftWallWeight)
 def _soft_weight(solid, theta, slip_x, slip_y, law):
-    """With the slip in k."""
+    """Weight of cells where the slip is added to k at soft rims."""
     c = numbers(solid)
     e = min(c.one, solid)
     t = c.one - e

@@ -1,4 +1,4 @@
-"""Bonds of a system: made at the contacts there are, handed to kernels with the segments, and the pieces they hold.
+"""Bonds of a system: made at existing contacts, passed to kernels with the segments, and the fragments they form.
 
 Bonds themselves, and the force they add: forces/bonds.py.
 """
@@ -96,7 +96,7 @@ def pieces(grains: State, whole: NDArray[np.uint8] | None = None) -> Index:
 
 
 def _chosen(grains: State, bodies: Iterable[int | Clump] | None) -> NDArray[np.bool_]:
-    """Which discs belong to ``bodies``."""
+    """Mask (n,) of the discs that belong to ``bodies``; all discs where it is None."""
     chosen = np.full(grains.discs.count, bodies is None)
     for body in () if bodies is None else bodies:
         if isinstance(body, Clump):

@@ -1,8 +1,8 @@
 """Clumps: rigid bodies made of discs that may overlap.
 
-Every member keeps its row among the discs, where contacts, pair list and fluid see it; members of one clump never
-meet.  A clump's mass is that of the union of its members at one density, exact (union.py), or given by hand.  The
-members' rows hold shares of it, m_i > 0 with
+Every member keeps its row among the discs, where contacts, pair list and fluid find it; contacts between members
+of one clump are left out.  A clump's mass is that of the union of its members at one density, exact
+(union.py), or given by hand.  The members' rows hold shares of it, m_i > 0 with
     sum m_i = M,     sum m_i o_i = 0,     sum (m_i |o_i|^2 + I_i) = I,     o_i from the centroid to the member,
 so that sums over discs of momentum, angular momentum, energy and weight are those of the bodies.  Such shares exist as
 the centroid of a union lies within the hull of its centres: reflected at a line beside all centres, what lies beyond
@@ -79,8 +79,8 @@ class Clumps:
     mass, inertia (b,) kg/m, kg m^2/m;  position (b, 2) m, angle (b,) rad at whole steps, velocity (b, 2) m/s, spin (b,)
     rad/s at half steps: of the centroid;  offset (k, 2) m from it to the members at angle 0, arm (k, 2) now;
     turn (k,) rad: a member's angle less the body's;  force (b, 2) N/m and torque (b,) N m/m of the last step;
-    held, withheld (b, 3) as of discs;  group (n,) int32: clump of every disc, -1 for none;  crowd (k,): contacts
-    that a corner and its segments are reckoned to have, 0 for members that are discs.
+    held, withheld (b, 3) as of discs;  group (n,) int32: clump of every disc, -1 for none;  crowd (k,): number
+    of contacts assumed at a corner and its segments (stable step), 0 for members that are discs.
     """
 
     def __init__(
@@ -126,7 +126,7 @@ class Clumps:
 
     @property
     def count(self) -> int:
-        """Number of clumps."""
+        """Number of clumps of the system."""
         return len(self.mass)
 
     @cached_property

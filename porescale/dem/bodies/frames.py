@@ -5,7 +5,8 @@ centroid and second moment by the shoelace formula.  Other frames are rods: a se
 ``width`` (default: twice the thickness), its round ends have no mass, joints count for each segment that ends there.
 
 A frame is a clump (clumps.py) of discs at its corners, as large as the thickness, with segments between them; it moves,
-is controlled and watched as clumps are.  Walls meet the corners.  Sources: Matsushima, DEMseg tutorial I-2 and II-2.
+is controlled and monitored as clumps are.  Walls act on the corners.  Sources: Matsushima, DEMseg tutorial I-2 and
+II-2.
 """
 
 from __future__ import annotations
@@ -232,7 +233,7 @@ def add_frames(
 ) -> None:
     """Make ``frames`` of the last discs of ``grains``, their corners (corner_discs), and clumps of others; see framed.
 
-    Clumps that there were are no more.  clump_bodies : mass and inertia by hand.  Raises InputError as framed does.
+    It replaces the clumps of the discs.  clump_bodies : mass and inertia by hand.  Raises InputError as framed does.
     """
     discs = grains.discs
     if any(each.needs_radius for each in grains.laws) and min(frame.thickness for frame in frames) == 0.0:
@@ -290,7 +291,7 @@ def _halves(frames: Sequence[Frame]) -> list[float]:
 
 
 def _crowd(discs: Discs, ends: Index, first: int) -> Array:
-    """Contacts that each corner is reckoned to have for the stable step: its own, and at each end of a segment one and
+    """Number of contacts assumed at each corner for the stable step: its own, and at each end of a segment one and
     half of the discs that fit along it.
     """
     length = np.hypot(*(discs.position[ends[:, 1]] - discs.position[ends[:, 0]]).T)

@@ -1,1 +1,1 @@
-"""Contact laws, one file each.  A law knows its restitution, contact time and stable step."""
+"""Contact laws, one file each.  A law gives its restitution, contact time and stable step."""

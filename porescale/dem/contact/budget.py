@@ -11,14 +11,15 @@ from porescale.dem.contact.law import KR, KT, stiffness, stiffness_scale
 NORMAL_DASHPOT, TANGENTIAL_DASHPOT, FRICTION, ROLLING_DASHPOT, ROLLING_FRICTION = range(5)
 SURFACES, EXTERNAL, HOLDERS, DRAG = range(5, 9)
 BEFORE_X, BEFORE_Y, BEFORE_SPIN = range(9, 12)
-"""Columns of the energy budget: lost in dashpots and friction, work of moving surfaces, of external forces and of those
-who hold discs, lost to the background drag (J/m); velocity and spin half a step before the last force (m/s, rad/s)."""
+"""Columns of the energy budget: lost in dashpots and friction, work of moving surfaces, of external forces and of
+constraints that hold discs, lost to the background drag (J/m); velocity and spin half a step before the last force
+(m/s, rad/s)."""
 BUDGET = 12
 
 
 @inline
 def has_budget(budget):
-    """Whether there is an energy budget."""
+    """Whether ``budget`` is an energy budget; else it is None."""
     return budget is not None
 
 

@@ -68,7 +68,7 @@ def _stiffness(overlap, radius, mass, p, law):
 
 @stiffness_scale.of(HertzKernel)
 def _stiffness_scale(overlap, radius, law):
-    """Radius of the contact area, m."""
+    """Factor on the stiffness: radius of the contact area, m."""
     return np.sqrt(radius * overlap)
 
 
@@ -193,7 +193,7 @@ class Hertz:
         return self.rolling_friction > 0.0
 
     def with_friction(self, friction: float) -> Hertz:
-        """The same law with another friction coefficient."""
+        """This law with another friction coefficient."""
         return replace(self, friction=friction)
 
     def row(self) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""A contact as kernels see it: springs, dashpots and sliders round the elastic force of a law.
+"""A contact as kernels take it: springs, dashpots and sliders round the elastic force of a law.
 
 Normal:      F = F_el(d) + g d',  d overlap (m), d' closing speed (m/s), F > 0 pushes apart; two rules for its end:
   release "force"   : F = max(0, ...), never pulls; the contact ends when the force vanishes;
@@ -12,7 +12,7 @@ Both springs are Coulomb elements of their own: first a spring moves with the sl
 |k_t s| <= mu F, which is the reset on sliding; only then the dashpot is added, and the sum is cut to the limit again.
 So the dashpot decides with the spring whether the contact slides, but never enters the stored spring.  Each cut only
 dissipates: a spring lengthens by no more than the slip that did work on it.  (Resetting the spring to the limit with
-the dashpot in the check, as is common, stores energy nobody supplied.)
+the dashpot in the check, as is common, stores energy that no work supplied.)
 
 A law goes into kernels as a flat NamedTuple, its class chosen by the law's file: that says which of the four formulas
 below (``stiffness`` to ``stored_normal``) are compiled.  The absence of ``friction`` or ``rolling`` leaves their part
@@ -60,27 +60,27 @@ class Springs(Protocol):
 
     @property
     def stiffness(self) -> float:
-        """Normal stiffness."""
+        """Stiffness of the normal spring, N/m per metre of depth."""
 
     @property
     def damping(self) -> float:
-        """Normal dashpot."""
+        """Coefficient of the normal dashpot, N s/m per metre of depth."""
 
     @property
     def tangential_stiffness(self) -> float:
-        """Tangential stiffness."""
+        """Stiffness of the tangential spring, N/m per metre of depth."""
 
     @property
     def tangential_damping(self) -> float:
-        """Tangential dashpot."""
+        """Coefficient of the tangential dashpot, N s/m per metre of depth."""
 
     @property
     def rolling_stiffness(self) -> float:
-        """Rolling stiffness."""
+        """Stiffness of the rolling spring, N/m per metre of depth."""
 
     @property
     def rolling_damping(self) -> float:
-        """Rolling dashpot."""
+        """Coefficient of the rolling dashpot, N s/m per metre of depth."""
 
     @property
     def rolls(self) -> bool:
@@ -95,11 +95,11 @@ class ContactLaw(Protocol):
     """
 
     name: ClassVar[str]
-    """In scenes: [contact] law."""
+    """Name of the law in scenes, [contact] law."""
     order: ClassVar[int]
-    """Place in lists."""
+    """Position of the law in lists of all contact laws."""
     purpose: ClassVar[str]
-    """What it is good for, one line."""
+    """What the law is good for, one line."""
     kernel: ClassVar[type[KernelLaw]]
     """Class of the law as kernels take it."""
     keys: ClassVar[tuple[str, ...]]
@@ -107,7 +107,7 @@ class ContactLaw(Protocol):
     required: ClassVar[tuple[str, str]]
     """The key that must be given, and its unit."""
     damping_keys: ClassVar[tuple[str, ...]]
-    """Keys of which exactly one damps."""
+    """Keys of [contact] that give the damping; exactly one of them is given."""
     of_materials: ClassVar[tuple[str, ...]]
     """Keys that follow from two materials, and are not given for a pair."""
     needs_radius: ClassVar[bool]
@@ -120,7 +120,7 @@ class ContactLaw(Protocol):
 
     @property
     def friction(self) -> float:
-        """Friction coefficient."""
+        """Coulomb friction coefficient of the contact, -."""
 
     @property
     def rolling_friction(self) -> float:
@@ -143,7 +143,7 @@ class ContactLaw(Protocol):
         """This law with other numbers, by the keys of [contact];  mass (kg/m): effective, of the restitution."""
 
     def with_friction(self, friction: float) -> ContactLaw:
-        """The same law with another friction coefficient."""
+        """This law with another friction coefficient."""
 
     def mixed(self, other: Any) -> ContactLaw:
         """Between unlike materials, each of which has its law with itself; see materials.py for the rule."""
@@ -279,7 +279,7 @@ def moments(found, arm_i, arm_j, radius, law):
 
 @inline
 def load_if(friction, rolling, history, k):
-    """As load_history."""
+    """(spring, rolling spring) of contact k, m; 0 for those that ``friction`` and ``rolling`` leave out."""
     if friction is None:
         return 0.0, 0.0
     if rolling is None:
@@ -295,7 +295,7 @@ def load_history(history, k, law):
 
 @inline
 def store_if(friction, rolling, history, k, spring, roll):
-    """As store_history."""
+    """Overwrite row k of ``history`` with the springs (m) that ``friction`` and ``rolling`` do not leave out."""
     if friction is not None:
         history[k, 0] = spring
         if rolling is not None:

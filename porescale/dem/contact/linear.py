@@ -43,13 +43,13 @@ def _stiffness(overlap, radius, mass, p, law):
 
 @stiffness_scale.of(LinearKernel)
 def _stiffness_scale(overlap, radius, law):
-    """One at every overlap."""
+    """Factor on the stiffness: 1 at every overlap."""
     return 1.0
 
 
 @history_scaling.of(LinearKernel)
 def _history_scaling(overlap, closing, dt, law):
-    """Springs keep their length."""
+    """Factor on the springs as the overlap changes: 1, they keep their length."""
     return 1.0
 
 
@@ -162,7 +162,7 @@ class Linear:
         return self.rolling_friction > 0.0
 
     def with_friction(self, friction: float) -> Linear:
-        """The same law with another friction coefficient."""
+        """This law with another friction coefficient."""
         return replace(self, friction=friction)
 
     def row(self) -> NDArray[np.float64]:

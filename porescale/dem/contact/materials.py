@@ -51,7 +51,7 @@ class Materials:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names, by number."""
+        """Names of the materials, in the order of their numbers."""
         return tuple(self.laws)
 
     @property

@@ -1,7 +1,7 @@
-"""What a damped contact gives back: the same for the linear law and that of Hertz with its own damping.
+"""Restitution of a damped contact: the same for the linear law and that of Hertz with its own damping.
 
 Both obey p dp/dy + 2 h w p + w^2 y = 0 between speed p and a measure y of the overlap (the overlap itself, or its power
-5/4), and let go at the same point of it.  So restitution depends on the damping ratio h alone, not on the speed.
+5/4), and is released at the same point of it.  So restitution depends on the damping ratio h alone, not on the speed.
 Sources: release at zero force, Schwager & Poeschel 2007, Granular Matter 9, 465; Hertz, Antypov & Elliott 2011, EPL 94,
 50004.
 """

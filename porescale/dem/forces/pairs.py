@@ -2,7 +2,7 @@
 
 With n = (x_j - x_i)/d and t = (-n_y, n_x) the slip v_t = (v_i - v_j).t + w_i a_i + w_j a_j does not change
 when i and j swap, so the history of a contact is one number.  The lever arms a_i = (d^2 + r_i^2 -
-r_j^2)/(2d), a_j = d - a_i reach to the chord of the overlap, where both bodies see the same force: angular
+r_j^2)/(2d), a_j = d - a_i reach to the chord of the overlap, where the same force acts on both bodies: angular
 momentum is kept to round-off. With the radii in their place it leaks by overlap times friction.
 """
 

@@ -1,4 +1,5 @@
-"""Which discs and corners may meet which segments: candidates kept with a skin, and the springs of their contacts.
+"""Pairs of discs or corners and segments that may come into contact: candidates kept with a skin, and the springs of
+their contacts.
 
 Short segments are found among the discs through cells, as points at their middles that reach to their ends.  Long ones,
 such as containers, would make the cells large: they are held against every disc at each listing instead, as DEMseg's
@@ -23,7 +24,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 STATE = ("corner", "corner_memory", "near", "near_memory")
-"""Names of what a listing leaves."""
+"""Names of the arrays of a segment list that a checkpoint stores."""
 
 
 class SegmentList:
@@ -115,7 +116,7 @@ class SegmentList:
         return corner, near[np.lexsort((near[:, 1], near[:, 0]))]
 
     def _strangers(self, one: Index, other: Index) -> NDArray[np.bool_]:
-        """Whether discs are of different bodies."""
+        """Mask of the pairs whose discs belong to different bodies."""
         return np.asarray((self.group[one] < 0) | (self.group[one] != self.group[other]))
 
     def _image(self, difference: Array) -> Array:

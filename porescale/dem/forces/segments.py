@@ -1,4 +1,4 @@
-"""Forces of line segments with thickness, and of the corners where they meet, on discs and on each other.
+"""Contact forces of line segments with thickness, and of the corners that join them, on discs and on each other.
 
 A segment is all that lies within its thickness t of the line between its ends.  Its ends are discs of radius t, rows
 among the discs ("corners", members of a rigid body), so that all contacts are of a point with a radius, disc or corner,
@@ -19,7 +19,7 @@ Rules for what counts, see RULES:
     zero, past it it jumps, and energy cannot close.  For comparison.
 
 A negative weight takes elastic force off, nothing else: no dashpot, no friction.  Where a contact passes from segment
-to corner or back it hands over its springs.
+to corner or back its springs are transferred.
 
 Sources: Matsushima, DEMseg tutorial II-2;  Alonso-Marroquin 2008, EPL 83, 14001 (spheropolygons: potentials of the
 distances between vertices and edges, here with corners counted once by inclusion and exclusion).

@@ -161,7 +161,7 @@ def all_pair_forces(d, pairs, law, dt, cell, sweep):
 
 @all_pair_forces.of(Serial)
 def _pairs_serial(d, pairs, law, dt, cell, sweep):
-    """One loop over the list."""
+    """One thread: a single loop over the whole pair list."""
     start_forces(d)
     pair_forces(d, pairs, law, dt, cell)
 
@@ -201,14 +201,14 @@ def blocks_of_surfaces(d, surfaces, law, dt, sweep):
 
 @blocks_of_surfaces.of(Serial)
 def _blocks_serial(d, surfaces, law, dt, sweep):
-    """One block after another."""
+    """One thread: blocks of discs one after another."""
     for b in range(sweep.partial.shape[0]):
         surfaces_of_block(b, d, surfaces, law, dt, sweep)
 
 
 @blocks_of_surfaces.of(Threads)
 def _blocks_threads(d, surfaces, law, dt, sweep):
-    """Blocks by threads."""
+    """Several threads: blocks of discs side by side."""
     surfaces_threads(d, surfaces, law, dt, sweep)
 
 
@@ -269,7 +269,7 @@ class ThreadChoice:
         return Threads(self.partial, self.near, self.far_start, self.incoming_start, self.incoming, self.far)
 
     def _room_for(self, surfaces: int) -> None:
-        """Arrays for so many surfaces."""
+        """Allocate the arrays for that many surfaces."""
         self.partial, self.near = serial(self.count, surfaces)
 
     def _renew(self, pairs: PairList) -> None:

@@ -34,7 +34,7 @@ SIDES = ("left", "right", "bottom", "top")
 KINDS = ("solid", "periodic", "open")
 PX, PY, NX, NY, VX, VY, TURN = range(7)
 """Columns of the wall table: a point (m) and the unit normal; velocity of that point (m/s) and rotation about it
-(rad/s), as the contacts feel it.
+(rad/s), as used in contacts.
 """
 WALL = 7
 X, LOW, HIGH, VELOCITY, PRESENT = range(5)
@@ -46,7 +46,7 @@ side and 26 % the floor; 14 % with runs of 8, but twice as many flags to read.""
 
 @inline
 def runs_of(count):
-    """Runs of so many discs."""
+    """Number of runs that ``count`` discs make; the last one may be shorter."""
     return (count + RUN - 1) // RUN
 
 

@@ -1,4 +1,4 @@
-"""What laboratory people measure on grains, one quantity a file.  Rectangular regions; SI per metre of depth.
+"""Quantities that laboratories measure on granular matter, one per file.  Rectangular regions; SI per metre of depth.
 
 Compression is positive, as in soil mechanics.  Nothing here changes the state.
 """

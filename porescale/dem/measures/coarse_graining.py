@@ -192,7 +192,7 @@ class Raster:
 
 
 class CoarseGrained:
-    """Fields of discs and contacts on a raster, (rows, columns); each is computed when it is first asked for.
+    """Fields of discs and contacts on a raster, (rows, columns); each is computed when it is first requested.
 
     cell : the strained one that the discs are in, whose images are then shown on a raster that is not periodic, without
     ``conserve``: a raster need not be one period of it;  area : (n,) m^2 that each disc stands for (default: its own).

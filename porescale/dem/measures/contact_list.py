@@ -22,7 +22,7 @@ class Contacts:
     (contacts_segments.py); SI per metre of depth.
 
     first (c,) disc i;  second (c,) disc j, or -1 at a surface;  surface (c,) index into ``names``, or -1 for a pair;
-    point (c, 2) m, where both bodies feel the force, beside disc i (a periodic image of it may lie elsewhere);
+    point (c, 2) m, where the force acts on both bodies, beside disc i (a periodic image of it may lie elsewhere);
     normal (c, 2) unit vector from i outwards;  start (c, 2) m, the centroid of the body of i, its clump or itself;
     branch (c, 2) m, from there to the centroid of the nearest image of the body of j, or to the point at a surface;
     overlap (c,) m;  normal_force (c,) N/m, > 0 pushes apart;  tangential_force (c,) N/m, that on i along
@@ -49,7 +49,7 @@ class Contacts:
 
     @property
     def count(self) -> int:
-        """Number of contacts."""
+        """Number of contacts in the list."""
         return len(self.first)
 
     @property

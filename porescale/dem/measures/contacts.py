@@ -1,6 +1,6 @@
 """Every contact of a system with its force: between discs, and of discs with walls, plates, rectangles, segments.
 
-Forces are not computed by formulas of their own: each contact is handed alone to the kernel that the step uses, with
+Forces are not computed by formulas of their own: each contact is passed alone to the kernel that the step uses, with
 copies of what it carries.  So the list says what the next contact step will use, to the bit, springs included; a
 list taken between two steps sums to ``discs.force`` after the second.  Nothing of the system is changed.
 """
@@ -114,7 +114,7 @@ def _material(grains: State, discs: Index) -> NDArray[Any]:
 
 
 def _wall(grains: State) -> list[Touched]:
-    """Straight sides."""
+    """Contacts of the discs with each straight wall; one entry per wall."""
     d = grains.discs
     made: list[Touched] = []
     for w, row in enumerate(grains.walls):
@@ -126,7 +126,7 @@ def _wall(grains: State) -> list[Touched]:
 
 
 def _plate(grains: State) -> list[Touched]:
-    """Upright plates; one that is gone touches nothing."""
+    """Contacts of the discs with each upright plate; none with a plate that was removed."""
     x, y = grains.discs.position.T
     made: list[Touched] = []
     for w, row in enumerate(grains.plates):

@@ -1,6 +1,6 @@
 """Contacts with segments and corners, and bonds, as rows of the list of contacts; see contacts.py.
 
-As there, each contact is handed alone to the kernel that the step uses: a disc and a segment, or two corners, that are
+As there, each contact is passed alone to the kernel that the step uses: a disc and a segment, or two corners, that are
 all there is.  A segment stands as the disc at its first end, which bears its forces.  Corners of negative weight and
 bonds are rows of their own, with a normal force below zero.
 """

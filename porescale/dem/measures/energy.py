@@ -1,4 +1,4 @@
-"""The energy book: where the energy of grains came from, where it is and where it went.
+"""Energy budget of grains: work supplied, energy stored and energy dissipated.
 
 Kept by ``Grains(..., energy=True)``: contact kernels enter losses and works at every step, at the lower disc of a pair
 (contact/law.py), the integrator those of external forces, holders and drag.  Entries follow leap-frog: with positions
@@ -9,7 +9,7 @@ ends of a step.  Springs and weights obey that up to the curvature of the path; 
 step, moving surfaces and forces that change from call to call to first order in the step.  What is left is the
 ``residual``.
 
-Everything is said of the last force evaluation: positions a step back, springs and losses as they were left by it.
+All terms refer to the last force evaluation: positions a step back, springs and losses as they were left by it.
 Velocities that an owner writes between steps are no work here: held components are left out of the kinetic energy.
 """
 
@@ -161,7 +161,7 @@ def kinetic(grains: State, book: Array) -> tuple[float, float]:
 
 
 def open_book(grains: State, book: Array, dt: float) -> Array:
-    """Start of the book before a first step of ``dt`` (s): (kinetic and elastic energy J/m, sum m x, sum m y kg m/m).
+    """Start of the budget before a first step of ``dt`` (s): (kinetic and elastic energy J/m, sum m x, sum m y kg m/m).
 
     Overwrites the velocities before the last force in ``book``: those of now.
     """
@@ -178,12 +178,12 @@ def moment(grains: State, dt: float) -> Array:
 
 
 def energy_book(grains: State, acceleration: tuple[float, float] = (0.0, 0.0)) -> dict[str, float]:
-    """The book of ``grains`` by the names of its entries, J/m, since its first step; zeros before that.
+    """The budget of ``grains`` by the names of its entries, J/m, since its first step; zeros before that.
 
     acceleration : of free fall, m/s^2; its work is the potential energy, and what the external forces did besides is
     their work.  "turned over" is half the sum of all changes: every joule leaves one entry and enters another.
     A strained cell does work, and all is said relative to it: there must be no ``acceleration`` then.  Raises
-    InputError where no book is kept.
+    InputError where no budget is kept.
     """
     book, start, dt = grains.book, grains.book_start, grains.last_dt
     if book is None:

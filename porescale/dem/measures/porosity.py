@@ -24,7 +24,7 @@ def corner_part(a: Array, b: Array) -> Array:
     """Area of the unit disc left of x = ``a`` and below y = ``b``, any numbers (n,).
 
     With the corner inside the disc (L(a) + L(b))/2 - pi/4 + a b, L the part left of a line; outside of it the lines cut
-    off segments that do not meet.
+    off segments that do not touch.
     """
     a, b = np.clip(a, -1.0, 1.0), np.clip(b, -1.0, 1.0)
     left, below = left_part(a), left_part(b)

@@ -20,7 +20,7 @@ Period = tuple[float, float] | tuple[float, float, float]
 
 
 def edges_of(period: Period) -> tuple[float, float, float]:
-    """Width, height and tilt, m."""
+    """Width, height and tilt (m) of ``period``; the tilt is 0 where not given."""
     return (*period, 0.0) if len(period) == 2 else period
 
 
@@ -46,7 +46,7 @@ class Region:
 
     @property
     def area(self) -> float:
-        """m²."""
+        """Area of the region, m²."""
         width, height = self.size
         return width * height
 

@@ -131,7 +131,7 @@ class Overlap(NamedTuple):
 
 
 def kinetic_energy(discs: Discs) -> float:
-    """Translation and rotation, J/m."""
+    """Kinetic energy of translation and rotation, J/m."""
     moving = float(np.sum(discs.mass * np.sum(discs.velocity**2, axis=1)))
     return 0.5 * (moving + float(np.sum(discs.inertia * discs.spin**2)))
 
@@ -161,7 +161,7 @@ def angular_momentum(discs: Discs) -> float:
 
 
 def centre_of_mass(discs: Discs) -> Array:
-    """Centre of mass, (2,) m."""
+    """Centre of mass of all discs, (2,) m."""
     centre: Array = (discs.mass[:, None] * discs.position).sum(axis=0) / discs.mass.sum()
     return centre
 
@@ -204,7 +204,7 @@ def unbalanced(grains: State) -> float:
 
 
 def _survey(grains: State) -> tuple[float, int, int, float]:
-    """survey_pairs of ``grains``; fills ``grains.touching``."""
+    """Result of survey_pairs for ``grains``; overwrites ``grains.touching``."""
     result: tuple[float, int, int, float] = survey_pairs(
         grains.disc_arrays(), grains.pair_arrays(), grains.cell, grains.contact, grains.touching
     )
@@ -226,7 +226,7 @@ def _survey_walls(grains: State) -> tuple[float, int, int, float]:
 
 
 def _survey_plates(grains: State) -> tuple[float, int, int, float]:
-    """survey_plates of ``grains``."""
+    """Result of survey_plates for ``grains``."""
     plates = grains.plates, grains.plate_laws, grains.plate_spring
     result: tuple[float, int, int, float] = survey_plates(grains.disc_arrays(), *plates, grains.contact)
     return result

@@ -61,7 +61,7 @@ class Deforming(NamedTuple):
 
 @by_law
 def cell_now(cell):
-    """The cell as pairs see it now; clears the load of a strained one."""
+    """The cell as used for pairs now; clears the load of a strained one."""
 
 
 @cell_now.of(Still)
@@ -91,7 +91,7 @@ def no_drift(cell):
 
 @drift_of.of(Deforming)
 def drift_deforming(cell):
-    """The gradient as ``steer`` left it."""
+    """Velocity gradient (G_xx, G_xy, G_yy), 1/s, as computed by ``steer``."""
     return cell.state[GXX], cell.state[GXY], cell.state[GYY]
 
 
@@ -200,7 +200,7 @@ def move_discs(d, pairs, drag, dt, sweep, cell):
 
 @move_discs.of(Still)
 def move_still(d, pairs, drag, dt, sweep, cell):
-    """By one thread or several."""
+    """Kick and drift of discs in a fixed cell, by one thread or several."""
     return move_free(d, pairs.checked_position, pairs.limit_square, drag, dt, sweep)
 
 
@@ -265,7 +265,7 @@ def any_left(position, checked_position, limit_square, cell):
 
 @any_left.of(Still)
 def left_still(position, checked_position, limit_square, cell):
-    """By the positions themselves."""
+    """Whether a disc has gone further than allowed, in a cell that does not deform."""
     moved = False
     for i in range(position.shape[0]):
         dx, dy = position[i, 0] - checked_position[i, 0], position[i, 1] - checked_position[i, 1]
@@ -276,5 +276,5 @@ def left_still(position, checked_position, limit_square, cell):
 
 @any_left.of(Deforming)
 def left_deforming(position, checked_position, limit_square, cell):
-    """By the positions relative to the strain."""
+    """Whether a disc has gone further than allowed, with the affine motion since the check taken off."""
     return left_affine(position, checked_position, room_square(cell.state), cell.state)

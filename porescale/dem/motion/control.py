@@ -15,7 +15,7 @@ from porescale.common.compiled.jit import inline, kernel
 from porescale.dem.motion.time_function import Schedule, value_at
 
 VELOCITY, PLACE, PUSH = range(3)
-"""Kinds of control."""
+"""Kinds of control: prescribed velocity, prescribed displacement, added force or moment."""
 CLUMP, INDEX, AXIS, KIND = range(4)
 """Columns of a control: 1 for a clump, its number or the disc's, 0 x 1 y 2 rotation, kind."""
 SUPPLY, WORK = range(2)
@@ -48,7 +48,7 @@ KINDS = {Moved: VELOCITY, Placed: PLACE, Pushed: PUSH}
 
 
 def schedule_of(control: Control) -> Schedule:
-    """The numbers that a control follows."""
+    """The time function of a control."""
     if isinstance(control, Moved):
         return control.velocity
     return control.displacement if isinstance(control, Placed) else control.force

@@ -29,7 +29,7 @@ class Clump(NamedTuple):
 
 
 class LoadRecord(NamedTuple):
-    """One line of the force-displacement record: of a body, since it was watched."""
+    """One line of the force-displacement record: of a body, since its recording began."""
 
     time: float  # s
     body: int | Clump
@@ -111,7 +111,7 @@ class Drivers:
         return np.array([[c[cells.GXX], c[cells.GXY]], [0.0, c[cells.GYY]]])
 
     def _compile(self) -> None:
-        """The arrays that kernels read."""
+        """Overwrite the arrays of controls and time functions that kernels read."""
         kinds = [KINDS[type(row[3])] for row in self._controls]
         control = [(*row[:3], kind) for row, kind in zip(self._controls, kinds, strict=True)]
         told = [*self._rates, *(schedule_of(row[3]) for row in self._controls), *(row[4] for row in self._drives)]

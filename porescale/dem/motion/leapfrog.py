@@ -95,7 +95,7 @@ def kick_drift(d, checked_position, limit_square, drag, dt):
 
 @parallel_kernel
 def kick_drift_threads(d, checked_position, limit_square, drag, dt):
-    """As kick_drift, block by block."""
+    """Kick and drift as kick_drift, block by block in several threads; returns whether a disc left its skin."""
     count = d.mass.shape[0]
     moved = 0
     for b in prange((count + BLOCK - 1) // BLOCK):
@@ -115,11 +115,11 @@ def move_free(d, checked_position, limit_square, drag, dt, sweep):
 
 @move_free.of(Serial)
 def _move_serial(d, checked_position, limit_square, drag, dt, sweep):
-    """One loop over all discs."""
+    """One thread: a single loop over all discs."""
     return kick_drift(d, checked_position, limit_square, drag, dt)
 
 
 @move_free.of(Threads)
 def _move_threads(d, checked_position, limit_square, drag, dt, sweep):
-    """Blocks by threads."""
+    """Several threads: blocks of discs side by side."""
     return kick_drift_threads(d, checked_position, limit_square, drag, dt)

@@ -1,4 +1,4 @@
-"""Periodic cells as pairs see them: one that stands still, or one that is strained.
+"""Periodic cells as used for pairs: one that stands still, or one that is strained.
 
 A strained cell has the edges (width, 0) and (tilt, height).  Velocities of discs are then those relative to the affine
 motion G x of the cell, G = [[gxx, gxy], [0, gyy]] in 1/s, so that every image of a disc has the same velocity, and two
@@ -79,7 +79,7 @@ def image_still(dx, dy, cell):
 
 @image.of(Straining)
 def image_straining(dx, dy, cell):
-    """The upper image lies ``tilt`` to the right."""
+    """Nearest image in a sheared cell: the image one height up lies ``tilt`` (m) to the right."""
     return tilted_image(dx, dy, cell.period_x, cell.period_y, cell.tilt)
 
 
@@ -90,13 +90,13 @@ def affine_velocity(dx, dy, cell):
 
 @affine_velocity.of(Still)
 def drift_still(dx, dy, cell):
-    """None."""
+    """Affine velocity in a cell that does not deform: zero."""
     return 0.0, 0.0
 
 
 @affine_velocity.of(Straining)
 def drift_straining(dx, dy, cell):
-    """G d."""
+    """Affine velocity G (dx, dy), m/s, with the velocity gradient G of the cell (1/s)."""
     return cell.gxx * dx + cell.gxy * dy, cell.gyy * dy
 
 
@@ -107,12 +107,12 @@ def add_load(gx, gy, dx, dy, cell):
 
 @add_load.of(Still)
 def note_still(gx, gy, dx, dy, cell):
-    """Nothing to add to."""
+    """Does nothing: a cell that does not deform has no sums."""
 
 
 @add_load.of(Straining)
 def note_straining(gx, gy, dx, dy, cell):
-    """Overwrites ``cell.load``."""
+    """Add to ``cell.load`` of one contact the products of force and branch (N) and the squared branch (m²)."""
     cell.load[XX] += gx * dx
     cell.load[XY] += gx * dy
     cell.load[YX] += gy * dx

@@ -46,7 +46,7 @@ FIRST_CONTROL = 3
 
 @kernel
 def record_loads(a, d):
-    """Add what contacts do to every watched body to ``a.watched_load``: all forces on it so far less the external."""
+    """Add the contact force on every recorded body to ``a.watched_load``: all forces on it so far less the external."""
     c, force, torque, external_force, external_torque = a.clumps, d.force, d.torque, d.external_force, d.external_torque
     for k in range(a.watched.shape[0]):
         i = a.watched[k, 1]

@@ -4,12 +4,12 @@ A servo wall moves along its normal with  V = U + g (F_wanted - F),  F the force
     g = share/(K dt + 2 C),   K = N k,   C = N c,   N the number of discs it touches,   |V| <= speed,
 k and c (N/m, N s/m) stiffness and dashpot of one contact.  The second part alone is PFC's servo, which lags: on discs
 that give way at V it is V/g off, half of the load in a biaxial test of ordinary speed.  So the mean of the wall's own
-velocity goes ahead:  U' = U + a (V - U),  a = g K dt/(4 (1 + g C)),  and nothing is missing in the end.
+velocity goes ahead:  U' = U + a (V - U),  a = g K dt/(4 (1 + g C)),  and no offset remains.
 
 For discs that stay, F' = K x + C V of the step before, so that (z - 1)^2 z + g (z - 1 + a)(K dt z + C (z - 1)) = 0, and
 at z = -1 g (2 - a)(K dt + 2 C) < 4: stable for share < 2, as without U (without dashpots: < 4).  The slow roots,
 z = 1 - s with s^2 (1 + g C) - s g (K dt + a C) + a g K dt = 0, are then real: the wall goes past its load at most once.
-Discs that give way as softly as x K let it swing, damped by sqrt(x) of critical.  While the wall touches nothing it
+Discs with a stiffness as small as x K let it swing, damped by sqrt(x) of critical.  While the wall touches nothing it
 goes at ``speed``.
 Sources: Itasca, PFC2D 3.1 theory and background (2004), section 3.5: numerical servo-control; Astrom & Murray, Feedback
 Systems (2008), chapter 10: integral action, and why U follows the velocity that the wall really had.

@@ -24,7 +24,7 @@ COLUMNS = 6
 
 @dataclass(frozen=True)
 class Constant:
-    """The same ``value`` at all times."""
+    """A time function with the same ``value`` at all times."""
 
     value: float = 0.0
 
@@ -48,11 +48,12 @@ class Table:
 
 
 Schedule = Constant | Sine | Table | float
-"""A number stands for a constant."""
+"""A time function; a plain number stands for a constant."""
 
 
 def schedule_rows(schedules: Sequence[Schedule]) -> tuple[Array, Array]:
-    """Rows (q, COLUMNS) and points (p, 2) of ``schedules``; raises InputError at a number or table without sense."""
+    """Rows (q, COLUMNS) and points (p, 2) of ``schedules``; raises InputError at a number or table that is not finite
+    or not ascending."""
     rows, points = [], np.zeros((0, 2))
     for given in schedules:
         one = given if isinstance(given, Constant | Sine | Table) else Constant(float(given))

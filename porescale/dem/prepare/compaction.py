@@ -45,8 +45,8 @@ START = 0.7  # packing fraction at which discs are placed: short of where fricti
 DRAG = 0.02  # background damping per step: lets discs that are pushed travel, ends waves between two looks
 GROWTH = 5e-4  # of the radii at a time: less than the overlaps at which a packing is loaded
 PAUSE = 40  # steps after each: some periods of a contact
-REST = 400  # steps between looks once the pressure is there
-PATIENCE = 1500  # looks before it gives up
+REST = 400  # steps between checks once the pressure is reached
+PATIENCE = 1500  # checks before the run is given up
 NEAR = 3e-3  # share of the wanted pressure within which it is there
 BALANCE = 3e-3  # mean net force on a disc over the mean contact force that counts as rest
 DEEPEST = 0.02  # overlap over diameter beyond which discs are no longer discs
@@ -55,7 +55,7 @@ COLUMNS = ("x (m)", "y (m)", "radius (m)")
 
 
 class Compressed(NamedTuple):
-    """grains at rest;  scale: radii over those asked for;  fraction: disc area over box area;  pressure Pa;  overlap:
+    """grains at rest;  scale: radii over those requested;  fraction: disc area over box area;  pressure Pa;  overlap:
     the deepest over its smaller diameter."""
 
     grains: Grains
@@ -96,7 +96,7 @@ class Compactor:
         return self._made(grains, radius)
 
     def to_size(self, radius: Array) -> Compressed:
-        """Discs of ``radius`` (n,) m in the rectangle: the packing fraction is then what their areas say.
+        """Discs of ``radius`` (n,) m in the rectangle: the packing fraction then follows from their areas.
 
         Raises InputError when that is so dense that they overlap by more than 2 % of a diameter.
         """
@@ -328,7 +328,7 @@ def _judge_suffix(path: Path) -> None:
 
 
 def _judged(path: Path, position: Array, radius: Array) -> tuple[Array, Array]:
-    """The same, if every circle is one."""
+    """The given positions and radii, if every row is a valid circle; else InputError."""
     bad = ~np.isfinite(position).all(axis=1) | ~(radius > 0.0) | ~np.isfinite(radius)
     if bad.any():
         k = int(bad.argmax())

@@ -39,7 +39,7 @@ def joined(grains: Grains, more: Discs, skin: float | None = None) -> Grains:
     new.wall_force[:], new.plate_force[:] = grains.wall_force, grains.plate_force
     new.external_force[:count], new.external_torque[:count] = grains.external_force, grains.external_torque
     new.refresh()
-    # The old list says nothing of the added discs: rows without partners.  A half list names a pair at its
+    # The old list has no pairs of the added discs: rows without partners.  A half list names a pair at its
     # lower index, so the rows of the old discs hold every old pair.
     old = grains.pairs
     rows = np.concatenate([old.start, np.full(more.count, old.start[-1])])

@@ -3,7 +3,7 @@
 The packing's discs, or polygons with its discs' centres as seeds, fill a rectangle that stands between plates left and
 right (segments); plates and all are bonded by back tension, and then one plate is moved along x.  Discs overlap by what
 the packing was pressed with; polygons are shrunk to stand ``gap`` apart and get so much thickness that sides overlap by
-what is asked for.  The naive estimate of a strength is the mean back tension over the mean diameter, that of a
+the requested value.  The naive estimate of a strength is the mean back tension over the mean diameter, that of a
 stiffness the contact's.
 
 Source: Matsushima, DEMseg tutorial II-4.

@@ -45,7 +45,7 @@ CHAIN = 4.0  # strongest contact force over the weight of discs above a diameter
 DRAG = 0.3  # background damping in sqrt(g/d): grains fall at a few times their free-fall speed over d
 ENERGY = 1e-8  # kinetic energy per grain over m g d that counts as rest
 BALANCE = 3e-3  # mean net force over mean weight that counts as rest
-CHUNK = 500  # steps between looks
+CHUNK = 500  # steps between checks
 PATIENCE = 400  # chunks before settling gives up
 UNREADABLE = (OSError, EOFError, ValueError, KeyError, TypeError, RuntimeError, zipfile.BadZipFile, InputError)
 """What reading a packing from disk raises when it is absent, cut short, not an archive, or lacks a part."""
@@ -193,7 +193,7 @@ def scale_springs(grains: Grains, factor: float) -> None:
 def relax(grains: Grains, law: Law, weights: Array, gravity: float, *, wall_law: Law | None = None) -> None:
     """From rest under one law and weight to rest under ``law`` and ``weights`` (n, 2) N/m.
 
-    The friction forces are carried over in proportion to the weights, so that the packing does not forget
+    The friction forces are carried over in proportion to the weights, so that the packing does not lose
     which way it leans; plates stand still.  ``gravity`` (m/s^2) sets the scale of drag and rest.  Raises
     as come_to_rest.
     """
@@ -268,7 +268,7 @@ def weights_of(discs: Discs, density: float, gravity: float = GRAVITY) -> Array:
 
 
 def cache_folder() -> Path:
-    """Where packings are kept."""
+    """Folder in which settled packings are cached."""
     return cache_root() / "packings"
 
 

@@ -78,8 +78,8 @@ def active_set(
 ) -> ActiveSet:  # fmt: skip
     """The discs ``index`` of ``grains``, whose list is up to date, without external loads.
 
-    asleep (n,): who sleeps; they are held here.  frozen : pairs are those among sleepers, else those with a disc that
-    moves;  pairs : False leaves all out.
+    asleep (n,): sleeping discs; they are held here.  frozen : pairs are those among sleepers, else those with a disc
+    that moves;  pairs : False leaves all out.
     """
     d, listed, m = grains.discs, grains.pairs, len(index)
     number = np.full(d.count, -1, np.int64)

@@ -43,13 +43,13 @@ from porescale.dem.state import State
 Array = NDArray[np.float64]
 
 LOOK = 32
-"""Contact steps between looks at who rests: an oscillation in a contact takes 20 to 60."""
+"""Contact steps between checks for resting discs: an oscillation in a contact takes 20 to 60."""
 AFTER = 100.0
 """Oscillations of the hardest contact for which a disc must rest before it sleeps."""
 
 
 class Sleep:
-    """Who sleeps among ``grains``.
+    """Sleeping discs of ``grains``.
 
     weight (n,) N/m: what a disc's share is of, its weight or that less its lift;  share : of it;  after : s, by default
     100 oscillations of the hardest contact.  A disc rests below the speed  v = share sqrt(W r/m):  what is taken of its
@@ -71,20 +71,20 @@ class Sleep:
         self.balance = np.zeros((count, 3))
         self._role = np.zeros(count, np.uint8)
         self._some = False
-        self._looked = grains.steps  # steps of the system at the last look
+        self._looked = grains.steps  # steps of the system at the last check
         self._surfaces = self._surfaces_of(grains)
         self._part: ActiveSet | None = None  # as the sets of sleepers and the list were when it was made
         self._builds = self._looks = -1
-        self._deep = np.zeros(0, np.int64)  # sleepers whom nobody who moves is listed with
+        self._deep = np.zeros(0, np.int64)  # sleepers that are listed with no moving disc
         self._loads = np.zeros((0, 3)), np.zeros((0, 2)), np.zeros((0, 2))  # of those on the surfaces
 
     @property
     def count(self) -> int:
-        """How many sleep."""
+        """Number of sleeping discs."""
         return int(np.count_nonzero(self.asleep))
 
     def wake_all(self) -> None:
-        """Nobody sleeps, and nobody has rested."""
+        """Wake all discs, and set their times at rest to zero."""
         self.asleep[:], self.quiet[:] = 0, 0.0
         self._some, self._part = False, None
 
@@ -112,7 +112,8 @@ class Sleep:
         return left
 
     def _look(self, grains: State, dt: float) -> None:
-        """End all sleep where surfaces move or are others; else, at every look, put to sleep who has rested."""
+        """End all sleep where surfaces move or changed; else, at every check, put to sleep the discs that have
+        rested."""
         still = not self._moving(grains)
         if not still or self._others(grains):
             self._surfaces = self._surfaces_of(grains)
@@ -150,7 +151,7 @@ class Sleep:
         return grains.walls[:, :VX].copy(), grains.rectangles[:, :VELOCITY_X].copy(), grains.plates[:, PRESENT:].copy()
 
     def _others(self, grains: State) -> bool:
-        """Whether these are no longer what they were."""
+        """Whether the surfaces differ from those of the last check."""
         walls, rectangles, plates = self._surfaces
         if len(walls) != len(grains.walls) or len(rectangles) != len(grains.rectangles):
             return True
@@ -158,13 +159,13 @@ class Sleep:
         return bool(differs(grains.walls, walls, VX) or differs(grains.rectangles, rectangles, VELOCITY_X) or present)
 
     def _part_now(self, grains: State, dt: float) -> bool:
-        """Whether anybody sleeps; then the part is up to date, and nobody within is out of balance."""
+        """Whether any disc sleeps; then the active set is up to date, and no sleeper is out of balance."""
         while self._some:
             pairs = current_pairs(grains)
             if self._part is None or self._builds != pairs.builds:
                 self._divide(grains, dt)
                 self._builds = pairs.builds
-            elif self._looks != pairs.looks:  # by this step, or by who looked at the list since the last
+            elif self._looks != pairs.looks:  # by this step, or by another user of the list since the last
                 np.take(
                     pairs.checked_position, self._part.index, axis=0, out=self._part.pairs.checked_position, mode="clip"
                 )
@@ -179,7 +180,7 @@ class Sleep:
         return False
 
     def _wake(self, grains: State) -> None:
-        """Wake who is called, and their neighbours."""
+        """Wake the discs marked in ``called``, and their neighbours."""
         pairs = grains.pairs
         wake(self.asleep, self.called, pairs.start, pairs.partner, self.quiet)
         self._some, self._part = bool(self.asleep.any()), None
@@ -220,7 +221,7 @@ class Sleep:
         return calls
 
     def state(self) -> dict[str, Any]:
-        """What decides who sleeps from here on."""
+        """The quantities that decide which discs sleep from here on, for a checkpoint."""
         names = ("walls", "rectangles", "plates")
         return {
             "asleep": self.asleep.copy(), "quiet": self.quiet.copy(), "removed": self.removed.copy(),

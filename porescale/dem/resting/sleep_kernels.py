@@ -1,4 +1,5 @@
-"""Kernels of discs that sleep (sleep.py): who rests, who is disturbed, and the list of what must be worked out."""
+"""Kernels of discs that sleep (sleep.py): tests for rest and for disturbance, and the list of contacts that must be
+computed."""
 
 from __future__ import annotations
 
@@ -35,7 +36,8 @@ def rest_of(asleep, velocity, spin, radius, force, torque, held, speed, allowed,
 
 @kernel
 def fall_asleep(asleep, quiet, after, velocity, spin, mass, inertia, removed):
-    """Put to sleep who has rested for ``after`` s: overwrites ``asleep``, velocities and spins; returns how many.
+    """Put to sleep discs that have rested for ``after`` s: overwrites ``asleep``, velocities and spins; returns how
+    many.
 
     Adds to ``removed`` (n,) J/m the kinetic energy taken from each.
     """
@@ -52,7 +54,7 @@ def fall_asleep(asleep, quiet, after, velocity, spin, mass, inertia, removed):
 
 @kernel
 def disturbed(index, balance, external_force, external_torque, radius, allowed, force, torque, called):
-    """Who of the sleepers ``index`` (m,) is out of balance by more than ``allowed`` (n,) N/m; returns how many.
+    """Sleepers out of ``index`` (m,) that are out of balance by more than ``allowed`` (n,) N/m; returns how many.
 
     balance (n, 3) N/m, N/m, N m/m: of their contacts, to which the external force (n, 2) and torque (n,) are added;
     the sums overwrite force (n, 2) and torque (n,).  Overwrites ``called`` (n,) with 1 for each of them.
@@ -72,8 +74,9 @@ def disturbed(index, balance, external_force, external_torque, radius, allowed, 
 
 @kernel
 def wake(asleep, called, start, partner, quiet):
-    """Wake who is ``called`` (n,) and all who are listed with them: overwrites ``asleep`` and ``quiet``; called ends
-    as 0.  start (n + 1,), partner: half list.  Neighbours wake too, so that a blow does not wake one disc a call.
+    """Wake discs marked in ``called`` (n,) and all that are listed with them: overwrites ``asleep`` and ``quiet``;
+    called ends as 0.  start (n + 1,), partner: half list.  Neighbours wake too, so that a blow does not wake one disc a
+    call.
     """
     for i in range(asleep.shape[0]):
         for k in range(start[i], start[i + 1]):
@@ -91,7 +94,7 @@ def wake(asleep, called, start, partner, quiet):
 
 @kernel
 def find_border(asleep, start, partner, role):
-    """Overwrites ``role`` (n,): 0 of sleepers listed with no disc that moves, 1 of the others, 2 of who moves."""
+    """Overwrites ``role`` (n,): 0 of sleepers listed with no disc that moves, 1 of the others, 2 of moving discs."""
     for i in range(asleep.shape[0]):
         role[i] = 0 if asleep[i] == ASLEEP else 2
     for i in range(asleep.shape[0]):

@@ -1,4 +1,4 @@
-"""Discs that are all held and at rest, and touch nothing: nothing can move, and what holds them bears what acts on
+"""Discs that are all held and at rest, without contacts: nothing can move, and the constraints bear what acts on
 them from outside.  Their contact steps change nothing else, and are left out.
 """
 
@@ -77,7 +77,7 @@ def bear(count, d, walls, last):
 
 
 def others_are_about(grains: State) -> bool:
-    """Whether a step does more than discs and walls: plates, rectangles, bodies, bonds, sleep or an energy book."""
+    """Whether a step does more than discs and walls: plates, rectangles, bodies, bonds, sleep or an energy budget."""
     others = grains.drivers, grains.segments, grains.bonds, grains.sleep, grains.book
     return bool(len(grains.plates) or len(grains.rectangles) or any(other is not None for other in others))
 

@@ -1,7 +1,7 @@
 """What every kind of side of the box provides.
 
 A kind is one file of this folder with its row in the register, ``BOUNDARY``, an object of a class derived from
-``Boundary``; choose.py finds it.  Most kinds are nothing but a partner: the slot inside the box that a link which
+``Boundary``; choose.py finds it.  Most kinds consist only of a partner: the slot inside the box that a link which
 leaves it is paired with, and what is added on the way (sides.py says how that steps).  A kind that needs more, such as
 the collided populations of a whole cell, settles its links itself (``own_links``).
 """
@@ -39,10 +39,10 @@ class OwnLinks(Protocol):
         (odd) in the flat populations;  force: body force density."""
 
     def state(self) -> dict[str, Any]:
-        """What can change between steps."""
+        """The quantities of these links that can change between steps, for a checkpoint."""
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take up a state."""
+        """Overwrite these quantities with those of ``state``."""
 
 
 class Boundary(Protocol):
@@ -74,7 +74,7 @@ class Boundary(Protocol):
 
     @property
     def closed(self) -> bool:
-        """Whether it holds the fluid back."""
+        """Whether no fluid crosses a side of this kind."""
         return not (self.passes or self.periodic)
 
     def partner(self, bounds: Any, link: Link) -> tuple[int, float]:

@@ -44,12 +44,12 @@ class BoundaryLinks:
             own.close(flat, parity, force)
 
     def set_velocity(self, side: str, velocity: Any) -> None:
-        """See Fluid.set_side_velocity."""
+        """Prescribe the velocity of a side, lattice units; see Fluid.set_side_velocity."""
         self.velocity.set(side, velocity)
         self.velocity.write(self.added)
 
     def set_density(self, side: str, density: float) -> None:
-        """See Fluid.set_side_density."""
+        """Prescribe the density of a pressure side, lattice units; see Fluid.set_side_density."""
         kind = self.bounds.sides.kind(side)
         own = self.own.get(kind)
         if not isinstance(own, OpenLinks):
@@ -66,7 +66,7 @@ class BoundaryLinks:
         return found
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take up a state."""
+        """Overwrite velocities and densities of the sides with those of ``state``."""
         if "velocity" in state:
             self.velocity.velocity[...] = state["velocity"]
             self.velocity.write(self.added)

@@ -8,7 +8,7 @@ from porescale.lbm.boundary.law import Boundary, Link
 
 
 class Periodic(Boundary):
-    """Joined to the opposite side."""
+    """A periodic side: joined to the opposite one."""
 
     name = "periodic"
     purpose = "joined to the opposite side"

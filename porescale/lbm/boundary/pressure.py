@@ -73,11 +73,11 @@ class OpenLinks:
         _let_in(flat, slots, to, self.source, self.along, self.weight, self.excess, *force)
 
     def state(self) -> dict[str, Any]:
-        """Densities of the sides."""
+        """Prescribed densities of the pressure sides, by side; empty without such a side."""
         return {"density": dict(self.density)} if self.source.size else {}
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Take up a state."""
+        """Overwrite the densities of the sides with those of ``state``."""
         if "density" in state:
             self.density |= {side: float(value) for side, value in state["density"].items()}
             self.write()
@@ -135,7 +135,7 @@ class PressureSide(Boundary):
     passes = settles = True
 
     def own_links(self, bounds: Any, dtype: DTypeLike) -> OpenLinks:
-        """Their links."""
+        """All links of the pressure sides of the box."""
         return OpenLinks(bounds, dtype)
 
 

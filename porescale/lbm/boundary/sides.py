@@ -110,7 +110,7 @@ class Bounds:
         return tuple(side for side, kind in zip(link.sides, kinds, strict=True) if kind is first)
 
     def owner(self, link: Link) -> Boundary:
-        """The kind of those sides."""
+        """The kind of boundary of the sides that the link belongs to (``owners``)."""
         return self.sides.boundary(self.owners(link)[0])
 
     def partners(self) -> list[Link]:
@@ -133,7 +133,7 @@ class Bounds:
         return (slot * (self.ny + 2) + at[1]) * (self.nx + 2) + at[0]
 
     def length(self, side: str) -> int:
-        """Cells along a side."""
+        """Number of cells along a side."""
         return self.ny if side in ("left", "right") else self.nx
 
     def place(self, side: str, link: Link) -> int:

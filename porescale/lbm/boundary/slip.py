@@ -1,7 +1,7 @@
 """Free slip: a link comes back mirrored and keeps its velocity along the side.
 
 A flat surface of water, a line of symmetry.
-Where two such sides meet the link is reversed.
+At a corner between two such sides the link is reversed.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from porescale.lbm.lattice import CX, CY, direction
 
 
 class Slip(Boundary):
-    """Specular reflection."""
+    """Free slip, by specular reflection of the populations."""
 
     name = "slip"
     purpose = "holds the fluid and lets it slide: a flat surface of water, a line of symmetry"

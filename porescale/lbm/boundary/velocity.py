@@ -63,7 +63,7 @@ class VelocityLinks:
         self.of(side)[:] = velocity
 
     def write(self, added: NDArray[np.floating]) -> None:
-        """Overwrite what these links add."""
+        """Overwrite in ``added`` what the links of velocity sides add to reflected populations."""
         _add(added, self._link, self._at, self._along, self.velocity)
 
 

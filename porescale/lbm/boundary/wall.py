@@ -1,6 +1,6 @@
 """A wall: half-way bounce-back, which may slide along itself (Ladd 1994).
 
-A sliding wall adds 6 w_i c_i . u.  Its motion ends where it meets another side that holds the fluid: the corner link
+A sliding wall adds 6 w_i c_i . u.  Its motion ends at a corner with another side that holds the fluid: the corner link
 adds nothing.  A lid drags 6 w u = u/6 less fluid past each section than its cells' velocities say; leaving its motion
 out of both corner links makes good for that, as a source in one corner and a sink in the other.  With it in, a cavity's
 flow is u/6 short, a first-order error (measured: extrema at Re 100, 32 cells, 7 instead of 1 %).
@@ -15,7 +15,7 @@ from porescale.lbm.lattice import CX, CY, OPPOSITE, WEIGHTS
 
 
 class Wall(Boundary):
-    """Bounce-back, with ``speed`` along itself."""
+    """Half-way bounce-back at a wall that may slide along itself with ``speed``, lattice units."""
 
     name = "wall"
     purpose = "holds the fluid and stops it, or drags it along"

@@ -1,1 +1,1 @@
-"""Collision operators, one a file."""
+"""Collision operators of the lattice-Boltzmann method, one per file."""

@@ -36,13 +36,13 @@ shear_rate.of(Bgk)(molecular_rate)
 
 @collide.of(Bgk, EddyBgk)
 def _collide(f, m, rate, law):
-    """Both halves relax with the same rate."""
+    """BGK collision: both halves of the populations relax with the same rate."""
     return relax_halves(f, m, rate, rate, law)
 
 
 @collide_partial.of(Bgk, EddyBgk)
 def _collide_partial(f, m, rate, part, law):
-    """Both halves at the same rate."""
+    """Partial BGK collision: both halves of the populations relax with the same rate."""
     return relax_partial(f, m, rate, rate, part, law)
 
 

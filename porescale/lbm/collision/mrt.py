@@ -1,10 +1,10 @@
 """Multiple relaxation times in the moments of Lallemand & Luo 2000, with body force (Guo, Zheng & Shi 2002).
 
-Symmetric moments, in the order of their paper: energy e, its square eps, the stresses p_xx and p_xy; antisymmetric
-ones: momentum j and energy flux q.  The stresses relax with 1/tau, e and eps with their own rates: e carries the bulk
-viscosity and damps sound.  The antisymmetric moments share the rate that holds the magic parameter (trt.py; for 3/16 it
-is the 8(2 - s)/(8 - s) of Ginzburg & d'Humieres 2003), so walls stay where they are.  Equilibria and sources of the
-force, per moment:
+Symmetric moments, in the order of Lallemand & Luo 2000: energy e, its square eps, the stresses p_xx and p_xy;
+antisymmetric ones: momentum j and energy flux q.  The stresses relax with 1/tau, e and eps with their own rates: e
+carries the bulk viscosity and damps sound.  The antisymmetric moments share the rate that holds the magic parameter
+(trt.py; for 3/16 it is the 8(2 - s)/(8 - s) of Ginzburg & d'Humieres 2003), so walls stay where they are.  Equilibria
+and sources of the force, per moment:
 
     e  -2 rho + 3 j²/rho,  6 u.F      eps  rho - 3 j²/rho,  -6 u.F      p_xx  (jx² - jy²)/rho,  2 (ux Fx - uy Fy)
     p_xy  jx jy/rho,  ux Fy + uy Fx   q  -j,  -F                         j  j,  F
@@ -57,7 +57,7 @@ collide_partial.of(Mrt, EddyMrt)(collide_then_add)
 
 @collide.of(Mrt, EddyMrt)
 def _collide(f, m, rate, law):
-    """Each moment relaxes with its own rate."""
+    """MRT collision: each moment relaxes with its own rate."""
     return relax_moments(f, m, rate, magic_rate(rate, law), law)
 
 

@@ -13,7 +13,7 @@ from porescale.common.compiled.jit import inline
 from porescale.lbm.collision.law import numbers, shear_rate, stress
 
 CONSTANT = 0.1
-"""C by default."""
+"""Smagorinsky constant C used where a scene gives none."""
 
 
 def eddy_version(law: Any) -> Any:

@@ -58,14 +58,14 @@ def magic_rate_of(law: Any) -> float:
 
 @half_force.of(TrtWithoutForce)
 def _no_force(law):
-    """None: adding -0 changes nothing, which compilers use."""
+    """Source of a fluid without body force: -0, since adding it changes nothing and compilers remove it."""
     none = -numbers(law.rate).zero
     return none, none
 
 
 @inline
 def magic_rate(rate, law):
-    """w- of a cell with w+ = ``rate``; one division, since with eddies every cell has its own."""
+    """Rate w- of a cell with w+ = ``rate``; one division, since with eddies every cell has its own."""
     c = numbers(rate)
     spread = c.one - c.half * rate  # (tau - 1/2)/tau
     return spread / (c.half * spread + law.magic * rate)
@@ -73,26 +73,26 @@ def magic_rate(rate, law):
 
 @collide.of(Trt, EddyTrt)
 def _collide(f, m, rate, law):
-    """Each half relaxes with its own rate."""
+    """TRT collision: each half of the populations relaxes with its own rate."""
     return relax_halves(f, m, rate, magic_rate(rate, law), law)
 
 
 @collide.of(TrtWithoutForce)
 def _collide_without_force(f, m, rate, law):
-    """The same of fluid that nothing drives."""
+    """TRT collision of fluid without body force."""
     minus = magic_rate(rate, law)
     return relax_by(f, rate, minus, symmetric_equilibrium(m, rate), (minus * m.jx, minus * m.jy))
 
 
 @collide_partial.of(Trt, EddyTrt)
 def _collide_partial(f, m, rate, part, law):
-    """Each half at its own rate."""
+    """Partial TRT collision: each half of the populations relaxes with its own rate."""
     return relax_partial(f, m, rate, magic_rate(rate, law), part, law)
 
 
 @collide_partial.of(TrtWithoutForce)
 def _collide_partial_without_force(f, m, rate, part, law):
-    """The same of fluid that nothing drives."""
+    """Partial TRT collision of fluid without body force."""
     c, own, minus = numbers(rate), magic_rate(rate, law), part.minus
     gain = symmetric_equilibrium(m, part.plus * rate)
     lost = c.one - part.kept - minus * (c.one - own)
