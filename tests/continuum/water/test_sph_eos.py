@@ -77,7 +77,7 @@ scene = validate(Scene, {
     "water": {"sound_speed": 20.0, "column": [{"width": 1.0, "height": 1.0}]},
     "inclusion": {"law": "linear", "density": 500.0, "sound_speed": 30.0,
                   "disc": [{"x": 0.5, "y": 0.5, "radius": 0.3}]},
-    "numerics": {"spacing": 0.1},
+    "numerics": {"spacing": 0.05},
     "time": {"end": 1.0},
     "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
 })
