@@ -18,13 +18,15 @@ from porescale.output.case import conclude, options, stage
 HERE = Path(__file__).resolve().parent
 METHODS: dict[str, dict[str, float | bool]] = {
     "as printed": {
-        "corrected": False, "printed_damping": True, "damping": 0.001, "diffusion": 0.0, "apart": 0.0,
+        "corrected": False, "printed_damping": True, "damping": 0.001, "diffusion": 0.0, "spacing_recovery": 0.0,
     },
-    "printed, alpha 1": {"corrected": False, "printed_damping": True, "damping": 1.0, "diffusion": 0.0, "apart": 0.0},
-    "zig-zags damped": {"corrected": False, "diffusion": 0.0, "apart": 0.0},
-    "corrected gradients": {"diffusion": 0.0, "apart": 0.0},
-    "diffusion by sound": {"diffusion": 0.0, "restless": 0.1, "apart": 0.0},
-    "diffusion by shear": {"apart": 0.0},
+    "printed, alpha 1": {
+        "corrected": False, "printed_damping": True, "damping": 1.0, "diffusion": 0.0, "spacing_recovery": 0.0,
+    },
+    "zig-zags damped": {"corrected": False, "diffusion": 0.0, "spacing_recovery": 0.0},
+    "corrected gradients": {"diffusion": 0.0, "spacing_recovery": 0.0},
+    "diffusion by sound": {"diffusion": 0.0, "sound_diffusion": 0.1, "spacing_recovery": 0.0},
+    "diffusion by shear": {"spacing_recovery": 0.0},
     "and parting": {},
 }  # fmt: skip
 """More of `SoilLaw`."""
