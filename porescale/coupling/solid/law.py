@@ -105,3 +105,12 @@ def no_rates(e, b, theta, slip_x, slip_y, solid):
 def collide_then_blend(f, cell, shares, m, rate, law, solid):
     """``collide_with_solid`` of any operator that has sharp rims."""
     return blend(f, collide(f, m, rate, law), cell, m, rate, solid)
+
+
+def with_sharp_rims(law: type) -> type:
+    """Give a law, as a decorator of its class, bodies for the share 1 - B and sharp rims; returns it."""
+    force_share.of(law)(free_share)
+    is_soft.of(law)(sharp)
+    rates.of(law)(no_rates)
+    collide_with_solid.of(law)(collide_then_blend)
+    return law

@@ -13,31 +13,15 @@ from typing import NamedTuple
 import numpy as np
 
 from porescale.coupling.solid.entry import Holds, SolidOperator
-from porescale.coupling.solid.law import (
-    blend,
-    collide_then_blend,
-    collide_with_solid,
-    force_share,
-    free_share,
-    is_soft,
-    momentum_to_solid,
-    no_rates,
-    rates,
-    sharp,
-)
+from porescale.coupling.solid.law import blend, momentum_to_solid, with_sharp_rims
 from porescale.lbm.collision.law import numbers
 
 
+@with_sharp_rims
 class OddSc1(NamedTuple):
     """one : the number 1, for its precision."""
 
     one: np.floating
-
-
-collide_with_solid.of(OddSc1)(collide_then_blend)
-force_share.of(OddSc1)(free_share)
-is_soft.of(OddSc1)(sharp)
-rates.of(OddSc1)(no_rates)
 
 
 @blend.of(OddSc1)

@@ -14,32 +14,18 @@ from typing import NamedTuple
 import numpy as np
 
 from porescale.coupling.solid.entry import SolidOperator
-from porescale.coupling.solid.law import (
-    blend,
-    collide_then_blend,
-    collide_with_solid,
-    force_share,
-    free_share,
-    is_soft,
-    momentum_to_solid,
-    no_rates,
-    rates,
-    sharp,
-)
+from porescale.coupling.solid.law import blend, momentum_to_solid, with_sharp_rims
 from porescale.coupling.solid.odd_sc1 import momentum_to_solid_sc1
 from porescale.lbm.collision.law import numbers
 
 
+@with_sharp_rims
 class Sc1(NamedTuple):
     """one : the number 1, for its precision."""
 
     one: np.floating
 
 
-collide_with_solid.of(Sc1)(collide_then_blend)
-force_share.of(Sc1)(free_share)
-is_soft.of(Sc1)(sharp)
-rates.of(Sc1)(no_rates)
 momentum_to_solid.of(Sc1)(momentum_to_solid_sc1)
 
 

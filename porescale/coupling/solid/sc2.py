@@ -11,31 +11,15 @@ from typing import NamedTuple
 import numpy as np
 
 from porescale.coupling.solid.entry import SolidOperator
-from porescale.coupling.solid.law import (
-    blend,
-    collide_then_blend,
-    collide_with_solid,
-    force_share,
-    free_share,
-    is_soft,
-    momentum_to_solid,
-    no_rates,
-    rates,
-    sharp,
-)
+from porescale.coupling.solid.law import blend, momentum_to_solid, with_sharp_rims
 from porescale.lbm.collision.law import numbers
 
 
+@with_sharp_rims
 class Sc2(NamedTuple):
     """one : the number 1, for its precision."""
 
     one: np.floating
-
-
-collide_with_solid.of(Sc2)(collide_then_blend)
-force_share.of(Sc2)(free_share)
-is_soft.of(Sc2)(sharp)
-rates.of(Sc2)(no_rates)
 
 
 @blend.of(Sc2)

@@ -13,31 +13,15 @@ from typing import NamedTuple
 import numpy as np
 
 from porescale.coupling.solid.entry import SolidOperator
-from porescale.coupling.solid.law import (
-    blend,
-    collide_then_blend,
-    collide_with_solid,
-    force_share,
-    free_share,
-    is_soft,
-    momentum_to_solid,
-    no_rates,
-    rates,
-    sharp,
-)
+from porescale.coupling.solid.law import blend, momentum_to_solid, with_sharp_rims
 from porescale.lbm.collision.law import numbers
 
 
+@with_sharp_rims
 class Sc3(NamedTuple):
     """one : the number 1, for its precision."""
 
     one: np.floating
-
-
-collide_with_solid.of(Sc3)(collide_then_blend)
-force_share.of(Sc3)(free_share)
-is_soft.of(Sc3)(sharp)
-rates.of(Sc3)(no_rates)
 
 
 @blend.of(Sc3)
