@@ -7,8 +7,6 @@ simulation.advance(100)
 Source of the method: Maeda & Sakai 2004; where its equations cannot be followed, the docstrings say so.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from porescale.common.core.version import VERSION

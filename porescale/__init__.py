@@ -5,8 +5,6 @@ simulation = build(load("cases/column_collapse", quality="draft"))
 simulation.advance(100)
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from porescale.common.core.version import VERSION

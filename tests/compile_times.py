@@ -1,7 +1,5 @@
 """Where the time of the suite goes: seconds spent compiling, kernel by kernel, printed by `pytest --compile-times`."""
 
-from __future__ import annotations
-
 import time
 from collections import Counter
 from typing import Any

@@ -1,7 +1,5 @@
 """Options of the test suite: slow tests are left out unless asked for, and can be run in shares."""
 
-from __future__ import annotations
-
 import os
 import random
 import signal

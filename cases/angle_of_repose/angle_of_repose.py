@@ -1,7 +1,5 @@
 """582 discs lose one wall of their box and flow over a toe: the angle of the slope they leave, against friction."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Dense and loose discs between servo walls are compressed: peak and critical friction angle, dilatancy, scatter."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """One element of soil in biaxial compression and in confined compression: strength, dilatancy, pressure at rest."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

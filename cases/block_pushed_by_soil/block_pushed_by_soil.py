@@ -1,7 +1,5 @@
 """Soil pushes a block off its base: which blocks it moves by itself, and at what push a heavy one slides."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """A disc bounces on a floor: restitution 1 and 0.5 under both rules for the end of a contact."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A pulse runs along a chain of discs: the exact profile, and the speed that a plot of it shows."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A bar of clay that spins bears tension: in one piece with repulsion, in pieces without."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from continuum_sph.validation.soil.bodies import bar_that_spins, elongation

@@ -1,7 +1,5 @@
 """A clump of two discs falls, bounces and spins: mass properties, impact, energy, rest, against exact answers."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """How the column is let go: leads of the front over three experiments for gates that rise at several speeds."""
 
-from __future__ import annotations
-
 import argparse
 
 import numpy as np

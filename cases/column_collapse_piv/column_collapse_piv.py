@@ -1,7 +1,5 @@
 """The tank and the paper's own simulation, each filmed and measured: when the water moves, which vortices there are."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Runs of the tank and the box filmed at 60 frames a second, measured, and held against the lattice's own velocity."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise

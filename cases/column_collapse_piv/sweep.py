@@ -1,7 +1,5 @@
 """Runs of the tank and of the box with one thing changed at a time: which vortices are there, and what makes them."""
 
-from __future__ import annotations
-
 import argparse
 import csv
 import io

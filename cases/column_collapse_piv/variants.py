@@ -3,8 +3,6 @@
 A setting is what `porescale run CASE --set SETTING` takes.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 TANK, BOX = "column_collapse_tank", "column_collapse"

@@ -1,7 +1,5 @@
 """Table 1's four numbers of the fluid, each beside what the other three imply, as `porescale check` refuses them."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A layer drained on both faces consolidates: isochrones over Terzaghi's, and what compressible water does to them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

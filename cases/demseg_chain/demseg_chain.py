@@ -1,7 +1,5 @@
 """A bonded chain of 20 discs stays where it is, and breaks when it is pulled, by the tutorial's in_cf0.dat."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

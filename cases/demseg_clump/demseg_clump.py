@@ -1,7 +1,5 @@
 """A rigid body of two discs, from the tutorial's deck, falls and bounces."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from matplotlib.figure import Figure

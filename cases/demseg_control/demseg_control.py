@@ -1,7 +1,5 @@
 """A segment moved and pushed into a disc: the tutorial's decks of controlled bodies, and the record that it prints."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from matplotlib.figure import Figure

@@ -1,7 +1,5 @@
 """The first deck of the tutorial: a disc falls and bounces."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from matplotlib.figure import Figure

@@ -1,7 +1,5 @@
 """The tutorial's decks of the angle of repose, one after the other: random discs, their settling, a wall taken away."""
 
-from __future__ import annotations
-
 import runpy
 from dataclasses import replace
 from pathlib import Path

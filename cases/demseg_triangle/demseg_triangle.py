@@ -1,7 +1,5 @@
 """Three segments that close are a triangle: the tutorial's deck."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from matplotlib.figure import Figure

@@ -1,7 +1,5 @@
 """Columns of dry discs collapse to both sides on a plane: run-out over the aspect ratio, against others' and films."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A dry levee is wetted from one side: its wetting line at stages, how it sags, and how fast its foot advances."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Larger grains: nothing changes in an element test, all is stronger in a shear box that is few grains long."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A chain of 20 bonded discs hangs as a catenary, is pulled taut, and breaks at F = k δ0."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Water drawn into dry soil under a constant head: way of the wetting front over the root of time."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Two columns of liquid collapse, one of water and one a thousand times more viscous, from the start of the paper."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """One soil at two scales: grains make a material file, and the continuum that reads it does what the grains do."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A drop that was kicked swings: its period against the exact one, and the pressure in a drop at rest against σ/R."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The lid-driven cavity at a Reynolds number of 1000, filmed by the virtual camera and measured."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 from itertools import pairwise

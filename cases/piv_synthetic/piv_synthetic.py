@@ -1,7 +1,5 @@
 """Displacements of synthetic pairs, known exactly, as this package measures them and as OpenPIV does beside it."""
 
-from __future__ import annotations
-
 import io
 import time
 from contextlib import redirect_stdout

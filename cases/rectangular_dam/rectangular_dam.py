@@ -1,7 +1,5 @@
 """A rectangular dam between two water levels: discharge and free surface over the exact ones; the dam being wetted."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path

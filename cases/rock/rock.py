@@ -1,7 +1,5 @@
 """Rock of bonded discs, triangles and Voronoi cells is pulled and pressed: curves, strengths, emissions, cracks."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A disc rolls down a slope and on along the floor: springs a hundred times as stiff change nothing."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path

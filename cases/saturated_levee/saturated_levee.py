@@ -1,7 +1,5 @@
 """A saturated levee under a sudden rise of the river: its toe goes first, then its slope, then water over its crest."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path

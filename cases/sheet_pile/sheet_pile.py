@@ -1,7 +1,5 @@
 """Seepage under a sheet pile before anything fails: discharge and exit gradient over the depth of the pile."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Failure of the ground behind a sheet pile: the head at which heave begins, and what follows."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Dense and loose discs in a periodic cell are sheared under a constant normal stress, to the same critical state."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What keeps stresses of soil smooth and what lets it creep: a collapsing column and level ground by seven methods."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

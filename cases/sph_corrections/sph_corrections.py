@@ -1,7 +1,5 @@
 """What each correction to the printed method buys: vortices, flow between plates, water at rest, method by method."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """How long a step may be: bisected for a disc on a floor, mapped over damping, and what it does to one that bounces."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

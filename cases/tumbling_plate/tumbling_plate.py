@@ -1,7 +1,5 @@
 """A falling plate flutters or tumbles by its inertia alone: same weight in water, same speed, another density."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path

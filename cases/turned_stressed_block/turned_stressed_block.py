@@ -1,7 +1,5 @@
 """A stressed block turned by a right angle: its stress has to turn with it; with eq. 38 as printed it does not."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

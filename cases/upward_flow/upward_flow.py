@@ -1,7 +1,5 @@
 """Upward flow through soil: Darcy's law over four decades of permeability, and the gradient at which soil boils."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from continuum_sph.validation.seepage.permeameter import BOILING, PERMEABILITIES, boiling, darcy, ramp

@@ -1,7 +1,5 @@
 """Small tanks for very long: water at rest, that sloshes until it rests, stirred; ground, and ground under water."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

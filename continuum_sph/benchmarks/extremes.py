@@ -1,7 +1,5 @@
 """What `continuum-sph study extremes` tries: each number from mild to absurd, in a flow that shows what it does."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from typing import Any

@@ -1,7 +1,5 @@
 """What `continuum-sph study extremes` tries on soil with water in it: permeabilities from gravel to rock."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from continuum_sph.builders.sanity import Now, advance_one

@@ -4,8 +4,6 @@ It is what the manual shows and what tests hold the fast kernels against.  Left 
 damping, diffusion of stress and volume, what keeps particles apart, tension, and the stress across the plane.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -5,8 +5,6 @@ artificial viscosity without β, hydrostatic density diffusion, and no energy bu
 and compiled without where it has not.  Sums run in the order of `rates`; the pair list is the one that everybody has.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,8 +1,6 @@
 """Kinds of continuum scenes for `study parts`: a column of water on its way down, and what each choice adds to it; soil
 of the same size, water in it, and air in the lower half of its pores."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

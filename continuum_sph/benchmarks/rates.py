@@ -1,7 +1,5 @@
 """Rate of weakly compressible water: a column on its way down, pair list rebuilds included."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from continuum_sph.builders.soil import geostatic

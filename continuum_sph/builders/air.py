@@ -6,8 +6,6 @@ the same on both sides of a front.  Drag on air: β = n² μ_a/κ of the same in
 that ρ g/k of water stands there times μ_a/μ_w; its own conductivity is k_a = k (μ_w/μ_a) ρ_a/ρ_w.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a scene is built into: a system that advances in time, and the parts that record it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, Protocol
 

@@ -1,7 +1,5 @@
 """The second fluid of a scene: what it is, where it starts, how it rises, how round it is and in how many pieces."""
 
-from __future__ import annotations
-
 import numpy as np
 from contourpy import contour_generator
 from numpy.typing import NDArray

@@ -4,8 +4,6 @@ A disc of light fluid in water that has the pressure of water at rest is not at 
 tank as sound and rings there.  The pressure that fluids without compressibility would have leaves ∇·(g - ∇p/ρ) = 0.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array

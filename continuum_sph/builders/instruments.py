@@ -7,8 +7,6 @@ A level is where a column of water is half full: the highest y at which Σ V_i w
 strip falls to one half, w the cubic spline on a line.  A drop of one particle is no surface.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Soil with water in its pores: what is recorded of both layers together, and checks of their state."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

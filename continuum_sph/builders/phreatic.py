@@ -3,8 +3,6 @@
 phreatic.csv has a column for each strip, PITCH spacings apart; heights are those of `instruments.surface_height`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Soil and the water in its pores: both layers of particles, ready to move together."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

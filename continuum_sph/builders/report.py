@@ -1,7 +1,5 @@
 """The report of `check` on a scene before it runs."""
 
-from __future__ import annotations
-
 from continuum_sph.builders.seepage_report import seepage_report
 from continuum_sph.builders.soil_report import soil_report
 from continuum_sph.builders.water_report import water_report

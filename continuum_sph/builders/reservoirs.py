@@ -1,7 +1,5 @@
 """Water kept at levels: the reservoirs of a scene, and what is recorded of them."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

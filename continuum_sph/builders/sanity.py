@@ -1,7 +1,5 @@
 """Checks of particles: finite values, distinct positions, no jumps, a step within its bounds."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 

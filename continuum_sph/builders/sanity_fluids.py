@@ -1,7 +1,5 @@
 """Densities and speeds that the fluids of a flow can have, and how fast sound goes in them."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """The report of `check` on a scene of soil and water before it runs."""
 
-from __future__ import annotations
-
 from continuum_sph.builders.air import air_report, dry_pores
 from continuum_sph.builders.pore_water import largest_modulus, pore_law
 from continuum_sph.builders.soil import soil_law, soil_particles, soil_section

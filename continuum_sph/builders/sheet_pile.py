@@ -5,8 +5,6 @@ to some way before the tip, where it has a root; h0 is that of the open water ab
 is dry.  i is what least squares fits to the particles beside the pile.  The soil there has lost its weight at i = i_c.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

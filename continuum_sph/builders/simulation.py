@@ -1,7 +1,5 @@
 """A scene as `porescale.common.record` drives it: something that moves, and a list of parts."""
 
-from __future__ import annotations
-
 from typing import Any, TypeVar
 
 from continuum_sph.builders import mixture, soil, water

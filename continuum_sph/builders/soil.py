@@ -1,7 +1,5 @@
 """Soil in a tank: particles, their material law, what is recorded of them, and checks of their state."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

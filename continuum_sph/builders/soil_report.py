@@ -1,7 +1,5 @@
 """The report of `check` on a scene of soil before it runs."""
 
-from __future__ import annotations
-
 import math
 
 from continuum_sph.builders.soil import material_of, soil_law, soil_particles, soil_section

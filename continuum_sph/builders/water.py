@@ -1,7 +1,5 @@
 """Water in a tank: particles, their flow equations, what is recorded of them, and checks of their state."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The report of `check` on the water of a scene before it runs."""
 
-from __future__ import annotations
-
 import math
 
 from continuum_sph.builders.water import wall_layers, water_law, water_state

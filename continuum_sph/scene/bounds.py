@@ -1,7 +1,5 @@
 """Bounds of the sections: wider than any flow of water in practice, and inside them every product is finite."""
 
-from __future__ import annotations
-
 SMALLEST, LARGEST = 1e-6, 1e5
 """Smallest and largest length that a scene may give, m."""
 WEAKEST = 1e-6

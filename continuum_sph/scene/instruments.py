@@ -1,7 +1,5 @@
 """The sections of what is measured in a tank."""
 
-from __future__ import annotations
-
 import pydantic
 
 from porescale.common.schema.sections import Section, quantity

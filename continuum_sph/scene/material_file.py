@@ -4,8 +4,6 @@ Values given in the scene take precedence.  k is not that of the test's own wate
 and the scene's own water, k = K ρ g/μ.  The card keeps where the numbers come from, and their standard errors.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Mapping
 from pathlib import Path

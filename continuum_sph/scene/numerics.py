@@ -1,7 +1,5 @@
 """The section of the particles and of what corrects them."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import pydantic

@@ -1,7 +1,5 @@
 """The sections of how long a run lasts and of what is recorded."""
 
-from __future__ import annotations
-
 import pydantic
 
 from porescale.common.schema.sections import Section, quantity

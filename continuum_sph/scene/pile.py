@@ -1,7 +1,5 @@
 """The section of a sheet pile."""
 
-from __future__ import annotations
-
 import math
 from typing import Literal
 

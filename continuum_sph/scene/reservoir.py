@@ -1,7 +1,5 @@
 """The section of prescribed water levels."""
 
-from __future__ import annotations
-
 import pydantic
 
 from porescale.common.core.errors import Fault

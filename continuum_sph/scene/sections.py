@@ -1,7 +1,5 @@
 """The scene of a continuum: all its sections.  SI numbers or texts with units; an absent section builds nothing."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, ClassVar
@@ -88,7 +86,7 @@ class Scene(Section):
         return spacings(self.tank.width, spacing) * spacing, spacings(self.tank.height, spacing) * spacing
 
     @pydantic.model_validator(mode="after")
-    def _fits(self) -> Scene:
+    def _fits(self) -> "Scene":
         tank, spacing = self.tank, self.numerics.spacing
         faults = self._unresolved()
         if self.soil is not None:

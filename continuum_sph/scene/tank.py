@@ -1,7 +1,5 @@
 """The section of the tank that holds everything."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import pydantic

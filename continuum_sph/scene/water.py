@@ -1,7 +1,5 @@
 """The section of the water."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import pydantic

@@ -1,7 +1,5 @@
 """Drag between the layers over a given time, exactly opposite on both; derivation: `continuum_sph.seepage`."""
 
-from __future__ import annotations
-
 from continuum_sph.seepage.mixture import (
     DENSITY,
     MASS,

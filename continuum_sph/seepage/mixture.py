@@ -4,8 +4,6 @@ Notation and derivation: `continuum_sph.seepage`.  What water finds about it of 
 `gather_soil`, drag's sums too, with the weights of all pairs; soil finds its weights in `load_soil`.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from continuum_sph.seepage.overlap import overlap_kernel

@@ -4,8 +4,6 @@ The kernel is the cubic spline: its sum over a square lattice of spacing h/1.3 i
 and so are porosity and drag of water that moves through soil at rest; that of Wendland C2 is to 0.0105.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Pore water: a `Flow` coupled to the soil's particles; derivation: `continuum_sph.seepage`."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

@@ -10,8 +10,6 @@ behind its first row, and the pressures about it would push it back.  Good for w
 comes in, nothing is taken out.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -14,8 +14,6 @@ Arrays keep their lengths: particles that are not in the tank have no mass and w
 far from each other and from all else that they have no neighbours.  A row without mass is a waiting particle.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any

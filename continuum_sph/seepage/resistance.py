@@ -9,8 +9,6 @@ k is given at the porosity n0 of each soil: its water takes R = Σ_s ψ_is/k_s f
 (Kozeny 1927, Carman 1937).  The first is that of k for n = n0 and of k (1 - n0)/(1 - n) else.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from porescale.common.compiled.jit import inline

@@ -19,8 +19,6 @@ What is on which side is that of the last build of the list, in which particles 
 that would enter the pile is put on its surface, without its speed across; what energy that takes is not counted.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The soil as the water equations need it: positions, velocities and permeability of its grains."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -1,7 +1,5 @@
 """One step of two layers: half a drag, kicks and drifts of both, stresses, pressures, forces, the other half."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Protocol
 

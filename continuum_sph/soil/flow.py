@@ -5,8 +5,6 @@
 Eq. 48 of Maeda & Sakai 2004 has this order but for the rate of the step before, which no Δt makes stable for sound.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -48,7 +46,7 @@ class SoilFlow:
     soil: Soil
     law: SoilLaw
     pairs: PairList
-    before_force: Callable[[SoilFlow], None] | None = None
+    before_force: "Callable[[SoilFlow], None] | None" = None
     step: int = 0
     time: float = 0.0
     next_step: float = 0.0

@@ -13,8 +13,6 @@ Eq. 37 of Maeda & Sakai 2004 has K = 1 and no more, and the opposite sign of v_j
 compression positive.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from continuum_sph.soil.state import GXX, GXY, GYX, GYY, VOLUME, VX, VY, X, Y

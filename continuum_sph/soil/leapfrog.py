@@ -1,7 +1,5 @@
 """Kernels that move soil particles one by one."""
 
-from __future__ import annotations
-
 from continuum_sph.soil.state import MASS, VOLUME, VX, VY, X, Y
 from porescale.common.compiled.jit import parallel_kernel, prange
 

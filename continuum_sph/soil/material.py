@@ -10,8 +10,6 @@ the other two.  That of Maeda & Sakai 2004, τ_f = p tan φ_d, is the same with
 sin φ = tan φ_d: their 0.5 is φ = 30°.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

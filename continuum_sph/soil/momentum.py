@@ -24,8 +24,6 @@ they weigh (`SoilFlow` refuses others).  By how much soil has come apart it keep
 a tongue that gave volume away is the denser, up to a fifth, once it has closed, until it has its neighbours' volume.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Parameters of the particles of a soil, and the time steps that they allow."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from continuum_sph.soil.material import Material

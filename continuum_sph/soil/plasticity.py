@@ -15,8 +15,6 @@ Source: Bui, Fukagawa, Sako & Ohno, Int. J. Numer. Anal. Meth. Geomech. 32 (2008
 back); Jaumann's rate: eq. 45 of Maeda & Sakai 2004.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from continuum_sph.soil.material import (

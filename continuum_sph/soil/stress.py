@@ -9,8 +9,6 @@ What pushes is T = σ K + t J, t = rest σ : J (1 - M)/tr M, so that Σ V σ : G
 any velocities: see `gradient` for J and rest.  Rigid turning takes no work, and forces no angular momentum.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

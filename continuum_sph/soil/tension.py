@@ -14,8 +14,6 @@ A bar that spins bears tension of 2 % of its stiffness so, and flies to pieces a
 without cohesion has no tension to act on, and soil that cannot yield is left alone.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from continuum_sph.soil.state import MASS, VOLUME, XX, XY, YY, X, Y

@@ -8,8 +8,6 @@ Source: Adami, Hu & Adams, J. Comput. Phys. 231 (2012) 7057, for pressure; stres
 Int. J. Numer. Anal. Meth. Geomech. 37 (2013) 31.  A wall does not pull.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from continuum_sph.soil.gradient import before

@@ -8,8 +8,6 @@ loop itself writes to is an argument of the kernel's own: numba takes an entry o
 and may drop what is stored in it.  (It does not where a function that is called stores it.)
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from porescale.common.compiled.jit import inline

@@ -27,8 +27,6 @@ that, and stops itself.  Under "linear" water in the open keeps moving at five t
 2.8 in place of 3.9·10⁻³ in 10⁵ steps; among grains, whose drag stops it, it stands.
 """
 
-from __future__ import annotations
-
 from porescale.common.compiled.jit import inline
 from porescale.common.compiled.simd import maximum, minimum
 

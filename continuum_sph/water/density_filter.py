@@ -5,8 +5,6 @@ uniform density, so it makes no pressure and cannot stand for continuity; every 
 that continuity collects.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from continuum_sph.water.smoothing import kernel_value

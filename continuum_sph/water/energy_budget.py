@@ -6,8 +6,6 @@ at the least density, and for XSPH, which moves particles, and the filter, which
 rates do.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from continuum_sph.water.state import BY_SHIFTING, BY_TENSION, BY_WALLS, DIFFUSIVE, STOPPED, VISCOUS

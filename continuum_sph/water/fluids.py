@@ -3,8 +3,6 @@
 A layer's particles carry the number of their fluid, their material; kernels read its row.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -8,8 +8,6 @@ Boundary particles stay where they are, do not interact, and carry a density tha
 fluid, and the pressure that goes with it.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -7,8 +7,6 @@ which keeps its forces opposite and its energies in balance.  Where neighbours l
 singular: L goes over to the unit tensor as the smaller eigenvalue of M falls from FULL to NONE.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from continuum_sph.water.bundles import image, inverse_period, nearest_image

@@ -4,8 +4,6 @@ As of `rates`, what a scene has no use for is None.  Pressures are those of one 
 compiled: of several fluids each takes a call, which leaves the particles of the others alone.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from continuum_sph.water.eos.law import pressure_of

@@ -1,7 +1,5 @@
 """A flow without a next step: the error that names the place, for the run loop."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

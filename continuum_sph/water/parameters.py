@@ -1,7 +1,5 @@
 """Parameters of the particles of a flow, and the time steps that they allow."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

@@ -5,8 +5,6 @@ are kernel averages over the fluid, the pressure with the hydrostatic difference
 stands in for eqs 50, 51 of Maeda & Sakai 2004 (Morris' image velocities), which need a straight wall's distance.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -18,8 +18,6 @@ disk, each kind by itself: it holds no branch, load or sum of anything else.  Su
 `rates_fluid`, over those in walls in `rates_walls`.
 """
 
-from __future__ import annotations
-
 from continuum_sph.water.bundles import plus, plus_scaled
 from continuum_sph.water.fluids import SOUND, fluid_number
 from continuum_sph.water.rates_fluid import fluid_sums

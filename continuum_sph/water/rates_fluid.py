@@ -1,7 +1,5 @@
 """What the partners in the fluids do to one particle: the sums of `rates` over them, several at a time."""
 
-from __future__ import annotations
-
 from continuum_sph.water.bundles import inverse_period, nearest_image, plus_scaled, scaled
 from continuum_sph.water.density import HYDROSTATIC, LINEAR, diffusion_share, noise_scale
 from continuum_sph.water.fluids import COHESION, SOUND, VISCOSITY, fluid_number, pair_fluid

@@ -1,8 +1,6 @@
 """What walls do to one particle: those that take the pressure of the fluid before them (`pressure_walls`), and those
 whose particles move as the fluid's image (`image_walls`)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from continuum_sph.water.bundles import image

@@ -18,8 +18,6 @@ A free surface is one-sided by nature and must not be filled: its particles (tra
 see one move along the surface only, its normal being where the trace falls steepest.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from continuum_sph.water.bundles import inverse_period, nearest_image

@@ -4,8 +4,6 @@ Cubic spline: eq. 8 of Maeda & Sakai 2004.  Wendland C2: Wendland, Adv. Comput. 
 Dehnen & Aly, MNRAS 425 (2012) 1068: no pairing instability at any number of neighbours.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """State of a layer of smoothed particles: arrays, fluid particles first, wall particles after them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -16,8 +16,6 @@ circle for ωΔt < 0.7, with damping 1 - (ωΔt)⁴/2; with D alone (no extrapol
 uses ρ*; ρ itself is never extrapolated.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

@@ -19,8 +19,6 @@ from the interface.  The form of Maeda & Sakai 2004, a pull within one material 
 the range of the pressure, so it changes the equation of state and has no tension that could be set.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from continuum_sph.water.bundles import image

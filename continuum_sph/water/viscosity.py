@@ -15,8 +15,6 @@ Artificial viscosity: eqs 35, 36 of Maeda & Sakai 2004 (Monaghan & Gingold, J. C
 Sakai 2004 have μ_ij without h and with r·x for v·r.
 """
 
-from __future__ import annotations
-
 from porescale.common.compiled.jit import inline
 from porescale.common.compiled.simd import maximum, minimum
 

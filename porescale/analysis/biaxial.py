@@ -12,8 +12,6 @@ Stiffness is that of the first loading to half of the largest deviator q = σ_yy
 strain: q = a E/(1 - ν²) and ε_xx = a ν/(1 - ν), both slopes by least squares through the origin (E50 of practice).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 

@@ -11,8 +11,6 @@
 Blur moves a steepest change inwards by its variance over twice the radius, nothing to the centre.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import cv2

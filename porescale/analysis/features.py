@@ -1,7 +1,5 @@
 """What a trade study may read of a run besides its tables: the flow field, and where its strongest vortex lies."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from pathlib import Path
 

@@ -6,8 +6,6 @@ across: a biaxial test.  The rate follows from the inertial number I = rate √(
 et al. 2005, Phys. Rev. E 72, 021309): quasi-static to I = 1e-3.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

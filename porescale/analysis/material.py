@@ -9,8 +9,6 @@ format          1
 [made]          by what, of what, how: version, commit, scene, seeds, lambda, cells, grains, pressure …
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -12,8 +12,6 @@ pi/(2 sqrt 3);  and Kozeny & Carman,  K/R² = (1 - c)³/(4 k c²),  k = 5.  R, d
 times the grains'.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Flow along y through the whole periodic cell, discs with the radius used in the 
 of the lattice is of second order, so that it is a third of what half the cells change.
 """
 
-from __future__ import annotations
-
 from porescale.analysis.permeability import Measured, measure
 from porescale.dem.prepare.compaction import Array
 

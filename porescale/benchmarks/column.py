@@ -1,7 +1,5 @@
 """Rate of the main job as a whole: the underwater column collapse, all of a step included, in cells per second."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from porescale.benchmarks.lbm import bytes_of

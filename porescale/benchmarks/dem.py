@@ -2,8 +2,6 @@
 steps.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from porescale.common.core.constants import GRAVITY

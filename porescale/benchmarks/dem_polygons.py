@@ -1,7 +1,5 @@
 """Cost of polygons beside discs: hexagons that touch all round, by their sides, and as densely packed discs."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

@@ -1,8 +1,6 @@
 """Grains in water for very long: six that fly about in a periodic box, and a heap at the bottom of a closed one, which
 may sleep."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

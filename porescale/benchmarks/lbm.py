@@ -1,7 +1,5 @@
 """Rate of the fluid: cells updated per second, and the share of the memory bandwidth that is."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from porescale.common.core.errors import Fault, InputError

@@ -4,8 +4,6 @@ They are what `study parts` holds scenes of grains against, with friction and wi
 turn, and contacts have no history.  Law and step as in contact/law.py and kick.py; releases at zero force.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@ It is what `study parts` holds a scene of water against: in place as in `lattice
 d'Humieres 2008) without a body force, half-way bounce-back at all four sides.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -4,8 +4,6 @@ It is what the manual shows and what tests hold the fast kernels against.  Left 
 the estimate so far, and the fit of splines to all pixels that follows.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -6,8 +6,6 @@ They are what `study parts` holds a scene of grains in water against: TRT withou
 their loads at once.  The areas of cells under a disc are coverage.py's: there is nothing in them to leave out.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Kinds of scenes of fluid and grains for `study parts`: each built from a scene, as a user's scene is."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from copy import deepcopy
 from typing import Any

@@ -6,8 +6,6 @@ longest waves: in a collapse hardly a cell goes slower than 1e-6 cells a step fr
 it), though a look at all cells costs but a share of a step.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Rate of measuring image pairs: passes at 64, 32 and 16 px with deformation, half overlap."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from porescale.common.core.errors import Fault, InputError

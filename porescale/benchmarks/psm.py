@@ -1,7 +1,5 @@
 """Rate of the fluid with grains in it: coverage anew, saturated cells and loads in each step; plain fluid beside it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

@@ -3,8 +3,6 @@
 Every flow starts as hard as it can: shear layers thinner than a cell, a lid that moves at once at its full speed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection
 from typing import Any

@@ -3,8 +3,6 @@
 Discs that fall, are towed, fly and stand in beds, each from mild to extreme, and started at once.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

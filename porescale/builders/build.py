@@ -1,7 +1,5 @@
 """From a scene to a simulation: fluid and grains at time 0, then each part of which the scene has the section."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

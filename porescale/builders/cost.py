@@ -1,7 +1,5 @@
 """What a run will cost: memory, and a time from this machine's last runs."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import math

@@ -3,8 +3,6 @@
 Refusals are faults with a repair; whatever merely deserves a thought is a warning.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 

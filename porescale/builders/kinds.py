@@ -3,8 +3,6 @@
 A part is imported where it is made, so that nothing of an absent section is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple, TypeVar
 

@@ -5,8 +5,6 @@ Records take from each part its columns, tables and arrays; checkpoints for its 
 neither built nor imported.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any

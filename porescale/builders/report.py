@@ -1,7 +1,5 @@
 """The report of ``check`` on a scene: every derived number, the regime, the parts that will be built, and the cost."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -3,8 +3,6 @@
 Scenes are read with this class; without its checks it raises an error.
 """
 
-from __future__ import annotations
-
 from porescale.builders.checks.fluid import check_solid_options
 from porescale.builders.checks.needed import check_needed, check_places
 from porescale.builders.initial.circles import grains_of

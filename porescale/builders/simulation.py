@@ -1,7 +1,5 @@
 """A simulation: the parts that a scene has sections for, driven through time.  A `Model` of `common.record`."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, TypeVar
 

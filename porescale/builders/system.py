@@ -1,7 +1,5 @@
 """What a scene is at time 0, before parts are made of it: fluid, grains, and what is in both."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from porescale.builders.derive import Derived

@@ -1,7 +1,5 @@
 """The picture of `porescale homogenise`: the tests of all packings, and every number with its error bar."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

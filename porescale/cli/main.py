@@ -1,7 +1,5 @@
 """The command line ``porescale``."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from cyclopts import App

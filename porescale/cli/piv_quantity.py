@@ -1,7 +1,5 @@
 """Quantities given as options of ``porescale piv``."""
 
-from __future__ import annotations
-
 from porescale.common.core.errors import Fault, InputError
 
 

@@ -6,8 +6,6 @@ fluid inside each, m_f dU/dt of a member at its place, are then those of the rig
 it must.  Cells that two members cover belong to both by halves (load.py), so that their loads add up.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

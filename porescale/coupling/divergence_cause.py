@@ -4,8 +4,6 @@ At the end every number is huge.  The cause shows in the last state within bound
 on the map of stability (limits.py).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from porescale.coupling import limits

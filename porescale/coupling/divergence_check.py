@@ -1,7 +1,5 @@
 """Whether a fluid, alone or with grains, has diverged, and if so: where, since when, and why, in words."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -15,8 +15,6 @@ m_v <= 0, take up all of it.
 All of it is in ``total_load``, line by line: follows is beta, response_share is m_p/(m_p + m_v).
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -7,8 +7,6 @@ is distributed over its corners in shares like those of its mass, which add up t
 centroid however the body turns in the contact steps.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

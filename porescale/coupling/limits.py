@@ -5,8 +5,6 @@ Each is a row or a column of the tables in docs/stability/stability.md, from whi
 file: ``Operator.holds``, ``SolidOperator.holds``.
 """
 
-from __future__ import annotations
-
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.lbm.collision.choose import OPERATORS
 

@@ -15,8 +15,6 @@ disc (of mass m), each against a neighbour as light, if C dt <= m/3 (integrate.p
 The gap is that between the hydraulic radii, or else that between the mechanical ones; never both.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

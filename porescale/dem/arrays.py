@@ -1,7 +1,5 @@
 """Arrays as kernels take them: flat NamedTuples, which loops over threads take as well."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

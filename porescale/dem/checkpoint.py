@@ -1,7 +1,5 @@
 """What a system of grains is now, as arrays and numbers, and back from there bit for bit."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

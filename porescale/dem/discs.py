@@ -4,8 +4,6 @@ Mass and moment of inertia are those of a homogeneous cylinder per metre of dept
 r^2/2. Velocity and spin are held at half steps (integrate.py); position and angle at whole steps.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

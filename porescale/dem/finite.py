@@ -1,7 +1,5 @@
 """Numbers that are none in the state of a system of grains."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from porescale.common.compiled.jit import kernel

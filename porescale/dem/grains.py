@@ -1,7 +1,5 @@
 """A system of grains: discs, their law, walls and plates around them, and the list of pairs, stepped together."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Which contact law holds where in a system: between discs, by their materials, and at every surface."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The pair list of a system of grains, and the candidates of its segments: brought up to date where they are due."""
 
-from __future__ import annotations
-
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.contact.law import springs_of

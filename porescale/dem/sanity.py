@@ -1,7 +1,5 @@
 """Checks that the state of a system of grains is finite and within bounds."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from porescale.dem.finite import check_finite, unstable

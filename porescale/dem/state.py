@@ -4,8 +4,6 @@ Kernels write into the arrays; functions over a State stand in the files that im
 periodic sides.  SI units per metre of depth.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -50,7 +48,7 @@ class Sleeping(Protocol):
     def count(self) -> int:
         """Number of discs that sleep."""
 
-    def step(self, grains: State, dt: float, drag: float, count: int) -> int:
+    def step(self, grains: "State", dt: float, drag: float, count: int) -> int:
         """Up to ``count`` contact steps of the discs that are awake; returns how many are left for all."""
 
     def state(self) -> dict[str, Any]:

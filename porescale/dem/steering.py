@@ -1,7 +1,5 @@
 """Clumps, controlled bodies, moving walls and the strain of the cell of a system: set up and read."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import cast
 
@@ -43,7 +41,7 @@ def hold(grains: State, disc: int | slice | Array, x: bool = True, y: bool = Tru
     grains.withheld[disc] = 0.0
 
 
-def steering_of(grains: State) -> Steering:
+def steering_of(grains: State) -> "Steering":
     """Drivers of ``grains``: there from the first use on."""
     if grains.drivers is None:
         grains.drivers = Steering(grains)

@@ -5,8 +5,6 @@ velocities of half a step before (lagged damping):
     v(n+1/2) = v(n-1/2) + dt F(x(n), v(n-1/2))/m,      x(n+1) = x(n) + dt v(n+1/2).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from porescale.common.compiled.jit import kernel

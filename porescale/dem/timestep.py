@@ -1,7 +1,5 @@
 """Stable contact step: of discs in any packing, and of clumps, as the mass of a disc with the same limit."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -11,8 +11,6 @@ Choices where the DEMseg tutorial (Matsushima) gives nothing, or contradicts its
   and fly apart).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

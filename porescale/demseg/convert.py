@@ -6,8 +6,6 @@ round-off, as long as it does not grow.  Scenes have no angle at the start, whic
 Decks that go on from another run (jclid 1) raise an error: scenes do not start with springs that are stretched.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Callable

@@ -20,8 +20,6 @@ in_bc.dat:
 jclid 0: a new start;  1: goes on from in_cf.dat, see state.py;  3: bonded by in_cf0.dat, see tension.py.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from pathlib import Path
 

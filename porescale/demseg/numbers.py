@@ -4,8 +4,6 @@ A record begins on a new line, goes on over as many lines as it needs, and ends 
 value there must be a comment: any words, or what comes after ! or #.  Lines without a value are passed over.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Sequence

@@ -10,8 +10,6 @@ At the end: new_in_gm.dat, new_in_bc.dat (jclid 1), new_in_cf.dat (see state.py)
 for the next run, without new_.
 """
 
-from __future__ import annotations
-
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any

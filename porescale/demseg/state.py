@@ -5,8 +5,6 @@ single number), then its numbers, eight a line, read back bit for bit.  Names ar
 of parts joined by "/".  Types: float64, int64, int32, uint8.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

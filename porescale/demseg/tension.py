@@ -6,8 +6,6 @@ ends of segments, those that coincide once; a number beyond the points is a segm
 With discs only that is the layout of the DEMseg tutorial, which gives none for segments.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

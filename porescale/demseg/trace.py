@@ -1,7 +1,5 @@
 """A deck run in memory: its energies, records and places over time, as numbers and in pictures."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace

@@ -4,8 +4,6 @@ Lattice units.  Cell (row y, column x), from 0, has its centre at (x + 1/2, y + 
 Fields are (ny, nx) as ``Fluid.fields`` gives them; corners of cells are (ny + 1, nx + 1).
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

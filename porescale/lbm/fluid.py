@@ -11,8 +11,6 @@
 Collision and streaming are one sweep over the cells; ``Fluid.advance`` is the step.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any

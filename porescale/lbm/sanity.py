@@ -1,7 +1,5 @@
 """Bounds beyond which what the lattice holds is no fluid any more."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Bonds that broke: breaks.csv."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math

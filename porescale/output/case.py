@@ -3,8 +3,6 @@
 A row of expected.toml holds name, value, tolerance, unit and because; the script gives a number for every name.
 """
 
-from __future__ import annotations
-
 import argparse
 import io
 import tomllib

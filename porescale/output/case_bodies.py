@@ -1,7 +1,5 @@
 """Drawings of discs, polygons and segments for cases that are scripts: by piece, with broken bonds, and as a film."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any

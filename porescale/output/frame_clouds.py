@@ -1,7 +1,5 @@
 """Bodies of segments in snapshots: their corners as points, segments as lines, solid polygons as polygons."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Bodies of segments in pictures; cracks: lines where bonds are gone that bodies have not left yet."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -4,8 +4,6 @@ Points are the centres of the discs, or the point at a surface; cells carry norm
 contact slides (in ParaView: Tube, radius by ``normal_force``).  Layout: VTK user's guide, "XML file formats", ascii.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

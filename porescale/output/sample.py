@@ -1,7 +1,5 @@
 """Values of the fluid at points between the centres of cells."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -7,8 +7,6 @@ for field in measurement.fields():
 written = write_fields(measurement, measurement.fields(), Path("runs/piv_film"))
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """[cell]: the periodic cell of a dry scene, strained at given rates or by stresses."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar
 
 import pydantic
@@ -38,7 +36,7 @@ class Cell(Section):
         return with_time_functions(table, cls.UNITS)
 
     @pydantic.model_validator(mode="after")
-    def _sensible(self) -> Cell:
+    def _sensible(self) -> "Cell":
         faults = []
         given = [name for name in (*RATES, *STRESSES) if getattr(self, name) is not None]
         if not given:

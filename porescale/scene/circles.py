@@ -1,7 +1,5 @@
 """[grains.circles]: grains at places read from a file."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -32,7 +30,7 @@ class Circles(Section):
     discs (.png, .tif, .jpg …), which are found in it to a fraction of a pixel.
     """
 
-    read: ClassVar[Callable[[Circles, Path | None], list[dict[str, float | str]]] | None] = None
+    read: "ClassVar[Callable[[Circles, Path | None], list[dict[str, float | str]]] | None]" = None
     """Entries of [[grains.grain]] from the file in a folder; registered by builders/scene.py, since pictures
     need readers of their own.  Raises InputError with keys of [grains]."""
 
@@ -54,7 +52,7 @@ class Circles(Section):
     part: bool = pydantic.Field(False, description="slide circles apart that overlap, as measured ones do")
 
     @pydantic.model_validator(mode="after")
-    def _of_a_picture(self) -> Circles:
+    def _of_a_picture(self) -> "Circles":
         pictured, faults = Path(self.file).suffix.lower() in STILLS, []
         for key in ("pixel", "smallest", "largest"):
             value = getattr(self, key)

@@ -1,7 +1,5 @@
 """[contact], [[material]] and [[contact.pair]]: contact laws for all grains, for some, for two materials."""
 
-from __future__ import annotations
-
 from typing import Any, Literal
 
 import pydantic

@@ -1,7 +1,5 @@
 """[domain]: the box and its sides: a word where a side has no numbers, a table where it has."""
 
-from __future__ import annotations
-
 from typing import Any, Literal
 
 import pydantic
@@ -54,7 +52,7 @@ class Side(Section):
         return {"kind": value}
 
     @pydantic.model_validator(mode="after")
-    def _of_its_kind(self) -> Side:
+    def _of_its_kind(self) -> "Side":
         """Every number belongs to a kind of side."""
         faults = []
         for key, given in (
@@ -118,7 +116,7 @@ class Domain(Section):
     top: Side = Side()
 
     @pydantic.model_validator(mode="after")
-    def _joined(self) -> Domain:
+    def _joined(self) -> "Domain":
         for name, other_name in (("left", "right"), ("bottom", "top")):
             one, other = self.side(name).boundary, self.side(other_name).boundary
             if one is not other and (one.periodic or other.periodic):

@@ -1,7 +1,5 @@
 """[fluid]: its numbers, its lattice, and the choice of operators by name."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from typing import Literal
 
@@ -59,7 +57,7 @@ class Fluid(Section):
         return name
 
     @pydantic.model_validator(mode="after")
-    def _three_of_four(self) -> Fluid:
+    def _three_of_four(self) -> "Fluid":
         given = {name: getattr(self, name) for name in NAMES if getattr(self, name) is not None}
         if len(given) < 3:
             missing = [name for name in NAMES if name not in given]

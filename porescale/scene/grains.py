@@ -1,7 +1,5 @@
 """[grains] and [[grains.grain]]: a packing, grains placed by hand, or both."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pydantic

@@ -3,8 +3,6 @@
 Of no section; lengths in m, times in s.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

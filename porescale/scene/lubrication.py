@@ -1,7 +1,5 @@
 """[lubrication]: films between grains that are too thin for the lattice."""
 
-from __future__ import annotations
-
 from porescale.common.schema.sections import Section, quantity
 
 

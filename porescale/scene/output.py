@@ -1,7 +1,5 @@
 """[output]: what is recorded when."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import pydantic

@@ -1,7 +1,5 @@
 """[grains.packing]: grains placed at random, settled or pressed; sizes uniform, graded or lognormal."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

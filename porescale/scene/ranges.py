@@ -3,8 +3,6 @@
 What lies outside is a slip of unit or exponent, and would end in numbers that are none.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 LENGTH: Any = {"ge": 1e-9, "le": 1e3}

@@ -1,7 +1,5 @@
 """The scene: its sections.  SI numbers or texts with units; an absent section builds nothing."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, ClassVar
 

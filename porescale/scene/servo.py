@@ -1,7 +1,5 @@
 """Walls on which a stress or force is prescribed: what sides of the box and free walls have in common."""
 
-from __future__ import annotations
-
 from typing import Protocol
 
 from porescale.common.core.errors import Fault

@@ -1,7 +1,5 @@
 """[sleep]: grains that rest are left out of contact steps until something disturbs them."""
 
-from __future__ import annotations
-
 from porescale.common.schema.sections import Section, quantity
 
 

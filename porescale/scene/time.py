@@ -1,7 +1,5 @@
 """[time]: how long a run lasts."""
 
-from __future__ import annotations
-
 from porescale.common.schema.sections import Section, quantity
 from porescale.scene.ranges import TIME
 

@@ -1,7 +1,5 @@
 """Numbers that change with time: constant, a sine, a table; and what they prescribe of a component."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Mapping
@@ -30,7 +28,7 @@ class TimeFunction(Section):
     values: tuple[float, ...] = ()
 
     @pydantic.model_validator(mode="after")
-    def _one_kind(self) -> TimeFunction:
+    def _one_kind(self) -> "TimeFunction":
         if len(self.times) != len(self.values):
             raise Refused(Fault("values", len(self.values), "are not as many as times", "", str(len(self.times))))
         if any(not later > earlier for earlier, later in zip(self.times, self.times[1:], strict=False)):
@@ -122,7 +120,7 @@ class Component(Section):
         return with_time_functions(value, cls.UNITS)
 
     @pydantic.model_validator(mode="after")
-    def _one(self) -> Component:
+    def _one(self) -> "Component":
         given = [key for key in self.UNITS if getattr(self, key) is not None]
         if len(given) > 1:
             raise Refused(Fault(given[1], None, f"and {given[0]} cannot both be told", repair="give one of them"))

@@ -1,7 +1,5 @@
 """Validations of `porescale homogenise`: a Mohr-Coulomb soil, an array of cylinders, discs of da Cruz et al. 2005."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What `porescale homogenise` makes of a scene, and of the tests of its specimens."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Discs of a laboratory's picture are found, each once, to a fraction of a pixel, and become the grains of a scene."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import cv2

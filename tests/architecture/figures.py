@@ -1,7 +1,5 @@
 """The size and shape of the tree in figures: `python -m tests.architecture.figures [ROOT]` prints them as a table."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 from statistics import median

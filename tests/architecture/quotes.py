@@ -9,8 +9,6 @@
 `python -m tests.architecture.quotes` puts the functions and classes named in the first mark between the two, anew.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Sources as syntax trees: what the architecture checks read.  Nothing of the packages is imported."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -3,8 +3,6 @@
 `.ci/tables cases NAME` runs a case, writes its recorded.json, and the table of its README.
 """
 
-from __future__ import annotations
-
 import re
 import runpy
 from collections.abc import Mapping

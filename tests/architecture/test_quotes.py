@@ -1,7 +1,5 @@
 """Pages on methods show the source as it is, and name tests that there are."""
 
-from __future__ import annotations
-
 import ast
 import re
 

@@ -3,8 +3,6 @@
 The README is short: what leaves it goes to docs.
 """
 
-from __future__ import annotations
-
 import ast
 import importlib
 import re

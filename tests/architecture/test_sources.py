@@ -1,7 +1,5 @@
 """Every source is documented, annotated, short and finished; numba is configured in one place."""
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """The project speaks of itself alone: what its texts say is theirs, not that of a list of tasks somewhere else."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 

@@ -1,7 +1,5 @@
 """What does not happen is not computed, and nothing else changes by that: to the bit."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from porescale import Scene

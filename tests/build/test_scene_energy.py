@@ -1,7 +1,5 @@
 """The energy book of scenes with clumps, controls and walls that move: columns of series.csv that add up."""
 
-from __future__ import annotations
-
 import pytest
 
 from porescale.builders.build import build

@@ -1,7 +1,5 @@
 """Regions, coarse graining, forces and contacts of a scene: read where known, in files, absent when not asked."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

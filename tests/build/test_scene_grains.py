@@ -1,7 +1,5 @@
 """What scenes say of contacts, materials, energy, clumps, controls, walls and cells: in the grains, or refused."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Probes, lines, flux sections, load cells, permeability: what they read where it is known; none makes nothing."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What a collapse is measured by: front, run-out, surface, energies, against what can be counted by hand."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

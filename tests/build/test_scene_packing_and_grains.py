@@ -1,7 +1,5 @@
 """A settled packing and grains placed by hand go together: what rested goes on resting."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from importlib.resources import files

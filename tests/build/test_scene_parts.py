@@ -1,7 +1,5 @@
 """A scene builds what it has sections for, and nothing else: no lattice when dry, no pair list without grains."""
 
-from __future__ import annotations
-
 import copy
 import math
 import subprocess

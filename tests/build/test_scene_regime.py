@@ -1,7 +1,5 @@
 """The speed to expect: fall along gravity, rise of what is lighter, and what drives the fluid."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

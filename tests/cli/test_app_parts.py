@@ -1,7 +1,5 @@
 """The package's face: its API, its commands' parts, and what they leave alone."""
 
-from __future__ import annotations
-
 import re
 import sys
 import tomllib

@@ -1,7 +1,5 @@
 """Grains in fluid converge: the drag on fixed arrays, and the leak between touching discs."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The fluid converges at second order between any two resolutions, at small and large viscosity."""
 
-from __future__ import annotations
-
 import pytest
 
 from porescale.validation.lbm import channels as lab

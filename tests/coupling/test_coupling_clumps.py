@@ -1,7 +1,5 @@
 """Clumps in fluid: they displace their union, weigh what is left, and sink as rigid bodies do."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

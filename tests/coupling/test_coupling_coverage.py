@@ -1,7 +1,5 @@
 """Coverage is the exact common area of disc and cell, and a cell is never more than full."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

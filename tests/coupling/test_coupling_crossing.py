@@ -1,7 +1,5 @@
 """Polygons within each other are seen, however far they are through, and those that only touch are not."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

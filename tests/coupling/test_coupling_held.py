@@ -1,7 +1,5 @@
 """Discs held still or towed, beside free ones: they go as told, and what holds them bears what they do not follow."""
 
-from __future__ import annotations
-
 import copy
 
 import numpy as np

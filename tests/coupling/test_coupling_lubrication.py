@@ -1,7 +1,5 @@
 """Films: the squeeze-film law below a cell, equal and opposite, stable at its thinnest; off unless asked for."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The grains of the paper's column take little room beside the fluid."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

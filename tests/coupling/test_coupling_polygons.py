@@ -1,7 +1,5 @@
 """Polygons cover exactly what they are, act as rigid bodies in fluid, and cost nothing where there are none."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

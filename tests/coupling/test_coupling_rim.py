@@ -1,7 +1,5 @@
 """Soft rims: nothing of them in slow flow, areas kept, the laws of every coupled step."""
 
-from __future__ import annotations
-
 import copy
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Rectangles and rings cover what they are, move what they displace, bear what acts on them, and may leave the box."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Soft rims are those of their formulas, cell by cell and disc by disc, also across the sides of a periodic box."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

@@ -1,7 +1,5 @@
 """The map of stability, the limits drawn from it, and what is said of a run that went beyond sense."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace

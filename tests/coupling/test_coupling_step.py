@@ -1,7 +1,5 @@
 """Saturated cells are those of the paper, cell by cell; coupled steps go on bit for bit and allocate nothing."""
 
-from __future__ import annotations
-
 import copy
 
 import numba

@@ -1,7 +1,5 @@
 """Where no body force acts none is computed, beside discs too, and the bits are those of a force of nothing."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The drag of a cylinder that starts at once: against the exact linear flow, the early series and its own impulse."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline

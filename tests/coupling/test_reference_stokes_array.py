@@ -1,7 +1,5 @@
 """Slow flow past periodic discs: against the Fourier series, published arrays, reciprocity and its own convergence."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Slow flow of discs within walls: round vessel, thin film, channel, reciprocity."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Grains stepped together: against the slow twin, as plain Python, restarted, watched."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """A deck as a scene says the same in SI, and runs alike; what scenes do not know is refused."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

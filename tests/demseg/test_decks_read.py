@@ -1,7 +1,5 @@
 """Decks of DEMseg are read as Fortran reads them; what is wrong in one is said by file, line, field and expectation."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Decks of DEMseg run as they are: printed numbers come out, continuations are exact, tensions are those printed."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

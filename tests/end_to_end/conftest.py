@@ -1,7 +1,5 @@
 """What end-to-end tests share: packings and rates kept apart from the user's, and one small run with all its files."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Every case with expected.toml does what it says, and would say so if it did not."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Decks of the DEMseg tutorial as cases: each measures what its expected.toml says, and would say so if it did not."""
 
-from __future__ import annotations
-
 import importlib.util
 import math
 import sys

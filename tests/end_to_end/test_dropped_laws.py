@@ -1,7 +1,5 @@
 """A law dropped as one file into its folder is offered by the command line, and runs."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """How a command ends: 0 done, 2 wrong input, 3 unstable, 130 interrupted; one clear line, and nothing half-written."""
 
-from __future__ import annotations
-
 import json
 import re
 import signal

@@ -1,7 +1,5 @@
 """A run that goes wrong says so, keeps its last good state, and has recorded nothing that is wrong."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Fingerprints of states: equal for the same bits on any number of threads, and for no others; none is left out."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Cases of bodies of segments that are scenes: a mixed heap in a tray weighs what it is made of."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,7 +1,5 @@
 """`porescale homogenise`: from a scene to a material file that the continuum reads; whole, or not there."""
 
-from __future__ import annotations
-
 import csv
 import math
 import tomllib

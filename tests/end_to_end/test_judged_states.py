@@ -1,7 +1,5 @@
 """What no state of a model can hold is said before a model takes it up, by its place; what one can hold is not."""
 
-from __future__ import annotations
-
 import copy
 from collections.abc import Callable
 from typing import Any

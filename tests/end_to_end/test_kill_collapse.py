@@ -1,7 +1,5 @@
 """A collapse killed while contacts slide and the gate lifts resumes to the same bits; and one thread is two threads."""
 
-from __future__ import annotations
-
 import random
 import select
 import signal

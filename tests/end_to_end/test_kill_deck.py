@@ -1,7 +1,5 @@
 """A deck killed while its segment is thrown back by a disc resumes to the same bits in every file it leaves."""
 
-from __future__ import annotations
-
 import signal
 import sys
 

@@ -1,7 +1,5 @@
 """A scene of polygons, segments, a disc and a tray, with bonds made on the way that break, killed and resumed."""
 
-from __future__ import annotations
-
 import signal
 import sys
 

@@ -1,7 +1,5 @@
 """A run killed at any moment resumes, and ends bit for bit as the run that nobody touched."""
 
-from __future__ import annotations
-
 import random
 import signal
 import subprocess

@@ -1,7 +1,5 @@
 """A few of the kills and stops that `python -m tests.reference.killing` makes by the thousand, others every day."""
 
-from __future__ import annotations
-
 import datetime
 import json
 import os

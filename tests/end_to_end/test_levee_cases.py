@@ -1,7 +1,5 @@
 """Scripts of levees and of the sheet pile that fails: what each measures and draws, on coarse ground and short."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

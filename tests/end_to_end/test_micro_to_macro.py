@@ -1,7 +1,5 @@
 """The case from grains to the continuum: its material file is of its scene, and both columns do as it says."""
 
-from __future__ import annotations
-
 import importlib.util
 import math
 import sys

@@ -1,7 +1,5 @@
 """The case of synthetic pairs measures what its expected.toml says, and would say so if it did not."""
 
-from __future__ import annotations
-
 import importlib.util
 
 import pytest

@@ -1,7 +1,5 @@
 """The commands of ``porescale piv``, from the command line to the files: what they write, say, and refuse."""
 
-from __future__ import annotations
-
 import csv
 import json
 

@@ -1,7 +1,5 @@
 """Cases that film a run and measure the film do what their expected.toml says, and would say so if they did not."""
 
-from __future__ import annotations
-
 import importlib.util
 import sys
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Films from the command line: long ones in bounded memory, moving masks, blank and overexposed frames, averages."""
 
-from __future__ import annotations
-
 import csv
 import json
 import os

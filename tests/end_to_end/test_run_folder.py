@@ -1,7 +1,5 @@
 """A coupled run from the command line leaves every file that it should, and each opens with the tools people have."""
 
-from __future__ import annotations
-
 import csv
 import json
 import os

@@ -1,7 +1,5 @@
 """What both programs promise of a run: bits that hang on nothing else, stops that save, folders that may be lost."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import signal

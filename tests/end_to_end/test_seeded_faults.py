@@ -1,7 +1,5 @@
 """Sixty and more faults put into running scenes: each is found within a hundred steps and before it is recorded."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Faults put among grains that sleep under water, and among polygons in it: found in time, too."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

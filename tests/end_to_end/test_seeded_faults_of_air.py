@@ -1,7 +1,5 @@
 """Faults put into air trapped in soil below water: found within a hundred steps and before they are recorded."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import pytest

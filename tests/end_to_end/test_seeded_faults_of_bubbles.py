@@ -1,7 +1,5 @@
 """Faults put into bubbles of gas and of liquid in water: found in a hundred steps and before they are recorded."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Faults put into a levee with water in and beside it: found within a hundred steps and before they are recorded."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Faults put into dry soil that slides: found within a hundred steps, named, and before they are recorded."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -3,8 +3,6 @@
 Scripts run as they are, some with fewer of their methods: those that the rows speak of, and those that are twins.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """A child that hangs says where, and is gone; one that ends is waited for."""
 
-from __future__ import annotations
-
 import faulthandler
 import os
 import subprocess

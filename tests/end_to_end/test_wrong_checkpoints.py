@@ -1,7 +1,5 @@
 """A checkpoint that is cut, spoilt, of another version, scene or program is refused in one line; the run stays."""
 
-from __future__ import annotations
-
 import copy
 import shutil
 from collections.abc import Callable, Iterator

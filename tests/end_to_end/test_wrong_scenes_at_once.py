@@ -1,7 +1,5 @@
 """Scenes are judged before a compiler is imported for them, so that a wrong one is answered at once."""
 
-from __future__ import annotations
-
 import shutil
 import sys
 

@@ -1,7 +1,5 @@
 """What newcomers get wrong, and the one line that each is told: to the point, with a way out."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -4,8 +4,6 @@ write : record the fingerprints of NAMES (all; patterns as "cases/*" are underst
 compare : make them anew and say of each whether it is the same; exit code 1 unless all are.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 import time

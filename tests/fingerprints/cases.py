@@ -1,7 +1,5 @@
 """Fingerprints of what lies under cases/: every scene, every script, decks by their scripts."""
 
-from __future__ import annotations
-
 from tests.fingerprints.subjects import Scene, Script, Subject
 
 GRAINS, CONTINUUM = "porescale", "continuum-sph"

@@ -1,7 +1,5 @@
 """Fingerprints of the continuum: every choice of water, walls, second fluid, soil, seepage and air."""
 
-from __future__ import annotations
-
 from tests.fingerprints.subjects import Scene, Subject
 
 DAM = """

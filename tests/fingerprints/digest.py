@@ -1,7 +1,5 @@
 """A hash of nested values: of keys, types, shapes and bits, whatever the order of the keys."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass

@@ -1,7 +1,5 @@
 """Fingerprints of the lattice: every collision operator, side, solid operator, weight and kind of body in fluid."""
 
-from __future__ import annotations
-
 from tests.fingerprints.subjects import Scene, Subject
 
 CAVITY = """

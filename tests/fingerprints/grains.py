@@ -1,7 +1,5 @@
 """Fingerprints of dry grains: every contact law, kind of friction and of bond, of bodies and of what drives them."""
 
-from __future__ import annotations
-
 from tests.fingerprints.subjects import Commands, Scene, Subject
 
 HEAD = """

@@ -1,7 +1,5 @@
 """All fingerprints by name, and those that are quick to take."""
 
-from __future__ import annotations
-
 from tests.fingerprints import cases, continuum, fluids, grains
 from tests.fingerprints.subjects import Subject
 

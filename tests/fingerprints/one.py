@@ -1,7 +1,5 @@
 """One fingerprint in a process of its own: forked, so that the imports are paid for once."""
 
-from __future__ import annotations
-
 import contextlib
 import gc
 import io

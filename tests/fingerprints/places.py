@@ -4,8 +4,6 @@ All else goes by what stays: ``porescale.load`` and ``build``, the keys of scene
 checkpoints, commands and the files that they write.  A place is "module:name" or "module:Class.method".
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from pathlib import Path

@@ -4,8 +4,6 @@
 seconds of one thread; parts are short hashes that say where a difference lies.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

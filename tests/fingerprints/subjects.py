@@ -1,7 +1,5 @@
 """Kinds of things that have a fingerprint: a scene after some steps, a script stopped after some, files of commands."""
 
-from __future__ import annotations
-
 import contextlib
 import csv
 import functools

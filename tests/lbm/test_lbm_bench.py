@@ -1,7 +1,5 @@
 """The rates of the lattice: steps that a call takes, and boxes too small to time."""
 
-from __future__ import annotations
-
 import pytest
 
 from porescale.benchmarks.lbm import (

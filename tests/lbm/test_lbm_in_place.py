@@ -1,7 +1,5 @@
 """Streaming in place is streaming between two arrays: every side, both parities, plates; reading changes nothing."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The fluid is one set of populations and little else, when it starts, when it steps and when it is read."""
 
-from __future__ import annotations
-
 import tracemalloc
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Readings of a flow: stream function and flux agree with each other, and every reading with flows that are known."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Collision operators: each is its dense-matrix twin, keeps mass and momentum, and knows no direction."""
 
-from __future__ import annotations
-
 import importlib
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Velocity and pressure sides: what streams in place is the twin's, with neighbours of any kind, and they balance."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

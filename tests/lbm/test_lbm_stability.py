@@ -1,7 +1,5 @@
 """Flows of the stability map: what holds, what does not, and the command that makes the map."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Drawings of bodies for cases: all are there, pieces have colours, cracks lie where bonds broke."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection

@@ -1,7 +1,5 @@
 """Pictures of a pile's inside: a line a contact, as wide as its force, where its discs are; files for each."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The smallest statement of a correlation pass does what the kernels do."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """From a film to fields by Python: what the command does, without it."""
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """The virtual camera: tracers go with the flow, stay out of grains, stay dense; films of a run measure its flow."""
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Fields compared: vortices by place, sign and circulation, surfaces of piles, a run against a film of it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

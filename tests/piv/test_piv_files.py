@@ -1,7 +1,5 @@
 """Fields, films and masks in files, vortices, and comparing: what goes in comes out, and what is wrong is said."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import cv2

@@ -1,7 +1,5 @@
 """Kernels of displacement measurement against slow twins, compiled and as plain Python."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whatever is asked of the commands: success, or clear lines and exit code 2; no traceback, no hang, nothing strewn."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

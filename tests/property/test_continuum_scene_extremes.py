@@ -1,7 +1,5 @@
 """Extreme numbers in scenes of ground, water and air end in a report or in refusals, never in another error."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from typing import Any

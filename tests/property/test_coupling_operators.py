@@ -1,7 +1,5 @@
 """Every solid operator with its weights: mass in a cell, momentum of fluid and solid, neutral discs, mirrors."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

@@ -1,7 +1,5 @@
 """Coverage holds its area and its symmetries wherever the disc lies; loads sum to what the fluid loses."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

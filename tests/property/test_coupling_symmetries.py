@@ -1,8 +1,6 @@
 """Laws that hold whatever the operators of fluid and solid, sharp rims or soft ones: quarter turns, mirrors, moving
 frames, momentum, and that nothing acts on what is carried along."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

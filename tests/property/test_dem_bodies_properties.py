@@ -1,7 +1,5 @@
 """Laws that hold for every clump and every strain: third law, shares, unions, images."""
 
-from __future__ import annotations
-
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st

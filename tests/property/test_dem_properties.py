@@ -1,7 +1,5 @@
 """Laws that hold for every state: mirror images, passivity of a contact, third law."""
 
-from __future__ import annotations
-
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st

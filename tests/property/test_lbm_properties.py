@@ -1,7 +1,5 @@
 """Whatever the flow: closed boxes keep their mass, periodic ones their momentum, and turned boxes turn."""
 
-from __future__ import annotations
-
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st

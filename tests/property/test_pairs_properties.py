@@ -1,7 +1,5 @@
 """Pair list against the definition over boxes, sizes, periods and points that hypothesis thinks of."""
 
-from __future__ import annotations
-
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st

@@ -1,7 +1,5 @@
 """Whatever a model calls its state comes back bit for bit."""
 
-from __future__ import annotations
-
 import struct
 import tempfile
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Whatever call to the disk fails, and in whatever way, the run says so, and goes on later as if nothing had been."""
 
-from __future__ import annotations
-
 import errno
 import resource
 import signal

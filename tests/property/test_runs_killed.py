@@ -1,7 +1,5 @@
 """Runs killed at every call to the disk, and at moments of the clock: files whole, and resumed to the same bits."""
 
-from __future__ import annotations
-
 import os
 import sys
 from pathlib import Path

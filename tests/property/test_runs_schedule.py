@@ -1,7 +1,5 @@
 """Events lie where they should, whatever the interval and the step."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """Extreme but legal numbers end in a report or in refusals, never in another error."""
 
-from __future__ import annotations
-
 import contextlib
 import itertools
 import math

@@ -1,7 +1,5 @@
 """Any three of spacing, step, relaxation time and viscosity determine the fourth, whichever three they are."""
 
-from __future__ import annotations
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st

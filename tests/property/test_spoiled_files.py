@@ -1,7 +1,5 @@
 """Whatever is wrong with a file, it is read, or refused in clear lines; no other error, nothing written elsewhere."""
 
-from __future__ import annotations
-
 import os
 import shutil
 from collections.abc import Callable

@@ -4,8 +4,6 @@ A line is a function of a seed.  None of them may start a long computation: scen
 runs are resumed that are finished.
 """
 
-from __future__ import annotations
-
 import random
 import shutil
 from dataclasses import dataclass

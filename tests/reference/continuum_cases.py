@@ -1,7 +1,5 @@
 """Cases of the continuum run in this process: their series, and which expectations these miss."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable
 from typing import Any

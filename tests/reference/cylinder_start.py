@@ -19,8 +19,6 @@ Early drag: Collins & Dennis 1973, eqs 80-81, agree; the constant pi (9 - 15/sqr
 give for the pressure disagrees with the exact linear solution, pi/Re'.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -4,8 +4,6 @@ w(x, y) = ∫_y^h(x) p/(ρ g) dy' solves Δw = 1 where w > 0 and w = 0 beyond: n
 Mat. Pura Appl. 92 (1972) 107).  On the sides w = (H - y)²/2 up to the levels, at the base a straight line between.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 

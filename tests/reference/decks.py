@@ -1,7 +1,5 @@
 """Decks of the DEMseg tutorial as text, for tests: short runs of what it prints."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 MATERIAL = "2.5d0 1.0d8 0.25d8 0.0d0 0.0d0 0.0d0"

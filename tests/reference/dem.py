@@ -5,8 +5,6 @@ One dictionary holds the springs.  ``arms="radius"`` uses the radii as lever arm
 twin that must lose angular momentum.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 

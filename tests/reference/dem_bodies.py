@@ -4,8 +4,6 @@ Members of a clump are not kept apart there: what they do to each other cancels 
 lines across it, and pairs in a tilted cell by every image.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

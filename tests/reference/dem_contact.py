@@ -4,8 +4,6 @@ Hertz 1882, Mindlin & Deresiewicz 1953, Tsuji, Tanaka & Ishida 1992 (damping), T
 on loading and unloading), Ai, Chen, Rotter & Ooi 2011 (rolling).  It keeps forces, not springs.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

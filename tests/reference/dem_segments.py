@@ -3,8 +3,6 @@ and every distance of a point to a corner, which is taken off as often as segmen
 by design, no weights.  Also moments of polygons by a fan of triangles.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 

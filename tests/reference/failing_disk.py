@@ -1,7 +1,5 @@
 """A disk whose n-th call fails: no space, an I/O error, no permission; or kills the process that calls."""
 
-from __future__ import annotations
-
 import builtins
 import io
 import os

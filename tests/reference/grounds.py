@@ -1,7 +1,5 @@
 """Small scenes of the continuum with everything that ground, water and air can have: what readers are tried on."""
 
-from __future__ import annotations
-
 from typing import Any
 
 PILE = """\

@@ -9,8 +9,6 @@ which take longer than all else.
 SIGINT and SIGTERM come in the same way (--stops): for them it is said how long a saved run takes to end.
 """
 
-from __future__ import annotations
-
 import argparse
 import faulthandler
 import json

@@ -4,8 +4,6 @@ The children are forked.  That is done from a process without threads, which is 
 the forking one goes on in the child, which then waits for ever for a lock that another held.
 """
 
-from __future__ import annotations
-
 import argparse
 import faulthandler
 import os

@@ -7,8 +7,6 @@ Velocity sides: Ladd's wall with any velocity.  Pressure sides: equilibrium at t
 extrapolated (Guo, Zheng & Shi 2002, Phys. Fluids 14).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

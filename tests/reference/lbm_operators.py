@@ -6,8 +6,6 @@ MRT: Lallemand & Luo 2000 and Guo, Zheng & Shi 2002.  Central moments: De Rosis 
 sources from the integrals over Maxwell's distribution.  Eddy viscosity: Hou, Sterling, Chen & Doolen 1996.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a step allocates, measured."""
 
-from __future__ import annotations
-
 import tracemalloc
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Slow twin of the pair list: every pair looked at, straight from the definition."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

@@ -1,7 +1,5 @@
 """Pictures of discs as a camera would take them: every pixel by its part of a disc, blurred, unevenly lit, noisy."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.ndimage import gaussian_filter
 

@@ -5,8 +5,6 @@ they turn populations back, a half-way wall at height 0.  The wall proper is at 
 that moves at speed 1 or stands.  One column, equilibria without squares of the velocity, density 1.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from tests.reference import solid_operators as solid

@@ -1,7 +1,5 @@
 """Areas of convex polygons in cells by clipping, in rational numbers: exact, slow, obvious."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Scenes of both programs, run in this process from their command lines: what holds of one must hold of the other."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -7,8 +7,6 @@ porescale/coupling/solid/exact_wall.py and psm.py.
 The switches are the wrong ways that the tests must be able to tell from the right one.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Whether two run folders hold the same run, to the bit: rows, snapshots and the whole state at the end."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Small scenes that tests start from: a column of 31 grains behind a gate that lifts, on 60 x 40 cells."""
 
-from __future__ import annotations
-
 import copy
 import json
 from collections.abc import Mapping

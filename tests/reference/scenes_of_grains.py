@@ -1,7 +1,5 @@
 """Small dry scenes of grains, what refuses them, and runs that are taken up again."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Faults put into running simulations, and how soon these say so."""
 
-from __future__ import annotations
-
 import copy
 import re
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Water among grains, written as its derivation reads: sums over all pairs, dense numpy."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

@@ -1,7 +1,5 @@
 """Solid fractions of shapes by brute force: points in every cell that lie inside."""
 
-from __future__ import annotations
-
 import numpy as np
 
 POINTS = 64

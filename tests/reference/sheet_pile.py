@@ -4,8 +4,6 @@ Heads in the middles of square cells, Σ (h_j - h_i) = 0 over open faces; base, 
 has the head 1 on the left of the pile and 0 on its right, half a cell from the topmost middles.  The ground is 1 deep.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve

@@ -3,8 +3,6 @@
 Fractions of a disc lie in the whole periodic box, so that a filter is a mean of three, once along x and once along y.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

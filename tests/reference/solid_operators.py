@@ -6,8 +6,6 @@ Those of the literature as printed (Noble & Torczynski 1998; Holdych 2003; revie
 u carries half the force that acts in the cell:  rho u = sum f c + h.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from tests.reference.lbm import BACK, C, W

@@ -1,7 +1,5 @@
 """The pass over pairs written as its equations read: one particle after another, all others beside it, dense numpy."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from continuum_sph.water.density import HYDROSTATIC, LINEAR

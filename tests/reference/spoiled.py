@@ -1,7 +1,5 @@
 """Files spoiled as people and disks spoil them: every spoiling is a function of the text and of a seed."""
 
-from __future__ import annotations
-
 import json
 import random
 import re

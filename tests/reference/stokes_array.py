@@ -16,8 +16,6 @@ Acrivos 1982 but at fractions 0.3 (they print 102.90, here 102.8813) and 0.75 (1
 constants with Hasimoto 1959 and Drummond & Tahir 1984 to all of theirs.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

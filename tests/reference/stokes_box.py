@@ -5,8 +5,6 @@ the wall moved outwards; velocities are met at twice as many points of discs and
 torques are sums over the rings.  The slip left between those points measures the error.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -7,8 +7,6 @@ towards the nearest place until each piece is as short as it is far: the logarit
 all round moves nothing: least squares.  What is left is measured by more levels and order.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -3,8 +3,6 @@
 As a script it is a run that can be killed:  python -m tests.reference.toy_model FOLDER [--resume] ...
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 import time

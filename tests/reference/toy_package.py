@@ -1,7 +1,5 @@
 """A package for the workbench that simulates nothing: what its commands do is up to the scene."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Kernels of whole modules in plain Python, which checks bounds."""
 
-from __future__ import annotations
-
 from types import ModuleType
 
 import pytest

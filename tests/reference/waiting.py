@@ -4,8 +4,6 @@ A process that hangs says where, is killed, and the test fails.  A Python proces
 the stacks of its threads on SIGABRT, also from within compiled code and while it waits for a lock.
 """
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

@@ -1,7 +1,5 @@
 """What grains say of their soil reaches a scene of the continuum below its own numbers, or clear words do."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

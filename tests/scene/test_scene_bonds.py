@@ -1,7 +1,5 @@
 """Bonds and rock of dry scenes: when and between whom they are made, what they bear, and runs that go on with them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

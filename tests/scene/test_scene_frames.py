@@ -1,7 +1,5 @@
 """Segments, polygons and containers of dry scenes: what is built of them, how it moves, and what refuses them."""
 
-from __future__ import annotations
-
 import csv
 import math
 from typing import Any

@@ -1,7 +1,5 @@
 """A periodic cell that is strained: what a scene says of it holds, is in series.csv and snapshots, or is refused."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Walls of dry scenes that move or are pressed on, and free walls: in the grains, in forces.csv, or refused."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """``check`` warns where the map of stability ends: just inside it is silent, just outside it says so, with a repair."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

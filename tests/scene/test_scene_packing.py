@@ -1,7 +1,5 @@
 """Packings of a scene: graded, lognormal, compressed, from files; each refusal names its key and what to do."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Scenes of polygons in water: convex ones, resolved, seen by fluid and grains; what cannot be is said."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

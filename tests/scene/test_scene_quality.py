@@ -1,7 +1,5 @@
 """Scenes as files: quality levels, settings and units, and every case in the repository."""
 
-from __future__ import annotations
-
 import pytest
 
 from porescale import Scene

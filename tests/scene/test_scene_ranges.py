@@ -1,7 +1,5 @@
 """Numbers of a lattice that disagree and numbers beyond sense: what is said of them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

@@ -1,7 +1,5 @@
 """Rectangles of a scene: what is refused, how they move, what they carry through sides, what they do to grains."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

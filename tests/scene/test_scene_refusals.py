@@ -1,7 +1,5 @@
 """What a scene must not ask for is refused with one line that names key, value and repair; doubts are warnings."""
 
-from __future__ import annotations
-
 import dataclasses
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Sections of the fluid, of its sides, of held discs: what they accept, what they refuse, what they build."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

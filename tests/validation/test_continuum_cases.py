@@ -1,7 +1,5 @@
 """The continuum's cases do what their expected.toml says, at their default quality."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import pytest

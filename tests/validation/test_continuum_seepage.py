@@ -1,7 +1,5 @@
 """Beside each row on soil and water a twin that must fail."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

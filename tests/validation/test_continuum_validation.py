@@ -1,7 +1,5 @@
 """The rows of `continuum-sph verify`, and beside each a twin that must fail."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Arrays of discs: the references are those of point forces, and what makes exact walls what they are is needed."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Long runs hold mass, momentum, places and memory, find nothing wrong, and would be found out if they did not."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from porescale.benchmarks import endurance

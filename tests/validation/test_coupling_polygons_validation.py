@@ -3,8 +3,6 @@
 That the rows hold is in test_coupling_validation.py.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The validations of rings and rectangles hold, and would not with the error next door."""
 
-from __future__ import annotations
-
 import pytest
 
 from porescale.validation.coupling import rings as verify_rings

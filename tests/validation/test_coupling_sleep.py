@@ -1,7 +1,5 @@
 """The validations of sleep under water hold, and would not if sleepers were deaf or fell asleep too early."""
 
-from __future__ import annotations
-
 import pytest
 
 from porescale.validation.coupling import sleep as lab

@@ -1,7 +1,5 @@
 """Validations of towed, oscillating and falling discs tell right from nearly right, and their references hold."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

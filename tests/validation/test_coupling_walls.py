@@ -1,7 +1,5 @@
 """The theory of exact walls: a plane wall anywhere within a cell is where it should be, at every relaxation time."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Validations of clumps, servo walls and strained cells hold, and their twins fail."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from porescale.cli.main import PACKAGE

@@ -1,7 +1,5 @@
 """Twins of the validations of contact laws: each fails (that the validations hold, test_dem_validation.py says)."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

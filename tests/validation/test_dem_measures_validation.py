@@ -1,7 +1,5 @@
 """Tolerances of what is measured on grains catch the error next door (test_dem_validation runs the rows)."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

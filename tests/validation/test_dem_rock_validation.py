@@ -1,7 +1,5 @@
 """Validations of rock hold, and their twins fail."""
 
-from __future__ import annotations
-
 import pytest
 
 from porescale.dem.contact.linear import Linear

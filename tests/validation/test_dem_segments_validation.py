@@ -1,7 +1,5 @@
 """Validations of segments and bonds hold, and their twins fail."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The validations of sleep hold, and would not if sleepers were deaf or fell asleep too early."""
 
-from __future__ import annotations
-
 import pytest
 
 from porescale.validation.dem import sleep as lab

@@ -1,7 +1,5 @@
 """The grains' validations hold, and their tolerances are tight enough to catch the error next door."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

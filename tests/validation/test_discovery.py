@@ -1,7 +1,5 @@
 """A file that is put into a folder of validations is offered without another line."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

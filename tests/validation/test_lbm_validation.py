@@ -1,7 +1,5 @@
 """The fluid's validations hold, and their tolerances are tight enough to catch the error next door."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

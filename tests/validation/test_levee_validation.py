@@ -1,7 +1,5 @@
 """A saturated levee fails from its toe upwards, and one that is flat enough does not fail."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

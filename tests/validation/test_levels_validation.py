@@ -1,7 +1,5 @@
 """Beside each row on levels and wetting a twin that must fail, and the table that the dam is held to."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

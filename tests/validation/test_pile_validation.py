@@ -1,7 +1,5 @@
 """Beside the row on sheet piles twins that must fail."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The validations of displacement measurement hold, and what each rests on is what makes it hold."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import cv2

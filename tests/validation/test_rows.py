@@ -3,8 +3,6 @@
 That each would fail with the error next door, the files beside this one test.
 """
 
-from __future__ import annotations
-
 from contextlib import nullcontext
 
 import pytest

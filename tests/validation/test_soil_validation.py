@@ -1,7 +1,5 @@
 """What must fail where rows of soil hold, and the cases of soil at their default quality."""
 
-from __future__ import annotations
-
 import importlib.util
 from functools import partial
 

@@ -1,7 +1,5 @@
 """Why no cell of water is left out where water rests: under a collapse there is none such."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Beside each row on slopes under water a twin that must fail."""
 
-from __future__ import annotations
-
 import pytest
 
 from continuum_sph.builders.simulation import Simulation

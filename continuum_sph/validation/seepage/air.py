@@ -16,8 +16,6 @@ A level front is stable as long as the air bears less than the water that stands
 Soil Sci. Soc. Am. J. 40 (1976) 824): P < ρ g h, flux above k; beyond it fingers of water go down and air comes up.
 """
 
-from __future__ import annotations
-
 import functools
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """A layer of elastic soil under a load that water bears at first: Terzaghi's consolidation.  SI."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

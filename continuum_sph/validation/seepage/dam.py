@@ -1,7 +1,5 @@
 """A dam of held ground between water at two levels: seepage with a free surface.  SI."""
 
-from __future__ import annotations
-
 import functools
 from dataclasses import dataclass
 from typing import Protocol

@@ -1,7 +1,5 @@
 """Ground behind a sheet pile under water that rises on the other side until the ground heaves.  SI."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

@@ -8,8 +8,6 @@ h = h0 - n z.  Darcy: n dz/dt = k (h + z)/z, so that with a = 1 - n
 and z = √(2 k h0 t/n) at first, imbibition under a constant head (Green & Ampt 1911).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -3,8 +3,6 @@
 A saturated levee under a sudden rise of the river: when its toe, its slope and its crest have moved.  SI.
 """
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Iterator

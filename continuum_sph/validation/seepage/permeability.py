@@ -1,7 +1,5 @@
 """Flux through held soil by the laws of permeability and porosity.  SI."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np

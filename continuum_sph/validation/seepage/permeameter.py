@@ -1,7 +1,5 @@
 """Water driven upwards through soil: Darcy's flux, and the gradient at which the soil boils.  SI."""
 
-from __future__ import annotations
-
 import functools
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """A periodic box of saturated soil that is stirred: momentum of both layers, and energy at any permeability.  SI."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
 

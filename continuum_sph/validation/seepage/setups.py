@@ -1,7 +1,5 @@
 """What experiments with soil and water share: water among the soil of a periodic column.  SI."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

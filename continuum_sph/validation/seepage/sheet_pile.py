@@ -1,7 +1,5 @@
 """Steady flow under and around a sheet pile in ground that is held, between faces of given head.  SI."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass

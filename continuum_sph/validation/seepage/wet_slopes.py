@@ -9,8 +9,6 @@ In a layer that repeats along the slope still water has no level.  Its pressure 
 it is: none on the water, of its weight, and -(1 - n) ρ_w g sin β on the soil.
 """
 
-from __future__ import annotations
-
 import functools
 import math
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """A dry levee of held ground, wetted from one side by a level that rises.  SI."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Free bodies of soil: a block that is turned rigidly, one that spins, a bar that its spin draws out.  SI."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -3,8 +3,6 @@
 SI, compression positive.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -7,8 +7,6 @@ Volume that particles exchange is no energy: it only shifts the work of the next
 the steps in time: (ω Δt)²/8 of what moves, ω up to 2 c/h, Δt 0.25 h/c.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What experiments with soil share: soil in a tank, a free body of it, columns and layers on a slope.  SI."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,5 @@
 """Columns, level ground and slopes of soil: what stays at rest, and what slides.  SI."""
 
-from __future__ import annotations
-
 import functools
 import math
 from typing import Any

@@ -1,7 +1,5 @@
 """Plane flow between plates that starts up: Poiseuille and Couette (Morris, Fox & Zhu 1997).  SI."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

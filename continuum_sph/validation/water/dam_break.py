@@ -3,8 +3,6 @@
 Experiments in `dam_break.csv`: Martin & Moyce 1952 and Koshizuka & Oka 1996.  SI.
 """
 
-from __future__ import annotations
-
 import csv
 import functools
 from pathlib import Path

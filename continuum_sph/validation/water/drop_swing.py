@@ -8,8 +8,6 @@ here the same in the plane.  In each fluid the stream function is Σ f(r) sin n�
 σ δκ, δκ = (n² - 1) η/R².
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ive, jv, jvp, kve

@@ -1,7 +1,5 @@
 """Flows that shifting, corrected gradients and the energy budget are for: vortices, spinning square, impact.  SI."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Two fluids and the tension between them: drops at rest, drawn out and swinging, and a bubble that rises.  SI."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Water at rest in a tank: hydrostatic pressure, and no motion.  SI."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Smoothing kernels: their integral and slope, and what sums over a lattice take off."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

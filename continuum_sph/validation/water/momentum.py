@@ -1,7 +1,5 @@
 """Momentum of a box of liquid without walls.  SI."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from continuum_sph.validation.water.setups import momentum, open_box

@@ -1,7 +1,5 @@
 """What experiments with water share: a column in a tank, a box of disordered liquid, and their momentum.  SI."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

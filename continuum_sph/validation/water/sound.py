@@ -1,7 +1,5 @@
 """A standing sound wave: its period, and that it neither grows nor fades.  SI."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from continuum_sph.validation.water.kernels import LATTICE, SPREAD

@@ -3,8 +3,6 @@
 Source: the same form as a liquid's with B = p0; γ is the ratio of the specific heats.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple, Self
 

@@ -1,7 +1,5 @@
 """The contract of an equation of state: what a file of this folder has to hold."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar, NamedTuple, Protocol, Self
 
 import numpy as np

@@ -5,8 +5,6 @@ pressure of the air p0 = 100 kPa, which makes water as soft as c0 = √(γ p0/ρ
 of sound c0, which must exceed ten times the fastest flow for a Mach number below 0.1 and density changes below 1 %.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple, Self
 

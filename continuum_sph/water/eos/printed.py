@@ -3,8 +3,6 @@
 Hence p_d = p0/{1 - γ(ρ/ρ0 - 1)} - p0, which has no value at ρ/ρ0 = 1 + 1/γ = 1.71 and beyond.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The equations of state that there are: every file of this folder but the contract's and this one."""
 
-from __future__ import annotations
-
 from functools import cache
 from importlib import import_module
 from pathlib import Path

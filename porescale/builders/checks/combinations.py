@@ -1,7 +1,5 @@
 """Sections that do not go with each other, or need one another."""
 
-from __future__ import annotations
-
 from porescale.builders.checks.polygons_in_fluid import check_in_fluid
 from porescale.builders.initial.walls import moving_sides, wall_names
 from porescale.common.core.errors import Fault

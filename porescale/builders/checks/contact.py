@@ -1,7 +1,5 @@
 """Contact laws: every number belongs to its law, and nothing is missing."""
 
-from __future__ import annotations
-
 from porescale.builders.initial.contact_laws import merged
 from porescale.common.core.errors import Fault
 from porescale.dem.contact.choose import LAWS

@@ -1,7 +1,5 @@
 """Operators of [fluid] that go together."""
 
-from __future__ import annotations
-
 from porescale.common.core.errors import Fault
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting.choose import fitting_weight, fitting_weights

@@ -1,7 +1,5 @@
 """Where a scene puts its grains: inside the box, clear of each other and of the gate, or an error naming it."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -5,8 +5,6 @@ A scene is judged before it runs, by the largest speed to expect: its cell Reyno
 its pressures, and the cells that its grains have.
 """
 
-from __future__ import annotations
-
 from porescale.coupling import limits
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.lbm.scales import Scales

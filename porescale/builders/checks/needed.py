@@ -1,7 +1,5 @@
 """Sections that others need, or that need others, and what must lie in the box."""
 
-from __future__ import annotations
-
 from porescale.builders.checks.combinations import (
     check_bonds,
     check_cell,

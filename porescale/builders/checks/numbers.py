@@ -1,7 +1,5 @@
 """Numbers of bodies that must exist."""
 
-from __future__ import annotations
-
 from porescale.builders.initial.placed import counted, members
 from porescale.common.core.errors import Fault
 from porescale.scene.scene import Scene

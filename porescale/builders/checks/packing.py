@@ -1,7 +1,5 @@
 """A packing that is pressed together fills the box."""
 
-from __future__ import annotations
-
 from porescale.common.core.errors import Fault
 from porescale.dem.contact.choose import LAWS
 from porescale.scene.packing import SAME

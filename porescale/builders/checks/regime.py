@@ -1,7 +1,5 @@
 """The regime of a scene: the largest speed to expect, and what Mach, pore pressure and resolution then mean."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

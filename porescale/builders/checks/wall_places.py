@@ -1,7 +1,5 @@
 """What stands across free walls."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

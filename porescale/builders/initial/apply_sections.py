@@ -1,7 +1,5 @@
 """What a scene gives its grains besides places and a law: materials, energy budget, clumps, controls, walls, cell."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

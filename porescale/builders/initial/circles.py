@@ -1,7 +1,5 @@
 """Circles read from files: a packing kept by an earlier run, a list, a picture."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

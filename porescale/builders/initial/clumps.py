@@ -1,7 +1,5 @@
 """Clumps of discs: bound among the grains, and what they answer like."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Contact laws from [contact], [[material]] and [[contact.pair]]."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from porescale.dem.contact.choose import LAWS
@@ -36,7 +34,7 @@ class MaterialPlan:
     density_of_grains: float
 
     @classmethod
-    def of(cls, scene: Scene) -> MaterialPlan:
+    def of(cls, scene: Scene) -> "MaterialPlan":
         """The materials of a scene with [grains]."""
         assert scene.grains
         return cls(scene.contact, scene.material, scene.grains.density)

@@ -1,7 +1,5 @@
 """Controls: components of bodies that move as prescribed, and the bodies that are recorded."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from porescale.builders.initial.frames import PLATES, Placed, plates_of, prescribe_motion

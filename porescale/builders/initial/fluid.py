@@ -1,7 +1,5 @@
 """The lattice of a scene, and its coupling with grains."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Operators of [fluid] as keyword arguments of the lattice and of its coupling."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from porescale.coupling.solid.choose import SOLID_OPERATORS

@@ -4,8 +4,6 @@ Order of the discs of a system: packing, grains and clumps placed by hand, discs
 frames.  Order of its clumps: clumps, then frames: segments, polygons, containers, rock, plates.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal

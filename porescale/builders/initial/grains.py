@@ -1,7 +1,5 @@
 """All discs of a scene in their order."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any

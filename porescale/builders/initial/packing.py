@@ -1,7 +1,5 @@
 """Radii of a packing, and packings that are pressed together."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

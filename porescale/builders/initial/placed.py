@@ -1,7 +1,5 @@
 """Free bodies placed by hand: grains, and the discs of clumps, with their numbers."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

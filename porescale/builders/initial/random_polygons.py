@@ -1,7 +1,5 @@
 """Polygons placed at random in a rectangle."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 

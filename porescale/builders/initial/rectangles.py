@@ -1,7 +1,5 @@
 """Rectangles as fluid and grains have them, and the plates between which a packing settles."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

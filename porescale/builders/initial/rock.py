@@ -3,8 +3,6 @@
 Source: Matsushima, DEMseg tutorial II-4; see dem/prepare/rock.py, dem/prepare/tessellate.py.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

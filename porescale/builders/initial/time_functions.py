@@ -1,7 +1,5 @@
 """Numbers that change with time, as the kernels take them."""
 
-from __future__ import annotations
-
 from porescale.dem.motion.control import Control, Moved, Placed, Pushed
 from porescale.dem.motion.time_function import Constant, Schedule, Sine, Table
 from porescale.scene.time_function import Component, TimeFunction

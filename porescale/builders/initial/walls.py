@@ -1,7 +1,5 @@
 """Walls of dry grains: sides that move, and free walls."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

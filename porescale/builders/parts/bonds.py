@@ -1,7 +1,5 @@
 """Bonds of a scene: made at their times between chosen bodies, counted, and located when they break."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -71,7 +69,7 @@ class BondsPart(Part):
         self.before()  # what is bonded at time 0 is there in the first record
 
     @classmethod
-    def build(cls, system: System) -> BondsPart:
+    def build(cls, system: System) -> "BondsPart":
         """The part of a scene with [bonds] or [rock], whose pieces are all bonded at the start."""
         scene = system.scene
         assert system.grains

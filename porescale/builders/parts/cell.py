@@ -1,7 +1,5 @@
 """The strained cell of a dry scene: its strain, and its columns of series.csv."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -24,7 +22,7 @@ class CellPart(Part):
         self.shear = 0.0
 
     @classmethod
-    def build(cls, system: System) -> CellPart:
+    def build(cls, system: System) -> "CellPart":
         """The part of a scene with [cell]."""
         assert system.grains
         return cls(system.clock, system.grains)

@@ -1,7 +1,5 @@
 """Grains and bodies of segments in snapshots: points with their arrays."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -25,7 +23,7 @@ class GrainCloud(Part):
         self.period = np.array([0.0, 0.0] if motion else grains.box.period)
 
     @classmethod
-    def build(cls, system: System, motion: Motion | None = None) -> GrainCloud:
+    def build(cls, system: System, motion: Motion | None = None) -> "GrainCloud":
         """The part of a system with grains; ``motion`` : of a strained cell."""
         assert system.grains
         return cls(system.grains, system.coupled.hydraulic_radius if system.coupled else None, motion)
@@ -55,7 +53,7 @@ class FrameCloud(Part):
         self.grains, self.frames = grains, frames
 
     @classmethod
-    def build(cls, system: System) -> FrameCloud:
+    def build(cls, system: System) -> "FrameCloud":
         """The part of a system with frames."""
         assert system.grains
         return cls(system.grains, system.frames)

@@ -1,7 +1,5 @@
 """Bodies whose motion is recorded: control.csv."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from porescale.builders.initial.rock import has_plates
@@ -17,7 +15,7 @@ class ControlPart(Part):
         self.clock, self.grains, self.recorded = clock, grains, recorded
 
     @classmethod
-    def build(cls, system: System) -> ControlPart:
+    def build(cls, system: System) -> "ControlPart":
         """The part of a system in which bodies are recorded, the plates of a rock not counted."""
         assert system.grains
         return cls(system.clock, system.grains, system.recorded[: -2 if has_plates(system.scene) else None])

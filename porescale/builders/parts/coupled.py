@@ -1,7 +1,5 @@
 """Fluid and grains together."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The energy budget of the grains, as columns of series.csv."""
 
-from __future__ import annotations
-
 from porescale.builders.part import Part, Row
 from porescale.builders.system import System
 from porescale.dem.grains import Grains
@@ -17,7 +15,7 @@ class EnergyPart(Part):
         self.grains, self.acceleration = grains, acceleration
 
     @classmethod
-    def build(cls, system: System) -> EnergyPart:
+    def build(cls, system: System) -> "EnergyPart":
         """The part of a system with grains."""
         assert system.grains
         return cls(system.grains, system.scene.gravity)

@@ -1,7 +1,5 @@
 """Fields and numbers of the fluid: rows of series.csv, vorticity, stream function."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What probes, flux sections and load cells of a scene read: rows of probes.csv, flux.csv and loads.csv."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -38,7 +36,7 @@ class FlowInstruments(Part):
         self.first: Row = {LAMBDA: ratio} if ratio else {}
 
     @classmethod
-    def build(cls, system: System, fluid: FluidPart) -> FlowInstruments:
+    def build(cls, system: System, fluid: FluidPart) -> "FlowInstruments":
         """The part of a system with fluid that is measured."""
         return cls(system.clock, fluid, system)
 

@@ -1,7 +1,5 @@
 """The fluid in series.csv."""
 
-from __future__ import annotations
-
 from porescale.builders.part import Part, Row
 from porescale.builders.parts.flow_fields import LAMBDA, fluid_row
 from porescale.builders.parts.fluid import FluidPart
@@ -17,7 +15,7 @@ class FlowSeries(Part):
         self.first: Row = {LAMBDA: ratio} if ratio else {}
 
     @classmethod
-    def build(cls, system: System, fluid: FluidPart) -> FlowSeries:
+    def build(cls, system: System, fluid: FluidPart) -> "FlowSeries":
         """The part of a system with fluid."""
         grains = system.scene.grains
         return cls(fluid, grains.hydraulic_radius_ratio if grains else None)

@@ -1,7 +1,5 @@
 """The fluid of a scene without grains: its steps, its fields in snapshots, and checks of its state."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -27,7 +25,7 @@ class FluidPart(Stepper):
         self.mass = fluid.mass_excess()
 
     @classmethod
-    def build(cls, system: System) -> FluidPart:
+    def build(cls, system: System) -> "FluidPart":
         """The part of a system with fluid."""
         fluid, scales, section = system.fluid, system.derived.scales, system.scene.fluid
         assert fluid

@@ -1,7 +1,5 @@
 """What measures of grains need of bodies of segments: their exact area in a region, and which bodies touch."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The gate, for fluid and grains alike: it opens at its time, at once or upward with a speed."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from porescale.builders.initial.grains import GATE
@@ -25,7 +23,7 @@ class GatePart(Part):
         self.open = False
 
     @classmethod
-    def build(cls, system: System) -> GatePart:
+    def build(cls, system: System) -> "GatePart":
         """The part of a scene with [gate]; adds its plate to the fluid, as the grains have theirs."""
         derived, fluid = system.derived, system.fluid
         assert system.scene.gate

@@ -4,8 +4,6 @@ Nothing is computed unless the scene requests it.  Everything is taken from the 
 contact step would use, and changes nothing.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -65,7 +63,7 @@ class GrainInstruments(Part):
         self.least = LEAST_WITH_FRICTION if friction > 0.0 else LEAST_WITHOUT
 
     @classmethod
-    def build(cls, system: System) -> GrainInstruments:
+    def build(cls, system: System) -> "GrainInstruments":
         """The part of a system with grains that are measured."""
         assert system.grains
         return cls(system.clock, system.grains, system.frames, system.scene)

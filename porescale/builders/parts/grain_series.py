@@ -1,7 +1,5 @@
 """What a collapse is measured by: front, run-out, centre of mass, energies."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -36,7 +34,7 @@ class GrainSeries(Part):
         self.start = self.front()
 
     @classmethod
-    def build(cls, system: System) -> GrainSeries:
+    def build(cls, system: System) -> "GrainSeries":
         """The part of a system with grains that are free."""
         assert system.grains
         return cls(system.grains, system.frames, system.held, system.scene.domain.width)

@@ -1,7 +1,5 @@
 """Dry grains: their steps, and checks of their state."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from porescale.builders.part import Array, Clock, Stepper
@@ -17,7 +15,7 @@ class GrainsPart(Stepper):
         self.clock, self.grains, self.weight = clock, grains, weight
 
     @classmethod
-    def build(cls, system: System) -> GrainsPart:
+    def build(cls, system: System) -> "GrainsPart":
         """The part of a system of grains alone."""
         assert system.grains
         return cls(system.clock, system.grains, system.weight)

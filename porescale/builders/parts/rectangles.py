@@ -1,7 +1,5 @@
 """Rectangles in motion, for fluid and grains alike."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -31,7 +29,7 @@ class RectanglesPart(Part):
         self.made_good = 0.0
 
     @classmethod
-    def build(cls, system: System) -> RectanglesPart:
+    def build(cls, system: System) -> "RectanglesPart":
         """The part of a scene with [[rectangle]]."""
         sections, domain = system.scene.rectangle, system.scene.domain
         closed = not any(side.open for side in domain.sides.values())

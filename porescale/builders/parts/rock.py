@@ -1,7 +1,5 @@
 """The record of a rock between its plates: rock.csv."""
 
-from __future__ import annotations
-
 from porescale.builders.part import Clock, Part, Row
 from porescale.builders.parts.bonds import BondsPart
 from porescale.builders.system import System
@@ -22,7 +20,7 @@ class RockPart(Part):
         self.clock, self.grains, self.bonds, self.recorded = clock, grains, bonds, recorded
 
     @classmethod
-    def build(cls, system: System, bonds: BondsPart) -> RockPart:
+    def build(cls, system: System, bonds: BondsPart) -> "RockPart":
         """The part of a scene with [rock] and plates, whose pieces are bonded."""
         scene = system.scene
         assert scene.rock

@@ -1,7 +1,5 @@
 """The part of a scene whose grains may sleep: their number and the energy taken, in series.csv."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from porescale.builders.part import Part, Row
@@ -17,7 +15,7 @@ class SleepPart(Part):
         self.sleepers = sleepers
 
     @classmethod
-    def build(cls, system: System) -> SleepPart:
+    def build(cls, system: System) -> "SleepPart":
         """The part of a scene with [sleep]: lets the grains sleep, by their weight less lift."""
         grains, section = system.grains, system.scene.sleep
         assert grains

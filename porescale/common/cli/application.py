@@ -1,7 +1,5 @@
 """The command line that every package has, and how a command ends."""
 
-from __future__ import annotations
-
 import errno
 import os
 import sys

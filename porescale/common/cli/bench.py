@@ -1,7 +1,5 @@
 """`bench [NAME…]`: rates in updates per second."""
 
-from __future__ import annotations
-
 import json as json_text
 import sys
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """`check SCENE`: what a scene means, before any of it runs."""
 
-from __future__ import annotations
-
 import json as json_text
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """`study endurance [FLOW…]`: very long runs of small things, and what creeps in them."""
 
-from __future__ import annotations
-
 import json as json_text
 import sys
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Output folders of commands: tried before anything is built."""
 
-from __future__ import annotations
-
 import os
 from contextlib import suppress
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`study levels SCENE`: which points of its front the quality levels of a scene are to be, and whether they are."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from porescale.common.cli.options import Scene

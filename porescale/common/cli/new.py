@@ -1,7 +1,5 @@
 """`new NAME`: a commented scene to start from."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated

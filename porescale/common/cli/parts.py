@@ -1,7 +1,5 @@
 """`study parts [KIND…]`: what each kind of scene builds and costs."""
 
-from __future__ import annotations
-
 import json as json_text
 import sys
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """`show RUN`: pictures and a film of a run."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Annotated

@@ -1,7 +1,5 @@
 """`study trade` and `levels SCENE`, `study stability [FLOW…]`: where it stays stable and is right, `study extremes`."""
 
-from __future__ import annotations
-
 import json as json_text
 import sys
 import time

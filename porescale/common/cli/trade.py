@@ -1,7 +1,5 @@
 """`study trade SCENE`: speed against accuracy over a scene's knobs."""
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Callable
 from datetime import UTC, datetime

@@ -1,7 +1,5 @@
 """`verify [NAME…]`: the validations."""
 
-from __future__ import annotations
-
 import json as json_text
 import sys
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """What may be lost at any time and made again: the folder for it, and hashes that say what it was made from."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import shutil

@@ -4,8 +4,6 @@
 depend on how a loop was cut into vectors.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 import sys

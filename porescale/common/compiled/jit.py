@@ -9,8 +9,6 @@ law would survive inside a cached pair loop; kernels are therefore kept under a 
 see kernel_key.py.  An edit compiles anew the kernels that contain what was edited, and no others.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Callable

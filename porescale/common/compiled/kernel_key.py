@@ -8,8 +8,6 @@ folder has the same key.
 What cannot be followed (`Unknown`) has no key: the kernel is then compiled anew by each process, never kept.
 """
 
-from __future__ import annotations
-
 import dis
 import hashlib
 import sys

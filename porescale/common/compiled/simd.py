@@ -8,8 +8,6 @@ In kernels what these functions return is a vector of LANES float64 that takes +
 in plain Python it is an array.  Numbers may stand for vectors everywhere.
 """
 
-from __future__ import annotations
-
 from importlib import import_module
 from typing import Any
 

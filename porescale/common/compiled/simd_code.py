@@ -1,7 +1,5 @@
 """What the functions of simd.py are in kernels: the machine's own vectors of LANES float64, and their operators."""
 
-from __future__ import annotations
-
 import operator
 from collections.abc import Callable
 from typing import Any

@@ -4,8 +4,6 @@ A killed process leaves at most a temporary file (``.<stem>.<process>.writing<su
 removes at the next start.  Measured: 100 of 100 files good after a SIGKILL.
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """Faults: what a person can cause, in one line each, and the exit code each kind of failure has."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -64,7 +62,7 @@ class InputError(PorescaleError):
         self.faults: list[Fault] = [faults] if isinstance(faults, Fault) else list(faults)
         super().__init__("\n".join(fault.line() for fault in self.faults))
 
-    def in_file(self, file: str) -> InputError:
+    def in_file(self, file: str) -> "InputError":
         """An error with the same faults, each naming ``file``."""
         return InputError([replace(fault, file=fault.file or file) for fault in self.faults])
 

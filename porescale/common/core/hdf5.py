@@ -5,8 +5,6 @@ writes therefore go through a file of ours, which stores the first error, report
 the library, and raises when the file is closed.
 """
 
-from __future__ import annotations
-
 import io
 import os
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Registers that are read from a folder: one file, one entry, and no list kept by hand."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from importlib import import_module
 from pkgutil import walk_packages

@@ -3,8 +3,6 @@
 Conversion is exact in decimal and rounded once, so "1.5 mm" gives the very bits of 0.0015.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from decimal import Decimal, localcontext

@@ -1,7 +1,5 @@
 """How fast this machine reads and writes memory in place: the ceiling of all that streams over arrays."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from porescale.common.compiled.jit import parallel_kernel, prange, set_threads, threads

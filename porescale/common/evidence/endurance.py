@@ -6,8 +6,6 @@ the first mark that counts, and a reason for it.  The peak of the process's memo
 and nothing must be found wrong: that is checked as often as in a run.
 """
 
-from __future__ import annotations
-
 import json
 import time
 from collections.abc import Callable, Mapping, Sequence

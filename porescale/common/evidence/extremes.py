@@ -5,8 +5,6 @@ the place, the criterion and the reason (Unstable), or stable: it ended within b
 is compared as well, and right when that holds.  Any other end is a bug and is not caught.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
@@ -49,7 +47,7 @@ class Extreme:
         """What it is chosen by: the axis stands for all of its tries."""
         return f"{self.axis}.{self.value}"
 
-    def tried(self) -> Row:
+    def tried(self) -> "Row":
         """Run it, and give how it ended."""
         start = time.perf_counter()
         try:

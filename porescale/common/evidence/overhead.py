@@ -5,8 +5,6 @@ held against in turns, so that a busy machine slows both alike, and writes a tab
 which stand still while others have the core.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path

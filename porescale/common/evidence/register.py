@@ -1,7 +1,5 @@
 """Registers: rows of evidence by name, registered in the files that make them and found by looking into a folder."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 

@@ -4,8 +4,6 @@ Packages register their flows; `study stability` runs them and writes the map (s
 within bounds is stable; it is also right if its error is known and at most the tolerance of the flow.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence

@@ -1,7 +1,5 @@
 """Timing on machines that others use too: repeats, medians, and what is compared measured in turns."""
 
-from __future__ import annotations
-
 import statistics
 import time
 from collections.abc import Callable

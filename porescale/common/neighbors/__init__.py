@@ -3,8 +3,6 @@
 Grains and smoothed particles use the same search; it takes positions and a reach for each, nothing else.
 """
 
-from __future__ import annotations
-
 from porescale.common.neighbors.pair_list import PairList
 from porescale.common.neighbors.placement import Placement, place, square_lattice, triangular_lattice
 

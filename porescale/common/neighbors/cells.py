@@ -5,8 +5,6 @@ Points outside the grid belong to the nearest border cell (or to their periodic 
 over a window of cells stays complete wherever points are.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -3,8 +3,6 @@
 Mass is area here: discs of one density.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -4,8 +4,6 @@ Source of the list and its skin: Verlet, Phys. Rev. 159 (1967) 98; of the cells:
 Simulation Using Particles (1981), section 8.4.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -6,8 +6,6 @@ the plane).  Discs of equal size crystallise into grains of triangular lattice o
 the packing should be disordered.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

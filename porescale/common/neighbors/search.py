@@ -1,7 +1,5 @@
 """Kernels of the pair list: search through windows of cells, rows in ascending order, data carried over."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

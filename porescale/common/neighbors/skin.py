@@ -9,8 +9,6 @@ rectangle that bounds both blocks.  Blocks that do not touch are a whole block a
 larger.  The remaining skin is computed again only when some point has moved half of it further.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from porescale.common.compiled.jit import inline, kernel

@@ -1,7 +1,5 @@
 """The inside of a picture: field, walls, points, lines, arrows as pixels.  Row 0 of an image is its top."""
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 

@@ -1,7 +1,5 @@
 """A film of a run that browsers play: H.264 in MP4, or VP9 in WebM where no H.264 encoder is built in."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """How a run is painted: what is shown, in which colours, over which range.  No physics."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass

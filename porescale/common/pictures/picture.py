@@ -3,8 +3,6 @@
 Axes and text are matplotlib's, drawn once for a film; what changes from frame to frame is painted by OpenCV.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path

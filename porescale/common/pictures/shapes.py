@@ -1,7 +1,5 @@
 """Lines and polygons of a cloud as pixels: filled outlines and strokes as wide as their thickness, to scale."""
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 

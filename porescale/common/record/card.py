@@ -1,7 +1,5 @@
 """card.json: what was run, with what, where, and how it ended."""
 
-from __future__ import annotations
-
 import importlib.metadata
 import json
 import math

@@ -5,8 +5,6 @@ kernels, which do not look whether an index is one: a state is therefore checked
 of the model that is to take it up.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any

@@ -6,8 +6,6 @@ number.  Numbers keep their bits (floats are stored as the hexadecimal image of 
 and shapes are exact. Arrays that HDF5 has no plain type for (text, dates, records) are stored as their bytes.
 """
 
-from __future__ import annotations
-
 import json
 import struct
 from pathlib import Path

@@ -6,8 +6,6 @@ and the first block is a step long), so that they are left out and the rest stan
 (core-seconds counted) × (steps)/(steps counted), and besides what rows, snapshots, pictures and film take.
 """
 
-from __future__ import annotations
-
 import time
 from dataclasses import dataclass, field
 from typing import Any
@@ -66,7 +64,7 @@ class Cost:
         }  # fmt: skip
 
     @classmethod
-    def restored(cls, state: dict[str, Any]) -> Cost:
+    def restored(cls, state: dict[str, Any]) -> "Cost":
         """What a checkpoint kept; nothing counted where it is of a version that did not."""
         return cls(
             int(state.get("steps", 0)), float(state.get("core_seconds", 0.0)), int(state.get("paced_steps", 0)),

@@ -1,7 +1,5 @@
 """Drive a model through time and keep its record.  The loop handles steps, events and files, no physics."""
 
-from __future__ import annotations
-
 import time as clock
 from collections.abc import Callable, Collection
 from contextlib import suppress

@@ -4,8 +4,6 @@ A model is anything that steps through time, can check whether its state is vali
 state.  Grids and clouds are all that the record, the pictures and ParaView need.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, Protocol, runtime_checkable

@@ -1,7 +1,5 @@
 """Open the folder of a run, finished or killed, and look at it."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator
 from functools import cached_property
 from pathlib import Path

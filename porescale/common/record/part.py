@@ -5,8 +5,6 @@ time.  The order of the list is the order of the columns of series.csv and of th
 restored from the last part to the first, so that a part may rely on what those after it have restored.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

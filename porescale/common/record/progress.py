@@ -1,7 +1,5 @@
 """Progress of a run: a bar with time left on a terminal, a line every ten seconds elsewhere."""
 
-from __future__ import annotations
-
 import threading
 import time as clock
 from types import TracebackType
@@ -43,7 +41,7 @@ class Watch:
         self._stop = threading.Event()
         self._thread: threading.Thread | None = None
 
-    def __enter__(self) -> Watch:
+    def __enter__(self) -> "Watch":
         self.began = self.last_line = clock.perf_counter()
         if not self.quiet:
             self._thread = threading.Thread(target=self._attend, daemon=True)

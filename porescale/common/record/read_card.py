@@ -1,7 +1,5 @@
 """card.json, the identity of a run folder: where it lies and how it is read."""
 
-from __future__ import annotations
-
 import json
 import operator
 from pathlib import Path

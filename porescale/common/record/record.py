@@ -6,8 +6,6 @@ was the last; resuming cuts both back to it.  Rows and snapshots that are there 
 start.
 """
 
-from __future__ import annotations
-
 import sys
 import time as clock
 from collections.abc import Callable, Collection, Mapping
@@ -72,7 +70,7 @@ class Record:
         self.scheduled_row_step = self.scheduled_snapshot_step = -1
 
     @classmethod
-    def fresh(cls, folder: Path, given: dict[str, Any], *, overwrite: bool = False) -> Record:
+    def fresh(cls, folder: Path, given: dict[str, Any], *, overwrite: bool = False) -> "Record":
         """Start in ``folder``; an older run there is removed, unless it is unfinished, was dear, and not ``overwrite``.
 
         Its card goes last: a kill before that leaves a folder that is still recognised as a run's.
@@ -89,7 +87,7 @@ class Record:
         return cls(folder, card)
 
     @classmethod
-    def resumed(cls, folder: Path, given: dict[str, Any], model: Model, schedules: dict[str, Schedule]) -> Record:
+    def resumed(cls, folder: Path, given: dict[str, Any], model: Model, schedules: dict[str, Schedule]) -> "Record":
         """Go on from the checkpoint: the model, the schedules and the files as they were then.
 
         InputError, and nothing touched, where checkpoint or rows are not those of such a run.

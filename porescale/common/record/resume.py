@@ -4,8 +4,6 @@ A checkpoint may be cut, spoilt, of another scene, another program or a later ve
 an InputError of one line, and the run folder stays as it is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path

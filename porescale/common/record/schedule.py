@@ -1,7 +1,5 @@
 """When to record: events at multiples of an interval, without touching the model's steps."""
 
-from __future__ import annotations
-
 import math
 
 from porescale.common.core.errors import Fault, InputError

@@ -4,8 +4,6 @@ Numbers are written as ``repr`` does, so that reading gives the same bits.  Rows
 at most one torn last line (no newline), which reading ignores and resuming cuts off.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import os

@@ -6,8 +6,6 @@ files are in place. Frames are identified by their step: a kill at any moment le
 the joined files or (equal) in both.
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 from collections.abc import Collection, Iterator

@@ -1,7 +1,5 @@
 """Ctrl-C and a polite kill end a run at the next whole block, with its state saved."""
 
-from __future__ import annotations
-
 import signal
 import threading
 from collections.abc import Iterator

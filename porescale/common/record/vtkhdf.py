@@ -11,8 +11,6 @@ Files are written in one go, all frame counts known beforehand; :func:`join` cop
 chunks, so that no more than one frame is ever in memory and nothing is compressed twice.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path

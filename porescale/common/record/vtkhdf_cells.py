@@ -4,8 +4,6 @@ Of each topology and step there are offsets from 0, one more than cells, and num
 step; ``Steps/CellOffsets`` and ``ConnectivityIdOffsets`` (nt, 4) say where a step's begin.
 """
 
-from __future__ import annotations
-
 import h5py
 import numpy as np
 

@@ -1,7 +1,5 @@
 """From pydantic's errors to readable faults: dotted keys, units, ranges, and the nearest known name."""
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Scenes on the cards of older runs, read as scenes of today."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType

@@ -1,7 +1,5 @@
 """A field of a section that measures something: its unit, its range, and the error message when it is wrong."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from types import UnionType

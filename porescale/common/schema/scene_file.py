@@ -1,7 +1,5 @@
 """Scene files: finding and reading them, laying one table over another, and `--set` entries."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Mapping

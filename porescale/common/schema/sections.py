@@ -1,7 +1,5 @@
 """Scenes are data: typed sections, read from TOML with every fault of a file reported at once."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path

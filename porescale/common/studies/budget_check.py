@@ -7,8 +7,6 @@ at most the predicted one plus scatter, in the quantities whose reference values
 steps stand beside, also rescaled: on a shared machine seconds predict little.
 """
 
-from __future__ import annotations
-
 import json
 import tempfile
 import time

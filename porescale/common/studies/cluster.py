@@ -3,8 +3,6 @@
 Every worker must see the folders of scene and runs under the same paths, and have this package installed.
 """
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from typing import Any

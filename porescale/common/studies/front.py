@@ -6,8 +6,6 @@ of a step of a run that had just begun.  The same beginning is timed here before
 pace over that of the front rescales the steps, start-up is what it took here.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import time

@@ -9,8 +9,6 @@ Points of which trade.toml says a ``but`` are left out: they are accurate in the
 `study levels SCENE` says so, and fails where the scene's [quality.…] tables are something else.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass

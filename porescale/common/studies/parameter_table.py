@@ -9,8 +9,6 @@ TOML     ``[[point]]`` tables with keys as in CSV, dotted or nested; ``[vary]`` 
 options  ``--vary contact.friction=0.2,0.5``, repeatable: every combination.
 """
 
-from __future__ import annotations
-
 import csv
 import itertools
 import json

@@ -10,8 +10,6 @@ at : "end", "max", "min", a time in s (interpolated), or a table with first_belo
 minus : another column to take away;  where : {column: value} of the rows to look at, at the table's last time.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from fnmatch import fnmatchcase

@@ -4,8 +4,6 @@ A campaign that was stopped goes on where it was: finished points are left alone
 checkpoint.  A point that went unstable keeps that verdict until it is requested again.
 """
 
-from __future__ import annotations
-
 import signal
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The files of a sweep: sweep.csv, sweep.md and sweep.png, each whole or not at all."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path

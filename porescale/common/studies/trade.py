@@ -7,8 +7,6 @@ an error never falls below what a last digit changes: beside all errors stands `
 of different repeats are off their mean, measured in the same way.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """The files of a trade study: front.json, trade.csv, trade.md and trade.png, each whole or not at all."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path

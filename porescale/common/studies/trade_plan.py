@@ -29,8 +29,6 @@ label = "10"
 settings = { fluid.spacing = "0.15 mm" }
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
@@ -90,7 +88,7 @@ class Quantity(Section):
     exact: float | None = quantity("", None, help="exact value")
 
     @pydantic.model_validator(mode="after")
-    def _says_what(self) -> Quantity:
+    def _says_what(self) -> "Quantity":
         if bool(self.column) == bool(self.feature):  # neither or both
             raise Refused(Fault("column", self.column or None, "or feature: one of them says what is measured"))
         if self.exact is not None and (self.is_curve or self.feature):
@@ -123,7 +121,7 @@ class Plan(Section):
     knob: tuple[Knob, ...] = pydantic.Field(min_length=1)
 
     @pydantic.model_validator(mode="after")
-    def _has_reference(self) -> Plan:
+    def _has_reference(self) -> "Plan":
         if self.reference is None and any(asked.exact is None for asked in self.quantity):
             repair = "add [reference], a run finer than all, or exact values"
             raise Refused(Fault("reference", None, "is absent, and not every quantity is exact", repair=repair))

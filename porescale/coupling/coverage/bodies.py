@@ -1,7 +1,5 @@
 """The bodies of a lattice that are no discs, together: their patches, the sides they reach through, their loads."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -4,8 +4,6 @@ Those in contact keep a film between them, and contacts push where corners touch
 it is pushed no more: forces do not show that, so the outlines are compared.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

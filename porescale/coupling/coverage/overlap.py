@@ -4,8 +4,6 @@ A cell that one of them fills counts as full whatever the other has of it.  Wher
 common is taken off, half of each: the mean over sub-rows of a cell of the exact length that lies in both.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

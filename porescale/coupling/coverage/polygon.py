@@ -19,8 +19,6 @@ cell long, of that area.  Of many corners the polygon then becomes the disc with
 the same area put evenly on the sides leaves 4 % missing at 10 cells a side, as the stress at a corner goes to infinity.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

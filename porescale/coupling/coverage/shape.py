@@ -4,8 +4,6 @@ A new one is one more file with a class of this kind: the rows of the lattice, t
 on patches alone (rows.py).  Lattice units throughout.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 
 import numpy as np

@@ -34,8 +34,6 @@ is taken out of it, or it would depend on how a body that touches a side shares 
 that of a moving wall: Wen, Zhang, Tu, Wang & Fang 2014.)  Pressures count from that of density 1.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A row of the register of solid operators: name, laws and consequences."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """A row of the register of weights: name, laws and what it goes with."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any

@@ -3,8 +3,6 @@
 Bonds themselves, and the force they add: forces/bonds.py.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np

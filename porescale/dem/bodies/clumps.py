@@ -14,8 +14,6 @@ Motion: forces of members are summed about the centroid at the whole step; the b
 members then sit at their places, with the rigid body's velocity there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -9,8 +9,6 @@ is controlled and monitored as clumps are.  Walls act on the corners.  Sources: 
 II-2.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

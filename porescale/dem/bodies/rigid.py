@@ -1,7 +1,5 @@
 """What discs are of: a free disc is its own body, members of a clump are one.  For measures; nothing is changed."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

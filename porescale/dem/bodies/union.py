@@ -6,8 +6,6 @@ from angle a to b, with dx = -r sin t dt, dy = r cos t dt, the boundary integral
 have closed forms; J = integral of x^2 + y^2.  The only error is round-off.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -3,8 +3,6 @@
 Where there is no budget its arrays are None, and all of this is left out when kernels are compiled.
 """
 
-from __future__ import annotations
-
 from porescale.common.compiled.jit import inline
 from porescale.dem.contact.law import KR, KT, stiffness, stiffness_scale
 

@@ -1,7 +1,5 @@
 """Contact laws by name: the register of this folder."""
 
-from __future__ import annotations
-
 from porescale.common.core.register import discover
 from porescale.dem.contact.law import ContactLaw
 

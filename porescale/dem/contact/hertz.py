@@ -19,8 +19,6 @@ Sources: Mindlin & Deresiewicz 1953, J. Appl. Mech. 20, 327; Tsuji, Tanaka & Ish
 Antypov & Elliott 2011, EPL 94, 50004.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -145,7 +143,7 @@ class Hertz:
         friction: float = 0.0,
         release: str = "force",
         rolling_friction: float = 0.0,
-    ) -> Hertz:
+    ) -> "Hertz":
         """Discs of Young's modulus ``young`` (Pa) and Poisson's ratio, dashpots all at the ratio of ``restitution``.
 
         Raises InputError unless -1 < poisson <= 0.5.
@@ -159,7 +157,7 @@ class Hertz:
         )  # fmt: skip
 
     @classmethod
-    def from_numbers(cls, numbers: Mapping[str, float], release: str, mass: float, deepest: float) -> Hertz:
+    def from_numbers(cls, numbers: Mapping[str, float], release: str, mass: float, deepest: float) -> "Hertz":
         """The law of the keys of [contact]; its restitution is the same at any ``mass``."""
         get = numbers.get
         plain = cls.of(
@@ -174,7 +172,7 @@ class Hertz:
             rolling_damping_ratio=get("rolling_damping_ratio", ratio), deepest=deepest,
         )  # fmt: skip
 
-    def with_numbers(self, numbers: Mapping[str, float], mass: float) -> Hertz:
+    def with_numbers(self, numbers: Mapping[str, float], mass: float) -> "Hertz":
         """This law with other numbers, by the keys of [contact]; its restitution is the same at any ``mass``."""
         given = {RENAMED.get(key, key): value for key, value in numbers.items() if key != "restitution"}
         restitution = numbers.get("restitution")
@@ -192,7 +190,7 @@ class Hertz:
         """Whether there is rolling resistance."""
         return self.rolling_friction > 0.0
 
-    def with_friction(self, friction: float) -> Hertz:
+    def with_friction(self, friction: float) -> "Hertz":
         """This law with another friction coefficient."""
         return replace(self, friction=friction)
 
@@ -216,7 +214,7 @@ class Hertz:
             ]
         )
 
-    def mixed(self, other: Any) -> Hertz:
+    def mixed(self, other: Any) -> "Hertz":
         """Between unlike materials, each of which has its law with itself; see materials.py for the rule."""
         if not isinstance(other, Hertz) or other.release != self.release:
             raise InputError(Fault("contact.law", f"{self} and {other}", "differ in kind or release"))

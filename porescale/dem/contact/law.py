@@ -23,8 +23,6 @@ Sources: Cundall & Strack 1979, Geotechnique 29, 47; release at zero force: Schw
 rolling speed independent of the observer: Luding 2008, Granular Matter 10, 235.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, ClassVar, NamedTuple, Protocol
 
@@ -135,17 +133,17 @@ class ContactLaw(Protocol):
         """Whether there is rolling resistance."""
 
     @classmethod
-    def from_numbers(cls, numbers: Mapping[str, float], release: str, mass: float, deepest: float) -> ContactLaw:
+    def from_numbers(cls, numbers: Mapping[str, float], release: str, mass: float, deepest: float) -> "ContactLaw":
         """The law of the keys of [contact];  mass (kg/m): of two grains each, whose restitution is given;  deepest:
         overlap over radius that the stable step allows for."""
 
-    def with_numbers(self, numbers: Mapping[str, float], mass: float) -> ContactLaw:
+    def with_numbers(self, numbers: Mapping[str, float], mass: float) -> "ContactLaw":
         """This law with other numbers, by the keys of [contact];  mass (kg/m): effective, of the restitution."""
 
-    def with_friction(self, friction: float) -> ContactLaw:
+    def with_friction(self, friction: float) -> "ContactLaw":
         """This law with another friction coefficient."""
 
-    def mixed(self, other: Any) -> ContactLaw:
+    def mixed(self, other: Any) -> "ContactLaw":
         """Between unlike materials, each of which has its law with itself; see materials.py for the rule."""
 
     def row(self) -> Array:

@@ -5,8 +5,6 @@ F = k_n d + c_n d';  tangential and rolling spring of constant stiffness; the re
 Sources: Cundall & Strack 1979; release at zero force: Schwager & Poeschel 2007, Granular Matter 9, 465.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -118,7 +116,7 @@ class Linear:
         tangential_damping: float = 0.0,
         friction: float = 0.0,
         release: str = "force",
-    ) -> Linear:
+    ) -> "Linear":
         """The law whose normal coefficient of restitution is ``restitution`` at effective ``mass``
         (kg/m).
         """
@@ -126,7 +124,7 @@ class Linear:
         return cls(stiffness, damping, tangential_stiffness, tangential_damping, friction, release)
 
     @classmethod
-    def from_numbers(cls, numbers: Mapping[str, float], release: str, mass: float, deepest: float) -> Linear:
+    def from_numbers(cls, numbers: Mapping[str, float], release: str, mass: float, deepest: float) -> "Linear":
         """The law of the keys of [contact]; ``deepest`` is not needed: stiffness is the same at every overlap."""
         get, k = numbers.get, numbers["stiffness"]
         damping = get("damping")
@@ -137,7 +135,7 @@ class Linear:
             release, get("rolling_friction", 0.0), get("rolling_stiffness", 0.0), get("rolling_damping", 0.0),
         )  # fmt: skip
 
-    def with_numbers(self, numbers: Mapping[str, float], mass: float) -> Linear:
+    def with_numbers(self, numbers: Mapping[str, float], mass: float) -> "Linear":
         """This law with other numbers, by the keys of [contact];  mass (kg/m): effective, of the restitution."""
         given = {key: value for key, value in numbers.items() if key != "restitution"}
         restitution = numbers.get("restitution")
@@ -161,7 +159,7 @@ class Linear:
         """Whether there is rolling resistance."""
         return self.rolling_friction > 0.0
 
-    def with_friction(self, friction: float) -> Linear:
+    def with_friction(self, friction: float) -> "Linear":
         """This law with another friction coefficient."""
         return replace(self, friction=friction)
 
@@ -183,7 +181,7 @@ class Linear:
             ]
         )
 
-    def mixed(self, other: Any) -> Linear:
+    def mixed(self, other: Any) -> "Linear":
         """Between unlike materials, each of which has its law with itself; see materials.py for the rule."""
         if not isinstance(other, Linear) or other.release != self.release:
             raise InputError(Fault("contact.law", f"{self} and {other}", "differ in kind or release"))
@@ -206,7 +204,7 @@ class Linear:
             turning, dashpot("rolling_stiffness", "rolling_damping", turning),
         )  # fmt: skip
 
-    def stiffest(self, mass: float, radius: float) -> Linear:
+    def stiffest(self, mass: float, radius: float) -> "Linear":
         """The linear law that bounds it for the stable step: itself."""
         return self
 

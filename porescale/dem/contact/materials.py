@@ -9,8 +9,6 @@ Like materials get their own law to the bit.  The rule is the same between discs
 which are made of a material, too.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

@@ -6,8 +6,6 @@ Sources: release at zero force, Schwager & Poeschel 2007, Granular Matter 9, 465
 50004.
 """
 
-from __future__ import annotations
-
 import math
 
 from porescale.common.core.errors import Fault, InputError

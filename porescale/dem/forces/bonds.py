@@ -10,8 +10,6 @@ corners that count negatively (segments.py) take their part of the back tension 
 Source: Matsushima, DEMseg tutorial II-3.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -179,7 +177,7 @@ class BondList:
             both[sided, 1] = segments.ends[both[sided, 1], 0]
         return both
 
-    def joined(self, more: BondList) -> BondList:
+    def joined(self, more: "BondList") -> "BondList":
         """These bonds and ``more``."""
         both = BondList(np.concatenate((self.ends, more.ends)), np.concatenate((self.back, more.back)))
         both.whole[:] = np.concatenate((self.whole, more.whole))
@@ -191,7 +189,7 @@ class BondList:
         return {name: getattr(self, name).copy() for name in STATE}
 
     @staticmethod
-    def restored(state: dict[str, Any], discs: int, segments: int) -> BondList:
+    def restored(state: dict[str, Any], discs: int, segments: int) -> "BondList":
         """The bonds of ``state()`` of so many discs and segments; InputError where one is between others."""
         made = BondList(np.array(state["ends"], np.int64).reshape(-1, 3), np.array(state["back"], float))
         for sided, count in enumerate((discs, segments)):

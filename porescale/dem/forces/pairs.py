@@ -6,8 +6,6 @@ r_j^2)/(2d), a_j = d - a_i reach to the chord of the overlap, where the same for
 momentum is kept to round-off. With the radii in their place it leaks by overlap times friction.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -5,8 +5,6 @@ inside (which a stiff law never lets happen) is pushed out through the nearest f
 rectangle, zero while they do not touch.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

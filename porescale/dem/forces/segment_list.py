@@ -7,8 +7,6 @@ type 2.  Any point of a segment moves no further than the corners at its ends do
 corners and segments: a listing follows each one of the discs' pair list.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

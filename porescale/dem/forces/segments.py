@@ -25,8 +25,6 @@ Sources: Matsushima, DEMseg tutorial II-2;  Alonso-Marroquin 2008, EPL 83, 14001
 distances between vertices and edges, here with corners counted once by inclusion and exclusion).
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

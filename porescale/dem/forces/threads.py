@@ -12,8 +12,6 @@ Where an energy budget is kept, systems that are large enough for threads take t
 of far pairs come first in it.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -6,8 +6,6 @@ of pairs: the limit r_j -> infinity of the pair's lever arm is the distance to t
 Every disc keeps its springs per wall and per plate, zero while they do not touch.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -22,8 +22,6 @@ The strain rate is not the gradient of V, which shears where discs lie unevenly,
 the velocities best around each point (motion.py), with weights m phi: zero for a rigid rotation.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -173,7 +171,7 @@ class Raster:
     def over(
         cls, lower: tuple[float, float], upper: tuple[float, float], spacing: float, width: float,
         periodic: tuple[bool, bool] = (False, False),
-    ) -> Raster:  # fmt: skip
+    ) -> "Raster":  # fmt: skip
         """Cells of about ``spacing`` (m) that fill the rectangle exactly."""
         size = upper[0] - lower[0], upper[1] - lower[1]
         shape = max(1, round(size[0] / spacing)), max(1, round(size[1] / spacing))

@@ -1,7 +1,5 @@
 """A list of contacts with their forces, one row each."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields, replace
 from typing import Any, NamedTuple
 
@@ -57,16 +55,16 @@ class Contacts:
         """Which contacts are between two discs, (c,) bool."""
         return np.not_equal(self.second, NOBODY)
 
-    def of(self, name: str) -> Contacts:
+    def of(self, name: str) -> "Contacts":
         """The contacts with one surface."""
         return self.chosen(self.surface == self.names.index(name))
 
-    def chosen(self, which: NDArray[Any]) -> Contacts:
+    def chosen(self, which: NDArray[Any]) -> "Contacts":
         """Some of the contacts, by mask or index."""
         parts = {it.name: getattr(self, it.name) for it in fields(self)}
         return Contacts(**{name: part if name == "names" else part[which] for name, part in parts.items()})
 
-    def of_bodies(self, bodies: Index) -> Contacts:
+    def of_bodies(self, bodies: Index) -> "Contacts":
         """The same between bodies: ``bodies`` (n,) is the number of a disc that stands for each disc's body."""
         second = np.where(self.pairs, bodies[self.second], NOBODY)
         return replace(self, first=bodies[self.first], second=second)

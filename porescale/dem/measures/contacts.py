@@ -5,8 +5,6 @@ copies of what it carries.  So the list says what the next contact step will use
 list taken between two steps sums to ``discs.force`` after the second.  Nothing of the system is changed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import fields
 from typing import Any

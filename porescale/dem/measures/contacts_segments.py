@@ -5,8 +5,6 @@ all there is.  A segment stands as the disc at its first end, which bears its fo
 bonds are rows of their own, with a normal force below zero.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

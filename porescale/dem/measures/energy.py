@@ -13,8 +13,6 @@ All terms refer to the last force evaluation: positions a step back, springs and
 Velocities that an owner writes between steps are no work here: held components are left out of the kinetic energy.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

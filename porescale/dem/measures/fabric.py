@@ -1,7 +1,5 @@
 """Contacts of a region: coordination, rattlers, fabric, and how normal forces are distributed."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Force and moment of the discs on each wall, plate and rectangle, and of contacts on chosen discs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -7,8 +7,6 @@ velocity does not give where discs lie unevenly.  Source: strain-rate tensor of 
 manual; in two dimensions three discs, not in a line, are the fewest.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -8,8 +8,6 @@ displaced as one straining sheet, none turned.
 Sources: Cundall & Strack 1979 (contact as two springs);  bound: Chang et al. 1990, J. Eng. Mech. 116, 1077.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

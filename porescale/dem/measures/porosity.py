@@ -5,8 +5,6 @@ two discs overlap the lens counts twice: (4/3) sqrt(r) d^1.5 for equal discs wit
 of a disc's area at d = 1e-3 r.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

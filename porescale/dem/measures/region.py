@@ -4,8 +4,6 @@ A ``period`` is (width, height) m, 0 where not periodic, or (width, height, tilt
 ``tilt`` to the right: see ``Grains.period``.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -11,8 +11,6 @@ Sources: Love 1927, A Treatise on the Mathematical Theory of Elasticity, note B;
 Chaussees 20.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

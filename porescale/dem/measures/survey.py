@@ -3,8 +3,6 @@
 Speeds are those of half a step ago, positions those of now; energies therefore err by a step's work.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

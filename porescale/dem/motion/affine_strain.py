@@ -12,8 +12,6 @@ affine strain, where k_t <= k; and U the mean of that rate, as of a servo's velo
 argument of servo.py.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

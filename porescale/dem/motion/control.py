@@ -7,8 +7,6 @@ Work is that supply times the mean of the velocities before and after, which is 
 by.  Source: Matsushima, DEMseg tutorial I-3.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from porescale.common.compiled.jit import inline, kernel

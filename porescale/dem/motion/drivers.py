@@ -1,7 +1,5 @@
 """Clumps, controlled bodies, driven walls and a strained cell, as data: what a system has beside free discs."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

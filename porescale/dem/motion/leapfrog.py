@@ -1,7 +1,5 @@
 """One step of motion: what held components do not follow, the kick and the drift, by one thread or several."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -9,8 +9,6 @@ Sources: Lees & Edwards, J. Phys. C 5 (1972) 1921; Evans & Morriss, Statistical 
 The loop is compiled once for each kind of cell: a cell that stands still costs what it cost before there were others.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -5,8 +5,6 @@ the forces: forces of members are summed up, controls act, holders take their sh
 the discs have moved: clumps move and place their members, walls move.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -15,8 +15,6 @@ Sources: Itasca, PFC2D 3.1 theory and background (2004), section 3.5: numerical 
 Systems (2008), chapter 10: integral action, and why U follows the velocity that the wall really had.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from porescale.common.compiled.jit import kernel

@@ -3,8 +3,6 @@
 One row of numbers each, so that kernels read them; tables lie one after the other in an array of points.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

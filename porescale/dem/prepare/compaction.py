@@ -8,8 +8,6 @@ Files hold x, y, radius in m: .csv, one disc a line below its header, or .h5, th
 circles is read with its own units and direction of y by ``read_circles``.
 """
 
-from __future__ import annotations
-
 import contextlib
 import csv
 import dataclasses

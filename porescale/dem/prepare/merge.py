@@ -1,7 +1,5 @@
 """More grains to a system at rest: it keeps its contacts, so that what rested goes on resting."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from porescale.common.core.errors import Fault, InputError

@@ -9,8 +9,6 @@ stiffness the contact's.
 Source: Matsushima, DEMseg tutorial II-4.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, NamedTuple

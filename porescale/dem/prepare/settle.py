@@ -6,8 +6,6 @@ weights of the run, so that nothing jumps at its first step.  A packing is kept 
 that made it.
 """
 
-from __future__ import annotations
-
 import contextlib
 import dataclasses
 import hashlib

@@ -6,8 +6,6 @@ the corner, so that the triangles fill it as well; many on a line are no matter.
 Source: Matsushima, DEMseg tutorial II-4.2.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

@@ -1,7 +1,5 @@
 """Some of the discs as a system of their own, for the same contact steps: arrays of their own, a list of their own."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Systems without friction: their contacts need half the work."""
 
-from __future__ import annotations
-
 from porescale.dem.contact.law import KernelLaw
 from porescale.dem.contact.linear import LinearKernel
 from porescale.dem.state import State

@@ -12,8 +12,6 @@ All sleep ends while a wall, plate or rectangle moves or comes or goes (plates a
 One thread works; results are the same at any number.  Clumps, frames, bonds and strained cells are without sleep.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

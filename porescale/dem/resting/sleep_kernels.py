@@ -1,8 +1,6 @@
 """Kernels of discs that sleep (sleep.py): tests for rest and for disturbance, and the list of contacts that must be
 computed."""
 
-from __future__ import annotations
-
 from porescale.common.compiled.jit import inline, kernel
 
 ASLEEP = 1

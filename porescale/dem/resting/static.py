@@ -2,8 +2,6 @@
 them from outside.  Their contact steps change nothing else, and are left out.
 """
 
-from __future__ import annotations
-
 from porescale.common.compiled.jit import kernel
 from porescale.dem.motion.periodic_cell import image
 from porescale.dem.state import State, StaticState

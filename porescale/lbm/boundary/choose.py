@@ -1,7 +1,5 @@
 """Kinds of sides by name: the register of this folder."""
 
-from __future__ import annotations
-
 from functools import cache
 
 from porescale.common.core.register import discover

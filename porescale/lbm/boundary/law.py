@@ -6,8 +6,6 @@ leaves it is paired with, and what is added on the way (sides.py says how that s
 the collided populations of a whole cell, settles its links itself (``own_links``).
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np

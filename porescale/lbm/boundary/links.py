@@ -1,7 +1,5 @@
 """All links that leave the box, and what happens to them at the end of each step."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

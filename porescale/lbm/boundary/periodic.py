@@ -1,7 +1,5 @@
 """Periodic: what leaves through a side comes in through the opposite one."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from porescale.lbm.boundary.law import Boundary, Link

@@ -11,8 +11,6 @@ Anti-bounce-back (Ginzburg, Verhaeghe & d'Humieres 2008) was measured beside it:
 second order it lengthens a channel by a cell (5 % of the flow at 20 cells), and lets a vortex blow up at tau 0.5005.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

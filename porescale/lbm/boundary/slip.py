@@ -4,8 +4,6 @@ A flat surface of water, a line of symmetry.
 At a corner between two such sides the link is reversed.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from porescale.lbm.boundary.law import Boundary, Link

@@ -4,8 +4,6 @@ Half-way bounce-back that adds 6 w_i c_i . u (Ladd 1994) at the density 1 of res
 sum of the velocities, exactly, and two sides of equal velocity balance.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -6,8 +6,6 @@ out of both corner links makes good for that, as a source in one corner and a si
 flow is u/6 short, a first-order error (measured: extrema at Re 100, 32 cells, 7 instead of 1 %).
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from porescale.lbm.boundary.law import Boundary, Link

@@ -1,7 +1,5 @@
 """A row of the register of collision operators: name, laws and consequences."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple

@@ -5,8 +5,6 @@ pixels and zero elsewhere, so that solids neither correlate nor count (Padfield 
 2706). Windows that overlap share their products: sums over blocks of one grid step are formed once and added up.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -8,8 +8,6 @@ own slope (B-splines for displacements: Rueckert et al. 1999, IEEE Trans. Med. I
 tracers: Gesemann et al. 2016, 18th Lisbon Symp.).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any

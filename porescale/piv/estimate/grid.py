@@ -1,7 +1,5 @@
 """The grid of vectors of a picture, and a smooth displacement at every pixel from values on it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
@@ -51,7 +49,7 @@ class Grid:
         """``values`` (ny, nx) at every pixel, float32: natural cubic splines, straight beyond the outer centres."""
         return spread(self.coefficients(values), *self.axes())
 
-    def axes(self, every: int = 1) -> tuple[Axis, Axis]:
+    def axes(self, every: int = 1) -> "tuple[Axis, Axis]":
         """Interpolation from coefficients to centres of blocks of ``every`` px a side (1: pixels), down and across."""
         down, across = (
             _axis(self.start, self.step, n, side, every) for n, side in zip(self.shape, self.size, strict=True)
@@ -69,7 +67,7 @@ class Grid:
         """``coefficients`` of u and v, (2, m, n) float32."""
         return np.stack([self.coefficients(u), self.coefficients(v)]).astype(np.float32)
 
-    def through(self, other: Grid, values: Array) -> Array:
+    def through(self, other: "Grid", values: Array) -> Array:
         """The splines through ``values`` (ny, nx) at the centres of ``other``, straight beyond the outer ones."""
         (down, across), c = self.axes(), self.coefficients(values)
         rows = _matrix(down, other.y, c.shape[0])
@@ -82,7 +80,7 @@ class Grid:
         rows = sum(w * coefficients[top - 1 + k : top - 1 + k + ny] for k, w in enumerate(mean))
         return np.asarray(sum(w * rows[:, left - 1 + k : left - 1 + k + nx] for k, w in enumerate(mean)))
 
-    def at(self, other: Grid, values: Array) -> Array:
+    def at(self, other: "Grid", values: Array) -> Array:
         """``values`` (ny, nx) at the centres of ``other``; those of the rim beyond it, where no window has been."""
         down, across = spline_matrix(self.y, other.y), spline_matrix(self.x, other.x)
         return np.asarray(down @ values @ across.T)

@@ -5,8 +5,6 @@ The interpolator sets the sub-pixel bias of a measurement, not the peak fit (Ast
 has fallen below float32.
 """
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 from numpy.typing import NDArray

@@ -1,7 +1,5 @@
 """Displacements between two pictures, or from many pairs of one steady flow."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

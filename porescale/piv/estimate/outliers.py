@@ -1,7 +1,5 @@
 """Vectors that do not fit their neighbours, and what to put in their place.  Only vectors of the fluid count."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

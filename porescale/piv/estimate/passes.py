@@ -4,8 +4,6 @@ Both pictures are deformed by half the last estimate each (symmetric window defo
 Technol. 13, R1), so that what is left to measure is small, and interpolation errs alike in both.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple

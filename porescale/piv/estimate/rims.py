@@ -3,8 +3,6 @@
 A rim runs between a solid pixel and its fluid neighbours, half a pixel from the middles of both.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

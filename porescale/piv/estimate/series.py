@@ -1,7 +1,5 @@
 """Fields from films: one for each pair of frames, or one from all pairs together."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property

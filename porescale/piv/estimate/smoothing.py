@@ -7,8 +7,6 @@ errors of neighbours are alike, and plain cross-validation takes them for flow: 
 (Lukas 2006, Inverse Problems 22, 1883).
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import NamedTuple
 

@@ -4,8 +4,6 @@ A field is sum c_k B(x/h - k), cubic B-splines h px apart along both axes.  A fi
 data's places and the adjoint of that; both go along one axis after the other.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from porescale.common.compiled.jit import kernel, parallel_kernel, prange

@@ -1,7 +1,5 @@
 """Two fields compared: numbers over the common fluid region, and the vortices of both."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A measured field as people keep it: in pixels with y down, or in metres and metres a second with y up."""
 
-from __future__ import annotations
-
 import csv
 import io
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """The velocity of a run's snapshot as a field, to hold measured ones against."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A film of the measured pictures with their arrows on them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any

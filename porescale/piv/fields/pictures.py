@@ -1,7 +1,5 @@
 """Pictures of fields: arrows over the image, vorticity, and two fields side by side."""
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
 from typing import Any

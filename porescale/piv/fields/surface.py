@@ -1,7 +1,5 @@
 """The free surface of a pile: how high it stands over every column, from grains or from a picture's solids."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import cv2

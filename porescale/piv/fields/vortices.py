@@ -5,8 +5,6 @@ the same less the neighbours' mean velocity, which it does not see; its size exc
 strain (Graftieaux, Michard & Grosjean 2001, Meas. Sci. Technol. 12, 1422).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """The virtual camera: tracers carried by a run's flow, filmed like those of a laboratory."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Pictures from files: single ones, series of them, and films (mp4, avi, whatever PyAV opens), one at a time."""
 
-from __future__ import annotations
-
 import glob
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Frames of the virtual camera as files: pictures, masks, a film, and how they were taken."""
 
-from __future__ import annotations
-
 import json
 import sys
 import time

@@ -3,8 +3,6 @@
 A displacement is X(+1/2) - X(-1/2) of the material at the pixel at mid time: paths are integrated, not straight.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Where solids are in pictures: bitmaps with solid white, polygons, segmented; one for all frames or one each."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import repeat
 from pathlib import Path

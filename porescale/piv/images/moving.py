@@ -1,7 +1,5 @@
 """A run as something to film: its velocity and its solids at any place and time between snapshots."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

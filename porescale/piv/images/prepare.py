@@ -1,7 +1,5 @@
 """A picture made ready: spline coefficients, fluid mask, and grey values less their local mean."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import cv2

@@ -1,7 +1,5 @@
 """Pictures of tracers: Gaussian spots integrated over each pixel, and discs."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Synthetic pictures of tracers of exact displacement."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """[[bonds]]: bonds between bodies that touch at a time."""
 
-from __future__ import annotations
-
 import pydantic
 
 from porescale.common.core.errors import Fault
@@ -32,7 +30,7 @@ class Bonds(Section):
     )
 
     @pydantic.model_validator(mode="after")
-    def _sense(self) -> Bonds:
+    def _sense(self) -> "Bonds":
         faults = []
         for k, word in enumerate(self.bodies):
             kind, _, number = word.partition(" ")

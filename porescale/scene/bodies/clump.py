@@ -1,7 +1,5 @@
 """[[clump]]: rigid bodies of discs that may overlap."""
 
-from __future__ import annotations
-
 import math
 
 import pydantic
@@ -34,7 +32,7 @@ class Clump(Section):
     material: str = pydantic.Field("", description="name of its material (default: the first)")
 
     @pydantic.model_validator(mode="after")
-    def _whole(self) -> Clump:
+    def _whole(self) -> "Clump":
         faults = []
         for key, values in (("discs", self.discs), ("at", self.at)):
             if not values:

@@ -1,7 +1,5 @@
 """[[control]]: components of a body that move, or are pushed, as prescribed."""
 
-from __future__ import annotations
-
 import pydantic
 
 from porescale.common.core.errors import Fault
@@ -29,7 +27,7 @@ class Controlled(Section):
     record: bool = pydantic.Field(False, description="force and displacement over time in control.csv")
 
     @pydantic.model_validator(mode="after")
-    def _of_one(self) -> Controlled:
+    def _of_one(self) -> "Controlled":
         if sum(getattr(self, kind) is not None for kind in BODIES) != 1:
             repair = "give one of them"
             raise Refused(Fault(", ".join(BODIES), None, "exactly one of them is needed", repair=repair))

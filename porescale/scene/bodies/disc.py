@@ -1,7 +1,5 @@
 """[[disc]]: discs that are held, or move at a given velocity."""
 
-from __future__ import annotations
-
 import pydantic
 
 from porescale.common.schema.sections import Section, quantity

@@ -1,7 +1,5 @@
 """[gate]: an upright plate that opens."""
 
-from __future__ import annotations
-
 from porescale.common.schema.sections import Section, quantity
 from porescale.scene.ranges import FRICTION, LENGTH
 

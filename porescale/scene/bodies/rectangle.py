@@ -1,7 +1,5 @@
 """[[rectangle]]: solid rectangles along the grid, fixed or moved."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
@@ -30,7 +28,7 @@ class Rectangle(Section):
     )
 
     @pydantic.model_validator(mode="after")
-    def _has_size(self) -> Rectangle:
+    def _has_size(self) -> "Rectangle":
         faults = []
         if not (self.lower[0] < self.upper[0] and self.lower[1] < self.upper[1]):
             faults.append(Fault("upper", str(self.upper), "does not lie right of and above lower", "m",

@@ -1,7 +1,5 @@
 """[rock]: a pressed packing made into bonded discs, triangles or Voronoi cells between two plates."""
 
-from __future__ import annotations
-
 from typing import Any, Literal
 
 import pydantic
@@ -34,7 +32,7 @@ class Rock(Section):
         return with_time_functions(table, {"strain": ("", "strain of the sample")})
 
     @pydantic.model_validator(mode="after")
-    def _whole(self) -> Rock:
+    def _whole(self) -> "Rock":
         faults = []
         for name in ("gap", "pressed"):
             value = getattr(self, name)

@@ -3,8 +3,6 @@
 Lengths in m; all points are in the box unless copies are placed ``at`` points, from which they count then.
 """
 
-from __future__ import annotations
-
 import math
 
 import pydantic
@@ -59,7 +57,7 @@ class SegmentBody(Framed):
     long: bool = pydantic.Field(False, description="much longer than grains: kept out of the cells, as a container")
 
     @pydantic.model_validator(mode="after")
-    def _whole(self) -> SegmentBody:
+    def _whole(self) -> "SegmentBody":
         faults = [*self._faults(), *_one_line(self.chain, self.ends)]
         if faults:
             raise Refused(*faults)
@@ -84,7 +82,7 @@ class PolygonBody(Framed):
     seed: int = pydantic.Field(1, ge=0, description="seed of the random placement")
 
     @pydantic.model_validator(mode="after")
-    def _whole(self) -> PolygonBody:
+    def _whole(self) -> "PolygonBody":
         faults = self._faults()
         if bool(self.corners) == (self.sides is not None):
             faults.append(Fault("corners, sides", None, "exactly one of the two is needed", repair="give one of them"))
@@ -136,7 +134,7 @@ class Container(Section):
     record: bool = pydantic.Field(False, description="force and displacement over time in control.csv")
 
     @pydantic.model_validator(mode="after")
-    def _whole(self) -> Container:
+    def _whole(self) -> "Container":
         faults = _one_line(self.chain, self.ends)
         if faults:
             raise Refused(*faults)

@@ -1,7 +1,5 @@
 """[[wall]]: free straight walls without end, for dry grains."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, ClassVar
 
@@ -43,7 +41,7 @@ class Wall(Section):
         return with_time_functions(table, cls.UNITS)
 
     @pydantic.model_validator(mode="after")
-    def _sensible(self) -> Wall:
+    def _sensible(self) -> "Wall":
         faults = check_servo(self, self.moves)
         if not math.hypot(*self.normal) > 0.0:
             faults.append(Fault("normal", "(0, 0)", "has no length", repair="point it towards the grains"))

@@ -1,7 +1,5 @@
 """[coarse_graining]: fields of the grains in snapshots."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import pydantic
@@ -28,7 +26,7 @@ class CoarseGraining(Section):
     )
 
     @pydantic.model_validator(mode="after")
-    def _resolved(self) -> CoarseGraining:
+    def _resolved(self) -> "CoarseGraining":
         if self.width is not None and self.width < self.spacing:
             repair = "widen it, to some grains, or take the points closer"
             problem = "is less than the spacing: grains would fall between the points"

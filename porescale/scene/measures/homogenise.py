@@ -1,7 +1,5 @@
 """[homogenise]: the soil that the packing makes."""
 
-from __future__ import annotations
-
 import pydantic
 
 from porescale.common.schema.sections import Section, quantity

@@ -1,7 +1,5 @@
 """[[line]] and [[flux]]: straight sections along which the fluid is recorded, or through which it flows."""
 
-from __future__ import annotations
-
 import pydantic
 
 from porescale.common.core.errors import Fault
@@ -17,7 +15,7 @@ class Segment(Section):
     end: tuple[float, float] = quantity("m", **PLACE, help="last point")
 
     @pydantic.model_validator(mode="after")
-    def _has_length(self) -> Segment:
+    def _has_length(self) -> "Segment":
         if self.start == self.end:
             raise Refused(Fault("end", None, "is the same as start", "m", repair="move one of them"))
         return self

@@ -1,7 +1,5 @@
 """[loads]: bodies whose load from the fluid is recorded."""
 
-from __future__ import annotations
-
 import pydantic
 
 from porescale.common.core.errors import Fault
@@ -23,7 +21,7 @@ class Loads(Section):
     direction: tuple[float, float] = quantity("", (1.0, 0.0), ge=-1, le=1, help="direction of drag")
 
     @pydantic.model_validator(mode="after")
-    def _complete(self) -> Loads:
+    def _complete(self) -> "Loads":
         faults = []
         if not self.discs and not self.grains and not self.rectangles:
             faults.append(Fault("discs, grains, rectangles", None, "name no body", repair="write discs = [0], say"))

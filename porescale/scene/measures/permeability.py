@@ -1,7 +1,5 @@
 """[permeability]: what the bed lets through."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import pydantic

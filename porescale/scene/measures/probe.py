@@ -1,7 +1,5 @@
 """[[probe]]: points where the fluid is recorded."""
 
-from __future__ import annotations
-
 import pydantic
 
 from porescale.common.schema.sections import Section, quantity

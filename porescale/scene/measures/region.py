@@ -1,7 +1,5 @@
 """[[region]]: rectangles in which grains are recorded."""
 
-from __future__ import annotations
-
 import pydantic
 
 from porescale.common.core.errors import Fault
@@ -20,7 +18,7 @@ class Region(Section):
     upper: tuple[float, float] = quantity("m", **PLACE, help="upper right corner")
 
     @pydantic.model_validator(mode="after")
-    def _has_area(self) -> Region:
+    def _has_area(self) -> "Region":
         if not (self.lower[0] < self.upper[0] and self.lower[1] < self.upper[1]):
             problem = "must lie right of and above the lower corner"
             given, allowed = f"({self.upper[0]:g}, {self.upper[1]:g})", f"> ({self.lower[0]:g}, {self.lower[1]:g})"

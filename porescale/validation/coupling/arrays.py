@@ -6,8 +6,6 @@ more.  Of square arrays Sangani & Acrivos 1982 print the same to all their digit
 Arrays of discs in slow flow with exactly known loads, beside the square ones of experiments_towed; lattice units.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 

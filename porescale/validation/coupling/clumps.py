@@ -3,8 +3,6 @@
 Clumps of discs in fluid, lattice units: what ``verify_clumps`` measures and tests vary.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """What fluid and grains together conserve: mass, momentum, mirror symmetry, uniform flow.  Lattice units."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from porescale.common.evidence.validations import Measured, Validations

@@ -1,7 +1,5 @@
 """Validations of long runs, in short: what `study endurance` does for a million steps."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from porescale.benchmarks.endurance import ENDURANCES

@@ -3,8 +3,6 @@
 A cylinder towed fast from rest, in lattice units: near tau = 1/2, where the viscous layer is thinner than a cell.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -3,8 +3,6 @@
 Discs that fall on each other and on the bottom, SI.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -4,8 +4,6 @@ References: drag F/(mu U) of square arrays, U superficial, and torque over mu w 
 (tests/reference/stokes_polygons.py), five digits.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

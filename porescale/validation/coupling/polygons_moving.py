@@ -1,7 +1,5 @@
 """Polygons that move with fluid: conservation, symmetry, and an ellipse that turns in shear flow.  Lattice units."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

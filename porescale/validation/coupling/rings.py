@@ -5,8 +5,6 @@ A disc in a ring, at several places in the cells: what ``verify`` measures and t
 Rectangles and rings in fluid with known answers: what ``verify`` measures and tests vary.  Lattice units.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -3,8 +3,6 @@
 Unless SI is named, spacing, step and density of the fluid are 1, so that everything is in lattice units.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

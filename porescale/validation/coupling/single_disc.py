@@ -4,8 +4,6 @@ Exact answers are known as Laplace transforms, in unbounded, slow flow; time in 
 viscosity of the fluid; s the density ratio.  Lattice units unless SI is named.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

@@ -5,8 +5,6 @@ Heaps that sleep under water: what a current and a grain that sinks do to them, 
 In lattice units.  A contact step is a fluid step, so that the forces which judge a sleeper can be taken from outside.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

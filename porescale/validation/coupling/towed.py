@@ -5,8 +5,6 @@ Discs that are held or towed in slow flow, with known drag and torque: arrays, c
 A disc towed so slowly that it stays in its place while the flow becomes steady gives the quasi-steady load.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 

@@ -3,8 +3,6 @@
 Small experiments with clumps, controlled bodies, driven walls and strained cells that have exact answers, in SI.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The longest stable step: of one contact, and of a lattice of discs from its dynamical matrix.  SI."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The energy budget: of oblique impacts, of a collapsing heap, and of boxes that are shaken and pushed.  SI."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Impacts by the Hertz law: restitution at any speed, overlap, duration, critical step, no gain of energy.  SI."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -3,8 +3,6 @@
 Packings whose stress, fabric and porosity are known exactly, in SI: what ``verify_measures`` measures.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Momentum and angular momentum of a cloud of colliding, spinning discs.  SI."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

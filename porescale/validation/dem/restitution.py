@@ -3,8 +3,6 @@
 Protocols: Chung & Ooi 2011 (Granular Matter 13, 643), here with the linear law.  SI.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -10,8 +10,6 @@ Triangles stand 1 mm apart, as there; cells 4 mm, since at 1 mm a corner goes th
 1.08 mm, 13.5 times what bonds bear, and cells bear more before they break.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Friction and rolling: a disc that slides until it rolls, inclines, with and without rolling resistance.  SI."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -3,8 +3,6 @@
 Small experiments with segments, polygons and bonds that have exact answers, in SI.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -3,8 +3,6 @@
 All discs of one experiment lie far apart and share a system, so that a sweep over parameters costs one run.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

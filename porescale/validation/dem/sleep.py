@@ -3,8 +3,6 @@
 Heaps that sleep: how far sleepers are out of balance, what sleep takes, and what a blow makes of it, in SI.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

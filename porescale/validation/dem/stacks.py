@@ -1,7 +1,5 @@
 """Discs at rest on each other: overlaps under their weight, of one material and of two.  SI."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The same bits from one loop over pairs and from many threads."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

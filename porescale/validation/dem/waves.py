@@ -1,7 +1,5 @@
 """Waves on a ring of discs in contact: the dispersion of standing waves, and a kick that travels.  SI."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -3,8 +3,6 @@
 The lid-driven cavity, steady, and what others found for it.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

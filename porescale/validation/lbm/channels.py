@@ -3,8 +3,6 @@
 Small flows with exact answers, in lattice units: what ``verify`` measures and tests vary.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager

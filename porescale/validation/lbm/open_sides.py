@@ -3,8 +3,6 @@
 Flows through open sides: a channel between two pressures, a plug that comes and goes.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

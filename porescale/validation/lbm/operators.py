@@ -3,8 +3,6 @@
 Flows in which collision operators differ: moving frames, thin shear layers, eddy viscosity.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -3,8 +3,6 @@
 The rows of the accuracy table are means over ten seeds; a pair's own value scatters by a fifth.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace

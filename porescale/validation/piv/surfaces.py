@@ -1,7 +1,5 @@
 """The surface of a pile, found from the discs of a picture and from what is solid in it.  Pixels."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

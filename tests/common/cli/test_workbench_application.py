@@ -1,7 +1,5 @@
 """The command line, with a toy package: what it does, what it says, how it ends."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

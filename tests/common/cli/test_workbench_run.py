@@ -1,7 +1,5 @@
 """What `run` makes of a scene's report: it is asked for once, and said before anything is built."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The cache's folder, the hash of sources, and what is thrown away."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import sys

@@ -1,7 +1,5 @@
 """Threads of the kernels: as many as asked for, or a refusal."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

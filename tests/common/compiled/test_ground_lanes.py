@@ -1,7 +1,5 @@
 """Vectors of a few numbers: the same in kernels as in plain Python, to the bit."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

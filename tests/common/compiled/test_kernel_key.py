@@ -1,7 +1,5 @@
 """Kernels kept on disk: an edit compiles anew what contains the edited text, and nothing else."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

@@ -1,7 +1,5 @@
 """What scenes are held against does the same job, and a scene's arrays are counted once."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

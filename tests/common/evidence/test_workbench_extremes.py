@@ -1,7 +1,5 @@
 """A try of an extreme ends in one of three ways, and says why."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """Reports, validations, benchmarks and timing."""
 
-from __future__ import annotations
-
 import json
 import math
 import sys

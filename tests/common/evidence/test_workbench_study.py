@@ -1,7 +1,5 @@
 """The register of studies, the halving of monotone flows, and the files of a map."""
 
-from __future__ import annotations
-
 import csv
 import json
 

@@ -1,7 +1,5 @@
 """Cells hold every point once, in order, wherever it lies."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

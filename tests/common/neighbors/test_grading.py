@@ -1,7 +1,5 @@
 """Sizes of discs follow the curve they are drawn from."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The pair list says what the definition says, keeps data by pair, and grows without waste."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Pairs of a cell whose upper image lies aside; pairs within a group are none."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

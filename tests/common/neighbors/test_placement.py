@@ -1,7 +1,5 @@
 """Placed discs never overlap, stay in the box, and are the same for the same seed."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Pictures and films show what is there, the right way up, to scale, and nothing else."""
 
-from __future__ import annotations
-
 import sys
 
 import av

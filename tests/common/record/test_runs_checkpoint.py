@@ -1,7 +1,5 @@
 """Checkpoints: damage is found, never returned; what cannot be held is refused."""
 
-from __future__ import annotations
-
 import random
 
 import h5py

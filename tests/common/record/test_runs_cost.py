@@ -1,7 +1,5 @@
 """What a run costs whoever waits: steps, their pace as it began, and what is besides."""
 
-from __future__ import annotations
-
 import time
 
 import pytest

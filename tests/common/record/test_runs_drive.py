@@ -1,7 +1,5 @@
 """The loop: output never changes the physics, resumed runs are the uninterrupted ones, ends are told."""
 
-from __future__ import annotations
-
 import json
 import math
 import threading

@@ -1,7 +1,5 @@
 """Files of a run: whole or absent, series that survive a kill, the card."""
 
-from __future__ import annotations
-
 import json
 import math
 import os

@@ -1,7 +1,5 @@
 """Run folders of earlier versions stay readable, and those of later ones say so in one line."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import sys

@@ -1,7 +1,5 @@
 """Folders that are moved, removed, locked away or wanted by two while a run writes: clear words, nothing damaged."""
 
-from __future__ import annotations
-
 import errno
 import shutil
 import signal

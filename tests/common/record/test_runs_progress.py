@@ -1,7 +1,5 @@
 """Progress: silent when asked, a line now and then where there is no terminal, a bar where there is one."""
 
-from __future__ import annotations
-
 import io
 import threading
 

@@ -1,7 +1,5 @@
 """Snapshots on disk: VTK reads what was written, bit by bit, at every time step."""
 
-from __future__ import annotations
-
 import shutil
 
 import h5py

@@ -1,7 +1,5 @@
 """Scenes: quantities, every fault at once, nearest names, quality levels, overrides, round trips."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Annotated, Literal
@@ -51,7 +49,7 @@ class Clock(Section):
     frames: int = Field(10, ge=1, lt=1000)
 
     @model_validator(mode="after")
-    def _a_step_fits(self) -> Clock:
+    def _a_step_fits(self) -> "Clock":
         if self.step > self.duration:  # an InputError is collected like a Refused
             raise InputError(Fault("step", self.step, "is longer than the run", "s"))
         return self
@@ -64,7 +62,7 @@ class Scene(Section):
     clock: Clock
 
     @model_validator(mode="after")
-    def _cells_fit(self) -> Scene:
+    def _cells_fit(self) -> "Scene":
         if self.fluid and self.fluid.spacing > self.size:
             raise Refused(Fault("fluid.spacing", self.fluid.spacing, "is larger than the domain", "m"))
         return self

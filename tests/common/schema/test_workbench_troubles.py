@@ -1,7 +1,5 @@
 """What people, disks and bugs can do to a command: one line and a code each, found as early as can be."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Quality levels are points of the front, picked by a rule; the shipped cases keep to it."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

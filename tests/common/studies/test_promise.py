@@ -1,7 +1,5 @@
 """What a front promises is held against a run: its time, and its error beside the answers that the front keeps."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Points of a sweep, how they are run and what becomes of those that were stopped or went wrong."""
 
-from __future__ import annotations
-
 import csv
 import json
 from pathlib import Path

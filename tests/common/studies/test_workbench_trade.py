@@ -1,7 +1,5 @@
 """Errors, costs and the front of a trade study, and what `--error` and `--budget` pick from it."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The API of the package: what its docstring says, and no more."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

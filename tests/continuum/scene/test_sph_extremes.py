@@ -1,7 +1,5 @@
 """What cannot go well is refused before it starts, or stopped with the particle and the reason."""
 
-from __future__ import annotations
-
 import pytest
 
 from continuum_sph.benchmarks.extremes import EXTREMES

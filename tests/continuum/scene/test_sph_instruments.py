@@ -1,7 +1,5 @@
 """Probes and levels read what is there."""
 
-from __future__ import annotations
-
 import csv
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The model of a tank: restored bit for bit, the same at any number of threads, honest about what it cannot do."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Pressure of fluids just let go: the exact one of a column, none to move fluid at rest, and no knock at a bubble."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Scenes of soil and water: refused, built, at rest, resumed."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

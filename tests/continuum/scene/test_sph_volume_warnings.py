@@ -1,7 +1,5 @@
 """`check` warns of choices of method that were seen to change the volume of splashing water."""
 
-from __future__ import annotations
-
 import pytest
 
 from continuum_sph.builders.report import report

@@ -1,7 +1,5 @@
 """Air in the pores of soil: where it is, how hard it is to move, what scenes refuse."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Water kept at a level: measured by weight, booked to the last particle, resumed bit for bit."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Water among grains: the passes over both layers are what their derivation says."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from reference import seepage as slow

@@ -1,7 +1,5 @@
 """Shifting among grains: density stays that of the place, and the book of energies has what that takes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

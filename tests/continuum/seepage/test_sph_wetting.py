@@ -1,7 +1,5 @@
 """How a wetting line sags, and what Boussinesq's equation says of its foot."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp

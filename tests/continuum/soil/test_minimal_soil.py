@@ -1,7 +1,5 @@
 """The smallest statement of a step of soil does what the kernels do."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Soil: gradients, turning, yielding, walls and the model of a scene."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Diffusion of stress and of volume in sheared soil: what it evens out, keeps and leaves alone, at any shear."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Each choice of method does what it is for, and only that."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

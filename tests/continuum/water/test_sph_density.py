@@ -1,7 +1,5 @@
 """Diffusion of density leaves a hydrostatic column alone and is taken down within steps that allow it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

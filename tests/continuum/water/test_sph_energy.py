@@ -1,7 +1,5 @@
 """The book of energies is kept where a scene asks for it, costs nothing elsewhere, and moves nobody."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

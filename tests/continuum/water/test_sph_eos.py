@@ -1,7 +1,5 @@
 """Equations of state: found by their files, and what each says of itself holds together."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Two fluids in one layer: surface tension, density ratios, scenes with an inclusion."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

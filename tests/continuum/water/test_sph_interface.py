@@ -1,7 +1,5 @@
 """Friction between two fluids is the divergence of a stress; the outline of a fluid is that of its particles."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

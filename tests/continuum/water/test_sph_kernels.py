@@ -1,7 +1,5 @@
 """Kernels, equation of state and viscosity obey what defines them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

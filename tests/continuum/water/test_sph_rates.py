@@ -1,7 +1,5 @@
 """The pass over pairs, compiled for what a scene asks for, is the sums that its equations say."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Tension between two fluids: its kernels against sums over all pairs, and the exact swing of a viscous drop."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

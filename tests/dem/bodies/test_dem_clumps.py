@@ -1,7 +1,5 @@
 """Clumps: mass of a union of discs, shares of members, rigid motion, contacts with everything but themselves."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

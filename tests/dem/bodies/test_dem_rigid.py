@@ -1,7 +1,5 @@
 """Stress, porosity, rattlers and the work of a cell are of rigid bodies where discs are bound to clumps."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Clumps under Hertz and of several materials, discs of very different sizes, rolling at walls that move."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The linear law: its restitution, contact time and limits."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Hertz, rolling resistance and several materials: against slow twins and by what they must obey."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

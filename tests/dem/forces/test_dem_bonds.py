@@ -1,7 +1,5 @@
 """Bonds by back tension: what they cancel, between whom, when and where they break, and their energy."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Only discs that may touch a wall within a call are asked at every step: the same bits as asking all of them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Plates count in what is measured of grains and in what is beyond sense; a rebuilt list costs no array."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

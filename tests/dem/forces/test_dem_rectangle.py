@@ -1,7 +1,5 @@
 """Discs meet rectangles as they meet walls, at faces and at corners, wherever those go."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Frames of segments: mass, contacts that count once, springs that are handed over, lists, restart."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The sweep over blocks adds the same numbers in the same order as the loop over the list."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The list of contacts says what the next step uses: every force, torque and spring of it."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The energy book closes with clumps, controlled bodies and walls that move or are pressed, at first order."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

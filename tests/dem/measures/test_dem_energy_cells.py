@@ -1,7 +1,5 @@
 """The energy book closes in strained cells, of discs and of clumps: what the cell does is stored, moving or lost."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

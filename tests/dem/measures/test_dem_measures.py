@@ -1,7 +1,5 @@
 """Measures of grains against slow, obvious twins, and where the answer is known."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

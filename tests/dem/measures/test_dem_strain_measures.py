@@ -1,7 +1,5 @@
 """What is measured in a strained cell is that of the cell: contacts, stress, porosity, motion and fields."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Bodies go as told or are pushed as told, and what that takes is on record; walls likewise."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Strained cells: what is affine stays so, images change nothing, stress and energy are those of the strain."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Packings reach the pressure or the density that was asked for, rest there, and come back from files as they were."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

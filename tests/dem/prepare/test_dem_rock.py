@@ -1,7 +1,5 @@
 """Rock: samples stand without load, plates bear what the sample bears, breaks are counted, curves are read."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Settled packings rest, keep to hard-disc geometry, and come from disk with the bits they had."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Voronoi cells and Delaunay triangles fill their rectangle and keep what defines them; shrinking moves sides."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

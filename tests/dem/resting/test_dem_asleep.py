@@ -1,7 +1,5 @@
 """Discs that sleep: they stay, they wake, and what is saved of them goes on to the same bits."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Contact steps of discs that are all held, at rest and without contact are left out, to the same bits; others not."""
 
-from __future__ import annotations
-
 import copy
 
 import numpy as np

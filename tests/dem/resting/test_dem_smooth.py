@@ -1,7 +1,5 @@
 """Grains without friction take a law of their own that leaves springs and rotation alone, and go the same way."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
