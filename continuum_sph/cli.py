@@ -14,8 +14,9 @@ from porescale.common.evidence.register import discovered
 if TYPE_CHECKING:
     from continuum_sph.scene.sections import Scene
     from porescale.common.cli.report import Report
+    from porescale.common.core.types import AnyArray
     from porescale.common.record.drive import Outcome
-    from porescale.common.record.model import Array, Model
+    from porescale.common.record.model import Model
 
 BENCHMARKS = "continuum_sph.benchmarks"
 FORMERLY = {"numerics": {"noise_floor": 0.0}}
@@ -138,7 +139,7 @@ TWO = {0: ("water", "#5b8fd0"), 1: ("second fluid", "#e8a33d")}
 """Names and colours of two fluids."""
 
 
-def table(folder: Path, name: str) -> dict[str, Array]:
+def table(folder: Path, name: str) -> dict[str, AnyArray]:
     """Columns of a table of the run in ``folder``, "series" for series.csv; {} when there is none."""
     from porescale.common.record.series import read_series
 

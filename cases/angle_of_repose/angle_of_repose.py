@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.common.neighbors.placement import place
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
@@ -17,8 +17,6 @@ from porescale.dem.forces.walls import HIGH, Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.measures.energy import energy_book
 from porescale.output.case import conclude, options, stage
-
-Array = NDArray[np.float64]
 
 HERE = Path(__file__).resolve().parent
 COUNT, SIDE, TOE, GRAVITY, DT = 582, 80.0, 4.0, 980.0, 5e-5  # discs, cm, cm, cm/s², s: the tutorial's
@@ -59,7 +57,7 @@ def heap(friction: float = TUTORIAL, seed: int = 1, dt: float = DT, book: bool =
     return Heap(grains, energy_book(grains, (0.0, -GRAVITY)) if book else {})
 
 
-def outline(grains: Grains, points: int = 160) -> tuple[Array, Array]:
+def outline(grains: Grains, points: int = 160) -> tuple[Floats, Floats]:
     """(x, height of the heap's surface there), cm, over its floor."""
     x = (np.arange(points) + 0.5) * SIDE / points
     d = grains.discs
@@ -102,7 +100,7 @@ def share(made: Heap) -> float:
     return abs(made.book["residual (J/m)"]) / made.book["turned over (J/m)"]
 
 
-def draw(made: Heap, found: dict[float, Array], stiff: Array) -> Figure:
+def draw(made: Heap, found: dict[float, Floats], stiff: Floats) -> Figure:
     """The heap with its fitted slope; angle against friction."""
     figure, axes = stage(2, 10.0, 3.8)
     d = made.grains.discs

@@ -9,9 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from porescale import build, load
+from porescale.common.core.types import Floats
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import PX, PY
 from porescale.dem.grains import Grains
@@ -19,8 +19,6 @@ from porescale.dem.measures.coarse_graining import CoarseGrained, Raster
 from porescale.dem.measures.contacts import contacts
 from porescale.dem.motion.time_function import Table
 from porescale.output.case import conclude, options, stage
-
-Array = NDArray[np.float64]
 
 HERE = Path(__file__).resolve().parent
 SCENE = HERE / "specimen.toml"
@@ -41,15 +39,15 @@ class Record:
     inertial: the largest inertial number.  grains at the end, chains (c, 2, 2) m and force (c,) N/m of contacts at the
     peak, shear (rows, columns) of the coarse-grained field and its extent, m."""
 
-    strain: Array
-    volume: Array
-    sine: Array
-    side: Array
+    strain: Floats
+    volume: Floats
+    sine: Floats
+    side: Floats
     fraction: float
     inertial: float
-    chains: Array
-    force: Array
-    shear: Array
+    chains: Floats
+    force: Floats
+    shear: Floats
     extent: tuple[float, float, float, float]
 
 
@@ -77,8 +75,8 @@ def compress(state: str, seed: int = 1, friction: float = 0.5, discs: int = 0, *
     start = area / (high * scene.domain.width)
     lasts = high * (1.0 - math.exp(-strain)) / speed + 0.5 * RAMP
     each = max(1, round(lasts / dt / (ROWS * LOOKS)))
-    rows: list[Array] = []
-    record: dict[str, Array] = {}
+    rows: list[Floats] = []
+    record: dict[str, Floats] = {}
     chains, force = np.zeros((0, 2, 2)), np.zeros(0)
     while not rows or rows[-1][0] < strain:
         found = []
@@ -112,7 +110,7 @@ def look(grains: Grains) -> tuple[float, float, float, float]:
     return w, h, along, 0.5 * float(pushed["right"][0] - pushed["left"][0]) / h
 
 
-def branches(grains: Grains) -> tuple[Array, Array]:
+def branches(grains: Grains) -> tuple[Floats, Floats]:
     """Ends (c, 2, 2) m of the lines between discs that touch, and their normal forces (c,) N/m."""
     found = contacts(grains)
     found = found.chosen(found.pairs)
@@ -120,7 +118,7 @@ def branches(grains: Grains) -> tuple[Array, Array]:
     return np.stack((start, start + found.branch), axis=1), found.normal_force
 
 
-def sheared(grains: Grains, start: Array, end: Array) -> tuple[Array, tuple[float, float, float, float]]:
+def sheared(grains: Grains, start: Floats, end: Floats) -> tuple[Floats, tuple[float, float, float, float]]:
     """Largest shear strain (rows, columns) between two places of the discs, coarse-grained, and the extent, m."""
     low, high = start.min(axis=0), start.max(axis=0)
     size = 2.0 * float(grains.discs.radius.mean())
@@ -131,7 +129,7 @@ def sheared(grains: Grains, start: Array, end: Array) -> tuple[Array, tuple[floa
     return np.asarray(shear), (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
 
 
-def dilatancy(test: Record) -> Array:
+def dilatancy(test: Record) -> Floats:
     """d volume / d strain, (r,): slope of a straight line through the rows within WINDOW."""
     found = np.empty_like(test.strain)
     for k, at in enumerate(test.strain):
@@ -140,7 +138,7 @@ def dilatancy(test: Record) -> Array:
     return found
 
 
-def smooth(test: Record) -> Array:
+def smooth(test: Record) -> Floats:
     """Mean of the sine within WINDOW of strain, (r,)."""
     return np.array([test.sine[np.abs(test.strain - at) < 0.5 * WINDOW].mean() for at in test.strain])
 

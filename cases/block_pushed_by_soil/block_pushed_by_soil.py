@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.neighbors.placement import place
 from porescale.common.pictures.film import write_film
 from porescale.dem.bodies.frames import chain, framed, polygon
@@ -27,8 +28,6 @@ from porescale.dem.motion.time_function import Table
 from porescale.output.case import conclude, options, stage
 from porescale.output.case_bodies import LARGEST, PLATE, Shot, draw_bodies, frame, pixels, shot
 from porescale.validation.dem.segments import OPEN, REST, weights
-
-Array = NDArray[np.float64]
 
 HERE = Path(__file__).resolve().parent
 DIAMETER, DENSITY = 0.02, 2500.0  # m, mean, radii 3:5; kg/m³
@@ -57,12 +56,12 @@ class Record:
     the soil, of the block on its base, each (r,) or (r, 2); shots of some rows."""
 
     grains: Grains
-    time: Array
-    pushed: Array
-    gone: Array
-    soil: Array
-    plate: Array
-    base: Array
+    time: Floats
+    pushed: Floats
+    gone: Floats
+    soil: Floats
+    plate: Floats
+    base: Floats
     shots: list[tuple[int, Shot]] = field(default_factory=list)
 
 

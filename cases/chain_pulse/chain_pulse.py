@@ -5,16 +5,14 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 from scipy.special import jn_zeros, jnp_zeros, jv
 
+from porescale.common.core.types import Floats
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
 from porescale.output.case import conclude, options, stage
-
-Array = NDArray[np.float64]
 
 HERE = Path(__file__).resolve().parent
 APART, RADIUS, STIFFNESS, DENSITY = 2.0, 1.1, 1e8, 2.5  # cm, cm, dyn/cm, g/cm³: the tutorial's
@@ -33,7 +31,7 @@ def chain(count: int) -> Grains:
     return Grains(make_discs(np.column_stack((x, np.zeros(count))), RADIUS, DENSITY), Linear(STIFFNESS), box)
 
 
-def kicked(count: int = 21, lasts: float = 20.0) -> tuple[Array, Array, Array]:
+def kicked(count: int = 21, lasts: float = 20.0) -> tuple[Floats, Floats, Floats]:
     """Times (t,) s of velocities, velocities (t, count) cm/s and displacements (t, count) cm, half a step later, after
     the middle disc got KICK; ``lasts`` in 1/(2 RATE)."""
     grains = chain(count)
@@ -48,7 +46,7 @@ def kicked(count: int = 21, lasts: float = 20.0) -> tuple[Array, Array, Array]:
     return time, speed, moved
 
 
-def first_top(time: Array, values: Array) -> float:
+def first_top(time: Floats, values: Floats) -> float:
     """Time of the first maximum above half of the largest, by a parabola through three points."""
     inner = values[1:-1]
     k = int(np.flatnonzero((inner > values[:-2]) & (inner >= values[2:]) & (inner > 0.5 * values.max()))[0]) + 1
@@ -103,7 +101,7 @@ def measure() -> tuple[dict[str, float], Figure]:
     return numbers, draw(later, moved, middle, found)
 
 
-def draw(time: Array, moved: Array, middle: int, found: dict[str, float]) -> Figure:
+def draw(time: Floats, moved: Floats, middle: int, found: dict[str, float]) -> Figure:
     """Displacements over time, read-off speeds over distance, group speeds over phase."""
     figure, axes = stage(3, 10.5, 3.3)
     x = 2.0 * RATE * time

@@ -6,15 +6,13 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
-from numpy.typing import NDArray
 from scipy.integrate import quad
 
 from porescale import build, load
+from porescale.common.core.types import Floats
 from porescale.dem.grains import Grains
 from porescale.dem.measures.energy import energy_book
 from porescale.output.case import conclude, options, stage
-
-Array = NDArray[np.float64]
 
 HERE = Path(__file__).resolve().parent
 SCENE = HERE / "clump.toml"
@@ -26,7 +24,7 @@ RIGID, FINE = 1e4, 0.25  # times the stiffness, where a contact is to last next 
 
 def clump(
     stiffer: float = 1.0, step: float = STEP, *, book: bool = False, **contact: float
-) -> tuple[Grains, Array]:  # fmt: skip
+) -> tuple[Grains, Floats]:  # fmt: skip
     """The scene's clump with ``stiffer`` contacts, its ``step`` (s) and other keys of [contact], and with or without
     an energy book; its weights (n, 2)."""
     told = {"stiffness": 1e7 * stiffer, "step": step, **contact}

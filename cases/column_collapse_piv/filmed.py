@@ -6,8 +6,8 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.common.record.open_run import Run, open_run
 from porescale.piv.estimate.measure import Settings, measure
 from porescale.piv.fields.field import Field, in_metres, in_pixels
@@ -15,8 +15,6 @@ from porescale.piv.fields.of_run import field_of_run
 from porescale.piv.fields.vortices import Vortex, vortices
 from porescale.piv.images.camera import Shooting, frames, shooting
 from porescale.piv.images.synth import Camera
-
-Array = NDArray[np.float64]
 
 RATE = 60.0
 """Frames a second, as in the experiment."""
@@ -61,7 +59,7 @@ def lattice(folder: Path, time: float, like: Field | None = None, step: float = 
     ny, nx = (side // n for side in field.u.shape)
     rows = slice(field.u.shape[0] - ny * n, None)
 
-    def mean(values: Array) -> Array:
+    def mean(values: Floats) -> Floats:
         """Means over the cells of each square."""
         return np.asarray(values[rows, : nx * n].reshape(ny, n, nx, n).mean((1, 3)))
 

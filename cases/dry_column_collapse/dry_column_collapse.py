@@ -14,6 +14,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.neighbors.placement import place
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
@@ -21,8 +22,6 @@ from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.measures.survey import centre_of_mass
 from porescale.output.case import conclude, options, stage
-
-Array = NDArray[np.float64]
 
 HERE = Path(__file__).resolve().parent
 DIAMETER, SPREAD, DENSITY = 5e-3, 0.2, 2500.0  # m, half width of the sizes over their mean, kg/m³
@@ -41,9 +40,9 @@ class Collapse:
     aspect: float
     run_out: float
     half: float
-    before: Array
-    after: Array
-    radius: Array
+    before: Floats
+    after: Floats
+    radius: Floats
     main: NDArray[np.bool_]
 
 
@@ -82,7 +81,7 @@ def collapse(
     return Collapse(settled / half, edge / half - 1.0, half, before, d.position.copy(), d.radius.copy(), main)
 
 
-def together(position: Array, radius: Array) -> NDArray[np.bool_]:
+def together(position: Floats, radius: Floats) -> NDArray[np.bool_]:
     """The largest mass of discs that touch, but for gaps of NEAR mean diameters, (n,) bool; the rest are stragglers."""
     gap = NEAR * DIAMETER
     i, j = cKDTree(position).query_pairs(2.0 * float(radius.max()) + gap, output_type="ndarray").T

@@ -6,16 +6,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from continuum_sph.seepage import Seepage
 from continuum_sph.validation.seepage.dam import POROSITY
 from continuum_sph.validation.seepage.wetting import BOUSSINESQ, Levee, sag
+from porescale.common.core.types import Floats
 from porescale.common.pictures.film import write_film
 from porescale.output.case import conclude, options, stage
 from porescale.output.case_bodies import pixels
-
-Floats = NDArray[np.float64]
 
 HERE = Path(__file__).resolve().parent
 STAGES = (1.2, 2.4, 4.2, 6.0)  # s

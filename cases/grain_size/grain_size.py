@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.rectangle import Rectangle
@@ -17,8 +17,6 @@ from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
 from porescale.dem.prepare.compaction import Compactor, kept
 from porescale.output.case import conclude, options, stage
-
-Array = NDArray[np.float64]
 
 HERE = Path(__file__).resolve().parent
 LENGTH, HEIGHT, PRESSURE, DENSITY, SPREAD = 0.2, 0.1, 1e4, 2500.0, 0.2  # m, m, Pa, kg/m³, -
@@ -35,12 +33,12 @@ class Shearing:
     """travel over the length of the box (r,);  ratio of shear to normal stress (r,);  risen: of the lid over the
     diameter (r,);  discs at the end, (n, 2) and (n,) m, the upper half's walls, m."""
 
-    travel: Array
-    ratio: Array
-    risen: Array
-    position: Array
-    radius: Array
-    walls: Array
+    travel: Floats
+    ratio: Floats
+    risen: Floats
+    position: Floats
+    radius: Floats
+    walls: Floats
 
 
 def law(mass: float, friction: float) -> Linear:
@@ -87,7 +85,7 @@ def box_shear(across: int, seed: int = 1, friction: float = FRICTION, *, travel:
                     grains.rectangles.copy())  # fmt: skip
 
 
-def element(times: float, seed: int = 1, friction: float = FRICTION) -> tuple[Array, Array, Array]:
+def element(times: float, seed: int = 1, friction: float = FRICTION) -> tuple[Floats, Floats, Floats]:
     """Simple shear of a periodic cell of GRAINS discs, all lengths ``times`` those of 1 cm: shear, ratio of shear to
     normal stress, solid fraction; the packing is that of 1 cm, enlarged."""
     side = 0.01 * math.sqrt(GRAINS * math.pi / 4.0 / 0.83)
@@ -150,7 +148,7 @@ def strengths(runs: dict[int, list[Shearing]]) -> dict[str, float]:
     }
 
 
-def draw(small: tuple[Array, ...], large: tuple[Array, ...], runs: dict[int, list[Shearing]]) -> Figure:
+def draw(small: tuple[Floats, ...], large: tuple[Floats, ...], runs: dict[int, list[Shearing]]) -> Figure:
     """Element tests; box tests over travel; their peaks over the size of grains; a box at the end."""
     figure, axes = stage(4, 12.0, 3.0)
     axes[0].plot(small[0], small[1], color="#8c1c2f", lw=1.5, label="1 cm")

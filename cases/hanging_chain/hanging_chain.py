@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.dem.contact.linear import Linear
 from porescale.dem.grains import Grains
 from porescale.dem.motion.control import Moved
@@ -17,8 +18,6 @@ from porescale.output.case import conclude, options, stage
 from porescale.output.case_bodies import Shot, by_piece, draw_bodies, frame, shot
 from porescale.validation.dem.segments import catenary, hung, weights
 from porescale.validation.dem.setups import MASS, RADIUS
-
-Array = NDArray[np.float64]
 
 HERE = Path(__file__).resolve().parent
 COUNT = 20
@@ -41,8 +40,8 @@ class Pull:
     just before the break, and after it;  grains at the end."""
 
     grains: Grains
-    span: Array
-    force: Array
+    span: Floats
+    force: Floats
     broken: NDArray[np.int64]
     shots: list[Shot] = field(default_factory=list)
 

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.builders.soil import material_of, soil_section
@@ -18,11 +17,10 @@ from continuum_sph.validation.seepage.permeameter import Permeameter, upward
 from continuum_sph.validation.soil.element import biaxial
 from porescale import build, load
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.record.model import Model
 from porescale.common.schema.sections import open_scene
 from porescale.output.case import conclude, options, stage
-
-Array = NDArray[np.float64]
 
 HERE = Path(__file__).resolve().parent
 STILL, TAPS = 0.05, (0.005, 0.015)
@@ -38,9 +36,9 @@ GRAINS, SOIL = "#8c1c2f", "#2a6f97"
 class Fall:
     """A column that fell: times (t,) s, x (t,) m of its centre, top (b,) m of its surface in BINS at the end."""
 
-    time: Array
-    centre: Array
-    top: Array
+    time: Floats
+    centre: Floats
+    top: Floats
 
 
 def ground(settings: tuple[str, ...] = ()) -> SoilScene:
@@ -111,7 +109,7 @@ def soil_falls(angle: float) -> Fall:
     return Fall(time, centre, surface(particles, np.full(len(particles), 0.5 * scene.numerics.spacing)))
 
 
-def surface(position: Array, radius: Array) -> Array:
+def surface(position: Floats, radius: Floats) -> Floats:
     """Height (m) of the highest body in each of BINS, (b,); 0 where there is none."""
     top = np.zeros(len(BINS))
     np.maximum.at(top, np.clip(np.digitize(position[:, 0], BINS) - 1, 0, len(BINS) - 1), position[:, 1] + radius)
@@ -152,7 +150,7 @@ def measure(beds: int, columns: int) -> tuple[dict[str, float], Figure]:
 
 
 def draw(
-    through: Array, across: float, known: float, rows: Array, strength: tuple[float, float], fell: list[Fall],
+    through: Floats, across: float, known: float, rows: Floats, strength: tuple[float, float], fell: list[Fall],
     flowed: list[Fall],
 ) -> Figure:  # fmt: skip
     """Flow, strength, the way of both columns and what is left of them; bars and bands are standard errors."""
@@ -181,7 +179,7 @@ def draw(
     return figure
 
 
-def error_of(values: Array) -> float:
+def error_of(values: Floats) -> float:
     """Standard error of the mean of ``values`` (n,); 0 of a single one, which says nothing of it."""
     return float(np.std(values, ddof=1) / math.sqrt(len(values))) if len(values) > 1 else 0.0
 

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from porescale import Scene
 from porescale.cli.run import build
@@ -24,8 +23,6 @@ from porescale.piv.fields.of_run import field_of_run
 from porescale.piv.fields.vortices import Vortex, vortices
 from porescale.piv.images.camera import Frame, Shooting, frames, shooting
 from porescale.piv.images.synth import Camera
-
-Array = NDArray[np.float64]
 
 HERE = Path(__file__).resolve().parent
 PIXELS = 512

@@ -8,17 +8,15 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.atomic import write_text
+from porescale.common.core.types import Floats
 from porescale.output.case import conclude, options, stage
 from porescale.piv.estimate.measure import Settings, measure
 from porescale.piv.images import flows
 from porescale.piv.images.synth import Camera, Pair, pair
 from porescale.validation.piv import pairs as lab
-
-Array = NDArray[np.float64]
 
 HERE = Path(__file__).resolve().parent
 SHIFTS = np.linspace(0, 1, 11)
@@ -26,7 +24,7 @@ COARSE = ("clean", "uniform", "shear", "stagnation", "lamb_oseen", "taylor_green
 """Rows that the table has for windows of 32 px too."""
 
 
-def openpiv(made: Pair, window: int) -> tuple[Array, Array, Array, Array]:
+def openpiv(made: Pair, window: int) -> tuple[Floats, Floats, Floats, Floats]:
     """x, y, u, v as OpenPIV measures them: 64, 32 (and 16) px with deformation, half overlap, its defaults."""
     from openpiv.settings import PIVSettings
     from openpiv.windef import simple_multipass
@@ -82,7 +80,7 @@ def compare(name: str, window: int, seeds: range) -> dict[str, float]:
     return mean
 
 
-def their_bias(diameter: float, size: int = 256) -> Array:
+def their_bias(diameter: float, size: int = 256) -> Floats:
     """OpenPIV's mean error of u on the pairs of ``experiments.bias``, px."""
     camera, found = Camera((size, size), diameter=diameter, noise=0.0, lost=0.0), []
     for seed, shift in enumerate(SHIFTS):
@@ -137,7 +135,7 @@ def into_readme(lines: list[str]) -> None:
     write_text(path, text[:start] + "\n".join(lines) + text[stop:])
 
 
-def drawn(bars: list[tuple[str, float, float | None]], curves: dict[float, Array]) -> Figure:
+def drawn(bars: list[tuple[str, float, float | None]], curves: dict[float, Floats]) -> Figure:
     """Errors of every row, and bias over the sub-pixel part of the displacement."""
     figure, (left, right) = stage(2, 11.0, 4.6)
     at = np.arange(len(bars))[::-1]

@@ -10,14 +10,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.common.pictures.film import write_film
 from porescale.dem.measures.network import stiffness, voigt
 from porescale.dem.prepare.rock import Curve, Kind, Rock, load
 from porescale.output.case import conclude, options, stage
 from porescale.output.case_bodies import Shot, by_piece, draw_bodies, draw_cracks, frame, keep, pixels, shot
 from porescale.validation.dem import rock as lab
-
-Array = NDArray[np.float64]
 
 HERE = Path(__file__).resolve().parent
 MOMENTS = 200
@@ -57,7 +56,7 @@ class Trial:
     shots: list[Shot] = field(default_factory=list)
 
     @property
-    def stress(self) -> Array:
+    def stress(self) -> Floats:
         """Over the naive strength, (m,), positive in the direction of the test."""
         return np.asarray(np.sign(self.curve.strain[-1]) * self.curve.stress / self.rock.naive_strength)
 
@@ -67,7 +66,7 @@ class Trial:
         return int(np.argmax(self.stress))
 
     @property
-    def emissions(self) -> Array:
+    def emissions(self) -> Floats:
         """Bonds that broke in each moment, (m,)."""
         return np.diff(self.curve.broken, prepend=0)
 
@@ -116,7 +115,7 @@ def falling(pulled: Trial) -> float:
     return float(pulled.emissions[drops].mean() / pulled.emissions.mean())
 
 
-def contacts(packings: int, count: int) -> Array:
+def contacts(packings: int, count: int) -> Floats:
     """(frictions, 3): contacts between discs per disc, stiffness of the springs, and Voigt's, over the contact's."""
     rows = []
     for friction in PACKED:
@@ -146,7 +145,7 @@ def measure(
     return numbers, draw(tests, springs), tests
 
 
-def draw(tests: dict[str, list[Pair]], springs: Array) -> Figure:
+def draw(tests: dict[str, list[Pair]], springs: Floats) -> Figure:
     """Stress over strain pulled and pressed, emissions of a pulled sample of discs, stiffness over contacts."""
     figure, axes = stage(4, 13.0, 3.3)
     for name, found in tests.items():

@@ -9,13 +9,12 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
 from porescale.output.case import conclude, options, stage
-
-Array = NDArray[np.float64]
 
 HERE = Path(__file__).resolve().parent
 RADIUS, DENSITY, FRICTION, DAMPING_RATIO = 0.02, 2500.0, 0.5, 0.2  # m, kg/m³, -, -
@@ -29,10 +28,10 @@ LASTS = 0.9  # s
 class Track:
     """time (t,) s;  place, velocity (t, 2) m, m/s;  spin (t,) rad/s."""
 
-    time: Array
-    place: Array
-    velocity: Array
-    spin: Array
+    time: Floats
+    place: Floats
+    velocity: Floats
+    spin: Floats
 
 
 def roll(stiffness: float, friction: float = FRICTION, drop: float = DROP, rows: int = 900) -> Track:

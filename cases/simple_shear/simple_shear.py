@@ -8,14 +8,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from porescale import build, load
+from porescale.common.core.types import Floats
 from porescale.dem.grains import Grains
 from porescale.dem.measures.contacts import contacts
 from porescale.output.case import conclude, options, stage
-
-Array = NDArray[np.float64]
 
 HERE = Path(__file__).resolve().parent
 SCENE = HERE / "cell.toml"
@@ -35,17 +33,17 @@ class Record:
     chains (c, 2, 2) m, force (c,) N/m: contacts;  at, went (n, 2) m: places in the cell, and how far the discs went
     beside the mean shear."""
 
-    shear: Array
-    ratio: Array
-    fraction: Array
-    across: Array
-    along: Array
-    sine: Array
+    shear: Floats
+    ratio: Floats
+    fraction: Floats
+    across: Floats
+    along: Floats
+    sine: Floats
     inertial: float
-    chains: Array
-    force: Array
-    at: Array
-    went: Array
+    chains: Floats
+    force: Floats
+    at: Floats
+    went: Floats
 
 
 def sheared(state: str, seed: int = 1, friction: float = 0.5, discs: int = 0, *, shear: float = SHEAR) -> Record:
@@ -69,8 +67,8 @@ def sheared(state: str, seed: int = 1, friction: float = 0.5, discs: int = 0, *,
     rate, pressure = scene.cell.rate_xy.mean, scene.cell.stress_yy.mean
     area = float(grains.discs.area.sum())
     each = max(1, round(shear / rate / dt / (ROWS * LOOKS)))
-    rows: list[Array] = []
-    before: tuple[Array, Array] | None = None
+    rows: list[Floats] = []
+    before: tuple[Floats, Floats] | None = None
     chains, force, at, went = np.zeros((0, 2, 2)), np.zeros(0), np.zeros((0, 2)), np.zeros((0, 2))
     while grains.time * rate < shear:
         found = []
@@ -92,12 +90,12 @@ def sheared(state: str, seed: int = 1, friction: float = 0.5, discs: int = 0, *,
     return Record(gone, ratio, solid, normal, beside, angle, inertial, chains, force, at, went)
 
 
-def frame(grains: Grains) -> Array:
+def frame(grains: Grains) -> Floats:
     """The cell's edges as columns, (2, 2) m."""
     return np.array(grains.steering.edges()).T
 
 
-def branches(grains: Grains) -> tuple[Array, Array, Array]:
+def branches(grains: Grains) -> tuple[Floats, Floats, Floats]:
     """Ends (c, 2, 2) m of the lines between discs that touch, their normal forces (c,) N/m, and the places (n, 2) m of
     the discs: all within the cell, but for lines that leave it."""
     edges, found = frame(grains), contacts(grains)
@@ -107,12 +105,12 @@ def branches(grains: Grains) -> tuple[Array, Array, Array]:
     return np.stack((start, start + found.branch), axis=1), found.normal_force, at
 
 
-def running(it: Record, values: Array) -> Array:
+def running(it: Record, values: Floats) -> Floats:
     """Mean of ``values`` (r,) within WINDOW of shear."""
     return np.array([values[np.abs(it.shear - at) < 0.5 * WINDOW].mean() for at in it.shear])
 
 
-def dilatancy(it: Record) -> Array:
+def dilatancy(it: Record) -> Floats:
     """d ln V/d shear, (r,): slope of a straight line through the rows within WINDOW."""
     found = np.empty_like(it.shear)
     for k, at in enumerate(it.shear):

@@ -5,13 +5,11 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.output.case import conclude, options, stage
 from porescale.validation.dem.critical_step import critical_step
 from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, law_at, row_on_floor
-
-Array = NDArray[np.float64]
 
 HERE = Path(__file__).resolve().parent
 UNIT = math.sqrt(MASS / STIFFNESS)  # s
@@ -20,10 +18,10 @@ SHARES = (0.02, 0.05, 0.1, *np.linspace(0.125, 0.95, 34))
 PHASES = 200
 
 
-def lagged(ratio: Array | float) -> Array:
+def lagged(ratio: Floats | float) -> Floats:
     """Longest stable step over sqrt(m/k) of leap-frog with the damping force of the last half step."""
     h = np.asarray(ratio, float)
-    limit: Array = 2.0 * (np.sqrt(1.0 + h**2) - h)
+    limit: Floats = 2.0 * (np.sqrt(1.0 + h**2) - h)
     return limit
 
 
@@ -46,7 +44,7 @@ def growth(ratio: float, step: float, steps: int = 60) -> float:
     return float((size[-1] / size[half]) ** (1.0 / max(len(size) - 1 - half, 1)))
 
 
-def gains(share: float, ratio: float = 0.0) -> Array:
+def gains(share: float, ratio: float = 0.0) -> Floats:
     """Kinetic energy after over before one bounce, less one, (PHASES,), at ``share`` of the longest stable step, for
     touches at all moments of a step."""
     dt = share * float(lagged(ratio)) * UNIT
@@ -56,7 +54,7 @@ def gains(share: float, ratio: float = 0.0) -> Array:
     grains = row_on_floor(PHASES, gap, law)
     grains.discs.velocity[:, 1] = -speed
     grains.step(dt, count=int(6.0 * UNIT / dt) + 4)
-    found: Array = (grains.discs.velocity[:, 1] / speed) ** 2 - 1.0
+    found: Floats = (grains.discs.velocity[:, 1] / speed) ** 2 - 1.0
     return found
 
 
@@ -71,7 +69,7 @@ def measure() -> tuple[dict[str, float], Figure]:
     return numbers, draw(found, worst)
 
 
-def draw(found: dict[float, float], worst: dict[float, Array]) -> Figure:
+def draw(found: dict[float, float], worst: dict[float, Floats]) -> Figure:
     """Growth over step and damping ratio with the limits, and the energy error of one bounce over the step."""
     figure, axes = stage(2, 10.0, 4.0)
     h, steps = np.linspace(0.0, 2.0, 41), np.linspace(0.05, 2.6, 52)

@@ -8,12 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
-from numpy.typing import NDArray
 
 from porescale import build, load
+from porescale.common.core.types import Floats
 from porescale.output.case import conclude, options, stage
-
-Array = NDArray[np.float64]
 
 HERE = Path(__file__).resolve().parent
 SCENE = HERE / "plate.toml"
@@ -30,9 +28,9 @@ class Fall:
     """A fall, in time (n,) s: position (n, 2) m, angle (n,) rad."""
 
     density: float
-    time: Array
-    position: Array
-    angle: Array
+    time: Floats
+    position: Floats
+    angle: Floats
 
     @property
     def froude(self) -> float:

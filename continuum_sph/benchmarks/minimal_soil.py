@@ -7,11 +7,9 @@ damping, diffusion of stress and volume, what keeps particles apart, tension, an
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.soil.material import Material
-
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 
 class Ground(NamedTuple):

@@ -6,7 +6,6 @@ and compiled without where it has not.  Sums run in the order of `rates`; the pa
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.water.density import HYDROSTATIC, noise_scale
 from continuum_sph.water.eos.liquid import Tait
@@ -17,8 +16,6 @@ from continuum_sph.water.step import Flow
 from porescale.common.compiled.jit import parallel_kernel, prange
 from porescale.common.compiled.simd import LANES, gather_rows, maximum, minimum, reduce_add, sqrt, zeros
 from porescale.common.neighbors import PairList
-
-Floats = NDArray[np.float64]
 
 
 @parallel_kernel

@@ -21,9 +21,8 @@ from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.state import P
 from porescale.common.cli.report import Report
+from porescale.common.core.types import Floats
 from porescale.common.record.part import Part
-
-Floats = NDArray[np.float64]
 
 WATER, AIR = 0, 1
 """Materials of the layer in pores."""

@@ -16,9 +16,8 @@ from continuum_sph.water.eos.register import laws
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.step import Flow
+from porescale.common.core.types import Floats
 from porescale.common.record.part import Part
-
-Floats = NDArray[np.float64]
 
 SMOOTH = 2.6  # spacings, the kernel that draws an outline: with half of that each particle is a bump in it
 TOUCH = 1.6  # spacings: particles nearer belong together; neighbours across a diagonal are at 1.41

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.linalg import spsolve
 
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
 

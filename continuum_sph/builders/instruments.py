@@ -10,13 +10,11 @@ strip falls to one half, w the cubic spline on a line.  A drop of one particle i
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.scene.instruments import LevelSection, ProbeSection
 from continuum_sph.water.step import Flow
+from porescale.common.core.types import Floats
 from porescale.common.record.part import Part
-
-Floats = NDArray[np.float64]
 
 SUPPORT = 2.0  # of the kernels, in smoothing lengths
 THIN = 1e-3  # of a mean square distance: particles on a line give no slope across it

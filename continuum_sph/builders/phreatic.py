@@ -6,14 +6,12 @@ phreatic.csv has a column for each strip, PITCH spacings apart; heights are thos
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.builders.instruments import MeasuredWater, surface_height
 from continuum_sph.scene.instruments import LevelSection
+from porescale.common.core.types import Floats
 from porescale.common.pictures.look import Line
 from porescale.common.record.model import Snapshot
-
-Floats = NDArray[np.float64]
 
 NAME = "phreatic"
 PITCH = 2.0  # spacings between strips, twice as broad: those of the spacing itself hold too few particles in pores

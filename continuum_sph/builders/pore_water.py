@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.builders.air import AIR, air_fluid, dry_pores, specific_weights, with_air
 from continuum_sph.builders.reservoirs import reservoir, spare
@@ -20,9 +19,8 @@ from continuum_sph.water.density import LINEAR
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.pressure_walls import tank_walls
 from continuum_sph.water.state import Layer
+from porescale.common.core.types import Floats
 from porescale.common.neighbors import PairList
-
-Floats = NDArray[np.float64]
 
 
 def pore_law(scene: Scene) -> Law:

@@ -4,15 +4,13 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.scene.reservoir import ReservoirSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import Reservoir, Seepage, Supply
 from porescale.common.core.errors import Unstable
+from porescale.common.core.types import Floats
 from porescale.common.record.part import Part
-
-Floats = NDArray[np.float64]
 
 HIGHER = 0.1
 """Share of the tank's height by which the water of a reservoir may stand over it: splashes."""

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from continuum_sph.water.no_step import no_step
 from porescale.common.core.errors import Unstable
-
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 FARTHER = 2.0
 """Ways of the fastest particle that another may have come: shifting and smoothed velocities add to its own."""

@@ -4,8 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuum_sph.water.fluids import LEAST_DENSITY, Fluid, table
-
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 DENSEST = 1.3
 """Of ρ0 of the first fluid: Tait pressures of half B and more; sound at Mach 0.1 needs 1.01, the hardest impacts

@@ -6,14 +6,12 @@ is dry.  i is what least squares fits to the particles beside the pile.  The soi
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.scene.pile import SheetPileSection
 from continuum_sph.seepage import PoreFlow
 from continuum_sph.seepage.sheet_pile import Pile
+from porescale.common.core.types import Floats
 from porescale.common.record.part import Part
-
-Floats = NDArray[np.float64]
 
 NAME = "exit gradient ()"
 """Column of series.csv in a scene with a pile."""

@@ -29,11 +29,11 @@ from continuum_sph.water.image_walls import facing
 from continuum_sph.water.pressure_walls import tank_walls
 from continuum_sph.water.smoothing import Smoothing
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.neighbors import PairList, square_lattice
 from porescale.common.record.model import Cloud, Snapshot
 from porescale.common.record.part import Part
 
-Floats = NDArray[np.float64]
 NO_PILE = np.zeros((0, 2)), np.zeros((0, 4)), np.zeros(0, np.int64)
 REPAIR = "raise soil.stiffness or soil.numerics.damping, or lower numerics.courant"
 LEAST = float(np.finfo(np.float64).tiny)  # of what is above zero

@@ -30,11 +30,10 @@ from continuum_sph.water.pressure_walls import tank_walls
 from continuum_sph.water.smoothing import SUPPORT, Smoothing
 from continuum_sph.water.state import Layer
 from continuum_sph.water.step import Flow
+from porescale.common.core.types import Floats
 from porescale.common.neighbors import PairList, square_lattice
 from porescale.common.record.model import Cloud, Snapshot
 from porescale.common.record.part import Part
-
-Floats = NDArray[np.float64]
 
 REPAIR = "lower numerics.courant, or raise numerics.artificial_viscosity or water.sound_speed"
 

@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 
 from continuum_sph.scene.material_file import Origin
 from porescale.common.core.errors import Fault
+from porescale.common.core.types import Floats
 from porescale.common.schema.sections import Section, quantity
-
-Floats = NDArray[np.float64]
 
 
 class Body(Section):

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 from continuum_sph.water.smoothing import CUBIC, kernel_value
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
 from porescale.common.compiled.simd import LANES, gather_two, rint, sqrt, store
+from porescale.common.core.types import Floats
 from porescale.common.neighbors import PairList
-
-Floats = NDArray[np.float64]
 
 
 @inline

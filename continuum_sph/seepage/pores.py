@@ -4,7 +4,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.seepage.exchange import apply_drag, apply_reaction, relative_to_soil
 from continuum_sph.seepage.mixture import (
@@ -26,8 +25,7 @@ from continuum_sph.seepage.resistance import Resistance
 from continuum_sph.seepage.skeleton import Skeleton
 from continuum_sph.water.step import Flow
 from porescale.common.compiled.simd import LANES
-
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 
 @dataclass

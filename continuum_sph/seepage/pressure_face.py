@@ -19,8 +19,7 @@ from continuum_sph.water.bundles import image
 from continuum_sph.water.smoothing import CUBIC, kernel_value
 from continuum_sph.water.state import VX, VY, P, X, Y
 from porescale.common.compiled.jit import parallel_kernel, prange
-
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 
 @dataclass

@@ -19,12 +19,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.water.state import Layer
 from porescale.common.compiled.jit import kernel
-
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 RAMP = 3.0  # spacings: of a lattice that passes, w takes in the same mass to a thousandth
 BERTH = 1.5  # cutoffs between berths

@@ -25,9 +25,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel
+from porescale.common.core.types import Floats
 from porescale.common.neighbors import PairList
-
-Floats = NDArray[np.float64]
 
 LEFT, RIGHT, UNDER = range(3)
 """Sides of a pile, from which its sets are seen."""

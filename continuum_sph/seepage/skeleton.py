@@ -3,12 +3,10 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.soil import SoilFlow
 from porescale.common.compiled.jit import parallel_kernel, prange
-
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 HEAVIEST = 1e300  # kg/m: stands for the infinite mass of soil that is held, as nothing times it is nothing
 

@@ -17,8 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline
-
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 (
     AREA,

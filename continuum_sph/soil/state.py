@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 X, Y, VX, VY, VOLUME, MASS, SOUND_OVER_DENSITY, SHEAR_RATE, TXX, TXY, TYX, TYY, GXX, GXY, GYX, GYY = range(16)
 """Columns of a record, two cache lines: m, m, m/s, m/s, m², kg/m, c/ρ in m⁴/(kg s), shear strain rate in 1/s; σ·K, Pa

@@ -6,13 +6,11 @@ A layer's particles carry the number of their fluid, their material; kernels rea
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.water.eos.law import StateLaw
 from porescale.common.compiled.jit import inline
 from porescale.common.compiled.simd import gather_two, maximum, minimum
-
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 DENSITY, SOUND, LEAST_DENSITY, VISCOSITY, COHESION, LIQUID = range(6)
 """Columns of the table: ρ0 kg/m³, c0 m/s, least density kg/m³, μ Pa s, a, 1 for a liquid and 0 for a gas."""

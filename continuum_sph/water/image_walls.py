@@ -11,15 +11,13 @@ fluid, and the pressure that goes with it.
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.water.bundles import image
 from continuum_sph.water.eos.law import pressure_of
 from continuum_sph.water.smoothing import kernel_kind, kernel_slope
 from continuum_sph.water.state import RHO, VOLUME, VX, VY, P, X, Y
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
-
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 STEEPEST = 2.0  # β_max of eq. 51
 

@@ -1,11 +1,9 @@
 """A flow without a next step: the error that names the place, for the run loop."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.errors import Unstable
-
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 
 def no_step(seconds: float, rule: str, x: Floats, acceleration: Floats, density: Floats, step: int, time: float,

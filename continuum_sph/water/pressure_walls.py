@@ -6,14 +6,12 @@ stands in for eqs 50, 51 of Maeda & Sakai 2004 (Morris' image velocities), which
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.water.bundles import image
 from continuum_sph.water.smoothing import kernel_kind, kernel_value
 from continuum_sph.water.state import RHO, VOLUME, VX, VY, P, X, Y
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
-
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 
 @inline

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 X, Y, VX, VY, RHO, P, VOLUME, COMPRESSIBILITY = range(8)
 """Columns of a record: m, m, m/s, m/s, kg/m³, Pa, m/ρ (m²), ρ/c² (kg s²/m⁵)."""

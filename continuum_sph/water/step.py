@@ -20,7 +20,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.water.bundles import Choices, Fluids, Gradients, Neighbours, Walls
 from continuum_sph.water.density import LINEAR
@@ -37,9 +36,8 @@ from continuum_sph.water.shifting import MOST, QUIET, shift
 from continuum_sph.water.smoothing import WENDLAND
 from continuum_sph.water.state import Layer
 from continuum_sph.water.surface_tension import colours, curvatures, mark, middle_curvatures, normals, pull_interface
+from porescale.common.core.types import Floats
 from porescale.common.neighbors import PairList
-
-Floats = NDArray[np.float64]
 
 
 @dataclass

@@ -16,11 +16,9 @@ import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
-
-Array = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 WINDOW = 0.01
 """Of axial strain, over which peak and dilatancy are taken."""
@@ -30,7 +28,7 @@ LEAST = 4
 """Rows of the first loading, below which a slope cannot be separated from oscillations."""
 
 
-def running(strain: Array, values: Array) -> tuple[Array, Array]:
+def running(strain: Floats, values: Floats) -> tuple[Floats, Floats]:
     """Mean and slope of ``values`` (r,) over ``strain`` (r,), ascending, within half a WINDOW of each row, both (r,);
     nan where the window reaches beyond the test."""
     half = 0.5 * WINDOW
@@ -45,7 +43,7 @@ def running(strain: Array, values: Array) -> tuple[Array, Array]:
     return mean, slope
 
 
-def curves(series: Mapping[str, Array]) -> dict[str, Array]:
+def curves(series: Mapping[str, Floats]) -> dict[str, Floats]:
     """Axial strain, volume strain, sine of the mobilised angle, deviator (Pa), strain across, of every row of a test
     but the first, which comes before its first step."""
     across, axial = series["strain xx ()"][1:], -series["strain yy ()"][1:]
@@ -56,7 +54,7 @@ def curves(series: Mapping[str, Array]) -> dict[str, Array]:
     }  # fmt: skip
 
 
-def numbers(tests: Sequence[Mapping[str, Array]]) -> list[dict[str, float]]:
+def numbers(tests: Sequence[Mapping[str, Floats]]) -> list[dict[str, float]]:
     """The numbers of each of several tests of one soil, angles in rad, from the columns of their series.csv.
 
     Raises InputError for a test without strength: one that ended before it began to shear.
@@ -76,7 +74,7 @@ def numbers(tests: Sequence[Mapping[str, Array]]) -> list[dict[str, float]]:
     ]
 
 
-def peaks(every: Sequence[Mapping[str, Array]]) -> tuple[Array, Array]:
+def peaks(every: Sequence[Mapping[str, Floats]]) -> tuple[Floats, Floats]:
     """Sine of the friction angle and dilatancy dv/da of each test, (n,), where their means over tests are largest."""
     end = min(float(it["strain"][-1]) for it in every)
     at = np.arange(WINDOW, end - 0.5 * WINDOW, 0.1 * WINDOW)  # before WINDOW contacts close, or a test begins
@@ -92,7 +90,7 @@ def peaks(every: Sequence[Mapping[str, Array]]) -> tuple[Array, Array]:
     return found[0], found[1]
 
 
-def _alone(it: Mapping[str, Array]) -> dict[str, float]:
+def _alone(it: Mapping[str, Floats]) -> dict[str, float]:
     """Numbers of one test that need no other."""
     late = it["strain"] > LATE * it["strain"][-1]
     stiffness, poisson = first_loading(it)
@@ -104,7 +102,7 @@ def _alone(it: Mapping[str, Array]) -> dict[str, float]:
     }
 
 
-def first_loading(it: Mapping[str, Array]) -> tuple[float, float]:
+def first_loading(it: Mapping[str, Floats]) -> tuple[float, float]:
     """E (Pa) and ν of the rows before half of the largest deviator; nan where they are too few."""
     peak = float(np.nanmax(running(it["strain"], it["deviator"])[0]))
     before = slice(0, int(np.argmax(it["deviator"] >= 0.5 * peak)))

@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 
-Array = NDArray[np.float64]
 Grey = NDArray[np.float32]
 Mask = NDArray[np.bool_]
 
@@ -36,7 +36,7 @@ WITHIN, WHOLE = 0.8, 0.97  # share of its radius within which this share of a di
 ROUNDS = 6
 
 
-def circles_in(picture: Grey, smallest: float, largest: float, *, light: bool = True) -> tuple[Array, Array]:
+def circles_in(picture: Grey, smallest: float, largest: float, *, light: bool = True) -> tuple[Floats, Floats]:
     """Centres (n, 2) and radii (n,) of discs in a picture (rows, columns), px; rows count from the top, the middle of
     the first pixel is at (0.5, 0.5).
 
@@ -130,7 +130,7 @@ def _share_within(solid: Mask, x: float, y: float, r: float) -> float:
     return float(solid[np.ix_(rows, columns)][inside].mean()) if inside.any() else 0.0
 
 
-def _circle(points: Array) -> tuple[float, float, float]:
+def _circle(points: Floats) -> tuple[float, float, float]:
     """Centre and radius of the circle through points (n, 2) by linear least squares: x² + y² = 2 a x + 2 b y + c."""
     middle = points.mean(axis=0)
     u = points - middle

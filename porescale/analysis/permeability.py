@@ -18,15 +18,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Reals
 from porescale.coupling.psm import Saturated
 from porescale.lbm.boundary.sides import Kind, Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
-
-Array = NDArray[np.floating]
 
 TAU = 0.6
 """Relaxation time unless given: drag depends least on it where it is small."""
@@ -69,8 +67,8 @@ def kozeny_carman(solid_fraction: float) -> float:
 
 
 def measure(
-    position: Array,
-    radius: Array,
+    position: Reals,
+    radius: Reals,
     lower: tuple[float, float],
     upper: tuple[float, float],
     spacing: float,
@@ -128,7 +126,7 @@ def measure(
     )  # fmt: skip
 
 
-def _flow(fluid: Fluid, wet: Saturated, at: Array, length: int, margin: int) -> tuple[float, float, bool]:
+def _flow(fluid: Fluid, wet: Saturated, at: Reals, length: int, margin: int) -> tuple[float, float, bool]:
     """K (cells²), solid fraction and whether steady, of discs held at ``at`` in flow along x, driven until steady.
 
     length : columns of the sample;  margin : of these, columns at each face that are left out of the gradient.

@@ -5,12 +5,12 @@ of the lattice is of second order, so that it is a third of what half the cells 
 """
 
 from porescale.analysis.permeability import Measured, measure
-from porescale.dem.prepare.compaction import Array
+from porescale.common.core.types import Floats
 
 ORDER = 2
 
 
-def flow_numbers(position: Array, radius: Array, side: float, cells: int) -> dict[str, float]:
+def flow_numbers(position: Floats, radius: Floats, side: float, cells: int) -> dict[str, float]:
     """K (m²) and what belongs to it of discs at ``position`` (n, 2) m with the ``radius`` (n,) m used in the fluid.
 
     side : of the periodic cell, m;  cells : per mean hydraulic diameter.  "lattice error" is relative.
@@ -27,7 +27,7 @@ def flow_numbers(position: Array, radius: Array, side: float, cells: int) -> dic
     }
 
 
-def _through(position: Array, radius: Array, side: float, cells: float) -> Measured:
+def _through(position: Floats, radius: Floats, side: float, cells: float) -> Measured:
     """Permeability on the lattice nearest to ``cells`` per diameter that the cell holds whole."""
     spacing = side / round(side * cells / (2.0 * float(radius.mean())))
     return measure(position, radius, (0.0, 0.0), (side, side), spacing, direction="y", periodic=(True, True))

@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import kernel
+from porescale.common.core.types import Floats
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.contact.linear import Linear
 from porescale.dem.grains import Grains
-
-Array = NDArray[np.float64]
 
 
 class Springs(NamedTuple):
@@ -31,15 +30,15 @@ class State(NamedTuple):
     """Discs, as `Discs.state` has them: position (n, 2) m, angle (n,), velocity m/s, spin rad/s, radius m, mass kg/m,
     inertia kg m²/m, force N/m, torque N m/m."""
 
-    position: Array
-    angle: Array
-    velocity: Array
-    spin: Array
-    radius: Array
-    mass: Array
-    inertia: Array
-    force: Array
-    torque: Array
+    position: Floats
+    angle: Floats
+    velocity: Floats
+    spin: Floats
+    radius: Floats
+    mass: Floats
+    inertia: Floats
+    force: Floats
+    torque: Floats
 
 
 class Near(NamedTuple):
@@ -48,8 +47,8 @@ class Near(NamedTuple):
 
     start: NDArray[np.int64]
     partner: NDArray[np.int32]
-    carried: Array
-    list_position: Array
+    carried: Floats
+    list_position: Floats
     limit: float
 
 
@@ -189,7 +188,7 @@ class PlainDiscs:
     turning (n,) N m/m: from outside, where there is friction; both loads may be overwritten between steps.
     """
 
-    def __init__(self, grains: Grains, weight: Array, dt: float) -> None:
+    def __init__(self, grains: Grains, weight: Floats, dt: float) -> None:
         assert isinstance(grains.law, Linear)
         assert grains.material is None
         self.discs, self.weight, self._dt, self._walls = grains.discs.state(), weight, dt, grains.walls.copy()

@@ -5,12 +5,10 @@ d'Humieres 2008) without a body force, half-way bounce-back at all four sides.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel, parallel_kernel, prange
+from porescale.common.core.types import Reals
 from porescale.lbm.lattice import CX, CY, OPPOSITE
-
-Array = NDArray[np.floating]
 
 
 @inline
@@ -89,7 +87,7 @@ def copy_links(flat, source, target):
 class PlainWater:
     """A closed box of water of nx by ny cells, from the populations (9, ny + 2, nx + 2) of another before step 0."""
 
-    def __init__(self, populations: Array, relaxation_time: float, magic: float = 3 / 16) -> None:
+    def __init__(self, populations: Reals, relaxation_time: float, magic: float = 3 / 16) -> None:
         self.populations, self.step = populations.copy(), 0
         self.even = 1.0 / relaxation_time
         self.odd = 1.0 / (0.5 + magic / (relaxation_time - 0.5))

@@ -7,13 +7,14 @@ the estimate so far, and the fit of splines to all pixels that follows.
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.floating]
+from porescale.common.core.types import Reals
+
 Mask = NDArray[np.floating]
 Corner = tuple[int, int]
 
 
 def correlation_at(
-    pictures: tuple[Array, Array], masks: tuple[Mask, Mask], corner: Corner, size: int, shift: Corner
+    pictures: tuple[Reals, Reals], masks: tuple[Mask, Mask], corner: Corner, size: int, shift: Corner
 ) -> float:
     """R of one window and one shift (rows, columns), px: A and B less their local means, zero in solids; masks 1 where
     fluid.  ``corner``: first pixel (row, column) of the window;  ``size``: its side, px."""
@@ -31,7 +32,7 @@ def peak_offset(low: float, middle: float, high: float) -> float:
 
 
 def displacement(
-    pictures: tuple[Array, Array], masks: tuple[Mask, Mask], corner: Corner, size: int, search: int
+    pictures: tuple[Reals, Reals], masks: tuple[Mask, Mask], corner: Corner, size: int, search: int
 ) -> tuple[float, float]:
     """Displacement (u, v), px to the right and down, of what one window shows: the peak of R over shifts of less than
     ``search`` px."""

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from porescale.benchmarks.minimal_dem import PlainDiscs
 from porescale.benchmarks.minimal_lbm import PlainWater, plain_cells, slots_of
 from porescale.common.compiled.jit import inline, kernel, tree_sum, unchecked_view
+from porescale.common.core.types import Floats
 from porescale.coupling.coverage.discs import SCRATCH, cover_disc
 from porescale.coupling.coverage.rows import BLOCK, whole_blocks
 from porescale.coupling.immersed import FOLLOWING
@@ -21,7 +22,6 @@ from porescale.coupling.psm import LOW_PASS
 from porescale.coupling.solid.exact_wall import ONSET, SMOOTHING
 from porescale.coupling.step import Coupled
 
-Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 total = tree_sum(BLOCK)
@@ -32,14 +32,14 @@ class Covered(NamedTuple):
     corner (n, 2) of the cells under each disc and their rows (n,), at most ``highest``, ``width`` cells wide; fraction
     (n * highest * width,).  Row by row of the lattice, the discs in it: start (ny + 1,), listed."""
 
-    centre: Array
-    motion: Array
-    turned: Array
+    centre: Floats
+    motion: Floats
+    turned: Floats
     corner: Index
     rows: Index
     highest: int
     width: int
-    fraction: Array
+    fraction: Floats
     start: Index
     listed: Index
 

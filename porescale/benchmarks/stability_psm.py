@@ -7,10 +7,10 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.benchmarks.stability_lbm import LOOK_EVERY, PERIODIC
 from porescale.common.core.errors import Unstable
+from porescale.common.core.types import Reals
 from porescale.common.evidence.stability import Axis, Stability, Tried
 from porescale.coupling.psm import Saturated
 from porescale.coupling.solid.choose import SOLID_OPERATORS
@@ -29,7 +29,6 @@ from porescale.validation.coupling.towed import faxen
 from porescale.validation.lbm.channels import one_thread
 
 STABILITY = Stability()
-Array = NDArray[np.floating]
 
 RATIOS = Axis("density ratio", (1000, 100, 10, 2.5, 1.25, 0.8, 0.5, 0.3, 0.2, 0.1), (100, 2.5, 0.3))
 SIZES = Axis("cells per diameter", (16, 10, 5, 3), (10, 5))
@@ -168,7 +167,7 @@ def tow(law: str, x: float, y: float) -> Tried:
     return Tried(True, noise, {**numbers, "noise": noise})
 
 
-def cell_noise(drag: Array, phase: Array, period: int, bins: int = 4) -> float:
+def cell_noise(drag: Reals, phase: Reals, period: int, bins: int = 4) -> float:
     """Rms over the mean of what repeats with each cell passed: less the moving mean over a cell, folded by ``phase``.
 
     The first third, in which the flow starts, is left out; sound that rings in the box has no fixed phase and falls
@@ -235,7 +234,7 @@ def _pitch(fraction: float, diameter: float, across: int) -> tuple[int, float]:
     return cells, cells / across * math.sqrt(fraction / math.pi)
 
 
-def _lattice_of_discs(cells: int, across: int) -> Array:
+def _lattice_of_discs(cells: int, across: int) -> Reals:
     """Centres (across², 2) of a square array."""
     at = (np.arange(across) + 0.5) * cells / across
     return np.array([(x + OFF_CENTRE[0], y + OFF_CENTRE[1]) for y in at for x in at])

@@ -9,14 +9,12 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
-from numpy.typing import NDArray
-
 from porescale.common.core.errors import Unstable
+from porescale.common.core.types import AnyArray
 from porescale.common.record.model import Snapshot
 
-Array = NDArray[Any]
 Row = dict[str, float]
-Fields = tuple[Array, Array, Array, Array]
+Fields = tuple[AnyArray, AnyArray, AnyArray, AnyArray]
 """Density excess (kg/m³), velocity (m/s, two arrays) and solid fraction of every cell, each (ny, nx)."""
 
 

@@ -4,7 +4,8 @@ from dataclasses import dataclass, field
 
 from porescale.builders.derive import Derived
 from porescale.builders.initial.frames import Placed
-from porescale.builders.part import Array, Clock
+from porescale.builders.part import Clock
+from porescale.common.core.types import AnyArray
 from porescale.coupling.coverage.rectangle import Rectangle
 from porescale.coupling.step import Coupled
 from porescale.dem.grains import Grains
@@ -26,7 +27,7 @@ class System:
     fluid: Fluid | None = None
     grains: Grains | None = None
     coupled: Coupled | None = None
-    weight: Array | None = None
+    weight: AnyArray | None = None
     frames: list[Placed] = field(default_factory=list)
     recorded: list[str] = field(default_factory=list)
     rectangles: list[Rectangle] = field(default_factory=list)

@@ -6,8 +6,8 @@ import numpy as np
 
 from porescale.analysis.biaxial import running
 from porescale.analysis.material import Known
+from porescale.common.core.types import Floats
 from porescale.common.evidence.files import new_figure, png
-from porescale.dem.prepare.compaction import Array
 
 EVERY = 5
 """Rows between points of a curve."""
@@ -15,7 +15,7 @@ BARS = ("peak friction angle", "peak dilatancy angle", "critical friction angle"
         "Poisson's ratio", "permeability")  # fmt: skip
 
 
-def picture(tests: Sequence[Mapping[str, Array]], found: Mapping[str, Known]) -> bytes:
+def picture(tests: Sequence[Mapping[str, Floats]], found: Mapping[str, Known]) -> bytes:
     """Friction angle and volume over strain of every packing, and numbers over their means, as a PNG."""
     figure = new_figure(12.0, 3.6)
     left, middle, right = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 1.2))

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from porescale.builders.scene import Scene
     from porescale.builders.simulation import Simulation
+    from porescale.common.core.types import AnyArray
     from porescale.common.record.drive import Outcome
-    from porescale.common.record.model import Array
 
 
 def scene_type() -> type[Scene]:
@@ -77,14 +77,14 @@ def check_resume(folder: Path, card: dict[str, Any]) -> None:
     check_resume(folder, card, today=completing(scene_type(), card))
 
 
-def table(folder: Path, name: str) -> dict[str, Array]:
+def table(folder: Path, name: str) -> dict[str, AnyArray]:
     """Columns of a table of the run in ``folder``, "series" for series.csv; {} when there is none."""
     from porescale.common.record.series import read_series
 
     return read_series(folder / f"{name}.csv")
 
 
-def features() -> Mapping[str, Callable[[Path, float | None], Array]]:
+def features() -> Mapping[str, Callable[[Path, float | None], AnyArray]]:
     """What a trade study may read of a run besides its tables."""
     from porescale.analysis.features import FEATURES
 

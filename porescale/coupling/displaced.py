@@ -9,27 +9,25 @@ it must.  Cells that two members cover belong to both by halves (load.py), so th
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.dem.bodies.clumps import LEAST, shares
 from porescale.dem.bodies.rigid import clumps_of
 from porescale.dem.bodies.union import outline
 from porescale.dem.grains import Grains
-
-Array = NDArray[np.float64]
 
 
 class Displaced(NamedTuple):
     """mass (n,) kg/m, inertia (n,) kg m²/m;  thinness (n,) 1/m: outline over area of the disc, or of its clump;
     0 of the corners of frames."""
 
-    mass: Array
-    inertia: Array
-    thinness: Array
+    mass: Floats
+    inertia: Floats
+    thinness: Floats
 
 
-def displaced(grains: Grains, radius: Array, density: float) -> Displaced:
+def displaced(grains: Grains, radius: Floats, density: float) -> Displaced:
     """Fluid of ``density`` (kg/m³) within discs of ``radius`` (n,) m at the places of ``grains``.
 
     Corners of frames share what lies within the frame's outline as they share its mass, whatever their radius.
@@ -64,7 +62,7 @@ def displaced(grains: Grains, radius: Array, density: float) -> Displaced:
     return Displaced(mass, inertia, thinness)
 
 
-def of_whole_bodies(grains: Grains, mass: Array, inertia: Array) -> tuple[Array, Array]:
+def of_whole_bodies(grains: Grains, mass: Floats, inertia: Floats) -> tuple[Floats, Floats]:
     """Mass and moment of inertia about its centroid of the body of each disc, (n,), from shares of discs."""
     clumps = clumps_of(grains)
     if clumps is None:

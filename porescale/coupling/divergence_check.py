@@ -3,9 +3,9 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.errors import Unstable
+from porescale.common.core.types import Reals
 from porescale.coupling.coverage.interpenetration import require_apart
 from porescale.coupling.displaced import displaced
 from porescale.coupling.divergence_cause import Circumstances, likely_cause
@@ -16,8 +16,6 @@ from porescale.lbm.boundary.sides import NAMES, Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.sanity import SOUND, WORST_DENSITY, WORST_MACH
 from porescale.lbm.scales import Scales
-
-Array = NDArray[np.floating]
 
 
 class DivergenceCheck:
@@ -71,7 +69,7 @@ class DivergenceCheck:
             speed = max(speed, float(np.where(np.isfinite(moving), moving, 0.0).max()))
         return speed
 
-    def _before(self, speed: Array) -> Circumstances:
+    def _before(self, speed: Reals) -> Circumstances:
         """The last state within bounds; where nothing had moved yet, the fastest cell that is still within bounds."""
         if self.last.speed > 0:
             return self.last
@@ -79,7 +77,7 @@ class DivergenceCheck:
         return replace(self.last, speed=float(within.max()) if len(within) else WORST_MACH * SOUND)
 
 
-def worst_cell(values: Array) -> tuple[int, int]:
+def worst_cell(values: Reals) -> tuple[int, int]:
     """(y, x) of the largest of ``values`` (ny, nx); where some are not finite, the one in the middle of those.
 
     What is no number spreads by a cell a step on all sides, so it began in the middle.

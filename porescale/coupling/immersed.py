@@ -18,11 +18,9 @@ All of it is in ``total_load``, line by line: follows is beta, response_share is
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import kernel
-
-Array = NDArray[np.floating]
+from porescale.common.core.types import Reals
 
 FOLLOWING = 0.9
 """Share of S/m_f with which the fluid inside follows: 1 lets discs of density ratio 0.1 run away."""
@@ -37,30 +35,30 @@ class CellLoad(NamedTuple):
     """Sums over the cells of bodies, lattice units: force (n, 2), torque (n,), and entrained (n, 2), mass and moment of
     inertia of the fluid that answers within a step."""
 
-    force: Array
-    torque: Array
-    entrained: Array
+    force: Reals
+    torque: Reals
+    entrained: Reals
 
 
 class InnerFluid(NamedTuple):
     """The fluid inside bodies: mass (n,) kg/m, inertia (n,) kg m²/m, velocity (n, 2) m/s, spin (n,) rad/s and
     momentum (n, 2) kg/s."""
 
-    mass: Array
-    inertia: Array
-    velocity: Array
-    spin: Array
-    momentum: Array
+    mass: Reals
+    inertia: Reals
+    velocity: Reals
+    spin: Reals
+    momentum: Reals
 
 
 class BodyLoad(NamedTuple):
     """Loads on bodies: of the fluid, fluid_force (n, 2) N/m and fluid_torque (n,) N m/m, and what moves them, force and
     torque."""
 
-    fluid_force: Array
-    fluid_torque: Array
-    force: Array
-    torque: Array
+    fluid_force: Reals
+    fluid_torque: Reals
+    force: Reals
+    torque: Reals
 
 
 @kernel
@@ -107,7 +105,7 @@ class Immersed:
     """
 
     def __init__(
-        self, mass: Array, inertia: Array, velocity: Array, spin: Array, weight: Array, response_share: Array
+        self, mass: Reals, inertia: Reals, velocity: Reals, spin: Reals, weight: Reals, response_share: Reals
     ) -> None:
         """mass, inertia (n,): of the fluid inside, which starts with the velocity and spin of the bodies."""
         n = len(mass)
@@ -122,13 +120,13 @@ class Immersed:
         )
         self._load = BodyLoad(self.fluid_force, self.fluid_torque, self.force, self.torque)
 
-    def respond(self, cells: CellLoad, units: Array, velocity: Array, spin: Array, step: float) -> None:
+    def respond(self, cells: CellLoad, units: Reals, velocity: Reals, spin: Reals, step: float) -> None:
         """The loads of a fluid step, from the cells' sums and the bodies' motion (m/s, rad/s); step: s."""
         total_load(
             cells, units, velocity, spin, self.weight, self.response_share, step, self._inner, self._load
         )  # fmt: skip
 
-    def virtual_momentum(self, step: float) -> Array:
+    def virtual_momentum(self, step: float) -> Reals:
         """Momentum of the virtual masses, m_v a dt, (2,) kg/s."""
         return np.asarray((1 / self.response_share[:, 0] - 1) @ self.force * step)
 

@@ -8,10 +8,10 @@ centroid however the body turns in the contact steps.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import kernel
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.coupling.coverage.polygon import Polygons
 from porescale.coupling.immersed import LAYER, Immersed
 from porescale.dem.bodies.clumps import Clumps
@@ -19,8 +19,6 @@ from porescale.dem.bodies.frames import Frame, polygon_moments
 from porescale.dem.bodies.rigid import clumps_of
 from porescale.dem.grains import Grains
 from porescale.lbm.scales import Scales
-
-Array = NDArray[np.float64]
 
 OFF_CENTRE = 1e-9
 """Of a polygon's size: how far its centre of mass may lie from the middle of its area."""
@@ -47,7 +45,7 @@ def corners_of(grains: Grains) -> int:
     return 0 if grains.segments is None else int(np.count_nonzero(grains.segments.is_corner))
 
 
-def outlines(grains: Grains) -> tuple[int, list[Array]]:
+def outlines(grains: Grains) -> tuple[int, list[Floats]]:
     """Number of the first frame among the clumps, and corners (k, 2) m of every frame about its centroid, at angle 0.
 
     Raises InputError at a frame that is no polygon, or whose centre of mass is not the middle of its area.
@@ -75,7 +73,7 @@ def outlines(grains: Grains) -> tuple[int, list[Array]]:
     return first, found
 
 
-def _outline_moments(corners: Array) -> tuple[float, float]:
+def _outline_moments(corners: Floats) -> tuple[float, float]:
     """Length (m) of the outline of corners (k, 2) m, and its second moment (m³) about 0: the layer of a disc has twice
     the share of the disc's moment of inertia that it has of its mass, and polygons run away without that too."""
     ahead = np.roll(corners, -1, axis=0)
@@ -112,26 +110,26 @@ class ImmersedPolygons(Immersed):
         return self._grains.steering.clumps
 
     @property
-    def position(self) -> Array:
+    def position(self) -> Floats:
         """Centroids, (m, 2) m."""
         return self._clumps.position[self.first :]
 
     @property
-    def angle(self) -> Array:
+    def angle(self) -> Floats:
         """Angles turned since the start, (m,) rad."""
         return self._clumps.angle[self.first :]
 
     @property
-    def velocity(self) -> Array:
+    def velocity(self) -> Floats:
         """(m, 2) m/s, half a step back."""
         return self._clumps.velocity[self.first :]
 
     @property
-    def spin(self) -> Array:
+    def spin(self) -> Floats:
         """(m,) rad/s, half a step back."""
         return self._clumps.spin[self.first :]
 
-    def distribute(self, force: Array, torque: Array, fluid_force: Array, fluid_torque: Array) -> None:
+    def distribute(self, force: Floats, torque: Floats, fluid_force: Floats, fluid_torque: Floats) -> None:
         """Overwrite the corners' rows of these arrays (discs, 2), (discs,) with shares of the polygons' own."""
         clumps, mass = self._clumps, self._grains.discs.mass
         for own, turning, rows, turns in (
@@ -140,6 +138,6 @@ class ImmersedPolygons(Immersed):
         ):
             distribute_load(self.first, clumps.start, clumps.member, mass, clumps.mass, own, turning, rows, turns)
 
-    def momentum(self, step: float) -> Array:
+    def momentum(self, step: float) -> Floats:
         """What polygons add to the conserved momentum beside their own: virtual masses, less the fluid inside, (2,)."""
         return np.asarray(self.virtual_momentum(step) - self.inner_momentum.sum(axis=0))

@@ -19,14 +19,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.common.neighbors.cells import minimum_image
 from porescale.dem.grains import Grains
-
-Array = NDArray[np.float64]
 
 CELLS = 1.0
 """Gap in cells below which the correction acts, unless another is given."""
@@ -102,7 +100,7 @@ class Lubrication:
     Raises InputError when the contact step allows no film thinner than ``cut``.
     """
 
-    def __init__(self, grains: Grains, radius: Array, *, viscosity: float, cut: float, dt: float) -> None:
+    def __init__(self, grains: Grains, radius: Floats, *, viscosity: float, cut: float, dt: float) -> None:
         self.radius, self.viscosity, self.cut, self.dt = radius, viscosity, cut, dt
         self._law = FilmLaw(viscosity, cut, dt)
         discs = grains.discs
@@ -119,11 +117,11 @@ class Lubrication:
         self.force, self._sum = np.zeros((discs.count, 2)), np.zeros((discs.count, 2))
         self._total, self._withheld = np.zeros((discs.count, 2)), np.zeros((discs.count, 3))
 
-    def thinnest(self, reduced_radius: Array, mass: Array) -> Array:
+    def thinnest(self, reduced_radius: Floats, mass: Floats) -> Floats:
         """g_min, m, of films with ``reduced_radius`` (m) whose lighter disc has ``mass`` (kg/m)."""
         return np.asarray(reduced_radius * (3 * FILM * self.viscosity * self.dt / mass) ** (2 / 3))
 
-    def step(self, grains: Grains, force: Array, torque: Array, count: int) -> None:
+    def step(self, grains: Grains, force: Floats, torque: Floats, count: int) -> None:
         """``count`` contact steps with force (n, 2) N/m and torque (n,) N m/m held and films as they are in each."""
         d = grains.discs
         self._sum[:] = 0.0

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import most_threads
+from porescale.common.core.types import Reals
 from porescale.coupling.coverage.bodies import Bodies
 from porescale.coupling.coverage.discs import CHUNKS, SCRATCH, cover
 from porescale.coupling.coverage.overlap import subtract_overlap
@@ -44,8 +45,6 @@ SPREAD = 0.6180339887498949
 """Golden section: bands in the order of the multiples of it, modulo 1, are spread evenly over any number of threads,
 though the grains lie at the bottom."""
 
-Array = NDArray[np.floating]
-
 
 def row_work(nx: int, row_load: NDArray[np.float64], dtype: np.dtype[Any], *, soft: bool) -> RowWork:
     """Scratch of all threads for rows of nx cells, and the given loads of rows."""
@@ -71,7 +70,7 @@ class Saturated:
     def __init__(
         self,
         fluid: Fluid,
-        radius: Array,
+        radius: Reals,
         *,
         solid_operator: str = "exact-wall",
         weighting: str | None = None,
@@ -109,7 +108,7 @@ class Saturated:
         self.pairs = np.zeros((0, 2), np.int64)
         self._placed = np.full((discs, 2), np.nan)  # centres for which the patches are filled
         self._stands = np.zeros(self._placed.shape, np.bool_)
-        self._covered: Array | None = None
+        self._covered: Reals | None = None
         self._set_loads(count, np.asarray(fluid.force))
         self._theta = np.zeros(count)
         self.soft_rim = SoftRim(self.radius, shift, tau, self._theta[:discs]) if soft_rim else None
@@ -141,7 +140,7 @@ class Saturated:
             high = np.append(high, [size[1] for size in sizes])
         return high, wide
 
-    def _set_loads(self, count: int, force: Array) -> None:
+    def _set_loads(self, count: int, force: Reals) -> None:
         """Arrays of the loads of ``count`` bodies, and what the body force on the fluid adds to each at once."""
         discs = len(self.radius)
         movers = discs + (self.polygons.count if self.polygons else 0)
@@ -155,39 +154,39 @@ class Saturated:
             self._direct[discs:movers] = -self.polygons.covered_area[:, None] * force
 
     @property
-    def covered(self) -> Array:
+    def covered(self) -> Reals:
         """Sum of the solid fractions, and of fraction times velocity (x, y), (3, ny, nx); computed on request."""
         if self._covered is None:
             self._covered = np.zeros((3, *self._shape), self._work.scratch.dtype)
         return self._covered
 
     @property
-    def solid(self) -> Array:
+    def solid(self) -> Reals:
         """Sum of the solid fractions right after ``cover``, (ny, nx)."""
         return np.asarray(self.covered[0])
 
     @property
-    def solid_x(self) -> Array:
+    def solid_x(self) -> Reals:
         """Sum of fraction times velocity along x right after ``cover``, (ny, nx)."""
         return np.asarray(self.covered[1])
 
     @property
-    def solid_y(self) -> Array:
+    def solid_y(self) -> Reals:
         """Sum of fraction times velocity along y right after ``cover``, (ny, nx)."""
         return np.asarray(self.covered[2])
 
     @property
-    def rectangle_force(self) -> Array:
+    def rectangle_force(self) -> Reals:
         """Force on the rectangles, (m, 2); (0, 2) without any."""
         return self.bodies.load[: self.bodies.rectangles, :2] if self.bodies else np.zeros((0, 2))
 
     @property
-    def ring_force(self) -> Array:
+    def ring_force(self) -> Reals:
         """Force on the rings, (m, 2); (0, 2) without any."""
         return self.bodies.load[self.bodies.rectangles :, :2] if self.bodies else np.zeros((0, 2))
 
     @property
-    def ring_torque(self) -> Array:
+    def ring_torque(self) -> Reals:
         """Torque on the rings about their centres, (m,); (0,) without any."""
         return self.bodies.load[self.bodies.rectangles :, 2] if self.bodies else np.zeros(0)
 
@@ -204,7 +203,7 @@ class Saturated:
         """Take that mass out of all cells evenly and count anew; returns it.  Does nothing before an odd step."""
         return self.bodies.restore_mass(fluid, self._patches) if self.bodies else 0.0
 
-    def _place(self, centre: Array, velocity: Array, spin: Array) -> Motion:
+    def _place(self, centre: Reals, velocity: Reals, spin: Reals) -> Motion:
         """Fill the bodies' patches, list the covered rows, and return how they all move.
 
         Where there are discs only and none has moved since, all of that is there already.
@@ -218,7 +217,7 @@ class Saturated:
         return self._rasterized(centre, velocity, spin, self.covering_radius, self.soft_rim)
 
     def _rasterized(
-        self, centre: Array, velocity: Array, spin: Array, radius: Array, soft_rim: SoftRim | None
+        self, centre: Reals, velocity: Reals, spin: Reals, radius: Reals, soft_rim: SoftRim | None
     ) -> Motion:
         """The same, with discs of ``radius`` (n,) cells."""
         cover(centre, radius, self._patches, self._lines)
@@ -236,7 +235,7 @@ class Saturated:
         list_rows(self._patches, self.periodic_y, self._rows)
         return Motion(*motion, self._shift, self._theta)
 
-    def cover(self, centre: Array, velocity: Array, spin: Array, *, bare: bool = False) -> None:
+    def cover(self, centre: Reals, velocity: Reals, spin: Reals, *, bare: bool = False) -> None:
         """Fill the solid fields for discs at centre (n, 2), cells, with velocity and spin in lattice units.
 
         bare: with the radii and outlines that were given, without what the lattice needs of them.
@@ -254,11 +253,11 @@ class Saturated:
         work = self._work
         rasterize(self._rows, self._patches, motion, self.periodic_x, work.ramp, work.scratch, self.covered)
 
-    def weights(self) -> Array:
+    def weights(self) -> Reals:
         """Weight B of every cell (ny, nx), right after ``cover``."""
         return weights_of(self.solid, self._laws[0])
 
-    def advance(self, fluid: Fluid, centre: Array, velocity: Array, spin: Array) -> None:
+    def advance(self, fluid: Fluid, centre: Reals, velocity: Reals, spin: Reals) -> None:
         """One fluid step with the bodies where they are; fills the loads."""
         motion = self._place(centre, velocity, spin)
         if self.bodies:

@@ -16,9 +16,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Reals
 from porescale.coupling.coverage.overlap import overlapping
 from porescale.coupling.coverage.rectangle import Rectangle
 from porescale.coupling.displaced import Displaced, displaced, of_whole_bodies
@@ -29,8 +29,6 @@ from porescale.coupling.psm import Saturated
 from porescale.dem.grains import Grains
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
-
-Array = NDArray[np.floating]
 
 
 class Coupled:
@@ -96,7 +94,7 @@ class Coupled:
                 cut=film_gap * scales.spacing, dt=scales.step / contact_steps,
             )  # fmt: skip
 
-    def _set_immersed(self, weight: Array) -> None:
+    def _set_immersed(self, weight: Reals) -> None:
         """The discs' equation of motion, its arrays as this object's own."""
         discs, seen, inside = self.grains.discs, self._seen, self._displaced
         mass, inertia = inside.mass.copy(), inside.inertia.copy()
@@ -149,7 +147,7 @@ class Coupled:
         else:
             self.lubrication.step(self.grains, self.force, self.torque, self.contact_steps)
 
-    def contact_load(self) -> Array:
+    def contact_load(self) -> Reals:
         """Force and torque of contacts on every disc, (n, 3) N/m, N/m, N m/m; a copy.
 
         Of the last contact step, and the mean over those of a fluid step where a component is held.
@@ -164,11 +162,11 @@ class Coupled:
         return np.asarray(load)
 
     @property
-    def rectangle_force(self) -> Array:
+    def rectangle_force(self) -> Reals:
         """Force of the fluid on the rectangles, (m, 2) N/m, the fluid inside them given back."""
         return np.asarray(self.saturated.rectangle_force * self.scales.force)
 
-    def fields(self) -> tuple[Array, Array, Array, Array]:
+    def fields(self) -> tuple[Reals, Reals, Reals, Reals]:
         """Density excess (kg/m³), velocity (m/s, two arrays) and solid fraction of every cell, each (ny, nx).
 
         Solid are the discs at the hydraulic radius, without what their rims need in the lattice.
@@ -180,7 +178,7 @@ class Coupled:
         rho, ux, uy = self.fluid.fields(None if wet.operator.force_everywhere else wet.weights())
         return (rho - 1) * s.density, ux * s.velocity, uy * s.velocity, solid
 
-    def momentum(self) -> Array:
+    def momentum(self) -> Reals:
         """Conserved momentum, kg/s (per metre), (2,): fluid + discs - the fluid inside them and + virtual masses."""
         with_inside = self.grains.discs.mass @ self.grains.discs.velocity - self.inner_momentum.sum(axis=0)
         with_inside = with_inside + self.immersed.virtual_momentum(self.scales.step)
@@ -210,7 +208,7 @@ class Coupled:
             self.polygons.restore(state["polygons"])
 
 
-def response_share(grains: Grains, inside: Displaced, layer: float, seen: slice) -> Array:
+def response_share(grains: Grains, inside: Displaced, layer: float, seen: slice) -> Reals:
     """Share m_p/(m_p + m_v) of a change of force, and of torque, that each of the discs ``seen`` takes up in a step,
     (n, 2).
 
@@ -223,7 +221,7 @@ def response_share(grains: Grains, inside: Displaced, layer: float, seen: slice)
     return np.asarray(np.minimum(1.0, ratio[seen] / thick[:, None]))
 
 
-def buoyant_weight(grains: Grains, fluid_density: float, acceleration: tuple[float, float]) -> Array:
+def buoyant_weight(grains: Grains, fluid_density: float, acceleration: tuple[float, float]) -> Reals:
     """(m - rho0 A) g of every disc with its mechanical area A, or its share of its clump's, (n, 2) N/m."""
     if fluid_density == 0.0:
         less = grains.discs.mass

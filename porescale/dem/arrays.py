@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 
 class DiscArrays(NamedTuple):
@@ -19,22 +19,22 @@ class DiscArrays(NamedTuple):
     uint8, or None where there is one;  budget (n, BUDGET): energy budget, at the lower disc of a pair, or None.
     """
 
-    position: Array
-    angle: Array
-    velocity: Array
-    spin: Array
-    radius: Array
-    mass: Array
-    inertia: Array
-    force: Array
-    torque: Array
-    external_force: Array
-    external_torque: Array
+    position: Floats
+    angle: Floats
+    velocity: Floats
+    spin: Floats
+    radius: Floats
+    mass: Floats
+    inertia: Floats
+    force: Floats
+    torque: Floats
+    external_force: Floats
+    external_torque: Floats
     held: NDArray[np.uint8]
-    withheld: Array
-    body_mass: Array
+    withheld: Floats
+    body_mass: Floats
     material: NDArray[np.uint8] | None
-    budget: Array | None
+    budget: Floats | None
 
 
 class Pairs(NamedTuple):
@@ -46,12 +46,12 @@ class Pairs(NamedTuple):
 
     start: NDArray[np.int64]
     partner: NDArray[np.int32]
-    history: Array
-    checked_position: Array
+    history: Floats
+    checked_position: Floats
     limit_square: float
 
 
-Surface = tuple[Array, Array, Array, Array]
+Surface = tuple[Floats, Floats, Floats, Floats]
 """Walls, plates or rectangles: table (s, columns), see each;  laws (s, m, COLUMNS): with each material of discs;
 spring (s, n, 1 or 2) m;  load (s, 2 or 3) N/m, N m/m: force of the discs on each, and moment about its point."""
 
@@ -59,23 +59,23 @@ spring (s, n, 1 or 2) m;  load (s, 2 or 3) N/m, N m/m: force of the discs on eac
 class Surfaces(NamedTuple):
     """Walls, plates and rectangles: the parts of Surface of each, side by side."""
 
-    walls: Array
-    wall_laws: Array
-    wall_spring: Array
-    wall_load: Array
-    plates: Array
-    plate_laws: Array
-    plate_spring: Array
-    plate_force: Array
-    rectangles: Array
-    rectangle_laws: Array
-    rectangle_spring: Array
-    rectangle_force: Array
+    walls: Floats
+    wall_laws: Floats
+    wall_spring: Floats
+    wall_load: Floats
+    plates: Floats
+    plate_laws: Floats
+    plate_spring: Floats
+    plate_force: Floats
+    rectangles: Floats
+    rectangle_laws: Floats
+    rectangle_spring: Floats
+    rectangle_force: Floats
 
 
 def contact_arrays(
-    position: Array, velocity: Array, spin: Array, radius: Array, body_mass: Array,
-    material: NDArray[np.uint8] | None = None, budget: Array | None = None,
+    position: Floats, velocity: Floats, spin: Floats, radius: Floats, body_mass: Floats,
+    material: NDArray[np.uint8] | None = None, budget: Floats | None = None,
 ) -> DiscArrays:  # fmt: skip
     """Discs as contact kernels take them, with forces and torques zero and no external load."""
     count, none, pair = len(radius), np.zeros(0), np.zeros((0, 2))

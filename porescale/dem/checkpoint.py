@@ -3,13 +3,11 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.dem.forces.bonds import BondList
 from porescale.dem.state import State
-
-Array = NDArray[np.float64]
 
 RECTANGLES = ("rectangles", "rectangle_spring", "rectangle_force")
 """What of the state belongs to rectangles, where there are any."""
@@ -43,7 +41,7 @@ def state_of(grains: State) -> dict[str, Any]:
     }
 
 
-def _start_of_book(grains: State) -> Array:
+def _start_of_book(grains: State) -> Floats:
     """Copy of the start of the energy budget, empty before the first step."""
     return np.zeros(0) if grains.book_start is None else grains.book_start.copy()
 

@@ -7,11 +7,10 @@ r^2/2. Velocity and spin are held at half steps (integrate.py); position and ang
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from porescale.common.core.errors import Fault, InputError
-
-Array = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 FIELDS = (
     "position", "angle", "velocity", "spin", "radius", "mass", "inertia", "force", "torque",
@@ -23,15 +22,15 @@ FIELDS = (
 class Discs:
     """n discs; every array is C-contiguous float64 and is written in place by the kernels."""
 
-    position: Array  # (n, 2) m
-    angle: Array  # (n,)  rad, counter-clockwise
-    velocity: Array  # (n, 2) m/s, at half steps
-    spin: Array  # (n,)  rad/s, at half steps
-    radius: Array  # (n,)  m
-    mass: Array  # (n,)  kg/m
-    inertia: Array  # (n,)  kg m^2/m
-    force: Array  # (n, 2) N/m, of the last contact step, external force included
-    torque: Array  # (n,)  N m/m, likewise
+    position: Floats  # (n, 2) m
+    angle: Floats  # (n,)  rad, counter-clockwise
+    velocity: Floats  # (n, 2) m/s, at half steps
+    spin: Floats  # (n,)  rad/s, at half steps
+    radius: Floats  # (n,)  m
+    mass: Floats  # (n,)  kg/m
+    inertia: Floats  # (n,)  kg m^2/m
+    force: Floats  # (n, 2) N/m, of the last contact step, external force included
+    torque: Floats  # (n,)  N m/m, likewise
 
     @property
     def count(self) -> int:
@@ -39,15 +38,15 @@ class Discs:
         return len(self.radius)
 
     @property
-    def area(self) -> Array:
+    def area(self) -> Floats:
         """Area of each disc, (n,) m^2."""
         return np.pi * self.radius**2
 
-    def state(self) -> dict[str, Array]:
+    def state(self) -> dict[str, Floats]:
         """Copies of all arrays, by the names in FIELDS."""
         return {name: getattr(self, name).copy() for name in FIELDS}
 
-    def restore(self, state: dict[str, Array]) -> None:
+    def restore(self, state: dict[str, Floats]) -> None:
         """Overwrite all arrays in place, bit for bit; raises InputError when the number of discs differs."""
         for name in FIELDS:
             given = np.asarray(state[name])

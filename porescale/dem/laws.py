@@ -6,13 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.bodies.rigid import masses
 from porescale.dem.contact.law import COLUMNS, springs_of
 from porescale.dem.contact.materials import Law, Materials
 from porescale.dem.state import State
-
-Array = NDArray[np.float64]
 
 
 def material_numbers(law: Law | Materials, material: ArrayLike | None, count: int) -> NDArray[np.uint8] | None:
@@ -55,7 +54,7 @@ def set_law(grains: State, law: Law | Materials, wall_law: Law | None = None) ->
     grains.rectangle_laws = surface_laws(grains, grains.rectangle_frictions)
 
 
-def surface_laws(grains: State, frictions: Sequence[float | None]) -> Array:
+def surface_laws(grains: State, frictions: Sequence[float | None]) -> Floats:
     """Rows (surfaces, materials, COLUMNS) of the wall laws, with its own friction where a surface has one."""
     grains.free_law = None  # see resting/frictionless.py
     rows = [

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.arrays import DiscArrays, Pairs, Surface, Surfaces, contact_arrays
 from porescale.dem.contact.budget import BUDGET
@@ -22,17 +23,15 @@ from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.motion.drivers import Drivers
 from porescale.dem.motion.periodic_cell import Still, Straining, period_of
 
-Array = NDArray[np.float64]
-
 
 class StaticState(NamedTuple):
     """What a system was when a full step left it as it was, see resting/static.py: copies of positions (n, 2) m, radii
     (n,) m and walls (w, WALL), since owners write into those; step (s), drag (1/s).
     """
 
-    position: Array
-    radius: Array
-    walls: Array
+    position: Floats
+    radius: Floats
+    walls: Floats
     dt: float
     drag: float
 
@@ -41,8 +40,8 @@ class Sleeping(Protocol):
     """What the state keeps of discs that sleep: resting/sleep.py."""
 
     asleep: NDArray[np.uint8]  # (n,)
-    allowed: Array  # (n,) N/m, beyond which a disc out of balance wakes
-    removed: Array  # (n,) J/m, kinetic energy taken so far
+    allowed: Floats  # (n,) N/m, beyond which a disc out of balance wakes
+    removed: Floats  # (n,) J/m, kinetic energy taken so far
 
     @property
     def count(self) -> int:
@@ -86,10 +85,10 @@ class State:
     laws_at_walls: list[Law]
     laws: list[Law]
     contact: KernelLaw
-    body_mass: Array
-    wall_laws: Array
-    plate_laws: Array
-    rectangle_laws: Array
+    body_mass: Floats
+    wall_laws: Floats
+    plate_laws: Floats
+    rectangle_laws: Floats
     pairs: PairList
 
     def __init__(
@@ -99,7 +98,7 @@ class State:
         count = discs.count
         self.discs, self.box, self.material, self.skin = discs, box, material, skin
         self.book = np.zeros((count, BUDGET)) if energy else None
-        self.book_start: Array | None = None
+        self.book_start: Floats | None = None
         self.springs = 0
         self.free_law: KernelLaw | None = None
         self.wall_names, self.walls = box.walls()
@@ -114,7 +113,7 @@ class State:
         self.rectangles, self.rectangle_spring = np.zeros((0, 6)), np.zeros((0, count, 0))
         self.rectangle_force = np.zeros((0, 2))
         self.sweeps, self.stale, self.touching = ThreadChoice(count), True, np.zeros(count, np.int64)
-        self.reach: Array | None = None
+        self.reach: Floats | None = None
         self.external_force, self.external_torque = np.zeros((count, 2)), np.zeros(count)
         self.held, self.withheld = np.zeros((0, 3), np.uint8), np.zeros((0, 3))
         self.drivers: Drivers | None = None

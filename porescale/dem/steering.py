@@ -4,9 +4,10 @@ from collections.abc import Sequence
 from typing import cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.dem.bodies.clumps import Body, Clumps
 from porescale.dem.bodies.rigid import masses
 from porescale.dem.contact.materials import Law
@@ -20,14 +21,12 @@ from porescale.dem.motion.time_function import Schedule
 from porescale.dem.state import State
 from porescale.dem.timestep import lightest
 
-Array = NDArray[np.float64]
-
 COMPONENTS = ("xx", "yy", "xy")
 SHARE = 0.5
 """Of the stability bound of a servo that is 2: monotone, see servo.py."""
 
 
-def hold(grains: State, disc: int | slice | Array, x: bool = True, y: bool = True, rotation: bool = True) -> None:
+def hold(grains: State, disc: int | slice | Floats, x: bool = True, y: bool = True, rotation: bool = True) -> None:
     """Hold these components of the velocity of discs (index, slice or mask) from now on, and release the others.
 
     A held component keeps its value until the owner writes another between steps, whatever the forces; they are in
@@ -220,7 +219,7 @@ class Steering(Drivers):
         far = np.hypot(*c.offset[round_ones].T) / c.radius[round_ones]
         return (1.0 + float(far.max(initial=0.0))) ** 2
 
-    def cell_pressure(self) -> Array:
+    def cell_pressure(self) -> Floats:
         """Pressure tensor (xx, xy, yy) of the strained cell in its last step, Pa, compression positive."""
         assert self.cell is not None
         d = self._grains.discs

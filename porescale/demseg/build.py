@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.common.neighbors.placement import place
 from porescale.dem.bodies.frames import Frame, framed, from_ends
 from porescale.dem.contact.linear import Linear
@@ -30,7 +31,6 @@ from porescale.dem.motion.control import Moved, Pushed
 from porescale.dem.motion.drivers import Clump
 from porescale.demseg.deck import MOVED, Body, Control, Deck, Random
 
-Array = NDArray[np.float64]
 ROD = 0.1
 
 
@@ -55,7 +55,7 @@ class Built:
     grains: Grains
     names: list[int | Clump]
     first: NDArray[np.int64]
-    heading: Array
+    heading: Floats
     frames: list[Frame]
 
 

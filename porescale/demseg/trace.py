@@ -8,13 +8,12 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.demseg.build import Options
 from porescale.demseg.deck import Deck, read_deck
 from porescale.demseg.run import FORCES, DeckRun
 
-Array = NDArray[np.float64]
 LABELS = {"enrg": "potential", "enva": "kinetic", "enka": "elastic", "enca": "lost in dashpots",
           "enfr": "lost in friction", "err": "does not balance"}  # fmt: skip
 
@@ -25,9 +24,9 @@ class Trace:
     steps;  places: of all points (n, 2), every nprn1 steps."""
 
     model: DeckRun
-    energy: dict[str, Array] = field(default_factory=dict)
-    record: dict[str, Array] = field(default_factory=dict)
-    places: list[Array] = field(default_factory=list)
+    energy: dict[str, Floats] = field(default_factory=dict)
+    record: dict[str, Floats] = field(default_factory=dict)
+    places: list[Floats] = field(default_factory=list)
 
 
 def trace(folder: Path, deck: Deck | None = None, options: Options | None = None) -> Trace:

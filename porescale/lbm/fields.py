@@ -9,14 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from porescale.common.core.types import Reals
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX, CY, OPPOSITE
 
-Array = NDArray[np.floating]
 
-
-def face_velocities(fluid: Fluid, ux: Array, uy: Array) -> tuple[Array, Array]:
+def face_velocities(fluid: Fluid, ux: Reals, uy: Reals) -> tuple[Reals, Reals]:
     """Velocity across the faces of cells: u (ny, nx + 1) at x = 0 … nx and v (ny + 1, nx) at y = 0 … ny.
 
     Means of the two cells; at a side what the side is: none through a wall or a line of symmetry, what was given at a
@@ -32,7 +31,7 @@ def face_velocities(fluid: Fluid, ux: Array, uy: Array) -> tuple[Array, Array]:
 _ENDS = (("left", 0), ("right", -1), ("bottom", 0), ("top", -1))
 
 
-def _normal(sides: Sides, given: Any, side: str, inside: Array, first: Array, last: Array, axis: int) -> Array:
+def _normal(sides: Sides, given: Any, side: str, inside: Reals, first: Reals, last: Reals, axis: int) -> Reals:
     kind = sides.boundary(side)
     if kind.prescribes_velocity:
         return np.asarray(given.of(side)[:, axis], float)
@@ -41,7 +40,7 @@ def _normal(sides: Sides, given: Any, side: str, inside: Array, first: Array, la
     return 0.5 * (first + last) if kind.periodic else np.zeros_like(inside)
 
 
-def stream_function(fluid: Fluid, ux: Array, uy: Array) -> Array:
+def stream_function(fluid: Fluid, ux: Reals, uy: Reals) -> Reals:
     """psi at the corners of cells, (ny + 1, nx + 1): u = dpsi/dy, v = -dpsi/dx; zero in the lower left corner.
 
     Summed from fluxes through faces, along the bottom and then upwards.  Where as much flows into each cell as out of
@@ -55,14 +54,14 @@ def stream_function(fluid: Fluid, ux: Array, uy: Array) -> Array:
     return psi
 
 
-def flux(psi: Array, start: tuple[float, float], end: tuple[float, float]) -> float:
+def flux(psi: Reals, start: tuple[float, float], end: tuple[float, float]) -> float:
     """Area of fluid that passes a line from ``start`` to ``end`` in a step, from its left to its right side, of a
     stream function at corners: its difference, whatever the way between.  An upward line counts flow in +x."""
     low, high = at_points(psi, [start, end], corners=True)
     return float(high - low)
 
 
-def vorticity(ux: Array, uy: Array) -> Array:
+def vorticity(ux: Reals, uy: Reals) -> Reals:
     """dv/dx - du/dy at the inner corners of cells, (ny - 1, nx - 1): circulation around the corner's four cells.
 
     Differences of means over two cells: second order.
@@ -72,7 +71,7 @@ def vorticity(ux: Array, uy: Array) -> Array:
     return np.asarray(np.diff(across, axis=1) - np.diff(up, axis=0))
 
 
-def at_points(field: Array, points: ArrayLike, *, corners: bool = False) -> Array:
+def at_points(field: Reals, points: ArrayLike, *, corners: bool = False) -> Reals:
     """Values (n,) of a field at points (n, 2), bilinear between the centres of cells (or their corners).
 
     Outside of the outermost centres: on along the same slope.  ValueError for points outside of the box.
@@ -93,19 +92,19 @@ def at_points(field: Array, points: ArrayLike, *, corners: bool = False) -> Arra
     return np.asarray((1 - sy) * low + sy * high)
 
 
-def _split(place: Array, count: int) -> tuple[NDArray[np.int64], Array]:
+def _split(place: Reals, count: int) -> tuple[NDArray[np.int64], Reals]:
     low = np.clip(np.floor(place).astype(np.int64), 0, max(count - 2, 0))
     return low, place - low
 
 
-def along_line(field: Array, start: tuple[float, float], end: tuple[float, float], count: int) -> tuple[Array, Array]:
+def along_line(field: Reals, start: tuple[float, float], end: tuple[float, float], count: int) -> tuple[Reals, Reals]:
     """Distance from ``start`` and value at ``count`` equally spaced points of a line, ends included, each (count,)."""
     share = np.linspace(0.0, 1.0, count)
     points = np.asarray(start) + share[:, None] * (np.asarray(end, float) - np.asarray(start))
     return share * float(np.hypot(end[0] - start[0], end[1] - start[1])), at_points(field, points)
 
 
-def shear_stress(fluid: Fluid) -> tuple[Array, Array]:
+def shear_stress(fluid: Fluid) -> tuple[Reals, Reals]:
     """Viscous shear stress in every cell, (xx - yy)/2 and xy, each (ny, nx): rho nu (du/dx - dv/dy) and
     rho nu (du/dy + dv/dx), an eddy viscosity's included.
 
@@ -130,7 +129,7 @@ def shear_stress(fluid: Fluid) -> tuple[Array, Array]:
     return -share * 0.5 * (xx - yy + ux * fx - uy * fy), -share * (xy + 0.5 * (ux * fy + uy * fx))
 
 
-def _slots(fluid: Fluid, i: int) -> Array:
+def _slots(fluid: Fluid, i: int) -> Reals:
     """The populations h_i of every cell, (ny, nx), as they are before the next step."""
     if fluid.step % 2 == 0:
         return fluid.populations[i, 1:-1, 1:-1]

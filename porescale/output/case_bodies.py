@@ -12,11 +12,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from porescale.common.core.atomic import save
+from porescale.common.core.types import Floats
 from porescale.dem.bodies.bonding import pieces, segments_now
 from porescale.dem.forces.bonds import touched
 from porescale.dem.grains import Grains
-
-Array = NDArray[np.float64]
 
 LARGEST, DUST = "#d9cbaa", "#e8e8e8"  # colours of the largest piece, and of bodies by themselves
 PIECES = ("#7fb0d6", "#e0a458", "#8fbf8f", "#c98bb0", "#b8b35a", "#9a93d1", "#d98880", "#6fbcb0")
@@ -27,7 +26,7 @@ CRACK, PLATE = "#b3122b", "#3b4552"
 class Shot:
     """Grains at a moment: position (n, 2) m, whole (m,) of the bonds."""
 
-    position: Array
+    position: Floats
     whole: NDArray[np.uint8]
 
 

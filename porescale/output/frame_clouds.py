@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from porescale.builders.initial.frames import Placed, disc_count
-from porescale.common.record.model import Array, Cloud
+from porescale.common.core.types import AnyArray
+from porescale.common.record.model import Cloud
 from porescale.dem.bodies.frames import cells_of
 from porescale.dem.grains import Grains
 
@@ -31,7 +32,7 @@ def frame_cloud(grains: Grains, placed: Sequence[Placed]) -> Cloud:
             at[:, axis] -= (period * np.floor(centre[:, axis] / period))[body]
     flat = np.zeros((len(at), 3))
     flat[:, :2] = d.velocity[first:]
-    data: dict[str, Array] = {
+    data: dict[str, AnyArray] = {
         "radius": d.radius[first:], "velocity": flat, "spin": d.spin[first:], "body": body.astype(np.int32),
         "kind": np.array([KIND[it.kind] for it in placed], np.int32)[body],
         "driven": np.array([not it.free for it in placed], np.uint8)[body],

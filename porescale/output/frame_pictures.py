@@ -6,8 +6,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 
+from porescale.common.core.types import AnyArray
 from porescale.common.pictures.look import Line
-from porescale.common.record.model import Array, Cloud, Snapshot
+from porescale.common.record.model import Cloud, Snapshot
 from porescale.output.frame_clouds import BONDS
 
 OPEN = 1.5
@@ -46,13 +47,13 @@ def cracks(snapshot: Snapshot) -> list[Line]:
     return found
 
 
-def _through(points: Array) -> Line:
+def _through(points: AnyArray) -> Line:
     """Line between the two of the points (k, 2) that are furthest apart along their longest side."""
     axis = int(np.ptp(points, axis=0).argmax())
     return _line(points[points[:, axis].argmin()], points[points[:, axis].argmax()])
 
 
-def _line(a: Array, b: Array) -> Line:
+def _line(a: AnyArray, b: AnyArray) -> Line:
     return (float(a[0]), float(a[1])), (float(b[0]), float(b[1]))
 
 

@@ -6,20 +6,17 @@ contact slides (in ParaView: Tube, radius by ``normal_force``).  Layout: VTK use
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.atomic import write_bytes
-
-Array = NDArray[Any]
+from porescale.common.core.types import AnyArray
 
 KINDS = {"f": "Float64", "i": "Int32", "b": "Int8"}
 """VTK's names of what arrays hold, by numpy's kind."""
 
 
-def write_lines(path: Path, ends: Array, data: Mapping[str, Array]) -> None:
+def write_lines(path: Path, ends: AnyArray, data: Mapping[str, AnyArray]) -> None:
     """Write lines between ``ends`` (c, 2, 2) m with numbers (c,) for each, by name; whole or absent."""
     count = len(ends)
     points = np.zeros((2 * count, 3))
@@ -39,7 +36,7 @@ def write_lines(path: Path, ends: Array, data: Mapping[str, Array]) -> None:
     write_bytes(path, text.encode())
 
 
-def _array(name: str, values: Array) -> str:
+def _array(name: str, values: AnyArray) -> str:
     """One array (n,) or (n, 3) as an element."""
     flat = values.astype(np.int8) if values.dtype == bool else values
     kind = "b" if flat.dtype == np.int8 else flat.dtype.kind

@@ -14,10 +14,10 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
 from porescale.builders.parts.grain_instruments import CONTACTS, FIELDS
 from porescale.common.core.atomic import save
+from porescale.common.core.types import AnyArray
 from porescale.common.pictures.look import Look, length_unit, time_text
 from porescale.common.pictures.picture import paint_last
 from porescale.common.record.model import Cloud, Snapshot
@@ -29,7 +29,6 @@ from porescale.output.grain_lines import write_lines
 if TYPE_CHECKING:
     from porescale.common.record.open_run import Run
 
-Array = NDArray[Any]
 
 SHOWN = ("solid_fraction", "density", "velocity", "strain_rate_shear", "stress_mean", "stress_shear",
          "kinetic_stress_mean")  # fmt: skip
@@ -160,7 +159,7 @@ def all_points(snapshot: Snapshot) -> Cloud:
     return Cloud(np.concatenate([part.position for part in parts]), {"radius": radius})
 
 
-def branches(grains: Cloud, contacts: Cloud) -> Array:
+def branches(grains: Cloud, contacts: Cloud) -> AnyArray:
     """Ends (c, 2, 2) m of the ways between centres of discs that touch, or from one to a surface, beside their points:
     of images of discs where those are nearer."""
     normal = np.asarray(contacts.data["normal"], float)[:, :2]

@@ -1,11 +1,9 @@
 """Values of the fluid at points between the centres of cells."""
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[Any]
+from porescale.common.core.types import AnyArray
 
 NOTHING = 1e-6
 """Share of fluid below which a point counts as solid: solid fractions are written in single precision."""
@@ -36,11 +34,11 @@ class Sampler:
         self._index = np.stack([((y + j) % ny) * nx + (x + i) % nx for j in (0, 1) for i in (0, 1)])  # (4, n)
         self._weight = np.stack([(sy if j else 1 - sy) * (sx if i else 1 - sx) for j in (0, 1) for i in (0, 1)])
 
-    def of(self, values: Array) -> Array:
+    def of(self, values: AnyArray) -> AnyArray:
         """Interpolated ``values`` (ny, nx), (n,)."""
         return np.asarray((values.reshape(-1)[self._index] * self._weight).sum(axis=0))
 
-    def in_fluid(self, values: Array, solid: Array) -> Array:
+    def in_fluid(self, values: AnyArray, solid: AnyArray) -> AnyArray:
         """Interpolated ``values`` (ny, nx), (n,), weighted by the fluid share 1 - ``solid`` (ny, nx) of cells.
 
         Not a number where all four cells are solid: inside grains there is none.
@@ -51,13 +49,13 @@ class Sampler:
         return np.asarray(np.divide(value, total, out=np.full_like(value, np.nan, float), where=total > NOTHING))
 
 
-def along(start: tuple[float, float], end: tuple[float, float], count: int) -> Array:
+def along(start: tuple[float, float], end: tuple[float, float], count: int) -> AnyArray:
     """``count`` points from start to end, both included, (count, 2) m."""
     share = np.linspace(0, 1, count)[:, None]
     return np.asarray((1 - share) * np.asarray(start) + share * np.asarray(end))
 
 
-def midpoints(start: tuple[float, float], end: tuple[float, float], count: int) -> Array:
+def midpoints(start: tuple[float, float], end: tuple[float, float], count: int) -> AnyArray:
     """Centres of ``count`` equal pieces between start and end, (count, 2) m."""
     share = (np.arange(count)[:, None] + 0.5) / count
     return np.asarray((1 - share) * np.asarray(start) + share * np.asarray(end))

@@ -8,18 +8,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.atomic import write_bytes
+from porescale.common.core.types import Reals
 
 if TYPE_CHECKING:
     from porescale.common.record.open_run import Run
 
 BIN_WIDTH = 2.0
 """Width of a bin in mean diameters: narrower ones show single grains, not a surface."""
-
-
-Array = NDArray[np.floating]
 
 
 def write_surface(run: Run, folder: Path) -> Path:
@@ -40,7 +37,7 @@ def write_surface(run: Run, folder: Path) -> Path:
     return path
 
 
-def surface(position: Array, radius: Array, edges: Array) -> Array:
+def surface(position: Reals, radius: Reals, edges: Reals) -> Reals:
     """Height of the pile's surface in bins between ``edges`` (b + 1,) m: top of the highest disc reaching in, (b,) m.
 
     Discs are taken at their true shape: over a bin, the highest point of the disc within it.

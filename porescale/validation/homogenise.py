@@ -10,8 +10,8 @@ from porescale.analysis.homogenise import specimen
 from porescale.analysis.soil_pores import flow_numbers
 from porescale.builders.build import build
 from porescale.builders.scene import Scene
+from porescale.common.core.types import AnyArray
 from porescale.common.evidence.validations import Measured, Validations
-from porescale.common.record.model import Array
 from porescale.common.schema.sections import validate
 
 VALIDATIONS = Validations()
@@ -73,7 +73,7 @@ def critical_angle(friction: float, seed: int, grains: int = 300) -> float:
     while simulation.time < test.time.end:
         rows.append(simulation.series())
         simulation.advance(each)
-    series: dict[str, Array] = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    series: dict[str, AnyArray] = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     return math.degrees(biaxial.numbers([series])[0]["critical friction angle"])
 
 

@@ -20,7 +20,6 @@ import functools
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from continuum_sph.builders.air import AIR, specific_weights
@@ -37,10 +36,10 @@ from continuum_sph.water.pressure_walls import tank_walls
 from continuum_sph.water.smoothing import Smoothing
 from continuum_sph.water.state import Layer
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.neighbors import PairList, square_lattice
 
-Floats = NDArray[np.float64]
 VISCOSITY = 1.002e-3  # Pa s, of water
 
 

@@ -5,17 +5,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.seepage import Resistance, Seepage
 from continuum_sph.soil import Material, SoilFlow
 from continuum_sph.validation.seepage.setups import COLUMNS, GRAINS, WATER, water_in
 from continuum_sph.validation.soil.setups import in_tank
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.neighbors import square_lattice
 
-Floats = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.builders.instruments import MeasuredWater, surface_height
 from continuum_sph.scene.instruments import LevelSection
@@ -22,10 +21,10 @@ from continuum_sph.water.pressure_walls import tank_walls
 from continuum_sph.water.smoothing import Smoothing
 from continuum_sph.water.state import Layer
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.neighbors import PairList, square_lattice
 
-Floats = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 POROSITY = 0.4

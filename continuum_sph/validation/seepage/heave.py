@@ -14,9 +14,9 @@ from continuum_sph.builders.soil import SoilPart
 from continuum_sph.scene.sections import Scene
 from continuum_sph.validation.seepage.setups import GRAINS, WATER
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 
-Floats = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 FREELY = 4.0  # of the rise that elasticity explains: the rest is flow of soil that yields

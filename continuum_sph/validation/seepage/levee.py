@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.builders.soil import SoilPart
 from continuum_sph.scene.sections import Scene
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
-
-Floats = NDArray[np.float64]
 
 WATER = 1000.0  # kg/m³
 STIFF = 10.0  # K_w/(n M) of the water

@@ -4,7 +4,6 @@ import functools
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.seepage import Frame, Resistance, Seepage
 from continuum_sph.soil import Material, SoilFlow
@@ -13,10 +12,10 @@ from continuum_sph.validation.seepage.setups import COLUMNS, GRAINS, WATER, wate
 from continuum_sph.validation.soil.setups import in_tank
 from continuum_sph.water.state import VY
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.neighbors import square_lattice
 
-Floats = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 

@@ -4,7 +4,6 @@ import functools
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.seepage import PoreFlow, Resistance, Seepage, skeleton_of
 from continuum_sph.seepage.overlap import Overlap
@@ -16,10 +15,10 @@ from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import Smoothing
 from continuum_sph.water.state import Layer
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.neighbors import PairList, square_lattice
 
-Floats = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 

@@ -4,7 +4,6 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.seepage import Drain, Frame, PoreFlow, Resistance, Seepage, skeleton_of
 from continuum_sph.seepage.overlap import Overlap
@@ -16,9 +15,8 @@ from continuum_sph.water.parameters import Law
 from continuum_sph.water.pressure_walls import tank_walls
 from continuum_sph.water.smoothing import SUPPORT, Smoothing
 from continuum_sph.water.state import Layer
+from porescale.common.core.types import Floats
 from porescale.common.neighbors import PairList
-
-Floats = NDArray[np.float64]
 
 WATER = 1000.0  # kg/m³
 GRAINS = 2650.0  # kg/m³

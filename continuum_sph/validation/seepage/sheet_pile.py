@@ -5,7 +5,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ellipk
 
 from continuum_sph.builders.sheet_pile import reach, sheet_pile, steepness
@@ -23,10 +22,10 @@ from continuum_sph.water.pressure_walls import tank_walls
 from continuum_sph.water.smoothing import Smoothing
 from continuum_sph.water.state import VX, VY, Layer
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.neighbors import PairList, square_lattice
 
-Floats = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 POROSITY = 0.4

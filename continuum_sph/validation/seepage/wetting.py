@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.builders.instruments import surface_height
 from continuum_sph.scene.instruments import LevelSection
@@ -11,9 +10,8 @@ from continuum_sph.seepage import Reservoir, Seepage
 from continuum_sph.validation.seepage.dam import held_between, water_there
 from continuum_sph.validation.seepage.setups import WATER
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.neighbors import square_lattice
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -4,15 +4,14 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.soil import Material, SoilFlow
 from continuum_sph.validation.soil.setups import DENSITY, body
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.neighbors import square_lattice
 
 EPS = float(np.finfo(np.float64).eps)
-Floats = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 

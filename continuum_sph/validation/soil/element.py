@@ -6,16 +6,15 @@ SI, compression positive.
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.soil import Material
 from continuum_sph.soil.plasticity import new_stress
 from continuum_sph.soil.state import XX, YY
 from continuum_sph.validation.soil.setups import DENSITY, POISSON, TAN_PHI
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 
 EPS = float(np.finfo(np.float64).eps)
-Floats = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 ROUNDS = 60  # of halving an interval that starts a strain step wide: 1e-18 of it

@@ -11,17 +11,16 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.builders.soil import geostatic
 from continuum_sph.soil import Material, SoilFlow
 from continuum_sph.soil.momentum import Choices, accelerate
 from continuum_sph.soil.state import GXX, GXY, GYX, GYY, VOLUME, XX, XY, YY
 from continuum_sph.validation.soil.setups import RATIO, in_tank, run_until
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.neighbors import square_lattice
 
-Floats = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 ENTRIES = ("stress", "damping", "stopped", "parting", "walls")

@@ -5,15 +5,13 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.builders.soil import placed
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
 from continuum_sph.water.smoothing import Smoothing
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.neighbors import PairList
-
-Floats = NDArray[np.float64]
 
 RATIO = 1.3  # smoothing length over spacing
 SKIN = 0.15  # of the pair list, over the smoothing length

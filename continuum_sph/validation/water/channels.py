@@ -1,7 +1,6 @@
 """Plane flow between plates that starts up: Poiseuille and Couette (Morris, Fox & Zhu 1997).  SI."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.validation.water.kernels import SPREAD
 from continuum_sph.validation.water.setups import run_until
@@ -12,10 +11,10 @@ from continuum_sph.water.pressure_walls import tank_walls
 from continuum_sph.water.smoothing import Smoothing
 from continuum_sph.water.state import Layer
 from continuum_sph.water.step import Flow
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.neighbors import PairList, square_lattice
 
-Floats = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 

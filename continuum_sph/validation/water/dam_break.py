@@ -8,14 +8,13 @@ import functools
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.builders.water import water_flow
 from continuum_sph.validation.water.setups import column_scene
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 
-Floats = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 MARTIN_MOYCE = ("martin_moyce_1952_a1.125in", "martin_moyce_1952_a2.25in")

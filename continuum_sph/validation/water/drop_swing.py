@@ -9,10 +9,9 @@ here the same in the plane.  In each fluid the stream function is Î£ f(r) sin nÎ
 """
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ive, jv, jvp, kve
 
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 
 def drop_period(radius: float, tension: float, inner: float, outer: float, sound: float) -> float:

@@ -1,7 +1,6 @@
 """Flows that shifting, corrected gradients and the energy budget are for: vortices, spinning square, impact.  SI."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.builders.water import water_flow
 from continuum_sph.validation.water.kernels import LATTICE, SPREAD
@@ -13,10 +12,10 @@ from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import Smoothing
 from continuum_sph.water.state import Layer
 from continuum_sph.water.step import Flow
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.neighbors import PairList, square_lattice
 
-Floats = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.builders.inclusion import inclusion_row
 from continuum_sph.builders.water import water_flow
@@ -16,11 +15,11 @@ from continuum_sph.water.parameters import Law
 from continuum_sph.water.smoothing import Smoothing
 from continuum_sph.water.state import Layer
 from continuum_sph.water.step import Flow
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.neighbors import PairList, square_lattice
 from porescale.common.schema.sections import validate
 
-Floats = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 TENSION = 1.0  # N/m

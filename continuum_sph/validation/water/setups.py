@@ -1,7 +1,6 @@
 """What experiments with water share: a column in a tank, a box of disordered liquid, and their momentum.  SI."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.scene.sections import Scene
 from continuum_sph.water.eos.liquid import Tait
@@ -11,10 +10,9 @@ from continuum_sph.water.smoothing import Smoothing
 from continuum_sph.water.state import Layer
 from continuum_sph.water.step import Flow
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.neighbors import PairList, square_lattice
 from porescale.common.schema.sections import validate
-
-Floats = NDArray[np.float64]
 
 
 def column_scene(

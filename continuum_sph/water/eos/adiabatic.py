@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.water.eos.law import Given, pressure_of
 from continuum_sph.water.eos.liquid import tait
-
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 EXPONENT = 1.403
 FLOOR = 0.01  # of ρ0: a bubble that has left the water keeps spreading; pressures stay numbers

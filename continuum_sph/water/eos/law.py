@@ -2,12 +2,8 @@
 
 from typing import Any, ClassVar, NamedTuple, Protocol, Self
 
-import numpy as np
-from numpy.typing import NDArray
-
 from porescale.common.compiled.jit import by_law
-
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 
 class Given(NamedTuple):

@@ -9,12 +9,10 @@ from dataclasses import dataclass
 from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.water.eos.law import Given, pressure_of
 from porescale.common.compiled.jit import inline
-
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 EXPONENT = 7.0
 FLOOR = 0.8  # of ρ0: least density, far below any that water at Mach 0.1 has

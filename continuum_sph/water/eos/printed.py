@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuum_sph.water.eos.adiabatic import AdiabaticGas
 from continuum_sph.water.eos.law import pressure_of
 from porescale.common.compiled.jit import inline
-
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 
 class PrintedNumbers(NamedTuple):

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from porescale.builders.checks.wall_places import across_walls
 from porescale.builders.initial.frames import Placed
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.dem.contact.choose import LAWS
 from porescale.dem.contact.materials import Law
 from porescale.dem.discs import Discs
@@ -24,7 +25,6 @@ from porescale.dem.motion.time_function import schedule_rows, value_at
 if TYPE_CHECKING:
     from porescale.scene.scene import Scene
 
-Array = NDArray[np.float64]
 
 MOST = 0.25
 """Overlap over the sum of radius and thickness up to which bodies may start: a system beyond 0.3 is out of bounds."""
@@ -135,18 +135,18 @@ class _Shape:
         self.thickness, self.corners = frame.thickness, at
         self.sides = at[np.array(frame.ends)]
         solid = frame.closed and placed.kind != "container"
-        self.outline: Array | None = at[frame.loop] if solid else None
+        self.outline: Floats | None = at[frame.loop] if solid else None
         self.low, self.high = at.min(axis=0), at.max(axis=0)
         self.size = float((self.high - self.low).max())
         middle = 0.5 * (self.low + self.high)
         self.where = f"({middle[0]:g}, {middle[1]:g})"
 
-    def depth_of(self, points: Array, radius: Array) -> Array:
+    def depth_of(self, points: Floats, radius: Floats) -> Floats:
         """How deep (m) discs (n, 2) m lie in its rim, infinite inside of it, below zero outside."""
         depth = radius + self.thickness - self.distance(points)
         return np.where(self.holds(points), np.inf, depth)
 
-    def distance(self, points: Array) -> Array:
+    def distance(self, points: Floats) -> Floats:
         """Distance from points (n, 2) m to the nearest side, m."""
         nearest = np.full(len(points), np.inf)
         for a, b in self.sides:
@@ -155,7 +155,7 @@ class _Shape:
             nearest = np.minimum(nearest, np.hypot(*(gone - share[:, None] * way).T))
         return nearest
 
-    def holds(self, points: Array) -> NDArray[np.bool_]:
+    def holds(self, points: Floats) -> NDArray[np.bool_]:
         """Which points (n, 2) m lie within the outline of a solid one, by the parity of sides crossed above."""
         inside = np.zeros(len(points), bool)
         if self.outline is None:
@@ -177,7 +177,7 @@ class _Shape:
         return self.thickness + other.thickness - apart
 
 
-def _cross(one: Array, other: Array) -> bool:
+def _cross(one: Floats, other: Floats) -> bool:
     """Whether a side of (s, 2, 2) m crosses one of (k, 2, 2) m."""
 
     def left(a: Any, b: Any, c: Any) -> Any:
@@ -236,7 +236,7 @@ def strays(scene: Scene, placed: Sequence[Placed]) -> list[str]:
     return said
 
 
-def _path(control: Control, times: Array) -> Array:
+def _path(control: Control, times: Floats) -> Floats:
     """Displacement (m, rad) of a component at ``times`` (s) since the first, by its velocity or displacement."""
     rows, points = schedule_rows([schedule_of(control)])
     values = np.array([value_at(rows, points, 0, time) for time in times])

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import AnyArray
 from porescale.dem.discs import Discs
 from porescale.scene.bodies.rectangle import Rectangle, travelled
 
@@ -27,7 +27,6 @@ NEVER = float("inf")
 HALVINGS = 60
 """Of an interval in which a smallest distance is looked for: to the last bit of its ends."""
 
-Array = NDArray[Any]
 Pair = tuple[float, float]
 
 
@@ -45,7 +44,9 @@ class Body(NamedTuple):
         return travelled(self.velocity, self.starts_at, self.stops_at, time)
 
 
-def check_rectangles(scene: Scene, places: Array, radii: Array, names: Sequence[str], faults: list[Fault]) -> None:
+def check_rectangles(
+    scene: Scene, places: AnyArray, radii: AnyArray, names: Sequence[str], faults: list[Fault]
+) -> None:
     """Add a fault for everything that the rectangles of a scene are in each other's, or anything else's, way.
 
     places (n, 2) m, radii (n,) m, names: of discs, grains or held, that were placed by hand.
@@ -173,7 +174,7 @@ def _check_packing(scene: Scene, faults: list[Fault]) -> None:
             )
 
 
-def _check_discs(scene: Scene, places: Array, radii: Array, names: Sequence[str], faults: list[Fault]) -> None:
+def _check_discs(scene: Scene, places: AnyArray, radii: AnyArray, names: Sequence[str], faults: list[Fault]) -> None:
     """No disc starts in a rectangle, and no held disc, which cannot give way, moves into one."""
     held = {f"disc[{j}]": it for j, it in enumerate(scene.disc)}
     for k, it in enumerate(scene.rectangle):
@@ -190,7 +191,7 @@ def _check_discs(scene: Scene, places: Array, radii: Array, names: Sequence[str]
                 break
 
 
-def nearest(it: Rectangle, path: Body, place: Array, t0: float, t1: float) -> float:
+def nearest(it: Rectangle, path: Body, place: AnyArray, t0: float, t1: float) -> float:
     """Smallest distance (m) of a centre, from ``place`` along ``path``, to a rectangle between t0 and t1 (s).
 
     The distance to what is convex is convex along a line: ternary search keeps the side of the smaller value.

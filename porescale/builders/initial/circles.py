@@ -4,14 +4,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.errors import InputError
+from porescale.common.core.types import Floats
 from porescale.common.neighbors.placement import part
 from porescale.dem.prepare.compaction import read_circles, read_packing
 from porescale.scene.circles import STILLS, Circles
-
-Array = NDArray[np.float64]
 
 
 def grains_of(circles: Circles, folder: Path | None) -> list[dict[str, float | str]]:
@@ -36,7 +34,7 @@ def grains_of(circles: Circles, folder: Path | None) -> list[dict[str, float | s
     ]
 
 
-def _pictured(circles: Circles, path: Path) -> tuple[Array, Array]:
+def _pictured(circles: Circles, path: Path) -> tuple[Floats, Floats]:
     """Places (n, 2) m and radii (n,) m of the discs of a picture."""
     assert circles.pixel
     assert circles.smallest

@@ -15,6 +15,7 @@ from porescale.builders.initial.contact_laws import MaterialPlan
 from porescale.builders.initial.random_polygons import copies_of
 from porescale.builders.initial.time_functions import control_of
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.dem.bodies.clumps import Body
 from porescale.dem.bodies.frames import Frame, add_frames, chain, corner_discs, framed, from_ends, polygon, skin_of
 from porescale.dem.contact.materials import Law
@@ -26,8 +27,6 @@ from porescale.dem.motion.drivers import Clump as ClumpNumber
 from porescale.dem.prepare.merge import joined
 from porescale.scene.bodies.segments import Container, PolygonBody, SegmentBody
 from porescale.scene.scene import Scene
-
-Array = NDArray[np.float64]
 
 Kind = Literal["segment", "polygon", "container", "rock", "plate"]
 
@@ -155,13 +154,13 @@ def _container(plan: MaterialPlan, section: Container, more: dict[str, Any]) -> 
     return replace(frame, body=Body(own.mass, section.pivot, own.inertia, True, own.area))
 
 
-def _turned(points: Any, at: Any, angle: float, size: float = 1.0) -> Array:
+def _turned(points: Any, at: Any, angle: float, size: float = 1.0) -> Floats:
     """Points (k, 2) m of a body turned by ``angle`` about its point, in the box."""
     if angle == 0.0 and size == 1.0:
-        moved: Array = np.array(points, float) + np.array(at, float)
+        moved: Floats = np.array(points, float) + np.array(at, float)
         return moved
     c, s = np.cos(angle), np.sin(angle)
-    turned: Array = size * np.array(points, float) @ np.array([[c, s], [-s, c]]) + np.array(at, float)
+    turned: Floats = size * np.array(points, float) @ np.array([[c, s], [-s, c]]) + np.array(at, float)
     return turned
 
 

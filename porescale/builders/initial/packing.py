@@ -3,19 +3,17 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.errors import InputError
+from porescale.common.core.types import Floats
 from porescale.common.neighbors.grading import graded_radii, lognormal_radii
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Law
 from porescale.dem.prepare.compaction import Compactor, Compressed, kept
 from porescale.scene.packing import Packing
 
-Array = NDArray[np.float64]
 
-
-def radii_of(packing: Packing) -> Array | None:
+def radii_of(packing: Packing) -> Floats | None:
     """Radii (n,) m of a packing with a grading, lognormal sizes or compression; None for the plain one, drawn later."""
     area = packing.packing_fraction * packing.width * packing.height
     if packing.grading:

@@ -5,13 +5,11 @@ Source: Matsushima, DEMseg tutorial II-4; see dem/prepare/rock.py, dem/prepare/t
 
 from functools import lru_cache
 
-import numpy as np
-from numpy.typing import NDArray
-
 from porescale.builders.initial.contact_laws import MaterialPlan
 from porescale.builders.initial.frames import FREE, HELD, PLATES, Placed
 from porescale.builders.initial.packing import compressed
 from porescale.builders.initial.time_functions import schedule_of
+from porescale.common.core.types import Floats
 from porescale.dem.bodies.frames import chain, polygon
 from porescale.dem.contact.materials import Law
 from porescale.dem.discs import Discs, make_discs
@@ -20,8 +18,6 @@ from porescale.dem.motion.time_function import Constant, Schedule, Sine, Table
 from porescale.dem.prepare.tessellate import delaunay, shrunk, voronoi
 from porescale.scene.packing import Packing
 from porescale.scene.scene import Scene
-
-Array = NDArray[np.float64]
 
 BEYOND = 0.1
 """Of the length of a plate's side of the sample: how far it stands out at both ends."""
@@ -95,7 +91,7 @@ def _times(schedule: Schedule, factor: float) -> Schedule:
 
 
 @lru_cache(maxsize=2)
-def _pressed(packing: Packing, density: float, law: Law) -> tuple[Array, Array]:
+def _pressed(packing: Packing, density: float, law: Law) -> tuple[Floats, Floats]:
     """Centres (n, 2) m and radii (n,) m of the packing pressed in its rectangle."""
     discs = compressed(packing, density, (False, False), law).grains.discs
     return discs.position.copy(), discs.radius.copy()

@@ -4,14 +4,12 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.builders.part import Clock, Part, Row
 from porescale.builders.system import System
+from porescale.common.core.types import Floats
 from porescale.dem.bodies.rigid import areas
 from porescale.dem.grains import Grains
-
-Array = NDArray[np.float64]
 
 
 class CellPart(Part):
@@ -53,7 +51,7 @@ class CellPart(Part):
             "solid fraction ()": float(areas(grains).sum()) / (width * height),
         }  # fmt: skip
 
-    def seen(self) -> tuple[Array, Array]:
+    def seen(self) -> tuple[Floats, Floats]:
         """Positions (n, 2) m of the discs within width and height of the cell; velocities (n, 2) with the cell's."""
         steering, discs = self.grains.steering, self.grains.discs
         (width, _), (tilt, height) = steering.edges()

@@ -7,18 +7,19 @@ import numpy as np
 from porescale.builders.initial.frames import Placed, disc_count
 from porescale.builders.part import Part
 from porescale.builders.system import System
-from porescale.common.record.model import Array, Cloud, Snapshot
+from porescale.common.core.types import AnyArray
+from porescale.common.record.model import Cloud, Snapshot
 from porescale.dem.grains import Grains
 from porescale.output.frame_clouds import FRAMES, frame_cloud
 
-Motion = Callable[[], tuple[Array, Array]]
+Motion = Callable[[], tuple[AnyArray, AnyArray]]
 """Positions (n, 2) m and velocities (n, 2) m/s of all discs, as they are shown."""
 
 
 class GrainCloud(Part):
     """The discs.  hydraulic_radius : (n,) m, None without fluid;  motion : of a strained cell, None of a box."""
 
-    def __init__(self, grains: Grains, hydraulic_radius: Array | None, motion: Motion | None) -> None:
+    def __init__(self, grains: Grains, hydraulic_radius: AnyArray | None, motion: Motion | None) -> None:
         self.grains, self.hydraulic_radius, self.motion = grains, hydraulic_radius, motion or self._own
         self.period = np.array([0.0, 0.0] if motion else grains.box.period)
 
@@ -28,7 +29,7 @@ class GrainCloud(Part):
         assert system.grains
         return cls(system.grains, system.coupled.hydraulic_radius if system.coupled else None, motion)
 
-    def _own(self) -> tuple[Array, Array]:
+    def _own(self) -> tuple[AnyArray, AnyArray]:
         return self.grains.discs.position, self.grains.discs.velocity
 
     def show(self, snapshot: Snapshot) -> None:

@@ -8,7 +8,7 @@ from porescale.builders.part import Clock, Fields
 from porescale.builders.parts.fluid import FluidPart
 from porescale.builders.system import System
 from porescale.common.core.errors import Unstable
-from porescale.common.record.model import Array
+from porescale.common.core.types import AnyArray
 from porescale.coupling.divergence_check import DivergenceCheck
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
@@ -42,7 +42,7 @@ class CoupledPart(FluidPart):
         if fault:
             raise fault
 
-    def _solid(self, solid: Array) -> dict[str, Array]:
+    def _solid(self, solid: AnyArray) -> dict[str, AnyArray]:
         """The solid fraction of every cell, as float32."""
         return {"solid_fraction": solid.astype(np.float32)}
 

@@ -5,18 +5,16 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.types import Reals
 from porescale.lbm.fields import stream_function
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
-
-Array = NDArray[np.floating]
-
 
 LAMBDA = "hydraulic radius ratio ()"
 """Column of lambda: every record of grains in fluid carries it."""
 
 
-def total_pressure(gravity: tuple[float, float], scales: Scales, excess: Array) -> Array:
+def total_pressure(gravity: tuple[float, float], scales: Scales, excess: Reals) -> Reals:
     """Pressure (Pa) of a density excess (kg/m³), both (ny, nx): with the hydrostatic part that the lattice leaves out,
     zero in the upper left corner of the box."""
     ny, nx = excess.shape
@@ -26,7 +24,7 @@ def total_pressure(gravity: tuple[float, float], scales: Scales, excess: Array) 
     return np.asarray(excess / scales.density * scales.pressure + still)
 
 
-def fluid_row(excess: Array, ux: Array, uy: Array, solid: Array, scales: Scales) -> dict[str, float]:
+def fluid_row(excess: Reals, ux: Reals, uy: Reals, solid: Reals, scales: Scales) -> dict[str, float]:
     """Columns of the series for the fluid between the grains; arrays (ny, nx), SI."""
     square = ux**2 + uy**2
     energy = 0.5 * float(np.sum((scales.density + excess) * square * (1 - solid))) * scales.spacing**2
@@ -44,7 +42,7 @@ UNITS = {"vorticity": "1/s", "stream_function": "m²/s"}
 
 
 def derived_fields(
-    names: Sequence[str], fluid: Fluid, ux: Array, uy: Array, scales: Scales
+    names: Sequence[str], fluid: Fluid, ux: Reals, uy: Reals, scales: Scales
 ) -> dict[str, NDArray[np.float32]]:
     """Fields called ``names`` in the centres of cells, (ny, nx), of a velocity (ny, nx) m/s of ``fluid``.
 
@@ -60,8 +58,8 @@ def derived_fields(
     return fields
 
 
-def vorticity(ux: Array, uy: Array, spacing: float) -> Array:
+def vorticity(ux: Reals, uy: Reals, spacing: float) -> Reals:
     """dv/dx - du/dy in every cell, (ny, nx) 1/s: central differences, one-sided at the sides."""
-    along: Array = np.gradient(uy, spacing, axis=1)
-    up: Array = np.gradient(ux, spacing, axis=0)
+    along: Reals = np.gradient(uy, spacing, axis=1)
+    up: Reals = np.gradient(ux, spacing, axis=0)
     return along - up

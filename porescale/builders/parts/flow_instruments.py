@@ -4,18 +4,15 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from numpy.typing import NDArray
-
 from porescale.builders.part import Clock, Fields, Part, Row
 from porescale.builders.parts.flow_fields import LAMBDA, total_pressure
 from porescale.builders.parts.fluid import FluidPart
 from porescale.builders.system import System
+from porescale.common.core.types import AnyArray
 from porescale.coupling.step import Coupled
 from porescale.output.sample import Sampler, midpoints
 from porescale.scene.measures.line import Flux
 from porescale.scene.measures.loads import Loads
-
-Array = NDArray[Any]
 
 
 class FlowInstruments(Part):
@@ -86,7 +83,7 @@ class _Section:
         self.normal = (y1 - y0) / self.length, (x0 - x1) / self.length
         self.at = Sampler(midpoints(section.start, section.end, max(1, round(self.length / spacing))), *grid)
 
-    def integral(self, ux: Array, uy: Array) -> float:
+    def integral(self, ux: AnyArray, uy: AnyArray) -> float:
         """Volume flux of a flow (ny, nx) through the section, m²/s."""
         across = self.normal[0] * self.at.of(ux) + self.normal[1] * self.at.of(uy)
         return float(across.mean()) * self.length

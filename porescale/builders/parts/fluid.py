@@ -9,7 +9,8 @@ from porescale.builders.part import Clock, Fields, Stepper
 from porescale.builders.parts.flow_fields import UNITS, derived_fields, total_pressure
 from porescale.builders.system import System
 from porescale.common.core.errors import Unstable
-from porescale.common.record.model import Array, Grid, Snapshot
+from porescale.common.core.types import AnyArray
+from porescale.common.record.model import Grid, Snapshot
 from porescale.coupling.divergence_check import DivergenceCheck
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
@@ -62,13 +63,13 @@ class FluidPart(Stepper):
         velocity = np.zeros((*ux.shape, 3), np.float32)
         velocity[..., 0], velocity[..., 1] = ux, uy
         pressure = total_pressure(self.gravity, self.scales, excess).astype(np.float32)
-        cells: dict[str, Array] = {"velocity": velocity, "pressure": pressure, **self._solid(solid)}
+        cells: dict[str, AnyArray] = {"velocity": velocity, "pressure": pressure, **self._solid(solid)}
         cells |= derived_fields(self.names, self.fluid, ux, uy, self.scales)
         units = {"velocity": "m/s", "pressure": "Pa", **UNITS}
         units = {name: unit for name, unit in units.items() if name in cells}
         snapshot.grids["fields"] = Grid((0.0, 0.0), (self.scales.spacing, self.scales.spacing), cells, units)
 
-    def _solid(self, solid: Array) -> dict[str, Array]:
+    def _solid(self, solid: AnyArray) -> dict[str, AnyArray]:
         """Fields of what is solid in cells."""
         return {}
 

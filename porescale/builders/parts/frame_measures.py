@@ -6,13 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.builders.initial.frames import Placed, disc_count, free_rows
+from porescale.common.core.types import Floats
 from porescale.dem.bodies.frames import polygon_moments
 from porescale.dem.bodies.rigid import body_of
 from porescale.dem.grains import Grains
 from porescale.dem.measures.contact_list import nearest_image
 from porescale.dem.measures.region import Region
-
-Array = NDArray[np.float64]
 
 
 def coordination_of_bodies(grains: Grains, placed: Sequence[Placed], held: int) -> float:
@@ -61,7 +60,7 @@ def solid_in(grains: Grains, placed: Sequence[Placed], region: Region) -> float:
     return total
 
 
-def clipped_area(corners: Array, region: Region) -> float:
+def clipped_area(corners: Floats, region: Region) -> float:
     """Area (m^2) of a polygon (k, 2) m within a region: cut by its four sides, one after the other.
 
     Source: Sutherland & Hodgman 1974; parts of one that is not convex are joined by lines without area.

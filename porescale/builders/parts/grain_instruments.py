@@ -5,7 +5,6 @@ contact step would use, and changes nothing.
 """
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +14,7 @@ from porescale.builders.initial.walls import WallPlaces, middles
 from porescale.builders.part import Clock, Part, Row
 from porescale.builders.parts.frame_measures import solid_in
 from porescale.builders.system import System
+from porescale.common.core.types import AnyArray
 from porescale.common.record.model import Cloud, Grid, Snapshot
 from porescale.dem.bodies.rigid import areas, as_bodies, body_of
 from porescale.dem.forces.rectangle import BOTTOM, RIGHT, TOP
@@ -35,9 +35,6 @@ from porescale.dem.measures.stress import contact_stress, kinetic_stress, princi
 from porescale.dem.motion.periodic_cell import Straining
 from porescale.scene.measures.coarse_graining import CoarseGraining
 from porescale.scene.scene import Scene
-
-Array = NDArray[Any]
-
 
 KERNEL_WIDTH = 2.5
 """Width of the kernel in mean diameters where a scene gives none: some twenty grains are felt at a point."""
@@ -136,7 +133,7 @@ class GrainInstruments(Part):
         periodic = grains.box.periodic if cell is None else (False, False)
         raster = Raster.over(grains.box.lower, grains.box.upper, asked.spacing, width, periodic)
         fields = CoarseGrained(raster, grains.discs, found, conserve=cell is None, cell=cell, area=areas(grains))
-        cells: dict[str, Array] = {}
+        cells: dict[str, AnyArray] = {}
         units: dict[str, str] = {}
         for name in asked.fields:
             value = getattr(fields, "contact_stress" if name == "stress" else name)
@@ -156,7 +153,7 @@ UNITS = {"density": "kg/m^3", "solid_fraction": "", "velocity": "m/s", "strain_r
 """Units of the fields."""
 
 
-def _components(name: str, value: Array) -> dict[str, Array]:
+def _components(name: str, value: AnyArray) -> dict[str, AnyArray]:
     """A tensor (rows, columns, 2, 2) by component, and its two invariants: mean and largest shear."""
     parts = {f"{name}_{a}{b}": value[..., i, j] for i, a in enumerate("xy") for j, b in enumerate("xy")}
     if name == "strain_rate":
@@ -173,7 +170,7 @@ def contact_cloud(found: Contacts, grains: Grains) -> Cloud:
     second is -1 at a surface, whose number is then in ``surface`` (order: walls, plates, rectangles).
     """
     names = "normal_force", "tangential_force", "overlap", "spring"
-    data: dict[str, Array] = {
+    data: dict[str, AnyArray] = {
         "first": found.first.astype(np.int32), "second": found.second.astype(np.int32),
         "surface": found.surface.astype(np.int32), "sliding": found.sliding,
         **{name: getattr(found, name) for name in names},
@@ -186,7 +183,7 @@ def contact_cloud(found: Contacts, grains: Grains) -> Cloud:
     return Cloud(point, data, units)
 
 
-def _moving(grains: Grains, region: Region, weight: Array) -> Motion:
+def _moving(grains: Grains, region: Region, weight: AnyArray) -> Motion:
     """The affine motion of the discs of a region, (n,) weights, in a strained cell too."""
     at, velocity = region.about(grains.discs.position, grains.period), grains.discs.velocity
     if isinstance(grains.cell, Straining):
@@ -195,7 +192,7 @@ def _moving(grains: Grains, region: Region, weight: Array) -> Motion:
 
 
 def region_row(
-    grains: Grains, found: Contacts, region: Region, loose: Array, held: Array, placed: Sequence[Placed] = ()
+    grains: Grains, found: Contacts, region: Region, loose: AnyArray, held: AnyArray, placed: Sequence[Placed] = ()
 ) -> Row:
     """The quantities of a region, by column with unit.
 

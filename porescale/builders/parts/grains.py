@@ -2,16 +2,17 @@
 
 from typing import Any
 
-from porescale.builders.part import Array, Clock, Stepper
+from porescale.builders.part import Clock, Stepper
 from porescale.builders.system import System
 from porescale.common.core.errors import Unstable
+from porescale.common.core.types import AnyArray
 from porescale.dem.grains import Grains
 
 
 class GrainsPart(Stepper):
     """Grains without fluid.  weight : (n, 2) N/m."""
 
-    def __init__(self, clock: Clock, grains: Grains, weight: Array | None) -> None:
+    def __init__(self, clock: Clock, grains: Grains, weight: AnyArray | None) -> None:
         self.clock, self.grains, self.weight = clock, grains, weight
 
     @classmethod

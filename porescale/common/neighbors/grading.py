@@ -6,11 +6,9 @@ Mass is area here: discs of one density.
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
-
-Floats = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 Curve = Sequence[tuple[float, float]]
 """A grading curve: (diameter in m, percent finer by mass), both ascending, 0 to 100 %; straight over log diameter."""

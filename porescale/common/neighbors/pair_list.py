@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import most_threads, threads
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.common.neighbors import search
 from porescale.common.neighbors import skin as skins
 from porescale.common.neighbors.cells import Grid, grid_shape, sort_into_cells
-
-Floats = NDArray[np.float64]
 
 SERIAL_BELOW = 20_000  # points; fewer cost less in one thread than a barrier costs (measured)
 ROW = 256  # entries for a row that is being made, to begin with

@@ -9,14 +9,12 @@ the packing should be disordered.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import kernel
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.common.neighbors.cells import minimum_image
 from porescale.common.neighbors.pair_list import PairList
-
-Floats = NDArray[np.float64]
 
 DENSEST = 0.80  # packing fraction; above it random starts jam before their overlaps are gone
 INFLATED = 0.81  # fraction with the radii that are slid apart, larger than the real ones so that these end clear

@@ -3,9 +3,10 @@
 import cv2
 import numpy as np
 
+from porescale.common.core.types import AnyArray
 from porescale.common.pictures.look import GRAIN, PAPER, PLATE, RIM, WALL, Survey, magnitude, rgb
 from porescale.common.pictures.shapes import paint_marks, paint_shapes
-from porescale.common.record.model import Array, Cloud, Grid, Snapshot
+from porescale.common.record.model import Cloud, Grid, Snapshot
 
 SHIFT = 4
 """OpenCV coordinates in sixteenths of a pixel."""
@@ -24,14 +25,14 @@ class Canvas:
         self.left, self.top = left, top
         self.per_x, self.per_y = width / (right - left), height / (top - bottom)
 
-    def pixels(self, points: Array) -> Array:
+    def pixels(self, points: AnyArray) -> AnyArray:
         """(n, 2) m -> (n, 2) pixels as OpenCV counts them: pixel (0, 0) has its centre at 0, 0."""
         at = np.empty((len(points), 2))
         at[:, 0] = (points[:, 0] - self.left) * self.per_x - 0.5
         at[:, 1] = (self.top - points[:, 1]) * self.per_y - 0.5
         return at
 
-    def draw(self, snapshot: Snapshot, over_field: Array | None = None) -> Array:
+    def draw(self, snapshot: Snapshot, over_field: AnyArray | None = None) -> AnyArray:
         """The image of a snapshot, (height, width, 3) uint8 RGB.
 
         over_field : RGBA image of the same size, blended over the field and under the points (streamlines).
@@ -58,7 +59,7 @@ class Canvas:
             paint_marks(image, self.pixels(np.array(marks, float).reshape(-1, 2)).reshape(-1, 2, 2))
         return image
 
-    def _field(self, image: Array, grid: Grid) -> None:
+    def _field(self, image: AnyArray, grid: Grid) -> None:
         assert self.survey.field is not None
         rows, columns = self._inside(grid)
         part = image[rows, columns]
@@ -75,7 +76,7 @@ class Canvas:
         (first, upper), (last, lower) = np.ceil(edges).astype(int).tolist()
         return slice(max(0, upper), max(0, lower)), slice(max(0, first), max(0, last))
 
-    def _resampled(self, grid: Grid, values: Array) -> Array:
+    def _resampled(self, grid: Grid, values: AnyArray) -> AnyArray:
         """Cell values at the pixels' centres, (height, width): linear, averaged where cells are finer."""
         values = np.ascontiguousarray(values, np.float32)
         ny, nx = values.shape
@@ -94,10 +95,10 @@ class Canvas:
         )
         how = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
         size = (self.width, self.height)
-        warped: Array = cv2.warpAffine(values, matrix, size, flags=how, borderMode=cv2.BORDER_REPLICATE)
+        warped: AnyArray = cv2.warpAffine(values, matrix, size, flags=how, borderMode=cv2.BORDER_REPLICATE)
         return warped
 
-    def _cloud(self, image: Array, cloud: Cloud) -> None:
+    def _cloud(self, image: AnyArray, cloud: Cloud) -> None:
         discs = "radius" in cloud.data
         radius = np.asarray(cloud.data["radius"], float) if discs else np.full(len(cloud.position), self.survey.dot)
         at = self.pixels(cloud.position)
@@ -121,7 +122,7 @@ class Canvas:
         if discs and "angle" in cloud.data:
             self._spokes(image, at[seen], radii, np.asarray(cloud.data["angle"], float)[seen])
 
-    def _spokes(self, image: Array, at: Array, radii: Array, angle: Array) -> None:
+    def _spokes(self, image: AnyArray, at: AnyArray, radii: AnyArray, angle: AnyArray) -> None:
         """A line from each centre towards the rim shows how a disc has turned."""
         big = radii >= 4
         tip = at + 0.8 * radii[:, None] * np.stack([np.cos(angle), -np.sin(angle)], 1)
@@ -130,7 +131,7 @@ class Canvas:
         for start, end, width in zip(starts, ends, widths, strict=True):
             cv2.line(image, start, end, colour, width, cv2.LINE_AA, SHIFT)
 
-    def _colours(self, cloud: Cloud) -> Array:
+    def _colours(self, cloud: Cloud) -> AnyArray:
         """Colours of values, (n, 3) uint8."""
         name = self.look.colouring(cloud)
         painted = np.full((len(cloud.position), 3), rgb(GRAIN), np.uint8)
@@ -141,7 +142,7 @@ class Canvas:
             painted = self.survey.cloud.colours(magnitude(cloud.data[name], 1))
         return painted
 
-    def _arrows(self, image: Array, grid: Grid) -> None:
+    def _arrows(self, image: AnyArray, grid: Grid) -> None:
         """Velocity arrows on a regular raster; one at the top of the colour range spans a raster cell."""
         assert self.survey.field is not None
         velocity = grid.cells[self.look.field]
@@ -162,13 +163,13 @@ class Canvas:
             cv2.fillPoly(image, outline, rgb(PAPER), cv2.LINE_AA, SHIFT)
             cv2.polylines(image, outline, True, rgb(RIM), 1, cv2.LINE_AA, SHIFT)
 
-    def _line(self, image: Array, ends: Array, colour: tuple[int, int, int], thickness: int) -> None:
+    def _line(self, image: AnyArray, ends: AnyArray, colour: tuple[int, int, int], thickness: int) -> None:
         """A segment between two pixel positions, (2, 2)."""
         start, end = np.rint(ends * ONE).astype(int).tolist()
         cv2.line(image, start, end, colour, thickness, cv2.LINE_AA, SHIFT)
 
 
-def _arrow(middle: Array, along: Array, length: float) -> Array:
+def _arrow(middle: AnyArray, along: AnyArray, length: float) -> AnyArray:
     """Outline of an arrow, (7, 2) pixels, its width growing with its length."""
     half, head = 0.045 * length + 0.6, 0.36 * length
     profile = [(0.0, half), (length - head, half), (length - head, 3.2 * half), (length, 0.0)]
@@ -177,7 +178,7 @@ def _arrow(middle: Array, along: Array, length: float) -> Array:
     return np.asarray(middle + (points[:, :1] - length / 2) * along + points[:, 1:] * across)
 
 
-def _blend(image: Array, share: Array, colour: Array | tuple[int, int, int]) -> None:
+def _blend(image: AnyArray, share: AnyArray, colour: AnyArray | tuple[int, int, int]) -> None:
     """Paint ``colour`` over an image with opacity ``share`` (height, width) of 0..1."""
     opacity = share[..., None]
     image[:] = (image * (1 - opacity) + np.asarray(colour) * opacity + 0.5).astype(np.uint8)

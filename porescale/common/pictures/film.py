@@ -8,9 +8,9 @@ from typing import Any
 import av
 
 from porescale.common.core.atomic import whole
+from porescale.common.core.types import AnyArray
 from porescale.common.pictures.look import Look
 from porescale.common.pictures.picture import painter_of
-from porescale.common.record.model import Array
 from porescale.common.record.open_run import open_run
 
 WATCHABLE = 6.0
@@ -37,7 +37,7 @@ def film(folder: Path | str, look: Look | None = None, *, rate: int | None = Non
     )
 
 
-def write_film(stem: Path, images: Iterable[Array], rate: int) -> Path:
+def write_film(stem: Path, images: Iterable[AnyArray], rate: int) -> Path:
     """Encode RGB images (even sides, all alike) into <stem>.mp4 or .webm, whole; returns the path."""
     name, suffix, options = encoder()
     path = stem.with_name(stem.name + suffix)

@@ -10,7 +10,8 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from scipy.spatial import cKDTree
 
-from porescale.common.record.model import Array, Cloud, Grid, Snapshot
+from porescale.common.core.types import AnyArray
+from porescale.common.record.model import Cloud, Grid, Snapshot
 
 Line = tuple[tuple[float, float], tuple[float, float]]
 Lines = Sequence[Line] | Callable[[Snapshot], Sequence[Line]]
@@ -94,14 +95,14 @@ class Look:
 class Scale:
     """Colours of a range of values: 256 RGB rows, the range, and how it is labelled."""
 
-    table: Array
+    table: AnyArray
     low: float
     high: float
     label: str
     factor: float
     map_name: str
 
-    def colours(self, values: Array) -> Array:
+    def colours(self, values: AnyArray) -> AnyArray:
         """RGB of values, (..., 3) uint8; what is not a number is white."""
         nowhere = np.isnan(values)
         place = np.where(nowhere, self.low, values) if nowhere.any() else values
@@ -113,15 +114,15 @@ class Scale:
         return painted
 
 
-def magnitude(values: Array, axes: int) -> Array:
+def magnitude(values: AnyArray, axes: int) -> AnyArray:
     """Length of vectors, scalars as they are, floating; a scalar has ``axes``: 2 in a grid, 1 in a cloud."""
     if values.ndim > axes:
-        length: Array = np.sqrt(np.einsum("...i,...i->...", values, values))
+        length: AnyArray = np.sqrt(np.einsum("...i,...i->...", values, values))
         return length
     return values if values.dtype.kind == "f" else values.astype(np.float64)
 
 
-def scale(name: str, units: str, sample: Array, limits: Limits | None, map_name: str, label: str) -> Scale:
+def scale(name: str, units: str, sample: AnyArray, limits: Limits | None, map_name: str, label: str) -> Scale:
     """The scale for values like ``sample``: from zero for lengths of vectors and other positive values,
     symmetric and diverging where both signs matter."""
     sample = sample[np.isfinite(sample)]
@@ -195,8 +196,8 @@ class Survey:
 def survey(snapshots: Iterable[Snapshot], look: Look) -> Survey:
     """Colour ranges, view, dot size and time format common to ``snapshots`` (read once, one at a time)."""
     found = Survey(look)
-    values: list[Array] = []
-    points: list[Array] = []
+    values: list[AnyArray] = []
+    points: list[AnyArray] = []
     field_units, cloud_units, coloured_by = "", "", ""
     box = [math.inf, -math.inf, math.inf, -math.inf]
     for snapshot in snapshots:
@@ -234,13 +235,13 @@ def survey(snapshots: Iterable[Snapshot], look: Look) -> Survey:
     return found
 
 
-def _thin(values: Array, most: int = 20000) -> Array:
+def _thin(values: AnyArray, most: int = 20000) -> AnyArray:
     """At most about ``most`` of the values, evenly spread."""
     flat = values.ravel()
     return flat[:: max(1, flat.size // most)].astype(np.float64)
 
 
-def _spacing(position: Array) -> float:
+def _spacing(position: AnyArray) -> float:
     """Median distance to the nearest other point, m."""
     if len(position) < 2:
         return 0.0

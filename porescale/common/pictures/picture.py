@@ -19,9 +19,10 @@ from matplotlib.patches import Patch
 
 from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import AnyArray
 from porescale.common.pictures.canvas import Canvas
 from porescale.common.pictures.look import Look, Scale, Survey, View, length_unit, survey, time_text
-from porescale.common.record.model import Array, Snapshot
+from porescale.common.record.model import Snapshot
 from porescale.common.record.open_run import Run, open_run
 
 DPI = 100
@@ -58,7 +59,7 @@ class Painter:
         self.canvas = Canvas(found, self.width, self.height)
         self.background = self._background()
 
-    def paint(self, snapshot: Snapshot, over_field: Array | None = None) -> Array:
+    def paint(self, snapshot: Snapshot, over_field: AnyArray | None = None) -> AnyArray:
         """The whole picture; ``over_field`` as in :meth:`Canvas.draw`."""
         image = self.background.copy()
         inside = image[self.y : self.y + self.height, self.x : self.x + self.width]
@@ -70,12 +71,12 @@ class Painter:
         image[bottom - tall : bottom, right - wide : right] = label
         return image
 
-    def _frame(self, image: Array) -> None:
+    def _frame(self, image: AnyArray) -> None:
         """The axes' frame, over the edge of the inside."""
         corners = (self.x - 1, self.y - 1), (self.x + self.width, self.y + self.height)
         cv2.rectangle(image, *corners, (40, 40, 40), 1)
 
-    def _background(self) -> Array:
+    def _background(self) -> AnyArray:
         """Axes, title and bars without the inside."""
         full_x, full_y = self.full
         figure = Figure((full_x / DPI, full_y / DPI), dpi=DPI)
@@ -95,7 +96,7 @@ class Painter:
             _legend(figure, self.survey.look, ((at - 8 * self.unit) / full_x, 1 - self.y / full_y), font)
         return _pixels(figure)
 
-    def streamlines(self, snapshot: Snapshot) -> Array:
+    def streamlines(self, snapshot: Snapshot) -> AnyArray:
         """The picture with streamlines under the points, where anything moves: vortices can be seen."""
         grid = self.survey.look.painted(snapshot)
         if grid is None or self.survey.field is None or grid.cells[self.survey.look.field].ndim != 3:
@@ -119,7 +120,7 @@ class Painter:
         return self.paint(snapshot, _pixels(figure, alpha=True))
 
 
-def paint(snapshot: Snapshot, look: Look | None = None, **changes: Any) -> Array:
+def paint(snapshot: Snapshot, look: Look | None = None, **changes: Any) -> AnyArray:
     """One snapshot as (height, width, 3) uint8 RGB.  ``changes`` are fields of :class:`Look`."""
     chosen = replace(look or Look(), **changes)
     return Painter(survey([snapshot], chosen)).paint(snapshot)
@@ -162,7 +163,7 @@ def paint_last(folder: Path | str, name: str, look: Look) -> Path:
     return path
 
 
-def montage(painter: Painter, shown: Sequence[Snapshot]) -> Array:
+def montage(painter: Painter, shown: Sequence[Snapshot]) -> AnyArray:
     """Several times side by side with one colour bar, (height, width, 3) uint8 RGB."""
     found = painter.survey
     aspect = painter.width / painter.height
@@ -198,7 +199,7 @@ def montage(painter: Painter, shown: Sequence[Snapshot]) -> Array:
     return _pixels(figure)
 
 
-def png(image: Array) -> bytes:
+def png(image: AnyArray) -> bytes:
     """An RGB image as a PNG file's content."""
     done, content = cv2.imencode(".png", cv2.cvtColor(image, cv2.COLOR_RGB2BGR))
     assert done
@@ -249,14 +250,14 @@ def _legend(figure: Figure, look: Look, corner: tuple[float, float], font: float
     )
 
 
-def _text(text: str, points: float) -> Array:
+def _text(text: str, points: float) -> AnyArray:
     """Text in the axes' font on white, as a tight RGB image."""
     figure = Figure((len(text) * points / 72, 1.6 * points / 72), dpi=DPI)
     figure.text(1.0, 0.25, text, fontsize=points, ha="right", va="baseline")
     return _pixels(figure)
 
 
-def _pixels(figure: Figure, *, alpha: bool = False) -> Array:
+def _pixels(figure: Figure, *, alpha: bool = False) -> AnyArray:
     """A figure as RGB, or RGBA."""
     canvas = FigureCanvasAgg(figure)
     canvas.draw()

@@ -3,8 +3,9 @@
 import cv2
 import numpy as np
 
+from porescale.common.core.types import AnyArray
 from porescale.common.pictures.look import PLATE, RIM, rgb
-from porescale.common.record.model import Array, Cloud
+from porescale.common.record.model import Cloud
 
 SHIFT = 4
 """OpenCV coordinates in sixteenths of a pixel."""
@@ -14,7 +15,7 @@ LEAST = 1.5
 CRACK = "#c0182b"
 
 
-def paint_shapes(image: Array, cloud: Cloud, at: Array, scale: float, colours: Array) -> None:
+def paint_shapes(image: AnyArray, cloud: Cloud, at: AnyArray, scale: float, colours: AnyArray) -> None:
     """Paint the polygons of ``cloud``, then its lines, into ``image`` (h, w, 3).
 
     at (n, 2) pixels of its points;  scale : pixels per metre;  colours (n, 3) of its points: that of the first point is
@@ -44,7 +45,7 @@ def paint_shapes(image: Array, cloud: Cloud, at: Array, scale: float, colours: A
                 cv2.line(image, whole[a].tolist(), whole[b].tolist(), colour, wide, cv2.LINE_AA, SHIFT)
 
 
-def paint_marks(image: Array, ends: Array) -> None:
+def paint_marks(image: AnyArray, ends: AnyArray) -> None:
     """Paint marks, such as cracks, between ``ends`` (m, 2, 2) pixels."""
     wide = max(2, image.shape[1] // 250)
     for start, end in np.rint(ends * ONE).astype(int).tolist():

@@ -16,7 +16,7 @@ import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.hdf5 import writing
-from porescale.common.record.model import Array
+from porescale.common.core.types import AnyArray
 from porescale.common.record.read_card import require_format
 
 FORMAT = 1
@@ -31,7 +31,7 @@ def write_checkpoint(path: Path, content: dict[str, Any]) -> None:
 
     TypeError names the place of anything else (objects, callables, dicts with keys that are no strings).
     """
-    arrays: list[tuple[str, Array]] = []
+    arrays: list[tuple[str, AnyArray]] = []
     tree = {"format": FORMAT, "content": _encode(content, "", arrays)}
     with writing(Path(path), libver=("v110", "v110")) as file:
         group = file.create_group("arrays")
@@ -74,7 +74,7 @@ def _tree(file: h5py.File) -> Any:
     return tree["content"]
 
 
-def _store(group: h5py.Group, name: str, flat: Array) -> h5py.Dataset:
+def _store(group: h5py.Group, name: str, flat: AnyArray) -> h5py.Dataset:
     """Write one flat dataset, in pieces with checksums."""
     if flat.size == 0:
         return group.create_dataset(name, data=flat)
@@ -82,7 +82,7 @@ def _store(group: h5py.Group, name: str, flat: Array) -> h5py.Dataset:
     return group.create_dataset(name, data=flat, chunks=(piece,), fletcher32=True)
 
 
-def _encode(value: Any, where: str, arrays: list[tuple[str, Array]]) -> Any:
+def _encode(value: Any, where: str, arrays: list[tuple[str, AnyArray]]) -> Any:
     """``value`` as JSON; its arrays are appended to ``arrays``, flat."""
     if value is None or isinstance(value, bool | str):
         return value
@@ -103,7 +103,7 @@ def _encode(value: Any, where: str, arrays: list[tuple[str, Array]]) -> Any:
     raise TypeError(f"state{where}: a checkpoint cannot hold {type(value).__name__}")
 
 
-def _encode_array(value: Array | np.generic, where: str, arrays: list[tuple[str, Array]]) -> dict[str, Any]:
+def _encode_array(value: AnyArray | np.generic, where: str, arrays: list[tuple[str, AnyArray]]) -> dict[str, Any]:
     array = np.asarray(value)
     if array.dtype.hasobject:
         raise TypeError(f"state{where}: a checkpoint cannot hold arrays of objects")

@@ -9,9 +9,8 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[Any]
+from porescale.common.core.types import AnyArray
 
 
 @dataclass
@@ -25,7 +24,7 @@ class Grid:
 
     origin: tuple[float, float]
     spacing: tuple[float, float]
-    cells: dict[str, Array]
+    cells: dict[str, AnyArray]
     units: dict[str, str] = field(default_factory=dict)
 
     @property
@@ -54,11 +53,11 @@ class Cloud:
     these are what is to be seen, with "radius" the half of what they measure across.  Both or neither in all snapshots.
     """
 
-    position: Array
-    data: dict[str, Array] = field(default_factory=dict)
+    position: AnyArray
+    data: dict[str, AnyArray] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
-    lines: Array | None = None
-    polygons: tuple[Array, Array] | None = None
+    lines: AnyArray | None = None
+    polygons: tuple[AnyArray, AnyArray] | None = None
 
 
 @dataclass
@@ -140,7 +139,7 @@ def tables_of(model: Model) -> dict[str, dict[str, float]]:
     return rows
 
 
-def with_depth(points: Array) -> Array:
+def with_depth(points: AnyArray) -> AnyArray:
     """(n, 2) -> (n, 3) with zeros, float64: what VTK calls points."""
     flat = np.zeros((len(points), 3))
     flat[:, :2] = points

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from porescale.common.core.atomic import owned
+from porescale.common.core.types import AnyArray
 from porescale.common.record import card as cards
 from porescale.common.record import snapshots
-from porescale.common.record.model import Array, Snapshot
+from porescale.common.record.model import Snapshot
 from porescale.common.record.series import NAME as SERIES
 from porescale.common.record.series import read_series
 from porescale.common.record.vtkhdf import Frame
@@ -29,21 +30,21 @@ class Run:
         return str(self.card.get("name") or self.folder.resolve().name)
 
     @cached_property
-    def series(self) -> dict[str, Array]:
+    def series(self) -> dict[str, AnyArray]:
         """Columns of series.csv by name ("time (s)", ...), each (rows,)."""
         return read_series(self.folder / SERIES)
 
-    def table(self, name: str) -> dict[str, Array]:
+    def table(self, name: str) -> dict[str, AnyArray]:
         """Columns of <name>.csv, a further time series, by name, each (rows,); {} when there is none."""
         return read_series(self.folder / f"{name}.csv")
 
     @property
-    def times(self) -> Array:
+    def times(self) -> AnyArray:
         """Times of the snapshots, (snapshots,) s."""
         return np.array([next(iter(entry.values())).time for _, entry in self._frames])
 
     @property
-    def steps(self) -> Array:
+    def steps(self) -> AnyArray:
         """Steps done at the snapshots, (snapshots,)."""
         return np.array([step for step, _ in self._frames], np.int64)
 

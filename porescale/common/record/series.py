@@ -13,7 +13,7 @@ from typing import IO
 import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.record.model import Array
+from porescale.common.core.types import AnyArray
 
 NAME = "series.csv"
 
@@ -86,7 +86,7 @@ def read_names(path: Path) -> list[str] | None:
         return next(csv.reader(file), None)
 
 
-def read_series(path: Path) -> dict[str, Array]:
+def read_series(path: Path) -> dict[str, AnyArray]:
     """Columns by name, each (rows,) float64.  A torn last line is ignored; no file or no rows give {}.
 
     InputError naming the line where a row is damaged.

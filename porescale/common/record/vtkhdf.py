@@ -20,7 +20,8 @@ import h5py
 import numpy as np
 
 from porescale.common.core.hdf5 import writing
-from porescale.common.record.model import Array, Cloud, Grid, with_depth
+from porescale.common.core.types import AnyArray
+from porescale.common.record.model import Cloud, Grid, with_depth
 from porescale.common.record.read_card import require_format
 from porescale.common.record.vtkhdf_cells import NO_CELLS, TOPOLOGIES, Cells, cells_of, read_cells, with_cells
 
@@ -190,7 +191,7 @@ def _root(file: h5py.File, kind: str, ours: str, name: str, steps: Sequence[int]
     return root
 
 
-def _dataset(group: h5py.Group, name: str, values: Array, units: str = "1") -> None:
+def _dataset(group: h5py.Group, name: str, values: AnyArray, units: str = "1") -> None:
     """Write a small dataset with a checksum and its units."""
     made = group.create_dataset(name, data=values, chunks=values.shape, fletcher32=True)
     made.attrs["units"] = units
@@ -205,7 +206,7 @@ def _empty(group: h5py.Group, name: str, rows: int, column: Column, frames: int)
     return made
 
 
-def _fill(target: h5py.Dataset, rows: slice, values: Array) -> None:
+def _fill(target: h5py.Dataset, rows: slice, values: AnyArray) -> None:
     """Write ``values`` into these rows, unless there are none."""
     if len(values):
         target[rows] = values
@@ -218,7 +219,7 @@ def _copy_chunk(source: h5py.Dataset, index: int, target: h5py.Dataset, place: i
     target.id.write_direct_chunk((place, *rest), stored, mask)
 
 
-def _storable(name: str, array: Array) -> Array:
+def _storable(name: str, array: AnyArray) -> AnyArray:
     """``array`` in a type that VTK reads: flags as uint8, half floats as float32, native byte order."""
     if not name or "/" in name or "." in name:
         raise ValueError(f"array name {name!r}: VTKHDF allows neither '/' nor '.'")
@@ -232,7 +233,7 @@ def _storable(name: str, array: Array) -> Array:
     return array.astype(array.dtype.newbyteorder("="), copy=False)
 
 
-def _column(name: str, array: Array, shape: tuple[int, ...], units: dict[str, str]) -> Column:
+def _column(name: str, array: AnyArray, shape: tuple[int, ...], units: dict[str, str]) -> Column:
     """The column of one frame's ``array``, whose leading axes must be ``shape``."""
     rest = array.shape[len(shape) :]
     if array.shape[: len(shape)] != shape or rest not in ((), (3,)):

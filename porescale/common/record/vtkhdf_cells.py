@@ -7,10 +7,11 @@ step; ``Steps/CellOffsets`` and ``ConnectivityIdOffsets`` (nt, 4) say where a st
 import h5py
 import numpy as np
 
-from porescale.common.record.model import Array, Cloud
+from porescale.common.core.types import AnyArray
+from porescale.common.record.model import Cloud
 
 TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")
-Cells = dict[str, tuple[Array, Array]]
+Cells = dict[str, tuple[AnyArray, AnyArray]]
 """Topology -> (offsets (c + 1,), numbers of points)."""
 NO_CELLS = (np.zeros(1, np.int64), np.zeros(0, np.int64))
 

@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 
 from porescale.common.compiled.jit import kernel
+from porescale.common.core.types import Reals
 from porescale.coupling.coverage.rows import Patches
-from porescale.coupling.coverage.shape import Array, Shape, periodic
+from porescale.coupling.coverage.shape import Shape, periodic
 from porescale.coupling.coverage.through_sides import move_sides, relax_density, side_links, side_loads
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import WEIGHTS
@@ -36,13 +37,13 @@ class Bodies:
         self._links = side_links(fluid)
         self._grid = fluid.nx, fluid.ny, *periodic(fluid)
         self._force = np.asarray(fluid.force, float)
-        self._filled: list[Array | None] = [None] * m
+        self._filled: list[Reals | None] = [None] * m
         self._inside, self._borne = np.zeros((m, 2)), np.zeros((m, 3))
         self._before = np.zeros((m, 3))
         for k, shape in enumerate(self.shapes):
             self._before[k] = *shape.velocity, shape.spin
 
-    def gather(self, centre: Array, velocity: Array, spin: Array) -> tuple[Array, Array, Array]:
+    def gather(self, centre: Reals, velocity: Reals, spin: Reals) -> tuple[Reals, Reals, Reals]:
         """Centre, velocity and spin of all bodies: the discs' as given, and the shapes'."""
         n = self.discs
         self.centre[:n], self.velocity[:n], self.spin[:n] = centre, velocity, spin
@@ -63,7 +64,7 @@ class Bodies:
             inside_of(fraction, patches.corner[n], shape.centre, self._inside[k])
             self.direct[k] = -self._inside[k, 0] * self._force
 
-    def before(self, fluid: Fluid, patches: Patches, shift: Array, slow_load: Array) -> None:
+    def before(self, fluid: Fluid, patches: Patches, shift: Reals, slow_load: Reals) -> None:
         """Let the sides move with what reaches through them in the step to come.
 
         A body that a side carries needs no half-step correction, and its load has none: shift and slow_load (n, 3)
@@ -85,7 +86,7 @@ class Bodies:
         """Let no side move with what reaches through it from now on: the common mistake, for comparison."""
         self._links.size[:] = 0.0
 
-    def after(self, fluid: Fluid, patches: Patches, load: Array, direct: Array) -> None:
+    def after(self, fluid: Fluid, patches: Patches, load: Reals, direct: Reals) -> None:
         """The shapes' loads: ``load`` (n, 3) of all bodies' cells, less what sides bear, and the rate at which the
         velocity of the fluid inside changes, given back.  Overwrites the shapes' rows of direct (n, 2)."""
         side_loads(

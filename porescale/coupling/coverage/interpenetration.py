@@ -7,18 +7,16 @@ it is pushed no more: forces do not show that, so the outlines are compared.
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.errors import Unstable
+from porescale.common.core.types import Reals
 from porescale.coupling.immersed_polygons import ImmersedPolygons
 from porescale.dem.grains import Grains
-
-Array = NDArray[np.floating]
 
 CAUSE = "raise the stiffness, or shorten the contact step"
 
 
-def depth(one: Array, other: Array) -> float:
+def depth(one: Reals, other: Reals) -> float:
     """How far convex polygons, corners (k, 2) m, or one and a point, would have to be moved apart, m; <= 0 if they are.
 
     Least overlap of their shadows on the normals of all sides (separating axes: Gottschalk, Lin & Manocha 1996).
@@ -60,13 +58,13 @@ def require_apart(polygons: ImmersedPolygons, grains: Grains, step: int, time: f
                 )  # fmt: skip
 
 
-def _at(outline: Array, angle: float, place: Array | float) -> Array:
+def _at(outline: Reals, angle: float, place: Reals | float) -> Reals:
     """Corners (k, 2) m of a body turned by ``angle`` (rad)."""
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.asarray(outline @ np.array([[cosine, sine], [-sine, cosine]]) + place)
 
 
-def _beside(place: Array, others: Array, reach: Array, period: Sequence[float]) -> list[tuple[int, Array]]:
+def _beside(place: Reals, others: Reals, reach: Reals, period: Sequence[float]) -> list[tuple[int, Reals]]:
     """(number, vector from ``place``) of ``others`` (m, 2) m within ``reach`` (m,) m, nearest images."""
     away = others - place
     for axis in range(2):

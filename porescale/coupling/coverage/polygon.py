@@ -27,9 +27,10 @@ from numpy.typing import ArrayLike
 
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Reals
 from porescale.coupling.coverage.discs import FAR, NOWHERE
 from porescale.coupling.coverage.rows import BLOCK, Patches, whole_blocks
-from porescale.coupling.coverage.shape import Array, Integers, periodic
+from porescale.coupling.coverage.shape import Integers, periodic
 from porescale.lbm.fluid import Fluid
 
 STRAIGHT = 1e-9
@@ -136,7 +137,7 @@ def cover_polygons(before, outline, begin, centre, angle, at, line, patches):
                 fraction[first + i] = e if e < 1.0 - little else 1.0
 
 
-def pointed(corners: Array, shift: float) -> Array:
+def pointed(corners: Reals, shift: float) -> Reals:
     """Three corners for each of a convex polygon (k, 2): its own, moved out so that ``shift`` times the turn (cells²)
     is added to the area, and before and after it where that begins, ``TIP`` from it or halfway to the next."""
     ahead = np.roll(corners, -1, axis=0) - corners
@@ -155,7 +156,7 @@ def pointed(corners: Array, shift: float) -> Array:
     return np.stack(three, axis=1).reshape(-1, 2)
 
 
-def convex(corners: ArrayLike, name: str = "polygon") -> Array:
+def convex(corners: ArrayLike, name: str = "polygon") -> Reals:
     """The corners (k, 2) counterclockwise, or InputError if they make no convex polygon."""
     at = np.array(corners, float).reshape(-1, 2)
     if len(at) < 3 or not np.isfinite(at).all():
@@ -180,7 +181,7 @@ def convex(corners: ArrayLike, name: str = "polygon") -> Array:
     return at
 
 
-def least_width(corners: Array) -> float:
+def least_width(corners: Reals) -> float:
     """The smallest distance of two parallels that a convex polygon (k, 2) lies between; one of them holds a side."""
     along = np.roll(corners, -1, axis=0) - corners
     across = np.column_stack((-along[:, 1], along[:, 0])) / np.hypot(*along.T)[:, None]
@@ -244,7 +245,7 @@ class Polygons:
         begin = self._begins[0] if self.bare else self._begins[1]
         cover_polygons(discs, outline, begin, self.centre, self.angle, self._at, self._line, patches)
 
-    def gather(self, centre: Array, velocity: Array, spin: Array) -> tuple[Array, Array, Array]:
+    def gather(self, centre: Reals, velocity: Reals, spin: Reals) -> tuple[Reals, Reals, Reals]:
         """Centre, velocity and spin of all bodies: the discs' as given, then the polygons'."""
         n = len(spin)
         for every, given, own in zip(
@@ -254,17 +255,17 @@ class Polygons:
         return self._motion
 
 
-def _starts(polygons: Sequence[Array]) -> Integers:
+def _starts(polygons: Sequence[Reals]) -> Integers:
     """Where the corners of each begin in the list of all, and how many there are, (m + 1,)."""
     return np.concatenate(([0], np.cumsum([len(each) for each in polygons]))).astype(np.int64)
 
 
-def _area(corners: Array) -> float:
+def _area(corners: Reals) -> float:
     """Area of a polygon (k, 2) by the shoelace formula, cells²."""
     x, y = corners.T
     return 0.5 * float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
 
 
-def _extent(corners: Array) -> float:
+def _extent(corners: Reals) -> float:
     """Largest distance of two corners."""
     return float(np.hypot(*np.moveaxis(corners[:, None] - corners, -1, 0)).max())

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from porescale.common.compiled.jit import kernel
-from porescale.coupling.coverage.shape import Array, Integers, Shape, periodic
+from porescale.common.core.types import Reals
+from porescale.coupling.coverage.shape import Integers, Shape, periodic
 from porescale.lbm.fluid import Fluid
 
 
@@ -25,17 +26,17 @@ class Rectangle(Shape):
             raise ValueError(f"the upper corner {upper!r} does not lie right of and above the lower one, {lower!r}")
 
     @property
-    def upper(self) -> Array:
+    def upper(self) -> Reals:
         """Upper right corner, (2,) cells."""
         return np.asarray(self.lower + self.extent)
 
     @property
-    def centre(self) -> Array:
+    def centre(self) -> Reals:
         """Centre of the rectangle, (2,) cells."""
         return np.asarray(self.lower + 0.5 * self.extent)
 
     @property
-    def place(self) -> Array:
+    def place(self) -> Reals:
         """Lower left corner, (2,) cells: the array that motion overwrites."""
         return self.lower
 

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from porescale.common.compiled.jit import kernel
+from porescale.common.core.types import Reals
 from porescale.coupling.coverage.discs import CHUNKS, SCRATCH, cover
 from porescale.coupling.coverage.rows import BLOCK, make_patches
-from porescale.coupling.coverage.shape import Array, Integers, Shape, periodic
+from porescale.coupling.coverage.shape import Integers, Shape, periodic
 from porescale.lbm.fluid import Fluid
 
 
@@ -28,12 +29,12 @@ class Ring(Shape):
             raise ValueError(f"a ring needs a centre (x, y) and a radius above a cell, not {centre!r} and {radius}")
 
     @property
-    def centre(self) -> Array:
+    def centre(self) -> Reals:
         """The centre, (2,) cells; write into it to move the ring."""
         return self._centre
 
     @property
-    def place(self) -> Array:
+    def place(self) -> Reals:
         """Centre of the ring, (2,) cells: the array that motion overwrites."""
         return self._centre
 

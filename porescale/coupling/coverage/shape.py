@@ -9,9 +9,9 @@ from abc import ABC, abstractmethod
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from porescale.common.core.types import Reals
 from porescale.lbm.fluid import Fluid
 
-Array = NDArray[np.floating]
 Integers = NDArray[np.int64]
 
 
@@ -29,12 +29,12 @@ class Shape(ABC):
 
     @property
     @abstractmethod
-    def centre(self) -> Array:
+    def centre(self) -> Reals:
         """What it spins and its torque is taken about, (2,) cells."""
 
     @property
     @abstractmethod
-    def place(self) -> Array:
+    def place(self) -> Reals:
         """Numbers that its patch follows from, (k,); while they stay the patch is not filled again."""
 
     @abstractmethod

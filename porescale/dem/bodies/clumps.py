@@ -24,11 +24,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from porescale.common.compiled.jit import kernel
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.dem.arrays import contact_arrays
 from porescale.dem.bodies.union import outline
 from porescale.dem.discs import Discs
-
-Array = NDArray[np.float64]
 
 NEWTON_STEPS = 100
 LEAST = 1e-3  # of the radius: outline with which a member that shows none is counted
@@ -55,19 +54,19 @@ class ClumpArrays(NamedTuple):
 
     start: NDArray[np.int64]
     member: NDArray[np.int64]
-    offset: Array
-    arm: Array
-    turn: Array
-    position: Array
-    angle: Array
-    velocity: Array
-    spin: Array
-    mass: Array
-    inertia: Array
-    force: Array
-    torque: Array
+    offset: Floats
+    arm: Floats
+    turn: Floats
+    position: Floats
+    angle: Floats
+    velocity: Floats
+    spin: Floats
+    mass: Floats
+    inertia: Floats
+    force: Floats
+    torque: Floats
     held: NDArray[np.uint8]
-    withheld: Array
+    withheld: Floats
 
 
 class Clumps:
@@ -128,7 +127,7 @@ class Clumps:
         return len(self.mass)
 
     @cached_property
-    def area(self) -> Array:
+    def area(self) -> Floats:
         """Area of each clump, (b,) m^2: as given, or of the union of its discs; of points none."""
         found = np.zeros(self.count)
         for c, given in enumerate(self._areas):
@@ -209,7 +208,7 @@ class Clumps:
             own[...] = given
 
 
-def shares(weight: Array, offset: Array, radius: float) -> Array | None:
+def shares(weight: Floats, offset: Floats, radius: float) -> Floats | None:
     """Positive shares w exp(l.o) of 1 whose centre is the origin of ``offset`` (k, 2) m; None if there are none.
     radius (m): offsets below 1e-12 of it are none.
 
@@ -219,7 +218,7 @@ def shares(weight: Array, offset: Array, radius: float) -> Array | None:
     if size < 1e-12 * radius:
         return np.asarray(weight / weight.sum())
     way, tilt = offset / size, np.zeros(2)
-    share: Array = weight / weight.sum()
+    share: Floats = weight / weight.sum()
     for _ in range(NEWTON_STEPS):
         centre = share @ way
         if np.abs(centre).max() < 4e-16:
@@ -271,7 +270,7 @@ def gather(c, disc_force, disc_torque):
         force[b, 0], force[b, 1], torque[b] = fx, fy, moment
 
 
-def fastest(clumps: Clumps, radius: Array, normal: float, tangential: float, rolling: float, neighbours: int) -> float:
+def fastest(clumps: Clumps, radius: Floats, normal: float, tangential: float, rolling: float, neighbours: int) -> float:
     """Largest bound on w^2 (rad/s)^2 of all clumps for contact stiffnesses (N/m), or, with dashpots in their place
     (N s/m), on the damping rate 1/s;  radius (n,) m of all discs.
 

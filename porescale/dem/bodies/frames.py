@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.dem.bodies.clumps import Body
 from porescale.dem.contact.materials import Law, Materials
 from porescale.dem.discs import Discs, make_discs
@@ -26,7 +27,6 @@ from porescale.dem.forces.walls import Box
 from porescale.dem.grains import SKIN, Grains
 from porescale.dem.prepare.merge import together
 
-Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 Corners = tuple[tuple[float, float], ...]
 Ends = tuple[tuple[int, int], ...]
@@ -131,7 +131,7 @@ def from_ends(segments: ArrayLike, thickness: float, density: float, **more: Any
     """The frame of segments given by their two ends each, (s, 2, 2) m; ends that coincide are one corner."""
     points = np.asarray(segments, float).reshape(-1, 2)
     size = float(np.ptp(points, axis=0).max(initial=0.0))
-    corners: list[Array] = []
+    corners: list[Floats] = []
     number = []
     for point in points:
         near = [k for k, corner in enumerate(corners) if float(np.hypot(*(point - corner))) <= JOINED * size]
@@ -146,7 +146,7 @@ def _corners(points: ArrayLike) -> Corners:
     return tuple((float(x), float(y)) for x, y in np.asarray(points, float).reshape(-1, 2))
 
 
-def polygon_moments(corners: Array) -> tuple[float, Array, float]:
+def polygon_moments(corners: Floats) -> tuple[float, Floats, float]:
     """Area m^2, centroid (2,) m and polar second moment about it m^4 of a polygon (k, 2) m, by the shoelace formula."""
     origin = corners.mean(axis=0)
     a = corners - origin
@@ -158,7 +158,7 @@ def polygon_moments(corners: Array) -> tuple[float, Array, float]:
     return abs(area), origin + centroid, (second - area * float(centroid @ centroid)) * math.copysign(1.0, area)
 
 
-def rod_moments(one: Array, other: Array, width: float) -> tuple[float, Array, float]:
+def rod_moments(one: Floats, other: Floats, width: float) -> tuple[float, Floats, float]:
     """The same of rectangles along the ways from ``one`` to ``other`` (s, 2) m, ``width`` m across, each counted."""
     length = np.hypot(*(other - one).T)
     middle = 0.5 * (one + other)
@@ -168,10 +168,10 @@ def rod_moments(one: Array, other: Array, width: float) -> tuple[float, Array, f
     return width * float(length.sum()), np.asarray(centroid), width * float((own + away).sum())
 
 
-def _crossing(at: Array) -> tuple[int, int] | None:
+def _crossing(at: Floats) -> tuple[int, int] | None:
     """Numbers of two sides of a polygon (k, 2) m, by their first corners, that cross; None if none do."""
 
-    def left(a: Array, b: Array, c: Array) -> float:
+    def left(a: Floats, b: Floats, c: Floats) -> float:
         """Twice the area of the triangle a, b, c, m²: > 0 where c lies left of the way from a to b."""
         return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
 
@@ -256,7 +256,7 @@ def add_frames(
     grains.refresh(anew=True)
 
 
-def skin_of(radius: Array, frames: Sequence[Frame]) -> float:
+def skin_of(radius: Floats, frames: Sequence[Frame]) -> float:
     """Skin (m) of the lists of discs with these radii (n,) m and of frames, see framed."""
     return SKIN * float(np.mean([*radius.tolist(), *_halves(frames)]))
 
@@ -288,7 +288,7 @@ def _halves(frames: Sequence[Frame]) -> list[float]:
     return [0.5 * math.dist(frame.corners[a], frame.corners[b]) for frame in short for a, b in frame.ends]
 
 
-def _crowd(discs: Discs, ends: Index, first: int) -> Array:
+def _crowd(discs: Discs, ends: Index, first: int) -> Floats:
     """Number of contacts assumed at each corner for the stable step: its own, and at each end of a segment one and
     half of the discs that fit along it.
     """

@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.dem.bodies.clumps import Clumps
 from porescale.dem.discs import Discs
 from porescale.dem.state import State
-
-Array = NDArray[np.float64]
 
 
 def clumps_of(grains: State) -> Clumps | None:
@@ -25,7 +24,7 @@ def body_of(grains: State) -> NDArray[np.int64]:
     return bodies
 
 
-def arms(grains: State) -> Array:
+def arms(grains: State) -> Floats:
     """Way from the centroid of each disc's body to its centre, (n, 2) m."""
     way, clumps = np.zeros((grains.discs.count, 2)), clumps_of(grains)
     if clumps is not None:
@@ -33,7 +32,7 @@ def arms(grains: State) -> Array:
     return way
 
 
-def areas(grains: State) -> Array:
+def areas(grains: State) -> Floats:
     """Area that each disc stands for, (n,) m^2: members share the area of their union in proportion to their own."""
     area, clumps = np.array(grains.discs.area), clumps_of(grains)
     if clumps is not None:
@@ -43,7 +42,7 @@ def areas(grains: State) -> Array:
     return area
 
 
-def masses(grains: State) -> Array:
+def masses(grains: State) -> Floats:
     """Mass of each disc's body, (n,) kg/m: what a contact with it moves; the discs' own where there is no clump."""
     mass, clumps = grains.discs.mass, clumps_of(grains)
     if clumps is not None:

@@ -10,21 +10,20 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 
 class Outline(NamedTuple):
     """Area, centroid and polar second moment about it, and how much of it every disc shows."""
 
     area: float  # m^2
-    centroid: Array  # (2,) m
+    centroid: Floats  # (2,) m
     second_moment: float  # m^4
-    exposed: Array  # (k,) length of each disc's part of the outline, m
+    exposed: Floats  # (k,) length of each disc's part of the outline, m
 
 
-def outline(position: Array, radius: Array) -> Outline:
+def outline(position: Floats, radius: Floats) -> Outline:
     """The union of discs at ``position`` (k, 2) m with ``radius`` (k,) m.  Two equal discs in one place count once."""
     origin = position.mean(axis=0)
     scale = float(radius.max())
@@ -45,7 +44,7 @@ def outline(position: Array, radius: Array) -> Outline:
     )
 
 
-def arcs(i: int, at: Array, size: Array) -> list[tuple[float, float]]:
+def arcs(i: int, at: Floats, size: Floats) -> list[tuple[float, float]]:
     """Angles (from, to) of the arcs of circle i that lie in no other disc."""
     covered: list[tuple[float, float]] = []
     for j in range(len(size)):
@@ -74,7 +73,7 @@ def arcs(i: int, at: Array, size: Array) -> list[tuple[float, float]]:
     return free
 
 
-def _arc(x: float, y: float, r: float, a: float, b: float) -> Array:
+def _arc(x: float, y: float, r: float, a: float, b: float) -> Floats:
     """Contributions of one arc: area, both first moments about the origin, polar second moment about it."""
     turn, sine, cosine = b - a, math.sin(b) - math.sin(a), math.cos(b) - math.cos(a)
     double, fourfold = math.sin(2.0 * b) - math.sin(2.0 * a), math.sin(4.0 * b) - math.sin(4.0 * a)

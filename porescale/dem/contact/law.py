@@ -26,12 +26,8 @@ rolling speed independent of the observer: Luding 2008, Granular Matter 10, 235.
 from collections.abc import Mapping
 from typing import Any, ClassVar, NamedTuple, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from porescale.common.compiled.jit import by_law, inline
-
-Array = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 KN, CN, KT, CT, MU, RULE, COMPLIANCE_T, KR, CR, MUR, COMPLIANCE_R = range(11)
 """Columns of a law's row, as kernels read it.  The compliances are 1/k_t and 1/k_r, which spare divisions (0 for none).
@@ -48,7 +44,7 @@ class KernelLaw(NamedTuple):
     read nor written: they are zero and stay so, and nothing turns a disc;  rolling: None where there is no resistance.
     """
 
-    table: Array
+    table: Floats
     friction: float | None
     rolling: float | None
 
@@ -146,7 +142,7 @@ class ContactLaw(Protocol):
     def mixed(self, other: Any) -> "ContactLaw":
         """Between unlike materials, each of which has its law with itself; see materials.py for the rule."""
 
-    def row(self) -> Array:
+    def row(self) -> Floats:
         """The law as kernels read it, (COLUMNS,) float64."""
 
     def stiffest(self, mass: float, radius: float) -> Springs:

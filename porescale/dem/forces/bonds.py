@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel
+from porescale.common.core.types import Floats
 from porescale.dem.contact.law import material_of, stiffness
 from porescale.dem.forces.segment_list import SegmentList, refuse_beyond
 from porescale.dem.forces.segments import OUTLINE, closest_point, segment_contact, weight_of
 from porescale.dem.motion.periodic_cell import image
 
-Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 STATE = ("ends", "back", "whole", "broken")
@@ -33,10 +33,10 @@ class Bonds(NamedTuple):
     steps since."""
 
     ends: Index
-    back: Array
+    back: Floats
     whole: NDArray[np.uint8]
-    broken: Array
-    clock: Array
+    broken: Floats
+    clock: Floats
 
 
 class Break(NamedTuple):
@@ -140,7 +140,7 @@ class BondList:
     corner takes some off;  whole (m,): 1 while it holds;  broken (m, 3): s, m, m, when and where it broke, nan before.
     """
 
-    def __init__(self, ends: Index, back: Array) -> None:
+    def __init__(self, ends: Index, back: Floats) -> None:
         self.ends, self.back = ends, back
         self.whole = np.ones(len(back), np.uint8)
         self.broken = np.full((len(back), 3), np.nan)

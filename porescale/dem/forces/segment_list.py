@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.discs import Discs
 from porescale.dem.forces.segments import RULES, Segments
 from porescale.dem.forces.walls import Box
 
-Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 STATE = ("corner", "corner_memory", "near", "near_memory")
@@ -117,7 +117,7 @@ class SegmentList:
         """Mask of the pairs whose discs belong to different bodies."""
         return np.asarray((self.group[one] < 0) | (self.group[one] != self.group[other]))
 
-    def _image(self, difference: Array) -> Array:
+    def _image(self, difference: Floats) -> Floats:
         """Nearest images of differences (m, 2) m."""
         for axis, period in enumerate(self._period):
             if period > 0.0:
@@ -183,7 +183,7 @@ def _keys(rows: Index) -> Index:
     return (rows[:, 0] << 32) + rows[:, 1]
 
 
-def _carried(before: Index, memory: Array, rows: Index, width: int) -> Array:
+def _carried(before: Index, memory: Floats, rows: Index, width: int) -> Floats:
     """Memory (m, width) of ``rows`` as it was in the rows ``before``, which both rise; 0 for new ones."""
     kept = np.zeros((len(rows), width))
     if len(before):

@@ -31,6 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel
+from porescale.common.core.types import Floats
 from porescale.dem.contact.budget import has_budget
 from porescale.dem.contact.law import (
     has_history,
@@ -44,7 +45,6 @@ from porescale.dem.contact.law import (
 from porescale.dem.forces.pairs import contact_force, contact_kinematics, relative_velocity, release_contact
 from porescale.dem.motion.periodic_cell import image
 
-Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 RULES = ("outline", "each", "printed")
@@ -65,10 +65,10 @@ class Segments(NamedTuple):
     start: Index
     other: Index
     corner: Index
-    corner_memory: Array
+    corner_memory: Floats
     beside: Index
     near: Index
-    near_memory: Array
+    near_memory: Floats
 
 
 @inline

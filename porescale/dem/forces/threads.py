@@ -18,12 +18,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import by_law, inline, kernel, parallel_kernel, prange, threads
+from porescale.common.core.types import Floats
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.forces.pairs import numbers_of, pair_contact, pair_forces, start_forces
 from porescale.dem.forces.rectangle import add_rectangle_forces
 from porescale.dem.forces.walls import RUN, add_near_walls, add_plate_forces
 
-Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 BLOCK = 1024
@@ -41,7 +41,7 @@ class Serial(NamedTuple):
     which runs of discs are near each wall, see walls.mark_near; rows of other surfaces are not read.
     """
 
-    partial: Array
+    partial: Floats
     near: NDArray[np.uint8]
 
 
@@ -53,12 +53,12 @@ class Threads(NamedTuple):
     disc, incoming_start[j]:incoming_start[j + 1];  far (f, 4): force on i N/m, torques on i and j N m/m.
     """
 
-    partial: Array
+    partial: Floats
     near: NDArray[np.uint8]
     far_start: Index
     incoming_start: Index
     incoming: Index
-    far: Array
+    far: Floats
 
 
 Threading = Serial | Threads

@@ -10,10 +10,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.dem.contact.budget import SURFACES, add_contact_losses, add_release_losses, add_work, has_budget
 from porescale.dem.contact.law import (
     Relative,
@@ -25,8 +25,6 @@ from porescale.dem.contact.law import (
     moments,
     store_history,
 )
-
-Array = NDArray[np.float64]
 
 SIDES = ("left", "right", "bottom", "top")
 KINDS = ("solid", "periodic", "open")
@@ -93,7 +91,7 @@ class Box:
             self.upper[1] - self.lower[1] if self.periodic[1] else 0.0,
         )
 
-    def walls(self) -> tuple[list[str], Array]:
+    def walls(self) -> tuple[list[str], Floats]:
         """Names of the solid sides and their wall table (w, WALL), in the order of SIDES; they stand still."""
         table = {
             "left": (*self.lower, 1.0, 0.0),
@@ -125,7 +123,7 @@ class Plate:
         if self.friction is not None and not self.friction >= 0.0:
             raise InputError(Fault(f"{self.name}.friction", self.friction, allowed=">= 0"))
 
-    def row(self) -> Array:
+    def row(self) -> Floats:
         """The plate as kernels read it, (5,): columns X, LOW, HIGH, VELOCITY, PRESENT."""
         return np.array([self.x, self.y_low, self.y_high, self.velocity, 1.0])
 

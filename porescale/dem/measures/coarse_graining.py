@@ -30,12 +30,11 @@ from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.dem.discs import Discs
 from porescale.dem.measures.contact_list import Contacts
 from porescale.dem.measures.region import Region
 from porescale.dem.motion.periodic_cell import Straining, period_of
-
-Array = NDArray[np.float64]
 
 NODES, WEIGHTS = (np.asarray(part) for part in np.polynomial.legendre.leggauss(8))
 """Gauss points along a branch, on -1..1, and their weights."""
@@ -183,7 +182,7 @@ class Raster:
         return self.spacing[0] * self.spacing[1]
 
     @property
-    def centres(self) -> tuple[Array, Array]:
+    def centres(self) -> tuple[Floats, Floats]:
         """x (columns,) and y (rows,) of the centres, m."""
         (x, y), (dx, dy), (columns, rows) = self.lower, self.spacing, self.shape
         return np.asarray(x + (np.arange(columns) + 0.5) * dx), np.asarray(y + (np.arange(rows) + 0.5) * dy)
@@ -198,7 +197,7 @@ class CoarseGrained:
 
     def __init__(
         self, raster: Raster, discs: Discs, contacts: Contacts, *, conserve: bool = True,
-        cell: Straining | None = None, area: Array | None = None,
+        cell: Straining | None = None, area: Floats | None = None,
     ) -> None:  # fmt: skip
         assert cell is None or not (conserve or any(raster.periodic))
         self.raster, self.discs, self.contacts, self.conserve = raster, discs, contacts, conserve
@@ -208,7 +207,7 @@ class CoarseGrained:
         gradient = [[cell.gxx, cell.gxy], [0.0, cell.gyy]] if cell else [[0.0, 0.0], [0.0, 0.0]]
         self._affine = np.array(gradient)
 
-    def _images(self, points: Array) -> tuple[Array, NDArray[np.int64]]:
+    def _images(self, points: Floats) -> tuple[Floats, NDArray[np.int64]]:
         """Points (m, 2) m whose kernels reach the raster, images too, and which of ``points`` (n, 2) m each is."""
         if self._cell is None:
             return points, np.arange(len(points))
@@ -223,7 +222,7 @@ class CoarseGrained:
             which.append(index)
         return np.concatenate(found), np.concatenate(which)
 
-    def _spread(self, points: Array, values: Array) -> Array:
+    def _spread(self, points: Floats, values: Floats) -> Floats:
         columns, rows = self.raster.shape
         fields = np.zeros((rows, columns, values.shape[1]))
         points, which = self._images(points)
@@ -231,7 +230,7 @@ class CoarseGrained:
         return fields
 
     @cached_property
-    def _motion(self) -> Array:
+    def _motion(self) -> Floats:
         columns, rows = self.raster.shape
         sums, d = np.zeros((rows, columns, ENERGY_YY + 1)), self.discs
         position, which = self._images(d.position)
@@ -239,23 +238,23 @@ class CoarseGrained:
         return sums
 
     @property
-    def density(self) -> Array:
+    def density(self) -> Floats:
         """kg/m³ of the medium, pores included."""
         return np.asarray(self._motion[..., MASS])
 
     @cached_property
-    def solid_fraction(self) -> Array:
+    def solid_fraction(self) -> Floats:
         """Area of discs over area, -."""
         return np.asarray(self._spread(self.discs.position, self._area[:, None])[..., 0])
 
     @cached_property
-    def _own_velocity(self) -> Array:
+    def _own_velocity(self) -> Floats:
         """(rows, columns, 2) m/s, relative to the cell's; nan where there is no disc."""
         with np.errstate(invalid="ignore"):
             return np.asarray(self._motion[..., U : V + 1] / self.density[..., None])
 
     @cached_property
-    def velocity(self) -> Array:
+    def velocity(self) -> Floats:
         """(rows, columns, 2) m/s; nan where there is no disc."""
         if self._cell is None:
             return self._own_velocity
@@ -265,7 +264,7 @@ class CoarseGrained:
         return np.asarray(self._own_velocity + (np.stack((x, y), axis=-1) + off) @ self._affine.T)
 
     @cached_property
-    def velocity_gradient(self) -> Array:
+    def velocity_gradient(self) -> Floats:
         """d v_a / d x_b of the best affine motion, (rows, columns, 2, 2) 1/s; nan with fewer than three discs, or in a
         line."""
         s = self._motion
@@ -284,13 +283,13 @@ class CoarseGrained:
         return np.asarray(gradient / self.raster.width + self._affine)
 
     @property
-    def strain_rate(self) -> Array:
+    def strain_rate(self) -> Floats:
         """Symmetric part of the gradient, (rows, columns, 2, 2) 1/s; extension positive."""
         gradient = self.velocity_gradient
         return np.asarray(0.5 * (gradient + gradient.swapaxes(-1, -2)))
 
     @cached_property
-    def contact_stress(self) -> Array:
+    def contact_stress(self) -> Floats:
         """(rows, columns, 2, 2) Pa, compression positive, first index that of the force."""
         c = self.contacts
         points = c.start[:, None, :] + 0.5 * (1.0 + NODES[None, :, None]) * c.branch[:, None, :]
@@ -298,7 +297,7 @@ class CoarseGrained:
         return self._spread(points.reshape(-1, 2), values).reshape(*self.raster.shape[::-1], 2, 2)
 
     @cached_property
-    def kinetic_stress(self) -> Array:
+    def kinetic_stress(self) -> Floats:
         """(rows, columns, 2, 2) Pa of the velocities about their mean there, compression positive."""
         s, mean = self._motion, np.nan_to_num(self._own_velocity)
         stress = np.empty((*s.shape[:2], 2, 2))
@@ -307,7 +306,7 @@ class CoarseGrained:
         return stress
 
     @cached_property
-    def wall_force(self) -> Array:
+    def wall_force(self) -> Floats:
         """(rows, columns, 2) N/m³ of walls, plates and rectangles on the discs."""
         walls = ~self.contacts.pairs
         return self._spread(self.contacts.point[walls], -self.contacts.force[walls])

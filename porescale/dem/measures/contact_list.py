@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from porescale.common.core.types import Floats
+
 Index = NDArray[np.int64]
 
 AT_LIMIT = 1.0 - 1e-9
@@ -33,16 +34,16 @@ class Contacts:
     second: Index
     surface: Index
     names: tuple[str, ...]
-    point: Array
-    normal: Array
-    start: Array
-    branch: Array
-    overlap: Array
-    normal_force: Array
-    tangential_force: Array
-    force: Array
-    torque: Array
-    spring: Array
+    point: Floats
+    normal: Floats
+    start: Floats
+    branch: Floats
+    overlap: Floats
+    normal_force: Floats
+    tangential_force: Floats
+    force: Floats
+    torque: Floats
+    spring: Floats
     sliding: NDArray[np.bool_]
 
     @property
@@ -69,7 +70,7 @@ class Contacts:
         second = np.where(self.pairs, bodies[self.second], NOBODY)
         return replace(self, first=bodies[self.first], second=second)
 
-    def resultants(self, count: int) -> tuple[Array, Array]:
+    def resultants(self, count: int) -> tuple[Floats, Floats]:
         """Contact force (count, 2) N/m and torque (count,) N m/m on each of ``count`` discs."""
         force, torque = np.zeros((count, 2)), np.zeros(count)
         np.subtract.at(force, self.first, self.force)
@@ -79,7 +80,7 @@ class Contacts:
         return force, torque
 
 
-def nearest_image(difference: Array, period: tuple[float, float, float]) -> Array:
+def nearest_image(difference: Floats, period: tuple[float, float, float]) -> Floats:
     """Differences (n, 2) m between nearest periodic images, as cells.tilted_image; ``period``: see Grains.period."""
     near = np.array(difference, dtype=np.float64)
     width, height, tilt = period
@@ -102,14 +103,14 @@ class Bodies(NamedTuple):
 class Places(NamedTuple):
     """Where c contacts are: point, normal, start, branch (c, 2), overlap (c,), as in Contacts."""
 
-    point: Array
-    normal: Array
-    start: Array
-    branch: Array
-    overlap: Array
+    point: Floats
+    normal: Floats
+    start: Floats
+    branch: Floats
+    overlap: Floats
 
 
-def listed(bodies: Bodies, at: Places, force: Array, torque: Array, spring: Array, friction: Array) -> Contacts:
+def listed(bodies: Bodies, at: Places, force: Floats, torque: Floats, spring: Floats, friction: Floats) -> Contacts:
     """Contacts with their forces resolved along normal and tangent; ``friction`` (c,): coefficient."""
     pushing = np.sum(force * at.normal, axis=1)
     # The force on i is -force, and t = (-n_y, n_x).

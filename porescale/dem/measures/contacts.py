@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.dem.arrays import DiscArrays, Pairs, Surface
 from porescale.dem.bodies.rigid import arms, clumps_of
 from porescale.dem.contact.law import MU, springs_of
@@ -23,7 +24,6 @@ from porescale.dem.measures.contact_list import NOBODY, Bodies, Contacts, Places
 from porescale.dem.measures.contacts_segments import bond_contacts, segment_contacts
 from porescale.dem.state import State
 
-Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 
@@ -83,12 +83,14 @@ def _pairs(grains: State) -> Contacts:
     )
 
 
-Forces = Callable[[Index], tuple[DiscArrays, Array]]
-Touched = tuple[Array, Array, Forces, Array]
+Forces = Callable[[Index], tuple[DiscArrays, Floats]]
+Touched = tuple[Floats, Floats, Forces, Floats]
 """Closest point (n, 2) m and signed distance (n,) m of every disc; the step's forces on some; friction by material."""
 
 
-def _surface(grains: State, number: int, nearest: Array, distance: Array, forces: Forces, friction: Array) -> Contacts:
+def _surface(
+    grains: State, number: int, nearest: Floats, distance: Floats, forces: Forces, friction: Floats
+) -> Contacts:
     """The contacts of one surface."""
     d = grains.discs
     i = np.flatnonzero(distance < d.radius)
@@ -154,13 +156,13 @@ def _rectangle(grains: State) -> list[Touched]:
 def _single(grains: State, kernel: Any, surface: Surface, w: int) -> Forces:
     """The forces of row ``w`` of a surface on discs by index, and the springs (c,) m that result."""
 
-    def forces(i: Index) -> tuple[DiscArrays, Array]:
+    def forces(i: Index) -> tuple[DiscArrays, Floats]:
         """The discs ``i`` (c,) with the forces on them, and their springs (c,) m."""
         found, row = grains.some_discs(i), slice(w, w + 1)
         spring, total = surface[2][row, i].copy(), np.zeros((1, 2))
         where = () if kernel is add_wall_forces else (0, 0, len(i))  # rows of the load, first and last disc
         kernel(found, surface[0][row], surface[1][row], spring, total, *where, grains.contact, grains.last_dt)
-        spent: Array = spring[0, :, 0]
+        spent: Floats = spring[0, :, 0]
         return found, spent
 
     return forces

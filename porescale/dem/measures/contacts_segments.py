@@ -8,6 +8,7 @@ bonds are rows of their own, with a normal force below zero.
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.dem.bodies.bonding import segments_now
 from porescale.dem.contact.law import MU
 from porescale.dem.forces.bonds import BondList, pressing, touched
@@ -23,7 +24,6 @@ from porescale.dem.forces.segments import (
 from porescale.dem.measures.contact_list import NOBODY, Bodies, Contacts, Places, listed, nearest_image
 from porescale.dem.state import State
 
-Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 
@@ -61,8 +61,8 @@ def segment_contacts(grains: State, own: SegmentList) -> list[Contacts]:
 
 
 def _alone(
-    grains: State, known: Segments, members: Index, memory: Array, way: Array,
-    overlap: Array | None = None, share: Array | None = None,
+    grains: State, known: Segments, members: Index, memory: Floats, way: Floats,
+    overlap: Floats | None = None, share: Floats | None = None,
 ) -> Contacts:  # fmt: skip
     """Contacts of ``members`` (c, 2) corners, or (c, 3) disc and ends of a segment, each by itself.
 
@@ -117,7 +117,7 @@ def bond_contacts(grains: State, own: BondList) -> Contacts:
     return _taken_off(grains, known, own.ends[whole], own.back[whole])
 
 
-def _taken_off(grains: State, known: Segments, ends: Index, back: Array | None) -> Contacts:
+def _taken_off(grains: State, known: Segments, ends: Index, back: Floats | None) -> Contacts:
     """Rows of ``ends`` (c, 3), see Bonds, that press with -back (c,) N/m; None: with the elastic force by weight."""
     d, count = grains.discs, len(ends)
     if back is None:

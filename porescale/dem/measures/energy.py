@@ -14,10 +14,10 @@ Velocities that an owner writes between steps are no work here: held components 
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import kernel
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.dem.bodies.bonding import framed_parts
 from porescale.dem.contact.budget import (
     BEFORE_SPIN,
@@ -40,8 +40,6 @@ from porescale.dem.forces.walls import HIGH, LOW, NX, NY, PRESENT, PX, TURN, VEL
 from porescale.dem.motion.affine_strain import WORK
 from porescale.dem.motion.periodic_cell import before, image
 from porescale.dem.state import State
-
-Array = NDArray[np.float64]
 
 LOSSES = {
     "lost in normal dashpots (J/m)": NORMAL_DASHPOT,
@@ -88,7 +86,7 @@ def elastic_surface(distance, radius, material, memory, laws, law):
     return normal, tangential, rolling
 
 
-def distances(grains: State, position: Array, dt: float) -> list[tuple[Array, Array, Array]]:
+def distances(grains: State, position: Floats, dt: float) -> list[tuple[Floats, Floats, Floats]]:
     """(distance (n,) m, springs (n, s) m, laws (m, COLUMNS)) of every surface, ``dt`` (s) before now.
 
     Negative inside of rectangles and behind walls, infinite from plates that are gone.
@@ -130,7 +128,7 @@ def elastic(grains: State, dt: float = 0.0) -> tuple[float, float, float]:
     return normal, tangential, rolling
 
 
-def kinetic(grains: State, book: Array) -> tuple[float, float]:
+def kinetic(grains: State, book: Floats) -> tuple[float, float]:
     """Kinetic energy of the last force evaluation, J/m: (translation, rotation), without held components.
 
     Members of a clump translate with its centroid; what they move besides is its rotation.  In a strained cell
@@ -158,7 +156,7 @@ def kinetic(grains: State, book: Array) -> tuple[float, float]:
     return moving, turning
 
 
-def open_book(grains: State, book: Array, dt: float) -> Array:
+def open_book(grains: State, book: Floats, dt: float) -> Floats:
     """Start of the budget before a first step of ``dt`` (s): (kinetic and elastic energy J/m, sum m x, sum m y kg m/m).
 
     Overwrites the velocities before the last force in ``book``: those of now.
@@ -168,10 +166,10 @@ def open_book(grains: State, book: Array, dt: float) -> Array:
     return np.array([sum(kinetic(grains, book)) + sum(elastic(grains, dt)), *moment(grains, dt)])
 
 
-def moment(grains: State, dt: float) -> Array:
+def moment(grains: State, dt: float) -> Floats:
     """Sum of m x over discs, (2,) kg m/m, ``dt`` (s) before now."""
     d = grains.discs
-    total: Array = d.mass @ (d.position - dt * d.velocity)
+    total: Floats = d.mass @ (d.position - dt * d.velocity)
     return total
 
 

@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.dem.measures.contact_list import Contacts
 from porescale.dem.measures.region import Period, Region
 from porescale.dem.measures.stress import principal
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 LEAST_WITH_FRICTION, LEAST_WITHOUT = 2, 3
@@ -45,7 +45,7 @@ def contact_numbers(contacts: Contacts, count: int) -> NDArray[np.int64]:
 
 
 def coordination(
-    contacts: Contacts, region: Region, position: Array, period: Period, loose: Mask | None = None,
+    contacts: Contacts, region: Region, position: Floats, period: Period, loose: Mask | None = None,
     apart: Mask | None = None,
 ) -> float:  # fmt: skip
     """Mean number of loaded contacts of the discs whose centre lies in the region; nan where there is none.
@@ -69,7 +69,7 @@ class Fabric(NamedTuple):
     """tensor (2, 2): mean of n n;  anisotropy a and angle (rad) of the density (1 + a cos 2(theta - angle))/(2 pi) that
     has this tensor;  contacts: their number in the region."""
 
-    tensor: Array
+    tensor: Floats
     anisotropy: float
     angle: float
     contacts: int
@@ -89,7 +89,7 @@ def fabric(contacts: Contacts, region: Region, period: Period = (0.0, 0.0)) -> F
     return Fabric(np.asarray(tensor), 4.0 * half, angle, chosen.count)
 
 
-def rose(contacts: Contacts, bins: int = 36, weight: Array | None = None) -> tuple[Array, Array]:
+def rose(contacts: Contacts, bins: int = 36, weight: Floats | None = None) -> tuple[Floats, Floats]:
     """(edges (bins + 1,) rad from 0 to 2 pi, probability density per rad (bins,)) of the directions of contacts.
 
     Every contact counts in both directions;  weight (c,): normal forces, for the directions of force instead.
@@ -103,7 +103,7 @@ def rose(contacts: Contacts, bins: int = 36, weight: Array | None = None) -> tup
     return edges, counted / (total if total > 0 else 1.0) / np.diff(edges)
 
 
-def force_distribution(contacts: Contacts, bins: int = 30, highest: float = 6.0) -> tuple[Array, Array]:
+def force_distribution(contacts: Contacts, bins: int = 30, highest: float = 6.0) -> tuple[Floats, Floats]:
     """(edges (bins + 1,), probability density (bins,)) of loaded normal forces over their mean, up to ``highest``.
 
     Forces beyond count in the last bin, so that the density integrates to one.

@@ -3,12 +3,10 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.dem.discs import Discs
 from porescale.dem.measures.contact_list import Contacts
-
-Array = NDArray[np.float64]
 
 
 def on_surface(contacts: Contacts, name: str, about: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float, float]:
@@ -20,7 +18,7 @@ def on_surface(contacts: Contacts, name: str, about: tuple[float, float] = (0.0,
     return float(x), float(y), moment
 
 
-def on_discs(contacts: Contacts, discs: Discs, chosen: Sequence[int]) -> Array:
+def on_discs(contacts: Contacts, discs: Discs, chosen: Sequence[int]) -> Floats:
     """Force (x, y) N/m and moment N m/m about its centre of all contacts on each chosen disc, (k, 3)."""
     force, torque = contacts.resultants(discs.count)
     which = np.asarray(chosen, np.int64)

@@ -10,9 +10,8 @@ manual; in two dimensions three discs, not in a line, are the fewest.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 FLAT = 1e-9
 """Discs whose second moment has a smaller ratio of principal values lie in a line: the gradient across is unknown."""
@@ -21,11 +20,11 @@ FLAT = 1e-9
 class Motion(NamedTuple):
     """velocity (2,) m/s of the weighted mean;  gradient (2, 2) 1/s, G_ab = d v_a / d x_b;  nan where unknown."""
 
-    velocity: Array
-    gradient: Array
+    velocity: Floats
+    gradient: Floats
 
     @property
-    def strain_rate(self) -> Array:
+    def strain_rate(self) -> Floats:
         """Symmetric part, (2, 2) 1/s; extension positive."""
         return 0.5 * (self.gradient + self.gradient.T)
 
@@ -35,7 +34,7 @@ class Motion(NamedTuple):
         return 0.5 * float(self.gradient[1, 0] - self.gradient[0, 1])
 
 
-def motion(position: Array, velocity: Array, weight: Array) -> Motion:
+def motion(position: Floats, velocity: Floats, weight: Floats) -> Motion:
     """The affine motion of points with ``position`` (n, 2) m, ``velocity`` (n, 2) m/s and ``weight`` (n,) >= 0."""
     total = float(weight.sum())
     unknown = np.full((2, 2), np.nan)

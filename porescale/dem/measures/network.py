@@ -15,12 +15,11 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import spsolve
 
+from porescale.common.core.types import Floats
 from porescale.dem.bodies.bonding import segments_now
 from porescale.dem.contact.linear import Linear
 from porescale.dem.forces.bonds import touched
 from porescale.dem.prepare.rock import Rock
-
-Array = NDArray[np.float64]
 
 LOOSE = 1e-9  # of a contact's stiffness: ties of bodies that nothing, or but one bond, holds
 
@@ -30,8 +29,8 @@ class Network(NamedTuple):
     spring (2 m,) N/m: their stiffnesses;  place (b, 2) m: centroids;  plates : rows of both."""
 
     stretch: csr_array
-    spring: Array
-    place: Array
+    spring: Floats
+    place: Floats
     plates: tuple[int, int]
 
 
@@ -91,12 +90,12 @@ def voigt(rock: Rock) -> float:
     return (cost[1] - sloped**2 / (4.0 * curved)) / (0.5 * rock.length * rock.height)
 
 
-def _energy(net: Network, moved: Array) -> float:
+def _energy(net: Network, moved: Floats) -> float:
     """Energy (J/m) in the springs for displacements (3 b,)."""
     return 0.5 * float(net.spring @ (net.stretch @ moved) ** 2)
 
 
-def _springs(point: Array, way: Array, one: NDArray[np.int64], other: NDArray[np.int64], place: Array) -> Array:
+def _springs(point: Floats, way: Floats, one: NDArray[np.int64], other: NDArray[np.int64], place: Floats) -> Floats:
     """Entries (6 m, 3), spring, column and value, of springs along ``way`` (m, 2) at ``point`` (m, 2) m."""
     count, found = len(point), []
     for body, sign in ((one, 1.0), (other, -1.0)):
@@ -107,7 +106,7 @@ def _springs(point: Array, way: Array, one: NDArray[np.int64], other: NDArray[np
     return np.concatenate(found)
 
 
-def _stacked(rows: list[Array], each: int, columns: int) -> csr_array:
+def _stacked(rows: list[Floats], each: int, columns: int) -> csr_array:
     """One sparse array of the entries of several kinds of ``each`` springs."""
     entries = np.concatenate([np.add(part, (k * each, 0.0, 0.0)) for k, part in enumerate(rows)])
     where = (entries[:, 0].astype(np.int64), entries[:, 1].astype(np.int64))

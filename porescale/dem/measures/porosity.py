@@ -6,19 +6,17 @@ of a disc's area at d = 1e-3 r.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.dem.measures.region import Period, Region
 
-Array = NDArray[np.float64]
 
-
-def left_part(a: Array) -> Array:
+def left_part(a: Floats) -> Floats:
     """Area of the unit disc left of x = ``a``, -1 <= a <= 1: pi/2 + a sqrt(1 - a²) + asin a."""
     return np.asarray(0.5 * np.pi + a * np.sqrt((1.0 - a) * (1.0 + a)) + np.arcsin(a))
 
 
-def corner_part(a: Array, b: Array) -> Array:
+def corner_part(a: Floats, b: Floats) -> Floats:
     """Area of the unit disc left of x = ``a`` and below y = ``b``, any numbers (n,).
 
     With the corner inside the disc (L(a) + L(b))/2 - pi/4 + a b, L the part left of a line; outside of it the lines cut
@@ -31,7 +29,7 @@ def corner_part(a: Array, b: Array) -> Array:
     return np.where(a * a + b * b <= 1.0, inside, outside)
 
 
-def disc_areas(region: Region, position: Array, radius: Array, period: Period = (0.0, 0.0)) -> Array:
+def disc_areas(region: Region, position: Floats, radius: Floats, period: Period = (0.0, 0.0)) -> Floats:
     """Area (n,) m² of each disc inside the region, of all its periodic images together.
 
     position (n, 2), radius (n,) m;  period m, 0 where not periodic.
@@ -46,7 +44,7 @@ def disc_areas(region: Region, position: Array, radius: Array, period: Period = 
     return total
 
 
-def porosity(region: Region, position: Array, radius: Array, period: Period = (0.0, 0.0)) -> float:
+def porosity(region: Region, position: Floats, radius: Floats, period: Period = (0.0, 0.0)) -> float:
     """Area of pores over area, -; arrays as in disc_areas."""
     return 1.0 - float(disc_areas(region, position, radius, period).sum()) / region.area
 

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 
-Array = NDArray[np.float64]
 Period = tuple[float, float] | tuple[float, float, float]
 
 
@@ -48,7 +48,7 @@ class Region:
         width, height = self.size
         return width * height
 
-    def near(self, points: Array, period: Period) -> Array:
+    def near(self, points: Floats, period: Period) -> Floats:
         """The images (n, 2) m of ``points`` within a period of the lower corner; themselves where not periodic."""
         moved = np.array(points, dtype=np.float64)
         width, height, tilt = edges_of(period)
@@ -62,13 +62,13 @@ class Region:
                 moved[beyond, axis] = self.lower[axis]
         return moved
 
-    def about(self, points: Array, period: Period) -> Array:
+    def about(self, points: Floats, period: Period) -> Floats:
         """The images (n, 2) m of ``points`` nearest to the middle, so that what reaches in lies beside the region."""
         width, height, _ = edges_of(period)
         x, y = (0.5 * (a + b) for a, b in zip(self.lower, self.upper, strict=True))
         return Region((x - 0.5 * width, y - 0.5 * height), (x + width + 1.0, y + height + 1.0)).near(points, period)
 
-    def shifts(self, low: Array, high: Array, period: Period) -> Iterator[Array]:
+    def shifts(self, low: Floats, high: Floats, period: Period) -> Iterator[Floats]:
         """Whole periods (2,) m by which something between corners ``low`` and ``high`` (n, 2) m may have to be moved
         to reach into the region: (0, 0) alone where nothing is periodic."""
         width, height, tilt = edges_of(period)
@@ -76,19 +76,19 @@ class Region:
             for along in self._turns(0, low, high, width, up * tilt):
                 yield np.array([along * width + up * tilt, up * height])
 
-    def _turns(self, axis: int, low: Array, high: Array, length: float, moved: float) -> range:
+    def _turns(self, axis: int, low: Floats, high: Floats, length: float, moved: float) -> range:
         """How many whole periods along ``axis`` something may have to be moved that was ``moved`` (m) before."""
         if length == 0.0 or len(low) == 0:
             return range(1)
         first = math.ceil((self.lower[axis] - moved - float(high[:, axis].max())) / length)
         return range(first, math.floor((self.upper[axis] - moved - float(low[:, axis].min())) / length) + 1)
 
-    def holds(self, points: Array, period: Period = (0.0, 0.0)) -> NDArray[np.bool_]:
+    def holds(self, points: Floats, period: Period = (0.0, 0.0)) -> NDArray[np.bool_]:
         """Which points (n, 2) m, or images of them, lie inside or on the lower and left edges, (n,) bool."""
         at = self.near(points, period)
         return np.asarray(np.all((at >= self.lower) & (at < self.upper), axis=1))
 
-    def share_of_branch(self, start: Array, branch: Array, period: Period = (0.0, 0.0)) -> Array:
+    def share_of_branch(self, start: Floats, branch: Floats, period: Period = (0.0, 0.0)) -> Floats:
         """Share (n,) of the segments from ``start`` (n, 2) m along ``branch`` (n, 2) m that lies inside.
 
         Clipping after Liang & Barsky, ACM Trans. Graphics 3 (1984) 1; shares of all periodic images add up.

@@ -15,14 +15,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.dem.discs import Discs
 from porescale.dem.measures.contact_list import Contacts
 from porescale.dem.measures.porosity import disc_areas
 from porescale.dem.measures.region import Period, Region
-
-Array = NDArray[np.float64]
 
 
 class Principal(NamedTuple):
@@ -33,13 +31,13 @@ class Principal(NamedTuple):
     angle: float
 
 
-def contact_stress(region: Region, contacts: Contacts, period: Period = (0.0, 0.0)) -> Array:
+def contact_stress(region: Region, contacts: Contacts, period: Period = (0.0, 0.0)) -> Floats:
     """Love-Weber stress of contacts, (2, 2) Pa, without the kinetic part; periodic images of contacts count too."""
     share = region.share_of_branch(contacts.start, contacts.branch, period)
     return np.asarray(np.einsum("c,ca,cb->ab", share, contacts.force, contacts.branch) / region.area)
 
 
-def kinetic_stress(region: Region, discs: Discs, period: Period = (0.0, 0.0)) -> Array:
+def kinetic_stress(region: Region, discs: Discs, period: Period = (0.0, 0.0)) -> Floats:
     """Stress of the velocities about their mass mean, (2, 2) Pa; zeros where there is no disc."""
     mass = discs.mass * disc_areas(region, discs.position, discs.radius, period) / discs.area
     total = mass.sum()
@@ -49,7 +47,7 @@ def kinetic_stress(region: Region, discs: Discs, period: Period = (0.0, 0.0)) ->
     return np.asarray(np.einsum("i,ia,ib->ab", mass, off, off) / region.area)
 
 
-def principal(stress: Array) -> Principal:
+def principal(stress: Floats) -> Principal:
     """Invariants of the symmetric part of a stress or fabric tensor (2, 2)."""
     mean = 0.5 * float(stress[0, 0] + stress[1, 1])
     half, shear = 0.5 * float(stress[0, 0] - stress[1, 1]), 0.5 * float(stress[0, 1] + stress[1, 0])

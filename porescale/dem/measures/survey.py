@@ -6,9 +6,9 @@ Speeds are those of half a step ago, positions those of now; energies therefore 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel
+from porescale.common.core.types import Floats
 from porescale.dem.bodies.bonding import segments_now
 from porescale.dem.bodies.rigid import clumps_of
 from porescale.dem.contact.law import load_history, material_of, stored
@@ -18,8 +18,6 @@ from porescale.dem.forces.segments import survey_segments
 from porescale.dem.forces.walls import HIGH, LOW, NX, NY, PRESENT, PX, PY, X
 from porescale.dem.motion.periodic_cell import image
 from porescale.dem.state import State
-
-Array = NDArray[np.float64]
 
 
 @kernel
@@ -145,9 +143,9 @@ def elastic_energy(grains: State) -> float:
     return float(_survey(grains)[3] + sum(found[3] for found in surfaces) + sum(_survey_segments(grains)[3:]))
 
 
-def momentum(discs: Discs) -> Array:
+def momentum(discs: Discs) -> Floats:
     """Sum of m v, (2,) kg m/s per metre."""
-    total: Array = (discs.mass[:, None] * discs.velocity).sum(axis=0)
+    total: Floats = (discs.mass[:, None] * discs.velocity).sum(axis=0)
     return total
 
 
@@ -158,9 +156,9 @@ def angular_momentum(discs: Discs) -> float:
     return float(np.sum(orbital + discs.inertia * discs.spin))
 
 
-def centre_of_mass(discs: Discs) -> Array:
+def centre_of_mass(discs: Discs) -> Floats:
     """Centre of mass of all discs, (2,) m."""
-    centre: Array = (discs.mass[:, None] * discs.position).sum(axis=0) / discs.mass.sum()
+    centre: Floats = (discs.mass[:, None] * discs.position).sum(axis=0) / discs.mass.sum()
     return centre
 
 

@@ -15,9 +15,9 @@ argument of servo.py.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import by_law, kernel
+from porescale.common.core.types import Floats
 from porescale.dem.motion.leapfrog import move_free
 from porescale.dem.motion.periodic_cell import (
     SQUARES,
@@ -34,8 +34,6 @@ from porescale.dem.motion.periodic_cell import (
 from porescale.dem.motion.servo import follow
 from porescale.dem.motion.time_function import value_at
 
-Array = NDArray[np.float64]
-
 WIDTH, HEIGHT, TILT, GXX, GXY, GYY, WIDTH_THEN, HEIGHT_THEN, TILT_THEN, REACH, SKIN, WORK, AHEAD = range(13)
 """Columns of a strained cell's state: edges m and velocity gradient 1/s; edges when the pairs were listed, their
 largest reach and skin (m); work done by the cell since it began, J/m; from the last on, mean rates of xx, yy, xy under
@@ -49,12 +47,12 @@ class Deforming(NamedTuple):
     """A strained cell over time: state (STATE,), load (LOAD,), plan (3, 5) with the first three schedules, and clock
     (2,) s, steps: see Motion."""
 
-    state: Array
-    load: Array
-    plan: Array
-    schedules: Array
-    points: Array
-    clock: Array
+    state: Floats
+    load: Floats
+    plan: Floats
+    schedules: Floats
+    points: Floats
+    clock: Floats
 
 
 @by_law

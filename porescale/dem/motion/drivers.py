@@ -3,9 +3,9 @@
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.bodies.clumps import Clumps
 from porescale.dem.discs import Discs
@@ -14,8 +14,6 @@ from porescale.dem.motion.control import KINDS, PUSH, WORK, Control, schedule_of
 from porescale.dem.motion.periodic_cell import LOAD, Still, Straining
 from porescale.dem.motion.rigid_and_driven import FIRST_CONTROL, DriverArrays
 from porescale.dem.motion.time_function import Schedule, schedule_rows
-
-Array = NDArray[np.float64]
 
 AXES = ("x", "y", "rotation")
 
@@ -55,7 +53,7 @@ class Drivers:
         self._clock = np.zeros(2)
         self._rates: list[Schedule] = [0.0, 0.0, 0.0]
         self._plan = np.zeros((3, 5))
-        self.cell: Array | None = None
+        self.cell: Floats | None = None
         self.load = np.zeros(LOAD)
         self._compile()
 
@@ -82,7 +80,7 @@ class Drivers:
             raise InputError(Fault("disc", index, f"belongs to clump {owner}", repair="name the clump"))
         return clump, index
 
-    def _place(self, clump: int, index: int) -> Array:
+    def _place(self, clump: int, index: int) -> Floats:
         body: Any = self.clumps if clump else self._discs
         return np.array([*body.position[index], body.angle[index]])
 
@@ -101,7 +99,7 @@ class Drivers:
         width, height, tilt, gxx, gxy, gyy = (float(value) for value in self.cell[: cells.GYY + 1])
         return Straining(width, height, tilt, gxx, gxy, gyy, np.zeros(LOAD))
 
-    def gradient(self) -> Array:
+    def gradient(self) -> Floats:
         """Velocity gradient of the cell, (2, 2) 1/s."""
         if self.cell is None:
             return np.zeros((2, 2))
@@ -133,7 +131,7 @@ class Drivers:
         """Set the clock for a call: seconds before the step last changed, and steps since."""
         self._clock[0], self._clock[1] = seconds, steps
 
-    def listed(self, pairs: PairList, reach: Array) -> None:
+    def listed(self, pairs: PairList, reach: Floats) -> None:
         """Count the strain from now on, and set the cell of ``pairs``, which are about to be listed with ``reach``
         (n,) m."""
         if self.cell is None:
@@ -144,7 +142,7 @@ class Drivers:
         c[cells.REACH] = float(reach.max(initial=0.0))
         c[cells.SKIN] = pairs.skin
 
-    def state(self, walls: Array) -> dict[str, Any]:
+    def state(self, walls: Floats) -> dict[str, Any]:
         """Copies of what changes with time, ``walls`` (w, WALL) included, in flat names."""
         parts = {f"clumps.{name}": part for name, part in self.clumps.state().items()}
         return {
@@ -158,7 +156,7 @@ class Drivers:
             **({} if self.cell is None else {"cell": self.cell.copy()}),
         }
 
-    def restore(self, state: dict[str, Any], walls: Array, pairs: PairList) -> None:
+    def restore(self, state: dict[str, Any], walls: Floats, pairs: PairList) -> None:
         """Overwrite what changes, ``walls`` and the cell of ``pairs`` included, with ``state()`` of the same set-up;
         raises InputError where it was another."""
         self.clumps.restore({name[7:]: part for name, part in state.items() if name.startswith("clumps.")})

@@ -2,27 +2,23 @@
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from porescale.common.compiled.jit import by_law, inline, parallel_kernel, prange
+from porescale.common.core.types import Floats
 from porescale.dem.contact.budget import BEFORE_SPIN, BEFORE_X, BEFORE_Y, DRAG, EXTERNAL, HOLDERS, add_work
 from porescale.dem.forces.threads import BLOCK, Serial, Threads
-
-Array = NDArray[np.float64]
 
 
 class Moving(NamedTuple):
     """What kick_drift takes of discs: fields as in arrays.DiscArrays."""
 
-    position: Array
-    angle: Array
-    velocity: Array
-    spin: Array
-    mass: Array
-    inertia: Array
-    force: Array
-    torque: Array
+    position: Floats
+    angle: Floats
+    velocity: Floats
+    spin: Floats
+    mass: Floats
+    inertia: Floats
+    force: Floats
+    torque: Floats
 
 
 @inline

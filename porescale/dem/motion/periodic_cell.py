@@ -12,12 +12,10 @@ The loop is compiled once for each kind of cell: a cell that stands still costs 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import by_law
+from porescale.common.core.types import Floats
 from porescale.common.neighbors.cells import minimum_image, tilted_image
-
-Array = NDArray[np.float64]
 
 XX, XY, YX, YY, SQUARES, TURNING_XX, TURNING_XY, TURNING_YY = range(8)
 """Columns of ``load``: sums over contacts of g_x d_x, g_x d_y, g_y d_x, g_y d_y (J/m) and of d^2 (m^2); from there on
@@ -41,7 +39,7 @@ class Straining(NamedTuple):
     gxx: float
     gxy: float
     gyy: float
-    load: Array
+    load: Floats
 
 
 def period_of(cell: Still | Straining) -> tuple[float, float, float]:
@@ -49,7 +47,7 @@ def period_of(cell: Still | Straining) -> tuple[float, float, float]:
     return cell.period_x, cell.period_y, cell.tilt if isinstance(cell, Straining) else 0.0
 
 
-def before(position: Array, velocity: Array, cell: Still | Straining, dt: float) -> tuple[Array, Still | Straining]:
+def before(position: Floats, velocity: Floats, cell: Still | Straining, dt: float) -> tuple[Floats, Still | Straining]:
     """Where discs (n, 2) m with ``velocity`` relative to the cell were ``dt`` (s) ago, and the cell then: the step of
     strain.py backwards."""
     if not isinstance(cell, Straining):

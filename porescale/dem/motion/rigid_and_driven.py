@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import kernel
+from porescale.common.core.types import Floats
 from porescale.dem.bodies.clumps import ClumpArrays, gather, place_members
 from porescale.dem.contact.budget import EXTERNAL, HOLDERS, add_work
 from porescale.dem.motion.affine_strain import affine_kick_drift, any_left, drift_of
@@ -18,7 +19,6 @@ from porescale.dem.motion.control import CLUMP, INDEX, KIND, PUSH, apply_control
 from porescale.dem.motion.leapfrog import withhold
 from porescale.dem.motion.servo import drive_walls, move_walls
 
-Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 

@@ -8,12 +8,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import kernel
 from porescale.common.core.errors import Fault, InputError
-
-Array = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 MEAN, AMPLITUDE, PULSATION, PHASE, FIRST, LAST = range(6)
 """Columns of a schedule's row: value and amplitude, rad/s, rad;  first and last + 1 of its points, both 0: none."""
@@ -49,7 +47,7 @@ Schedule = Constant | Sine | Table | float
 """A time function; a plain number stands for a constant."""
 
 
-def schedule_rows(schedules: Sequence[Schedule]) -> tuple[Array, Array]:
+def schedule_rows(schedules: Sequence[Schedule]) -> tuple[Floats, Floats]:
     """Rows (q, COLUMNS) and points (p, 2) of ``schedules``; raises InputError at a number or table that is not finite
     or not ascending."""
     rows, points = [], np.zeros((0, 2))

@@ -21,11 +21,11 @@ from typing import NamedTuple
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import Fault, InputError, PorescaleError
 from porescale.common.core.hdf5 import writing
+from porescale.common.core.types import Floats
 from porescale.common.neighbors.placement import place
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
@@ -36,8 +36,6 @@ from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress, principal
 from porescale.dem.measures.survey import max_overlap
 from porescale.dem.prepare.settle import UNREADABLE, cache_folder, pack, sources, unpack
-
-Array = NDArray[np.float64]
 
 START = 0.7  # packing fraction at which discs are placed: short of where friction can hold them
 DRAG = 0.02  # background damping per step: lets discs that are pushed travel, ends waves between two looks
@@ -76,7 +74,7 @@ class Compactor:
     density: float = 2500.0
     seed: int = 0
 
-    def to_pressure(self, radius: Array, pressure: float) -> Compressed:
+    def to_pressure(self, radius: Floats, pressure: float) -> Compressed:
         """Discs with sizes in the ratios of ``radius`` (n,) m, grown or shrunk until the mean stress is ``pressure``
         (Pa).  Raises InputError when that needs overlaps beyond 2 % of a diameter, PorescaleError without rest."""
         if not pressure > 0.0 or not math.isfinite(pressure):
@@ -93,7 +91,7 @@ class Compactor:
             self._hold(grains, pressure)
         return self._made(grains, radius)
 
-    def to_size(self, radius: Array) -> Compressed:
+    def to_size(self, radius: Floats) -> Compressed:
         """Discs of ``radius`` (n,) m in the rectangle: the packing fraction then follows from their areas.
 
         Raises InputError when that is so dense that they overlap by more than 2 % of a diameter.
@@ -114,7 +112,7 @@ class Compactor:
             self._rest(grains)
         return self._made(grains, radius)
 
-    def grains(self, position: Array, radius: Array) -> Grains:
+    def grains(self, position: Floats, radius: Floats) -> Grains:
         """Discs in the rectangle under the law with the friction of preparation, walls without."""
         across, up = ("periodic" if it else "solid" for it in self.periodic)
         box = Box(self.lower, self.upper, across, across, up, up)
@@ -125,7 +123,7 @@ class Compactor:
     def _region(self) -> Region:
         return Region(self.lower, self.upper)
 
-    def _start(self, radius: Array) -> tuple[Grains, float]:
+    def _start(self, radius: Floats) -> tuple[Grains, float]:
         """Small discs at random places, and their radii over those wanted."""
         covered = float(np.pi * np.sum(radius**2)) / self._region.area
         scale = min(1.0, math.sqrt(START / covered))
@@ -183,7 +181,7 @@ class Compactor:
         d.spin[:] = 0.0
         grains.reset_clock()
 
-    def _made(self, grains: Grains, radius: Array) -> Compressed:
+    def _made(self, grains: Grains, radius: Floats) -> Compressed:
         d = grains.discs
         d.mass[:] = self.density * d.area
         d.inertia[:] = 0.5 * d.mass * d.radius**2
@@ -192,7 +190,7 @@ class Compactor:
         return Compressed(grains, scale, fraction, mean_stress(grains), 0.5 * max_overlap(grains).share)
 
 
-def kept(press: Compactor, radius: Array, pressure: float | None, folder: Path | None = None) -> Compressed:
+def kept(press: Compactor, radius: Floats, pressure: float | None, folder: Path | None = None) -> Compressed:
     """``press.to_pressure``, or ``to_size`` without one; from disk if it was made before, with the bits it had.
 
     folder : of the cache, default that of settled packings.  A damaged file is made anew, a folder that cannot be
@@ -231,7 +229,7 @@ def out_of_balance(grains: Grains) -> float:
 # ---------------------------------------------------------------- files
 
 
-def write_packing(path: Path, position: Array, radius: Array) -> None:
+def write_packing(path: Path, position: Floats, radius: Floats) -> None:
     """Write x, y, radius (m) to a .csv or .h5 file, whole or absent.  Raises InputError for another suffix."""
     table = np.column_stack((position, radius))
     if path.suffix == ".csv":
@@ -247,7 +245,7 @@ def write_packing(path: Path, position: Array, radius: Array) -> None:
             file.create_dataset(name, data=column, fletcher32=True, chunks=(max(len(column), 1),)).attrs["units"] = "m"
 
 
-def read_packing(path: Path) -> tuple[Array, Array]:
+def read_packing(path: Path) -> tuple[Floats, Floats]:
     """Positions (n, 2) m and radii (n,) m of a file that ``write_packing`` wrote, or one like it.
 
     Raises InputError, naming line or dataset, for what is no packing.
@@ -270,7 +268,7 @@ def read_packing(path: Path) -> tuple[Array, Array]:
 
 def read_circles(
     path: Path, unit: str = "m", y: str = "up", height: float | None = None, origin: tuple[float, float] = (0.0, 0.0)
-) -> tuple[Array, Array]:
+) -> tuple[Floats, Floats]:
     """Positions (n, 2) m and radii (n,) m of a list of circles: .csv with columns x, y and diameter or radius.
 
     unit : of all columns, m, cm, mm or um;  y : "up", or "down" as in images, then ``height`` (m) is that of the image
@@ -289,7 +287,7 @@ def read_circles(
     return _judged(path, np.column_stack((x + origin[0], up + origin[1])), radius)
 
 
-def _table(path: Path, unit: str) -> tuple[Array, bool]:
+def _table(path: Path, unit: str) -> tuple[Floats, bool]:
     """Columns x, y, size (n, 3) of a file in its unit, and whether the size is a radius."""
     try:
         lines = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
@@ -325,7 +323,7 @@ def _judge_suffix(path: Path) -> None:
         raise InputError(Fault("file", str(path), "is of a kind not known", "", ".csv or .h5"))
 
 
-def _judged(path: Path, position: Array, radius: Array) -> tuple[Array, Array]:
+def _judged(path: Path, position: Floats, radius: Floats) -> tuple[Floats, Floats]:
     """The given positions and radii, if every row is a valid circle; else InputError."""
     bad = ~np.isfinite(position).all(axis=1) | ~(radius > 0.0) | ~np.isfinite(radius)
     if bad.any():

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.dem.bodies.bonding import bond
 from porescale.dem.bodies.frames import Frame, chain, framed, polygon
 from porescale.dem.contact.linear import Linear
@@ -28,7 +29,6 @@ from porescale.dem.motion.control import Moved
 from porescale.dem.motion.drivers import Clump
 from porescale.dem.prepare.tessellate import Corner, delaunay, shrunk, voronoi
 
-Array = NDArray[np.float64]
 Kind = Literal["discs", "triangles", "cells"]
 
 KINDS = ("discs", "triangles", "cells")
@@ -70,11 +70,11 @@ class Curve(NamedTuple):
     means of the time since the last moment, bonds broken so far, and the deepest overlap (measure.max_overlap: polygons
     go through each other at 1), each (m,)."""
 
-    time: Array
-    strain: Array
-    stress: Array
+    time: Floats
+    strain: Floats
+    stress: Floats
     broken: NDArray[np.int64]
-    deepest: Array
+    deepest: Floats
 
     def strength(self) -> float:
         """Largest stress in the direction of the test, Pa."""

@@ -19,12 +19,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.compiled.cache import cache_root, hash_of
 from porescale.common.core.atomic import write_bytes
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import Fault, InputError, PorescaleError
+from porescale.common.core.types import Floats
 from porescale.common.neighbors import place
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Law
@@ -32,8 +32,6 @@ from porescale.dem.discs import Discs, make_discs
 from porescale.dem.forces.walls import HIGH, LOW, VELOCITY, Box, Plate
 from porescale.dem.grains import Grains
 from porescale.dem.measures.survey import kinetic_energy, max_overlap, unbalanced
-
-Array = NDArray[np.float64]
 
 OVERLAP = 1e-3  # of a diameter: deepest overlap left by settling, so that the geometry is that of hard discs
 SOFTER = 16.0  # grains fall this much softer first, with steps 4 times as long, and then stiffen in place
@@ -85,7 +83,7 @@ class Pile:
         order = np.lexsort((placed.position[:, 1], columns))
         return make_discs(placed.position[order], placed.radius[order], self.density)
 
-    def radii(self) -> Array:
+    def radii(self) -> Floats:
         """Radii, (n,) m, uniform in diameter (1 ± spread), or those given."""
         if self.given:
             return np.array(self.given)
@@ -105,7 +103,7 @@ def settling_law(pile: Pile) -> Linear:
 
 
 def come_to_rest(
-    grains: Grains, weights: Array, gravity: float, *, energy: float = ENERGY, balance: float = BALANCE
+    grains: Grains, weights: Floats, gravity: float, *, energy: float = ENERGY, balance: float = BALANCE
 ) -> None:
     """Step under ``weights`` (n, 2) N/m with drag until kinetic energy and net forces are negligible.
 
@@ -188,7 +186,7 @@ def scale_springs(grains: Grains, factor: float) -> None:
     grains.plate_spring *= factor
 
 
-def relax(grains: Grains, law: Law, weights: Array, gravity: float, *, wall_law: Law | None = None) -> None:
+def relax(grains: Grains, law: Law, weights: Floats, gravity: float, *, wall_law: Law | None = None) -> None:
     """From rest under one law and weight to rest under ``law`` and ``weights`` (n, 2) N/m.
 
     The friction forces are carried over in proportion to the weights, so that the packing does not lose
@@ -258,7 +256,7 @@ def prepare(
     return grains
 
 
-def weights_of(discs: Discs, density: float, gravity: float = GRAVITY) -> Array:
+def weights_of(discs: Discs, density: float, gravity: float = GRAVITY) -> Floats:
     """Downward weights (n, 2) N/m of bodies of ``density`` (kg/m^3; buoyant: of the difference)."""
     weights = np.zeros((discs.count, 2))
     weights[:, 1] = -density * gravity * discs.area

@@ -7,18 +7,18 @@ Source: Matsushima, DEMseg tutorial II-4.2.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 
-Array = NDArray[np.float64]
 Corner = tuple[float, float]
 
 FLAT = 1e-9
 """Of the rectangle's shorter side: corners as close to each other as that are one, sides as short are none."""
 
 
-def voronoi(seeds: ArrayLike, lower: Corner, upper: Corner) -> list[Array]:
+def voronoi(seeds: ArrayLike, lower: Corner, upper: Corner) -> list[Floats]:
     """Voronoi cell of every seed (n, 2) m in the rectangle from ``lower`` to ``upper`` (m): corners (k, 2) m each,
     counter-clockwise.  Raises InputError at a seed outside, or two in one place.
     """
@@ -29,7 +29,7 @@ def voronoi(seeds: ArrayLike, lower: Corner, upper: Corner) -> list[Array]:
     return [_ordered(found.vertices[found.regions[found.point_region[k]]], scale) for k in range(len(at))]
 
 
-def delaunay(seeds: ArrayLike, lower: Corner, upper: Corner) -> list[Array]:
+def delaunay(seeds: ArrayLike, lower: Corner, upper: Corner) -> list[Floats]:
     """Delaunay triangles (3, 2) m, counter-clockwise, of the seeds (n, 2) m, those beside the sides moved onto them.
 
     Raises InputError as voronoi does, and where there are too few seeds to have one at each corner.
@@ -51,13 +51,13 @@ def delaunay(seeds: ArrayLike, lower: Corner, upper: Corner) -> list[Array]:
     return [each for each in triangles if len(each) == 3 and area(each) > FLAT * scale**2]
 
 
-def area(corners: Array) -> float:
+def area(corners: Floats) -> float:
     """Area (m^2) of a polygon (k, 2) m that goes counter-clockwise."""
     x, y = (corners - corners[0]).T
     return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
-def shrunk(corners: Array, by: float, shortest: float = 0.0) -> Array | None:
+def shrunk(corners: Floats, by: float, shortest: float = 0.0) -> Floats | None:
     """A convex polygon (k, 2) m, counter-clockwise, with every side moved inwards ``by`` (m): corners, or None where
     nothing is left.  Sides not longer than ``shortest`` (m) become corners.
     """
@@ -79,7 +79,7 @@ def shrunk(corners: Array, by: float, shortest: float = 0.0) -> Array | None:
     return left if len(left) > 2 else None
 
 
-def _inside(seeds: ArrayLike, lower: Corner, upper: Corner) -> tuple[Array, float]:
+def _inside(seeds: ArrayLike, lower: Corner, upper: Corner) -> tuple[Floats, float]:
     """The seeds and the rectangle's shorter side."""
     at = np.array(seeds, float).reshape(-1, 2)
     if not (lower[0] < upper[0] and lower[1] < upper[1]):
@@ -93,7 +93,7 @@ def _inside(seeds: ArrayLike, lower: Corner, upper: Corner) -> tuple[Array, floa
     return at, float(min(upper[0] - lower[0], upper[1] - lower[1]))
 
 
-def _mirrored(at: Array, lower: Corner, upper: Corner) -> Array:
+def _mirrored(at: Floats, lower: Corner, upper: Corner) -> Floats:
     """The seeds, then their images beyond the four sides, (5 n, 2)."""
     images = [at]
     for axis in range(2):
@@ -104,14 +104,14 @@ def _mirrored(at: Array, lower: Corner, upper: Corner) -> Array:
     return np.concatenate(images)
 
 
-def _ordered(corners: Array, scale: float) -> Array:
+def _ordered(corners: Floats, scale: float) -> Floats:
     """Corners of a convex polygon counter-clockwise, those that coincide once."""
     middle = corners.mean(axis=0)
     order = np.argsort(np.arctan2(*(corners - middle).T[::-1]))
     return _joined(corners[order], FLAT * scale)
 
 
-def _joined(corners: Array, shortest: float) -> Array:
+def _joined(corners: Floats, shortest: float) -> Floats:
     """The corners less those at the end of sides not longer than ``shortest`` (m)."""
     kept = list(range(len(corners)))
     k = 0

@@ -15,9 +15,9 @@ One thread works; results are the same at any number.  Clumps, frames, bonds and
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.dem.contact.budget import BEFORE_SPIN, BEFORE_X, DRAG
 from porescale.dem.forces.rectangle import VELOCITY_X, VELOCITY_Y
 from porescale.dem.forces.walls import LOW, PRESENT, VELOCITY, VX, WALL
@@ -38,8 +38,6 @@ from porescale.dem.resting.sleep_kernels import (
 )
 from porescale.dem.state import State
 
-Array = NDArray[np.float64]
-
 LOOK = 32
 """Contact steps between checks for resting discs: an oscillation in a contact takes 20 to 60."""
 AFTER = 100.0
@@ -56,7 +54,7 @@ class Sleep:
     changing discs by hand.  Raises InputError where there is more than discs.
     """
 
-    def __init__(self, grains: State, weight: Array, share: float = 0.01, after: float | None = None) -> None:
+    def __init__(self, grains: State, weight: Floats, share: float = 0.01, after: float | None = None) -> None:
         if grains.steered or grains.segments is not None or grains.bonds is not None or grains.reach is not None:
             raise InputError(Fault("sleep", None, "knows free discs only", repair="leave it out"))
         count, stiffness = grains.discs.count, grains.stiffest_contact()[0]
@@ -144,7 +142,7 @@ class Sleep:
         top = float((grains.discs.position[:, 1] + grains.discs.radius).max(initial=-np.inf))
         return bool((grains.plates[rising, LOW] < top).any())
 
-    def _surfaces_of(self, grains: State) -> tuple[Array, Array, Array]:
+    def _surfaces_of(self, grains: State) -> tuple[Floats, Floats, Floats]:
         """What there is of surfaces: places of walls and rectangles, and which plates are there (p, 1)."""
         return grains.walls[:, :VX].copy(), grains.rectangles[:, :VELOCITY_X].copy(), grains.plates[:, PRESENT:].copy()
 

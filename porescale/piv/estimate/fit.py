@@ -16,6 +16,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.piv.estimate.grid import Axis, Grid, expand
 from porescale.piv.estimate.interpolate import sample
 from porescale.piv.estimate.passes import Paths, moved, places, seen
@@ -23,7 +24,6 @@ from porescale.piv.estimate.rims import WEIGHT, Rims
 from porescale.piv.estimate.splines import bending, collect, moments, weighted
 from porescale.piv.images.prepare import Ready
 
-Array = NDArray[np.float64]
 Single = NDArray[np.float32]
 
 NORMAL = 1.4826
@@ -204,7 +204,7 @@ def variances(known: Equations, freedom: float) -> Single:
     return np.where(good, 0.5 * np.maximum(0, both) / short**2, np.inf).astype(np.float32)
 
 
-def at_places(blocks: Single, x: Array, y: Array) -> Array:
+def at_places(blocks: Single, x: Floats, y: Floats) -> Floats:
     """Values of blocks at columns x and rows y, px, straight between the blocks' middles."""
     across, down = np.meshgrid((x + 0.5) / BLOCK - 0.5, (y + 0.5) / BLOCK - 0.5)
     found: Any = cv2.remap(

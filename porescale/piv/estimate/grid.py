@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
 from porescale.common.compiled.jit import parallel_kernel, prange
-
-Array = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 
 @dataclass(frozen=True)
@@ -36,16 +35,16 @@ class Grid:
         return ny, nx
 
     @property
-    def y(self) -> Array:
+    def y(self) -> Floats:
         """Rows of centres, px."""
         return self.start + self.step * np.arange(self.shape[0], dtype=float)
 
     @property
-    def x(self) -> Array:
+    def x(self) -> Floats:
         """Columns of centres, px."""
         return self.start + self.step * np.arange(self.shape[1], dtype=float)
 
-    def at_pixels(self, values: Array) -> NDArray[np.float32]:
+    def at_pixels(self, values: Floats) -> NDArray[np.float32]:
         """``values`` (ny, nx) at every pixel, float32: natural cubic splines, straight beyond the outer centres."""
         return spread(self.coefficients(values), *self.axes())
 
@@ -56,43 +55,43 @@ class Grid:
         )
         return down, across
 
-    def coefficients(self, values: Array) -> Array:
+    def coefficients(self, values: Floats) -> Floats:
         """Coefficients (m, n) of the natural cubic splines through ``values`` (ny, nx), straight beyond the outer
         centres.
         """
         down, across = self.axes()
         return np.asarray(down.coefficients @ values @ across.coefficients.T)
 
-    def both(self, u: Array, v: Array) -> NDArray[np.float32]:
+    def both(self, u: Floats, v: Floats) -> NDArray[np.float32]:
         """``coefficients`` of u and v, (2, m, n) float32."""
         return np.stack([self.coefficients(u), self.coefficients(v)]).astype(np.float32)
 
-    def through(self, other: "Grid", values: Array) -> Array:
+    def through(self, other: "Grid", values: Floats) -> Floats:
         """The splines through ``values`` (ny, nx) at the centres of ``other``, straight beyond the outer ones."""
         (down, across), c = self.axes(), self.coefficients(values)
         rows = _matrix(down, other.y, c.shape[0])
         return np.asarray(rows @ c @ _matrix(across, other.x, c.shape[1]).T)
 
-    def values(self, coefficients: Array) -> Array:
+    def values(self, coefficients: Floats) -> Floats:
         """The splines with ``coefficients`` (m, n) at the centres: the inverse of ``coefficients`` on its image."""
         (top, left), (ny, nx) = (_before(self.start, self.step),) * 2, self.shape
         mean = np.array([1.0, 4.0, 1.0]) / 6
         rows = sum(w * coefficients[top - 1 + k : top - 1 + k + ny] for k, w in enumerate(mean))
         return np.asarray(sum(w * rows[:, left - 1 + k : left - 1 + k + nx] for k, w in enumerate(mean)))
 
-    def at(self, other: "Grid", values: Array) -> Array:
+    def at(self, other: "Grid", values: Floats) -> Floats:
         """``values`` (ny, nx) at the centres of ``other``; those of the rim beyond it, where no window has been."""
         down, across = spline_matrix(self.y, other.y), spline_matrix(self.x, other.x)
         return np.asarray(down @ values @ across.T)
 
-    def slopes(self, values: Array) -> tuple[Array, Array]:
+    def slopes(self, values: Floats) -> tuple[Floats, Floats]:
         """Derivatives along x and y of the spline through ``values`` at the centres, per px."""
         down, across = (_slopes(self.step, n) for n in self.shape)
         return values @ across.T, down @ values
 
 
 @lru_cache(maxsize=64)
-def _slopes(step: int, count: int) -> Array:
+def _slopes(step: int, count: int) -> Floats:
     """(count, count) matrix from values on a line of centres to the slopes of their spline there."""
     at = step * np.arange(count, dtype=float)
     return np.asarray(make_interp_spline(at, np.eye(count), 3, bc_type="natural")(at, 1))
@@ -103,13 +102,13 @@ class Axis(NamedTuple):
     beyond the ends; at pixel p those from first[p] on count with weights[:, p].  at (m,) : where the B-splines are, px.
     """
 
-    coefficients: Array
-    at: Array
+    coefficients: Floats
+    at: Floats
     first: NDArray[np.int64]
     weights: NDArray[np.float32]
 
 
-def _matrix(axis: Axis, at: Array, count: int) -> Array:
+def _matrix(axis: Axis, at: Floats, count: int) -> Floats:
     """(places, coefficients) matrix of an axis of pixels at whole pixels ``at``."""
     which = np.asarray(at).astype(int)
     found = np.zeros((len(which), count))
@@ -118,7 +117,7 @@ def _matrix(axis: Axis, at: Array, count: int) -> Array:
     return found
 
 
-def nearest(own: Array, other: Array) -> NDArray[np.int64]:
+def nearest(own: Floats, other: Floats) -> NDArray[np.int64]:
     """Number of the value of ``own`` (rising) nearest to each of ``other``."""
     return np.asarray(np.abs(np.asarray(other)[:, None] - own).argmin(1))
 
@@ -145,11 +144,11 @@ def _axis(start: int, step: int, count: int, side: int, every: int) -> Axis:
     cell = np.floor(at).astype(np.int64)
     t = at - cell
     weights = np.array([(1 - t) ** 3, 4 - 6 * t**2 + 3 * t**3, 1 + 3 * t + 3 * t**2 - 3 * t**3, t**3]) / 6
-    knots: Array = start + (np.arange(len(rows), dtype=float) - before) * step
+    knots: Floats = start + (np.arange(len(rows), dtype=float) - before) * step
     return Axis(np.array(rows), knots, cell - 1, weights.astype(np.float32))
 
 
-def spread(coefficients: Array, down: Axis, across: Axis) -> NDArray[np.float32]:
+def spread(coefficients: Floats, down: Axis, across: Axis) -> NDArray[np.float32]:
     """The spline with ``coefficients`` (m, n) at the places of two axes, float32."""
     nodes = np.asarray(coefficients, np.float32)
     rows, columns = down.weights.shape[1], across.weights.shape[1]
@@ -183,7 +182,7 @@ def expand(nodes, first_y, weights_y, first_x, weights_x, spare, found):
             )
 
 
-def spline_matrix(nodes: Array, points: Array) -> Array:
+def spline_matrix(nodes: Floats, points: Floats) -> Floats:
     """(points, nodes) matrix of interpolation: natural cubic spline, constant outside; lower order for few nodes."""
     if len(nodes) == 1:
         return np.ones((len(points), 1))

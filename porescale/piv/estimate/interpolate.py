@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import kernel, parallel_kernel, prange
-
-Array = NDArray[np.float32]
+from porescale.common.core.types import Singles
 
 PAD = 8
 """Pixels of mirrored coefficients around a picture: a sample may lie 5 px outside."""
@@ -38,7 +37,7 @@ def _inverse(taps: int = 21) -> NDArray[np.float64]:
 INVERSE = _inverse().astype(F)
 
 
-def coefficients(picture: Array) -> Array:
+def coefficients(picture: Singles) -> Singles:
     """Spline coefficients (rows + 2 PAD, columns + 2 PAD) of a picture (rows, columns), mirrored at its edges."""
     found = cv2.sepFilter2D(picture, cv2.CV_32F, INVERSE, INVERSE, borderType=cv2.BORDER_REFLECT_101)
     return np.asarray(cv2.copyMakeBorder(found, PAD, PAD, PAD, PAD, cv2.BORDER_REFLECT_101), F)

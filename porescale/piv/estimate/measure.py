@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import threads
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.piv.estimate.fit import Equations, at_places, equations, solved, variances
 from porescale.piv.estimate.grid import Grid, nearest
 from porescale.piv.estimate.outliers import THRESHOLD, filled, residual
@@ -19,7 +20,6 @@ from porescale.piv.estimate.rims import Rims, rims
 from porescale.piv.estimate.smoothing import smoothed
 from porescale.piv.images.prepare import Ready, ready
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
@@ -87,16 +87,16 @@ class Vectors:
     neighbours;  solid : in a solid;  correlation, peak_ratio;  uncertainty : standard deviation of a component, px.
     """
 
-    x: Array
-    y: Array
-    u: Array
-    v: Array
+    x: Floats
+    y: Floats
+    u: Floats
+    v: Floats
     valid: Flags
     replaced: Flags
     solid: Flags
-    correlation: Array
-    peak_ratio: Array
-    uncertainty: Array
+    correlation: Floats
+    peak_ratio: Floats
+    uncertainty: Floats
 
 
 FEW = 8
@@ -254,7 +254,7 @@ def _windows(last: int, side: int) -> list[int]:
 
 def _coarse(
     pairs: Iterable[tuple[Ready, Ready]], size: tuple[int, int], settings: Settings
-) -> tuple[Grid, Array, Array]:
+) -> tuple[Grid, Floats, Floats]:
     """The first pass, at half the resolution: whole-pixel displacements as far as ``search``."""
     window = min(max(FIRST, settings.window), min(size) // 2 * 2)
     grid = Grid(size, window, max(2, window // 4 * 2))
@@ -285,7 +285,7 @@ one.
 """
 
 
-def _outliers(u: Array, v: Array, correction_u: Array, correction_v: Array, use: Flags, bound: float) -> Flags:
+def _outliers(u: Floats, v: Floats, correction_u: Floats, correction_v: Floats, use: Flags, bound: float) -> Flags:
     """Vectors that are outliers in the total and in the correction: either alone condemns good ones in strong
     gradients.
     """
@@ -305,14 +305,14 @@ DOUBT = 0.6
 """Correlation from which a fitted vector is believed whatever its neighbours are."""
 
 
-def _alike(correlation: Array, fluid: Flags, least: float) -> Flags:
+def _alike(correlation: Floats, fluid: Flags, least: float) -> Flags:
     """Whether pictures are alike at each vector and around it: few pixels may match by chance, not all around too."""
     own = np.where(fluid & np.isfinite(correlation), correlation, 0.0)
     around = np.where(fluid, own, np.median(own[fluid]) if fluid.any() else 0.0)
     return np.asarray((own > least) & (cv2.medianBlur(around.astype(np.float32), 5) > least), bool)
 
 
-def _vectors(fitted: Fitted, grid: Grid, masks: Sequence[Flags | None], ratio: Array, settings: Settings) -> Vectors:
+def _vectors(fitted: Fitted, grid: Grid, masks: Sequence[Flags | None], ratio: Floats, settings: Settings) -> Vectors:
     """The outcome on the chosen grid; solids carry zeros."""
     knots, known = fitted.grid, fitted.known
     u, v = (knots.values(it) for it in fitted.c)

@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel
+from porescale.common.core.types import Floats
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 THRESHOLD, LEAST = 2.0, 0.1
@@ -101,14 +101,14 @@ def fill_once(u, v, good, new_u, new_v, done):
             new_v[row, column] = (b - (cyy * px - cxy * py) / det * sx - (cxx * py - cxy * px) / det * sy) / s
 
 
-def residual(u: Array, v: Array, use: Flags, least: float = LEAST) -> Array:
+def residual(u: Floats, v: Floats, use: Flags, least: float = LEAST) -> Floats:
     """Normalised median residual (ny, nx) of ``median_residual``."""
     found = np.empty(u.shape)
     median_residual(u, v, use, least, found)
     return found
 
 
-def filled(u: Array, v: Array, good: Flags) -> tuple[Array, Array]:
+def filled(u: Floats, v: Floats, good: Flags) -> tuple[Floats, Floats]:
     """u, v (ny, nx) with planes through good neighbours where not ``good``, from the rim of a gap inwards.
 
     Zero everywhere if nothing is good; the median where fewer than three are.

@@ -12,11 +12,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.piv.estimate.correlate import Layout, correlation, peaks
 from porescale.piv.estimate.grid import Grid, spread
 from porescale.piv.images.prepare import Ready
 
-Array = NDArray[np.float64]
 Single = NDArray[np.float32]
 Pairs = Sequence[tuple[Ready, Ready]]
 
@@ -28,10 +28,10 @@ LEAST_WINDOW = 16
 class Correlated:
     """What a correlation pass found on its grid, each (ny, nx): px, height of the peak, ratio to the second."""
 
-    u: Array
-    v: Array
-    value: Array
-    ratio: Array
+    u: Floats
+    v: Floats
+    value: Floats
+    ratio: Floats
 
 
 class Paths(NamedTuple):

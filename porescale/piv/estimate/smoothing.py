@@ -11,16 +11,15 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from porescale.common.core.types import Floats
 
 STRENGTHS = np.logspace(-3, 6, 46)
 """Candidates for the smoothing parameter s."""
 
 
 @lru_cache(maxsize=64)
-def _modes(count: int) -> tuple[Array, Array]:
+def _modes(count: int) -> tuple[Floats, Floats]:
     """Eigenvalues (n,) and eigenvectors (n, n) of the squared second difference with free ends."""
     if count < 3:
         return np.zeros(count), np.eye(count)
@@ -35,15 +34,15 @@ class Smoothed(NamedTuple):
     it took.
     """
 
-    u: Array
-    v: Array
+    u: Floats
+    v: Floats
     noise: float
     freedom: float
-    bias_u: Array
-    bias_v: Array
+    bias_u: Floats
+    bias_v: Floats
 
 
-def smoothed(u: Array, v: Array, step: int, stiffness: float, alike: float = 1.0, *, choose: bool = True) -> Smoothed:
+def smoothed(u: Floats, v: Floats, step: int, stiffness: float, alike: float = 1.0, *, choose: bool = True) -> Smoothed:
     """A field as a fit with the stiffness of the least cross-validation score would have made it.
 
     u, v : at the knots, ``step`` px apart, of a fit with ``stiffness``, which is undone to judge the data of the
@@ -71,7 +70,7 @@ def smoothed(u: Array, v: Array, step: int, stiffness: float, alike: float = 1.0
     return Smoothed(u, v, noise, float(kept.mean()) / step**2, bias_u, bias_v)
 
 
-def _gram(p: Array) -> Array:
+def _gram(p: Floats) -> Floats:
     """Sum of squares of cubic B-splines over that of their coefficients, where first differences square to p times."""
     c = np.clip(1 - 0.5 * p, -1.0, 1.0)  # cosine of the mode's angle
     return np.asarray((2416 + 2382 * c + 240 * (2 * c * c - 1) + 2 * (4 * c**3 - 3 * c)) / 5040)

@@ -8,11 +8,10 @@ from numpy.typing import NDArray
 from scipy.interpolate import RegularGridInterpolator
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.piv.fields.field import Field
 from porescale.piv.fields.surface import Difference, Surface, difference, of_field
 from porescale.piv.fields.vortices import ALIKE, Vortex, matched, vortices
-
-Array = NDArray[np.float64]
 
 ALIGNED = 30.0
 """Degrees between two directions that count as one."""
@@ -42,8 +41,8 @@ class Comparison:
     reference_vortices: list[Vortex]
     other_vortices: list[Vortex]
     pairs: list[tuple[Vortex, Vortex]]
-    difference_u: Array
-    difference_v: Array
+    difference_u: Floats
+    difference_v: Floats
     aligned: float
     surface: Difference | None
     surfaces: tuple[Surface, Surface] | None
@@ -119,7 +118,7 @@ def compare(
     )
 
 
-def _onto(field: Field, values: Array, target: Field) -> Array:
+def _onto(field: Field, values: Floats, target: Field) -> Floats:
     """Values at the target's points; nan outside and beside solids.  Cubic where there is no solid, else linear."""
     if np.array_equal(field.x, target.x) and np.array_equal(field.y, target.y):
         return values
@@ -136,7 +135,7 @@ def _onto(field: Field, values: Array, target: Field) -> Array:
     return np.asarray(known((y, x)))
 
 
-def _direction(reference: Field, u: Array, v: Array, common: NDArray[np.bool_], speed: float) -> tuple[float, float]:
+def _direction(reference: Field, u: Floats, v: Floats, common: NDArray[np.bool_], speed: float) -> tuple[float, float]:
     """Mean cosine between the fields where both are faster than SLOW, and the share of these that are aligned; nan if
     nowhere.
     """
@@ -148,7 +147,7 @@ def _direction(reference: Field, u: Array, v: Array, common: NDArray[np.bool_], 
     return float(np.mean(cosine)), float(np.mean(cosine > np.cos(np.radians(ALIGNED))))
 
 
-def _correlation(first: Array, second: Array) -> float:
+def _correlation(first: Floats, second: Floats) -> float:
     """Sum of products over the root of the sums of squares: both fields as they are, means not taken off."""
     below = float(np.sqrt((first**2).sum() * (second**2).sum()))
     return float((first * second).sum()) / below if below > 0 else 0.0

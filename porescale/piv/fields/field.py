@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from porescale.common.core.atomic import write_text
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.piv.estimate.measure import Vectors
 
-Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 COLUMNS = ("x", "y", "u", "v", "valid", "replaced", "solid", "correlation", "uncertainty")
@@ -29,18 +29,18 @@ class Field:
     whether y points up, as it does in metres.
     """
 
-    x: Array
-    y: Array
-    u: Array
-    v: Array
+    x: Floats
+    y: Floats
+    u: Floats
+    v: Floats
     valid: Flags
     replaced: Flags
     solid: Flags
-    correlation: Array
-    uncertainty: Array
+    correlation: Floats
+    uncertainty: Floats
     upwards: bool = False
 
-    def vorticity(self) -> Array:
+    def vorticity(self) -> Floats:
         """dv/dx - du/dy with y up, so that a vortex turning against the clock counts as positive; nan at solids."""
         across = np.gradient(self.v, self.x, axis=1) if len(self.x) > 1 else np.zeros_like(self.v)
         down = np.gradient(self.u, self.y, axis=0) if len(self.y) > 1 else np.zeros_like(self.u)
@@ -156,7 +156,7 @@ def read(path: Path) -> Field:
         raise InputError(Fault("field", str(path), f"is no field ({reason})", repair=repair)) from error
 
 
-def _gridded(columns: dict[str, Array]) -> Field:
+def _gridded(columns: dict[str, Floats]) -> Field:
     """A field from columns; ValueError where the points are no grid."""
     across = int(np.argmax(columns["y"] != columns["y"][0])) or len(columns["y"])
     if len(columns["x"]) % across:

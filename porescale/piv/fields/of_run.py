@@ -4,17 +4,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.common.record import snapshots
 from porescale.common.record.model import Grid, Snapshot
 from porescale.common.record.open_run import open_run
 from porescale.piv.fields.field import Field
 from porescale.piv.fields.surface import Surface, of_grains
 from porescale.piv.images.moving import grains_of
-
-Array = NDArray[np.float64]
 
 MEASURED = "piv"
 """Name of the grid that a measured film keeps its fields in."""
@@ -41,7 +39,7 @@ def field_of_run(folder: Path, time: float | None = None) -> Field:
     return _field(_grid(snapshot, folder))
 
 
-def surface_of_run(folder: Path, x: Array, time: float | None = None) -> Surface | None:
+def surface_of_run(folder: Path, x: Floats, time: float | None = None) -> Surface | None:
     """The pile's surface at columns x, m, from the grains of a run; None for a folder without (that of a film)."""
     if (folder / f"{MEASURED}.vtkhdf").exists():
         return None
@@ -74,8 +72,8 @@ def _field(grid: Grid) -> Field:
     solid = np.asarray(share > SOLID)
     up = grid.units.get("velocity") != "px"
     sign = 1.0 if up else -1.0
-    x: Array = grid.origin[0] + (np.arange(nx, dtype=float) + 0.5) * grid.spacing[0]
-    y: Array = sign * (grid.origin[1] + (np.arange(ny, dtype=float) + 0.5) * grid.spacing[1])[::-1]
+    x: Floats = grid.origin[0] + (np.arange(nx, dtype=float) + 0.5) * grid.spacing[0]
+    y: Floats = sign * (grid.origin[1] + (np.arange(ny, dtype=float) + 0.5) * grid.spacing[1])[::-1]
     u, v = np.asarray(velocity[..., 0], float), sign * np.asarray(velocity[..., 1], float)
     valid = np.asarray(cells["valid"] > 0) if "valid" in cells else ~solid
     none = np.full((ny, nx), np.nan)

@@ -11,11 +11,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from porescale.common.core.atomic import write_bytes
+from porescale.common.core.types import Floats
 from porescale.piv.fields.compare import Comparison
 from porescale.piv.fields.field import Field
 from porescale.piv.fields.vortices import vortices
-
-Array = NDArray[np.float64]
 
 ARROWS = 48
 """Arrows across a picture, at most."""
@@ -111,7 +110,7 @@ def _dressed(axes: Axes, field: Field) -> None:
 
 
 def _painted(
-    figure: Figure, axes: Axes, field: Field, values: Array, label: str, *, centred: bool, top: float | None = None
+    figure: Figure, axes: Axes, field: Field, values: Floats, label: str, *, centred: bool, top: float | None = None
 ) -> None:
     """Values as coloured cells with a bar."""
     top = top or _largest(values)
@@ -122,7 +121,7 @@ def _painted(
     figure.colorbar(drawn, ax=axes, label=label, shrink=0.8)
 
 
-def _largest(values: Array) -> float:
+def _largest(values: Floats) -> float:
     """Size that 99 % of the values stay below."""
     known = np.abs(values[np.isfinite(values)])
     return float(np.percentile(known, 99)) or 1e-300 if known.size else 1.0

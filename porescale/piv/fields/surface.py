@@ -9,10 +9,9 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from porescale.common.core.types import Floats
 from porescale.piv.fields.field import Field
 from porescale.piv.images.flows import Discs
-
-Array = NDArray[np.float64]
 
 TOUCH = 0.1
 """Mean diameters that a grain of the pile may be away from the next, or from the floor: one further off flies."""
@@ -21,8 +20,8 @@ TOUCH = 0.1
 class Surface(NamedTuple):
     """height (n,) above ``floor`` at columns x (n,): 0 where nothing lies, nan in side walls; as a field's x."""
 
-    x: Array
-    height: Array
+    x: Floats
+    height: Floats
     floor: float
 
 
@@ -37,7 +36,7 @@ class Difference(NamedTuple):
     highest: float
 
 
-def of_grains(grains: Discs, x: Array) -> Surface:
+def of_grains(grains: Discs, x: Floats) -> Surface:
     """The upper rim of the pile at columns x: grains held together, and by the floor, with gaps below TOUCH diameters.
 
     grains : one at least, y up;  the floor is where the lowest grain stands.
@@ -68,7 +67,7 @@ def _resting(grains: Discs, floor: float) -> NDArray[np.bool_]:
     return np.asarray(label[:count] == label[count])
 
 
-def of_solids(x: Array, y: Array, solid: NDArray[np.bool_]) -> Surface:
+def of_solids(x: Floats, y: Floats, solid: NDArray[np.bool_]) -> Surface:
     """The top, in each column, of the bodies that a gap of one cell at most parts from the lowest solid of all.
 
     solid (ny, nx), rows from the top down, y (ny,) rising or falling; rows are as high as they are apart, so that a

@@ -11,11 +11,9 @@ from typing import Any
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.piv.fields.field import Field
-
-Array = NDArray[np.float64]
 
 CORE = 2 / np.pi
 """|Gamma 2| from which rotation outweighs strain."""
@@ -47,7 +45,7 @@ class Vortex:
         return {**asdict(self), "sign": 1 if self.circulation > 0 else -1}
 
 
-def gammas(field: Field, reach: int = REACH) -> tuple[Array, Array]:
+def gammas(field: Field, reach: int = REACH) -> tuple[Floats, Floats]:
     """Gamma 1 and Gamma 2 (ny, nx), positive against the clock, over neighbours within ``reach`` steps."""
     ny, nx = field.u.shape
     fluid = np.pad((~field.solid).astype(float), reach)
@@ -58,7 +56,7 @@ def gammas(field: Field, reach: int = REACH) -> tuple[Array, Array]:
     step_y = field.y[1] - field.y[0] if ny > 1 else 1.0
     hand = 1.0 if field.upwards else -1.0  # with y down the cross product counts with the clock
 
-    def around(it: Array, j: int, i: int) -> Array:
+    def around(it: Floats, j: int, i: int) -> Floats:
         """Values of the neighbours j rows and i columns away, of all points (ny, nx)."""
         return it[reach + j : reach + j + ny, reach + i : reach + i + nx]
 
@@ -103,7 +101,7 @@ def vortices(field: Field, reach: int = REACH) -> list[Vortex]:
     return [it for it in found if abs(it.circulation) >= WEAK * abs(found[0].circulation)]
 
 
-def _centre(field: Field, height: Array) -> tuple[float, float]:
+def _centre(field: Field, height: Floats) -> tuple[float, float]:
     """Where ``height`` peaks: its centroid over the points within a step of the largest, less the lowest of them."""
     row, column = np.unravel_index(int(np.argmax(height)), height.shape)
     rows = slice(max(0, int(row) - 1), int(row) + 2)

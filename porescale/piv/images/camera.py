@@ -7,13 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.common.record.open_run import Run
 from porescale.piv.images.flows import Discs
 from porescale.piv.images.moving import Between, Instant, grid_of, instant
 from porescale.piv.images.spots import add_spots, coverage
 from porescale.piv.images.synth import Camera, Picture
-
-Array = NDArray[np.float64]
 
 BIN = 16
 """px: where fewer tracers than half the due number are in a square of this side it is filled up, a third over:
@@ -143,7 +142,7 @@ class _Tracers:
         self.shot, self.random, self.origin = shot, random, first.origin
         self.x, self.y, self.light = np.empty(0), np.empty(0), np.empty(0)
 
-    def pixels(self, x: Array, y: Array) -> tuple[Array, Array]:
+    def pixels(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
         """Columns and rows, px, of points in metres."""
         (left, low), scale = self.origin, self.shot.scale
         return (x - left) / scale - 0.5, self.shot.camera.size[0] - 0.5 - (y - low) / scale
@@ -176,7 +175,7 @@ class _Tracers:
         fall = np.exp(-camera.sheet * self.random.uniform(-1, 1, int(free.sum())) ** 2)
         self.light = np.r_[self.light, camera.peak * fall]
 
-    def _open(self, pair: Between, time: float) -> Array:
+    def _open(self, pair: Between, time: float) -> Floats:
         """Share of each square, by rows, that is free of solids: nine points of it."""
         rows, columns = self.shot.camera.size
         down, across = -(-rows // BIN), -(-columns // BIN)
@@ -214,7 +213,7 @@ class _Tracers:
         image = image * (1 - share) + camera.disc * share + self.random.normal(0.0, camera.noise, camera.size)
         return np.clip(np.rint(image), 0, 255).astype(np.uint8), share > 0.5
 
-    def _others(self, pair: Between, time: float) -> Array:
+    def _others(self, pair: Between, time: float) -> Floats:
         """1 in pixels of solids that are no grains."""
         rows, columns = self.shot.camera.size
         x = self.origin[0] + (np.arange(columns) + 0.5) * self.shot.scale

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.common.schema.messages import nearest
 
-Array = NDArray[np.float64]
-Velocity = Callable[[Array, Array], tuple[Array, Array]]
+Velocity = Callable[[Floats, Floats], tuple[Floats, Floats]]
 
 STEPS = 24
 """Runge-Kutta steps of half an interval: a turn of one radian then errs by (1/24)^5/120 a step, 3e-9 in all."""
@@ -23,18 +23,18 @@ STEPS = 24
 class Discs(NamedTuple):
     """Solids of a picture.  x, y (n,) centres, px;  radius (n,) px."""
 
-    x: Array
-    y: Array
-    radius: Array
+    x: Floats
+    y: Floats
+    radius: Floats
 
-    def inside(self, x: Array, y: Array, margin: float = 0.0) -> NDArray[np.bool_]:
+    def inside(self, x: Floats, y: Floats, margin: float = 0.0) -> NDArray[np.bool_]:
         """Whether points lie in a disc whose radius is ``margin`` px larger."""
         found = np.zeros(np.broadcast(x, y).shape, bool)
         for a, b, r in zip(self.x, self.y, self.radius, strict=True):
             found |= np.hypot(x - a, y - b) < r + margin
         return found
 
-    def distance(self, x: Array, y: Array) -> Array:
+    def distance(self, x: Floats, y: Floats) -> Floats:
         """Distance from points to the nearest rim, px, negative inside; infinite where there is no disc."""
         found = np.full(np.broadcast(x, y).shape, np.inf)
         for a, b, r in zip(self.x, self.y, self.radius, strict=True):
@@ -53,7 +53,7 @@ class Flow:
     velocity: Velocity
     discs: Discs = NO_DISCS
 
-    def carried(self, x: Array, y: Array, time: float) -> tuple[Array, Array]:
+    def carried(self, x: Floats, y: Floats, time: float) -> tuple[Floats, Floats]:
         """Position of the material at x, y after ``time`` intervals: Runge-Kutta of fourth order."""
         steps = max(1, round(2 * STEPS * abs(time)))
         h = time / steps
@@ -67,7 +67,7 @@ class Flow:
             y += h / 6 * (v1 + 2 * v2 + 2 * v3 + v4)
         return x, y
 
-    def displacement(self, x: Array, y: Array) -> tuple[Array, Array]:
+    def displacement(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
         """X(+1/2) - X(-1/2) of the material that is at x, y at mid time, px."""
         (ax, ay), (bx, by) = self.carried(x, y, -0.5), self.carried(x, y, 0.5)
         return bx - ax, by - ay
@@ -91,11 +91,11 @@ def stagnation(size: tuple[int, int], peak: float) -> Flow:
     return Flow("stagnation", lambda x, y: (rate * (x - cx), -rate * (y - cy)))
 
 
-def _swirl(name: str, size: tuple[int, int], spin: Callable[[Array], Array]) -> Flow:
+def _swirl(name: str, size: tuple[int, int], spin: Callable[[Floats], Floats]) -> Flow:
     """Circular paths around the picture's centre; ``spin`` gives radians an interval at a squared radius."""
     cx, cy = 0.5 * (size[1] - 1), 0.5 * (size[0] - 1)
 
-    def velocity(x: Array, y: Array) -> tuple[Array, Array]:
+    def velocity(x: Floats, y: Floats) -> tuple[Floats, Floats]:
         """Spin times the distance from the centre, across it."""
         dx, dy = x - cx, y - cy
         turn = spin(dx * dx + dy * dy)
@@ -123,7 +123,7 @@ def lamb_oseen(size: tuple[int, int], peak: float, core: float) -> Flow:
     """Lamb-Oseen vortex: largest speed ``peak`` at ``core`` px from the centre (Lamb 1932, art. 334a)."""
     scale = peak * core / (1 - np.exp(-LAMB_PEAK))
 
-    def spin(r2: Array) -> Array:
+    def spin(r2: Floats) -> Floats:
         """Radians an interval at a squared radius."""
         s = LAMB_PEAK * np.maximum(r2, 1e-12) / core**2
         return np.asarray(scale * LAMB_PEAK / core**2 * (-np.expm1(-s)) / s)
@@ -148,7 +148,7 @@ def past_discs(size: tuple[int, int], peak: float, discs: Discs, layer: float = 
     slope zero, so that the flow neither enters nor slips.
     """
 
-    def bells(x: Array, y: Array) -> list[tuple[Array, Array, Array]]:
+    def bells(x: Floats, y: Floats) -> list[tuple[Floats, Floats, Floats]]:
         """c_k and its slopes in x and y, of every disc."""
         found = []
         for a, b, r in zip(discs.x, discs.y, discs.radius, strict=True):
@@ -160,7 +160,7 @@ def past_discs(size: tuple[int, int], peak: float, discs: Discs, layer: float = 
             found.append((1 / q**2, slope * dx, slope * dy))
         return found
 
-    def velocity(x: Array, y: Array) -> tuple[Array, Array]:
+    def velocity(x: Floats, y: Floats) -> tuple[Floats, Floats]:
         """Velocity (dpsi/dy, -dpsi/dx) at the points (x, y), in px per frame."""
         known = bells(x, y)
         open_, ox, oy = np.ones_like(x), np.zeros_like(x), np.zeros_like(x)  # prod (1 - c) and its slopes

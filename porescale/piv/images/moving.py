@@ -8,11 +8,10 @@ from scipy.ndimage import map_coordinates, spline_filter
 from scipy.spatial import cKDTree
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.common.record.model import Grid, Snapshot
 from porescale.common.record.open_run import Run
 from porescale.piv.images.flows import NO_DISCS, Discs
-
-Array = NDArray[np.float64]
 
 SOLID = 0.5
 """Solid fraction from which a place is solid."""
@@ -28,24 +27,24 @@ class Instant:
     """
 
     time: float
-    velocity: Array
-    solid: Array
+    velocity: Floats
+    solid: Floats
     grains: Discs
     origin: tuple[float, float]
     spacing: tuple[float, float]
 
-    def places(self, x: Array, y: Array) -> Array:
+    def places(self, x: Floats, y: Floats) -> Floats:
         """Rows and columns, in cells, of points in metres."""
         (left, low), (dx, dy) = self.origin, self.spacing
         return np.stack([(y - low) / dy - 0.5, (x - left) / dx - 0.5])
 
-    def flow(self, x: Array, y: Array) -> tuple[Array, Array]:
+    def flow(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
         """Velocity, m/s, by cubic splines through the cells' centres."""
         at = self.places(x, y)
         u, v = (map_coordinates(it, at, order=3, prefilter=False, mode="nearest") for it in self.velocity)
         return u, v
 
-    def solid_at(self, x: Array, y: Array) -> NDArray[np.bool_]:
+    def solid_at(self, x: Floats, y: Floats) -> NDArray[np.bool_]:
         """Whether points lie in solids that are no grains: where their fraction is above one half."""
         return np.asarray(map_coordinates(self.solid, self.places(x, y), order=1, mode="nearest") > SOLID)
 
@@ -62,7 +61,7 @@ class Between:
         span = self.second.time - self.first.time
         return min(1.0, max(0.0, (time - self.first.time) / span)) if span > 0 else 0.0
 
-    def flow(self, x: Array, y: Array, time: float) -> tuple[Array, Array]:
+    def flow(self, x: Floats, y: Floats, time: float) -> tuple[Floats, Floats]:
         """Velocity at points and a time, m/s."""
         s = self.share(time)
         (a, b), (c, d) = self.first.flow(x, y), self.second.flow(x, y)
@@ -76,7 +75,7 @@ class Between:
         one, two = self.first.grains, self.second.grains
         return Discs(one.x + s * (two.x - one.x), one.y + s * (two.y - one.y), one.radius)
 
-    def solid_at(self, x: Array, y: Array, time: float) -> NDArray[np.bool_]:
+    def solid_at(self, x: Floats, y: Floats, time: float) -> NDArray[np.bool_]:
         """Whether points lie in grains, or in other solids of the nearer snapshot."""
         near = self.first if self.share(time) < 0.5 else self.second
         found = near.solid_at(x, y)
@@ -86,7 +85,7 @@ class Between:
             found = found | (far < grains.radius[which]).reshape(x.shape)
         return found
 
-    def carried(self, x: Array, y: Array, start: float, end: float) -> tuple[Array, Array]:
+    def carried(self, x: Floats, y: Floats, start: float, end: float) -> tuple[Floats, Floats]:
         """Positions at ``end`` s of points at ``start`` s: Runge-Kutta of fourth order, half a cell a step, out of
         grains.
         """
@@ -134,7 +133,7 @@ def grains_of(snapshot: Snapshot) -> Discs:
     return NO_DISCS
 
 
-def pushed_out(x: Array, y: Array, grains: Discs) -> tuple[Array, Array]:
+def pushed_out(x: Floats, y: Floats, grains: Discs) -> tuple[Floats, Floats]:
     """Points inside grains moved to the nearest rim; others as they are."""
     if not len(grains.x) or not len(x):
         return x, y
@@ -150,7 +149,7 @@ def pushed_out(x: Array, y: Array, grains: Discs) -> tuple[Array, Array]:
     return x, y
 
 
-def nearest(x: Array, y: Array, grains: Discs) -> tuple[Array, NDArray[np.int64]]:
+def nearest(x: Floats, y: Floats, grains: Discs) -> tuple[Floats, NDArray[np.int64]]:
     """Distance to the centre, and the number, of the grain whose rim is nearest to each point, of its four nearest."""
     tree = cKDTree(np.column_stack([grains.x, grains.y]))
     count = min(4, len(grains.x))

@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from porescale.common.core.types import Singles
 from porescale.piv.estimate.interpolate import coefficients
 
-Array = NDArray[np.float32]
 Mask = NDArray[np.bool_]
 
 RIM = 1
@@ -21,11 +21,11 @@ class Ready(NamedTuple):
     is any.  Arrays float32, (rows, columns), the coefficients padded.
     """
 
-    coefficients: Array
-    fluid: Array
-    contrast: Array
-    half_fluid: Array
-    half_contrast: Array
+    coefficients: Singles
+    fluid: Singles
+    contrast: Singles
+    half_fluid: Singles
+    half_contrast: Singles
     solid: bool
 
 
@@ -49,7 +49,7 @@ def ready(picture: NDArray[Any], solid: Mask | None, reach: int) -> Ready:
     return Ready(coefficients(contrast), fluid, contrast, half, _halved(contrast) * half, True)
 
 
-def _halved(image: Array) -> Array:
+def _halved(image: Singles) -> Singles:
     """Means over two by two pixels; an odd last row or column is left out."""
     rows, columns = image.shape[0] // 2, image.shape[1] // 2
     return np.asarray(

@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.piv.estimate.grid import Grid
 from porescale.piv.fields.field import Field
 from porescale.piv.images.flows import Discs, Flow
 from porescale.piv.images.spots import REACH, add_spots, coverage
 
-Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 
 
@@ -88,7 +88,9 @@ def exact(made: Pair, window: int, step: int) -> Field:
     return Field(grid.x, grid.y, u, v, ~solid, none, solid, zero + 1, zero)
 
 
-def seeded(flow: Flow, camera: Camera, random: np.random.Generator, shares: float = 1.0) -> tuple[Array, Array, Array]:
+def seeded(
+    flow: Flow, camera: Camera, random: np.random.Generator, shares: float = 1.0
+) -> tuple[Floats, Floats, Floats]:
     """Tracers at mid time, uniform over the picture and as far around it as they move, none in a solid: x, y, peak."""
     rows, columns = camera.size
     edge_x = np.r_[np.linspace(-0.5, columns - 0.5, 33), np.full(33, -0.5), np.full(33, columns - 0.5)]
@@ -104,7 +106,7 @@ def seeded(flow: Flow, camera: Camera, random: np.random.Generator, shares: floa
     return x[free], y[free], camera.peak * np.exp(-camera.sheet * z[free] ** 2)
 
 
-def expose(x: Array, y: Array, light: Array, discs: Discs, camera: Camera, random: np.random.Generator) -> Picture:
+def expose(x: Floats, y: Floats, light: Floats, discs: Discs, camera: Camera, random: np.random.Generator) -> Picture:
     """One picture: spots, discs in front of them, noise, grey levels 0 to 255."""
     image = np.full(camera.size, camera.background)
     add_spots(x, y, light, camera.diameter / 4, image)

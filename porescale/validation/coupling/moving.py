@@ -6,9 +6,9 @@ Discs that fall on each other and on the bottom, SI.
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import kve
 
+from porescale.common.core.types import Reals
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.lattice import viscosity
@@ -16,8 +16,6 @@ from porescale.lbm.scales import Scales
 from porescale.validation.coupling.setups import DEFAULT, TAU, Method, immersed
 from porescale.validation.coupling.towed import PERIODIC, RADIUS, faxen, jeffrey_onishi, steady, towed
 from porescale.validation.lbm.channels import one_thread
-
-Array = NDArray[np.floating]
 
 
 def stokes_oscillation(frequency: float) -> complex:
@@ -124,7 +122,7 @@ def stream_drag(
     speed: float = 0.02,
     steps: int = 2000,
     method: Method = DEFAULT,
-) -> Array:
+) -> Reals:
     """Drag on a disc that enters fluid at ``speed`` in a periodic box of six diameters, (steps,).
 
     frame 0: the disc stands and the fluid streams;  1: the fluid stands and the disc goes;  others between and beyond.
@@ -192,7 +190,7 @@ def kiss(
     relaxation_time: float = 0.512,
     density_ratio: float = 1.5,
     method: Method = DEFAULT,
-) -> tuple[float, Array]:
+) -> tuple[float, Reals]:
     """Time (s) at which two falling discs first touch, and their places then (2, 2) in diameters.
 
     Uhlmann 2005: channel 8 x 24 diameters, d 0.25 cm, s 1.5, nu 0.01 cm²/s, g 9.81 m/s², released at rest 4 and 6

@@ -8,8 +8,9 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.coupling.coverage.polygon import Polygons
 from porescale.coupling.coverage.rows import make_patches
@@ -21,19 +22,18 @@ from porescale.validation.coupling.setups import DEFAULT, TAU, Method
 from porescale.validation.coupling.towed import square_array_drag
 from porescale.validation.lbm.channels import one_thread
 
-Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
 VALIDATIONS = Validations()
 
 
-def regular(corners: int, area: float, degrees: float = 0.0) -> Array:
+def regular(corners: int, area: float, degrees: float = 0.0) -> Floats:
     """Corners (k, 2) of a regular polygon of this area about 0, the first one ``degrees`` from the x axis."""
     radius = math.sqrt(2.0 * area / (corners * math.sin(2.0 * math.pi / corners)))
     angle = math.radians(degrees) + 2.0 * np.pi * np.arange(corners) / corners
     return radius * np.column_stack((np.cos(angle), np.sin(angle)))
 
 
-def plate(length: float, thickness: float, degrees: float = 0.0) -> Array:
+def plate(length: float, thickness: float, degrees: float = 0.0) -> Floats:
     """Corners (4, 2) of a plate about 0, its length ``degrees`` from the x axis."""
     a, b = 0.5 * length, 0.5 * thickness
     cosine, sine = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
@@ -41,7 +41,7 @@ def plate(length: float, thickness: float, degrees: float = 0.0) -> Array:
     return np.column_stack((cosine * x - sine * y, sine * x + cosine * y))
 
 
-def ellipse(a: float, b: float, corners: int = 48) -> Array:
+def ellipse(a: float, b: float, corners: int = 48) -> Floats:
     """Corners (k, 2) of a polygon with the area and, but for its corners, the shape of an ellipse about 0."""
     angle = 2.0 * np.pi * (np.arange(corners) + 0.5) / corners
     wider = math.sqrt(2.0 * math.pi / (corners * math.sin(2.0 * math.pi / corners)))
@@ -102,7 +102,7 @@ def array_torque(
     return -float(wet.polygon_load[0, 2]) / (nu * spin * cells**2)
 
 
-def area_errors(shapes: Sequence[Array], angles: int) -> list[float]:
+def area_errors(shapes: Sequence[Floats], angles: int) -> list[float]:
     """Largest errors of the sum of solid fractions over angles and places, cells², of each polygon (k, 2)."""
     fluid, found = Fluid(64, 64, TAU), []
     for corners in shapes:
@@ -139,7 +139,7 @@ ASKED = 0.01
 """Largest error of a mean over places in a cell, as for discs (arrays.py)."""
 
 
-def square(fraction: float, degrees: float) -> Array:
+def square(fraction: float, degrees: float) -> Floats:
     """A square that takes this part of a cell of side 1, its sides turned by ``degrees`` from the axes."""
     return regular(4, fraction, 45.0 + degrees)
 

@@ -4,8 +4,9 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.coupling.step import Coupled
 from porescale.dem.bodies.frames import framed, polygon
@@ -19,7 +20,6 @@ from porescale.validation.coupling.polygons import ellipse, plate, regular
 from porescale.validation.coupling.setups import DEFAULT, LAW, TAU, Method
 from porescale.validation.lbm.channels import one_thread
 
-Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
 VALIDATIONS = Validations()
 
@@ -122,7 +122,7 @@ def momentum_error(steps: int, ratio: float = 2.0, g: float = -1e-5, *, inside: 
     discs = coupled.grains.discs
     size = float(np.sum(discs.mass[:, None] * np.abs(discs.velocity)))
 
-    def book() -> Array:
+    def book() -> Floats:
         """Momentum of all (2,), lattice units; unless ``inside`` without what fills polygons and moves with them."""
         return np.array(coupled.momentum() - (0.0 if inside else polygons.momentum(coupled.scales.step)))
 

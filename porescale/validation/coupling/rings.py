@@ -9,7 +9,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.coupling.coverage.rectangle import Rectangle
@@ -41,7 +40,6 @@ def torques(
     return float(disc), float(ring)
 
 
-Array = NDArray[np.floating]
 NO_DISCS = np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0)
 SPEED = 0.01
 

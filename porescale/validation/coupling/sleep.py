@@ -8,15 +8,13 @@ In lattice units.  A contact step is a fluid step, so that the forces which judg
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Reals
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.coupling.step import Coupled
 from porescale.dem.measures.contacts import contacts
 from porescale.dem.resting.sleep import Sleep
 from porescale.validation.coupling.setups import immersed
-
-Array = NDArray[np.floating]
 
 RADIUS, DENSITY = 3.7, 2.5
 WEIGHT = (0.0, -2e-4)
@@ -104,7 +102,7 @@ SMALL = 2.5
 """Radius of the discs of the column, cells."""
 
 
-def collapsed(share: float | None = None, nudge: float = 0.0, steps: int = 8000) -> Array:
+def collapsed(share: float | None = None, nudge: float = 0.0, steps: int = 8000) -> Reals:
     """A column of 28 discs at a wall, let go under water: (run-out, mean height) of what lies in the end, in radii.
 
     share : of their weight by which sleepers may be out of balance; None: no grain sleeps.  nudge : cells, of one disc.

@@ -6,10 +6,10 @@ Small experiments with clumps, controlled bodies, driven walls and strained cell
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ellipk
 
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
@@ -22,7 +22,6 @@ from porescale.dem.motion.periodic_cell import LOAD, Straining
 from porescale.validation.dem.momentum import momentum_drift
 from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS, free, law_at, relative
 
-Array = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 PRESSED = 1e-4  # of a diameter: overlap of a lattice at the start
@@ -178,7 +177,7 @@ def column_under_servo(load: float, count: int = 10, gravity: float = GRAVITY) -
     return floor, float(grains.wall_force[grains.wall_names.index("lid"), 1])
 
 
-def lattice_moduli(shear: float, strain: float = 1e-7, steps: int = 100) -> Array:
+def lattice_moduli(shear: float, strain: float = 1e-7, steps: int = 100) -> Floats:
     """C11, C12 and the shear stress over shear strain (xy), all over k_n, of a lattice with k_t = ``shear`` k_n.
 
     Discs do not turn; the pressure at the start is taken off.
@@ -198,7 +197,7 @@ def lattice_moduli(shear: float, strain: float = 1e-7, steps: int = 100) -> Arra
     return np.array([found[0][0], found[0][2], found[1][1]])
 
 
-def lattice_exact(shear: float) -> Array:
+def lattice_exact(shear: float) -> Floats:
     """sqrt(3)/4 (3 + s), sqrt(3)/4 (1 - s), sqrt(3)/4 (1 + 3 s): sums over three contacts a disc, s = k_t/k_n."""
     return math.sqrt(3.0) / 4.0 * np.array([3.0 + shear, 1.0 - shear, 1.0 + 3.0 * shear])
 

@@ -4,8 +4,8 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.dem.contact.hertz import Hertz
 from porescale.dem.discs import make_discs
@@ -13,7 +13,6 @@ from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
 from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, grows, on_floor, relative
 
-Array = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 MODULUS = 1e9  # Pa
@@ -23,7 +22,7 @@ SPEEDS = (0.1, 1.0)
 ANTYPOV = "Antypov & Elliott 2011, EPL 94, 50004"
 
 
-def hertz_bounce(law: Hertz, speed: float, steps_per_contact: float, phases: int = 20) -> Array:
+def hertz_bounce(law: Hertz, speed: float, steps_per_contact: float, phases: int = 20) -> Floats:
     """Restitution (phases,) on a floor, touching at evenly spread moments of a contact step."""
     lasts = law.contact_time(MASS, RADIUS, speed)
     dt = lasts / steps_per_contact
@@ -137,7 +136,7 @@ def hertz_critical() -> Measured:
     return Measured(exact, found, relative(found, exact))
 
 
-def hertz_grazing_gain(law: Hertz, angles: Array, speed: float = 1.0) -> Array:
+def hertz_grazing_gain(law: Hertz, angles: Floats, speed: float = 1.0) -> Floats:
     """Kinetic energy after over before, minus one, for impacts at ``angles`` (rad from the normal) on a floor.
 
     One run for each angle, as steps follow the contact's duration, which depends on the normal speed.

@@ -6,9 +6,9 @@ Packings whose stress, fabric and porosity are known exactly, in SI: what ``veri
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
@@ -23,8 +23,6 @@ from porescale.dem.measures.stress import contact_stress
 from porescale.dem.prepare.settle import come_to_rest, weights_of
 from porescale.validation.dem import setups as lab
 from porescale.validation.dem.bodies import clumped_cell, random_cell
-
-Array = NDArray[np.float64]
 
 COLUMN = 12
 """Discs of the loaded column."""
@@ -65,7 +63,7 @@ def loaded_column(load: float = 1000.0, settled: float = 60.0) -> tuple[Grains, 
     return grains, diameter
 
 
-def column_stress(grains: Grains, width: float) -> tuple[Array, Array]:
+def column_stress(grains: Grains, width: float) -> tuple[Floats, Floats]:
     """Vertical Love-Weber stress (Pa) in regions from one centre of a column to the next, and the weight above with the
     load over the width (Pa), from the bottom; (COLUMN - 1,) each."""
     y, found = grains.discs.position[:, 1], contacts(grains)
@@ -88,7 +86,7 @@ def pressed_lattice(strain: float = 1e-3, cells: int = 6, stretch: float = 0.0) 
     return grains
 
 
-def lattice_stress(grains: Grains) -> tuple[Array, float, Fabric]:
+def lattice_stress(grains: Grains) -> tuple[Floats, float, Fabric]:
     """Love-Weber stress (2, 2) Pa of the whole cell, coordination number and fabric."""
     found, region = contacts(grains), Region(grains.box.lower, grains.box.upper)
     period = grains.box.period
@@ -99,7 +97,7 @@ def lattice_stress(grains: Grains) -> tuple[Array, float, Fabric]:
     )
 
 
-def strained_stress(clumps: bool, seed: int = 3) -> tuple[Array, Array]:
+def strained_stress(clumps: bool, seed: int = 3) -> tuple[Floats, Floats]:
     """Love-Weber stress (Pa) of a rectangle as large as a dense cell strained in all ways, somewhere across its sides,
     and the stress of contacts that the cell works with in its next step, (2, 2) each."""
     law = Linear(lab.STIFFNESS, 20.0, 0.5 * lab.STIFFNESS, 10.0, 0.5)
@@ -138,7 +136,7 @@ def heap_fields(grains: Grains, cells: float, width: float = 0.03, *, conserve: 
     return CoarseGrained(raster, grains.discs, contacts(grains), conserve=conserve)
 
 
-def totals(grains: Grains, *, conserve: bool = True) -> Array:
+def totals(grains: Grains, *, conserve: bool = True) -> Floats:
     """Sums of density, solid fraction and contact stress xx over a grid between the walls of a heap, over mass, area of
     discs and sum of F_x l_x, (3,)."""
     raster = Raster.over((0.0, 0.0), (0.2, 0.2), 0.004, 0.03)

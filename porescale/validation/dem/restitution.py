@@ -7,21 +7,21 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.dem.contact.linear import Linear
 from porescale.dem.measures.survey import kinetic_energy
 from porescale.validation.dem.setups import APART, MASS, RADIUS, STIFFNESS, free, law_at, relative, row_on_floor
 
-Array = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 RATIOS = (0.0, 0.05, 0.2155, 0.5, 0.9)
 CHUNG = "Chung & Ooi 2011 protocols, linear law in two dimensions"
 
 
-def bounce(law: Linear, steps_per_contact: float, phases: int = 20, speed: float = 1.0) -> Array:
+def bounce(law: Linear, steps_per_contact: float, phases: int = 20, speed: float = 1.0) -> Floats:
     """Restitution of a disc on a wall, (phases,), touching at evenly spread moments of a contact step.
 
     The floor is approached from above without gravity; dt is the contact time over ``steps_per_contact``.
@@ -91,7 +91,7 @@ def restitution_pair() -> Measured:
 
 def impact(
     law: Linear, down: ArrayLike, along: ArrayLike, spin: ArrayLike, steps_per_contact: float = 1000.0
-) -> tuple[Array, Array, Array]:
+) -> tuple[Floats, Floats, Floats]:
     """Discs hitting a floor with speeds ``down`` and ``along`` (n,) m/s and ``spin`` (n,) rad/s: the same
     after.
 
@@ -132,7 +132,7 @@ def oblique() -> Measured:
     return Measured(exact, [float(value) for value in found], relative(found, exact))
 
 
-def grazing_gain(law: Linear, angles: ArrayLike, against: str = "wall", speed: float = 1.0) -> Array:
+def grazing_gain(law: Linear, angles: ArrayLike, against: str = "wall", speed: float = 1.0) -> Floats:
     """Kinetic energy after over before, minus one, for impacts at ``angles`` (rad from the normal)."""
     angle = np.asarray(angles, float)
     if against == "wall":

@@ -7,9 +7,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.dem.bodies.bonding import bond
 from porescale.dem.bodies.frames import Frame, chain, framed, from_ends, polygon
@@ -22,8 +22,6 @@ from porescale.dem.motion.control import Moved
 from porescale.dem.motion.drivers import Clump
 from porescale.validation.dem.momentum import momentum_drift
 from porescale.validation.dem.setups import DENSITY, RADIUS, STIFFNESS, free, law_at
-
-Array = NDArray[np.float64]
 
 THICKNESS = 0.1 * RADIUS
 OPEN = dict.fromkeys(("left", "right", "bottom", "top"), "open")
@@ -56,12 +54,12 @@ def hold(grains: Grains, *clumps: int) -> None:
         grains.steering.control(Clump(clump), REST, REST, REST)
 
 
-def weights(discs: Discs, gravity: float = GRAVITY) -> Array:
+def weights(discs: Discs, gravity: float = GRAVITY) -> Floats:
     """Weight of every disc, (n, 2) N/m."""
     return np.outer(discs.mass, (0.0, -gravity))
 
 
-def bouncing(what: str, steps_per_contact: float, rule: str = "outline", seconds: float = 0.5) -> Array:
+def bouncing(what: str, steps_per_contact: float, rule: str = "outline", seconds: float = 0.5) -> Floats:
     """Energy budget of a ``what`` ("segment", "polygon" or "disc") that bounces on a container with edges up and down.
 
     It falls 3 radii, turning, off the middle, and hits edges and sides with its own; two walls keep it there.  Returns
@@ -80,7 +78,7 @@ def bouncing(what: str, steps_per_contact: float, rule: str = "outline", seconds
     return residuals(grains, seconds, steps_per_contact)
 
 
-def residuals(grains: Grains, seconds: float, steps_per_contact: float, gravity: float = GRAVITY) -> Array:
+def residuals(grains: Grains, seconds: float, steps_per_contact: float, gravity: float = GRAVITY) -> Floats:
     """|residual| at 100 moments of ``seconds`` under gravity over the most kinetic energy till then.
 
     Steps are in the contact of a rod as light as the lightest body that hits with its end, M/4.
@@ -109,7 +107,7 @@ def mixed_cloud(friction: float = 0.5, rule: str = "outline", seed: int = 3, pac
     if friction == 0.0:
         law = Linear(STIFFNESS)
 
-    def thrown(at: Array) -> dict[str, Any]:
+    def thrown(at: Floats) -> dict[str, Any]:
         """Velocity, m/s, and spin, rad/s, of a body at ``at``, m: towards the middle, and by dice."""
         speed = pace * (-40.0 * at + rng.normal(0.0, 1.0, 2))
         return {"velocity": (float(speed[0]), float(speed[1])), "spin": float(pace * rng.normal(0.0, 100.0))}
@@ -161,7 +159,7 @@ def bond_strength(what: str, pressed: float = 1e-3, steps: int = 20_000) -> floa
     return most / (STIFFNESS * pressed * RADIUS)
 
 
-def hanging_chain(count: int = 20, span: float = 0.7, relaxation: float = 1.0) -> Array:
+def hanging_chain(count: int = 20, span: float = 0.7, relaxation: float = 1.0) -> Floats:
     """Places (count, 2) m of the chain ``hung`` at rest."""
     return hung(count, span, relaxation).discs.position.copy()
 
@@ -196,7 +194,7 @@ def hung(
     return grains
 
 
-def catenary(at: Array) -> Array:
+def catenary(at: Floats) -> Floats:
     """Heights (n,) m over the lower end of the catenary through the ends of a chain of discs ``at`` (n, 2) m, with as
     much length as it has between them, at its places x.
     """

@@ -7,15 +7,14 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from porescale.common.core.types import Floats
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Law, Materials
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
-
-Array = NDArray[np.float64]
 
 RADIUS = 0.01  # m
 DENSITY = 2500.0  # kg/m^3
@@ -56,7 +55,7 @@ def law_at(damping_ratio: float, release: str = "force", mass: float = MASS, **t
     return Linear(STIFFNESS, 2.0 * damping_ratio * math.sqrt(STIFFNESS * mass), release=release, **tangential)
 
 
-def grows(grains: Grains, loads: Array, dt: float, steps: int) -> bool:
+def grows(grains: Grains, loads: Floats, dt: float, steps: int) -> bool:
     """Whether a small disturbance of a loaded equilibrium grows tenfold within ``steps`` of ``dt``."""
     discs = grains.discs
     rest = discs.position.copy()

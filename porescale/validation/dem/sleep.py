@@ -7,8 +7,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
@@ -17,8 +17,6 @@ from porescale.dem.grains import Grains
 from porescale.dem.measures.contacts import contacts
 from porescale.dem.prepare.settle import weights_of
 from porescale.dem.resting.sleep import Sleep
-
-Array = NDArray[np.float64]
 
 RADIUS, DENSITY, STIFFNESS = 1e-3, 2500.0, 5e5  # m, kg/m³, N/m
 MASS = math.pi * RADIUS**2 * DENSITY
@@ -30,7 +28,7 @@ STEADY = 0.9
 """Share of the width that a row fills: the rows stand on gaps, not on each other."""
 
 
-def heap(seed: int = 1) -> tuple[Grains, Array]:
+def heap(seed: int = 1) -> tuple[Grains, Floats]:
     """Rows of discs let fall into a box and brought to rest with background drag; and their weights (n, 2) N/m."""
     rng = np.random.default_rng(seed)
     pitch = 2.0 * RADIUS / STEADY
@@ -47,7 +45,7 @@ def heap(seed: int = 1) -> tuple[Grains, Array]:
     return grains, weights
 
 
-def asleep(grains: Grains, weights: Array, share: float = SHARE, after: float = AFTER) -> Sleep:
+def asleep(grains: Grains, weights: Floats, share: float = SHARE, after: float = AFTER) -> Sleep:
     """Allow the discs to sleep; returns their `Sleep`."""
     grains.sleep = Sleep(grains, np.hypot(weights[:, 0], weights[:, 1]), share, after)
     return grains.sleep
@@ -95,7 +93,7 @@ COLUMN = (6, 9)
 FLOOR = 60.0 * RADIUS  # m, from wall to wall
 
 
-def collapsed(share: float | None = None, nudge: float = 0.0, seconds: float = 0.5) -> Array:
+def collapsed(share: float | None = None, nudge: float = 0.0, seconds: float = 0.5) -> Floats:
     """A column of 54 discs beside a wall, let go: (run-out, mean height) of what lies in the end, in radii.
 
     share : of their weight by which sleepers may be out of balance; None: no grain sleeps.  nudge : m, of one disc.

@@ -3,9 +3,9 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Materials
@@ -14,11 +14,10 @@ from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
 from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS, free, law_at, relative
 
-Array = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 
-def stack(count: int, gravity: float = GRAVITY, decays: float = 40.0) -> Array:
+def stack(count: int, gravity: float = GRAVITY, decays: float = 40.0) -> Floats:
     """Overlaps (count,) m under each disc of a stack left to itself for ``decays`` of its slowest wave's
     decay times, from the top, over m g/k."""
     law = law_at(0.3)
@@ -46,7 +45,7 @@ def static_stack() -> Measured:
     return Measured(exact, found.tolist(), relative(found, exact))
 
 
-def unlike_stack(gravity: float = GRAVITY) -> Array:
+def unlike_stack(gravity: float = GRAVITY) -> Floats:
     """Overlaps over m g: floor of steel under a disc of rubber, under one of steel, (2,) m/N per metre, at rest."""
     steel, rubber = Linear(STIFFNESS), Linear(0.1 * STIFFNESS)
     laws = Materials({"steel": steel, "rubber": rubber}, walls="steel")

@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
@@ -12,7 +12,6 @@ from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
 from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS, relative
 
-Array = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 
@@ -61,7 +60,7 @@ def dispersion() -> Measured:
     return Measured(exact, found, relative(found, exact))
 
 
-def kicked_chain(time: float, count: int = 96) -> tuple[float, Array]:
+def kicked_chain(time: float, count: int = 96) -> tuple[float, Floats]:
     """Some ``time`` in sqrt(m/k) after disc 0 got a kick: that time exactly, and velocities (count,) over the kick."""
     grains = chain(count)
     dt = 0.01

@@ -6,15 +6,13 @@ The lid-driven cavity, steady, and what others found for it.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Reals
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import relaxation_time
 from porescale.validation.lbm.channels import one_thread
-
-Array = NDArray[np.floating]
 
 GHIA_U = {
     100: ((0.8516, 0.23151), (0.7344, 0.00332), (0.6172, -0.13641), (0.5, -0.20581), (0.4531, -0.21090),
@@ -39,8 +37,8 @@ EXTREMA_1000 = (-0.38857, 0.37694, -0.52708)
 class Cavity(NamedTuple):
     """Velocities over the lid's at (k + 1/2)/n, (n,): u on the vertical, v on the horizontal centre line."""
 
-    u: Array
-    v: Array
+    u: Reals
+    v: Reals
     steps: int
 
 
@@ -65,7 +63,7 @@ def cavity(
     return Cavity(u, (uy[half - 1] + uy[half]) / (2 * speed), fluid.step)
 
 
-def read(line: Array, places: tuple[tuple[float, float], ...]) -> tuple[Array, Array]:
+def read(line: Reals, places: tuple[tuple[float, float], ...]) -> tuple[Reals, Reals]:
     """Given values and those of a centre line at the same places, (k,): parabola through the three nearest cells."""
     n = line.size
     found = []
@@ -82,7 +80,7 @@ def extrema(run: Cavity) -> tuple[float, float, float]:
     return -_top(-run.u), _top(run.v), -_top(-run.v)
 
 
-def _top(line: Array) -> float:
+def _top(line: Reals) -> float:
     k = int(np.argmax(line[1:-1])) + 1
     a, b, c = line[k - 1 : k + 2]
     return float(b - (c - a) ** 2 / (8 * (a - 2 * b + c)))

@@ -8,17 +8,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import set_threads, threads
+from porescale.common.core.types import Reals
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
 from porescale.lbm.collision.trt import antisymmetric_rate
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import relaxation_time
-
-Array = NDArray[np.floating]
 
 MEMORY = 40.0
 """e-folds after which a start has been forgotten: exp(-40) = 4e-18 is below round-off."""
@@ -46,7 +44,7 @@ def steady_steps(height: int, viscosity: float, magic: float) -> int:
 
 def poiseuille(
     height: int, viscosity: float, magic: float = MAGIC_MIDWAY_WALL, peak: float = 1e-3
-) -> tuple[Array, Array]:
+) -> tuple[Reals, Reals]:
     """Velocity of each row over the exact peak, measured and exact, (height,); started from rest.
 
     Two walls at rest, half a cell outside the first and last row, and a body force.  The exact parabola is that of
@@ -64,7 +62,7 @@ def poiseuille(
 
 def couette(
     height: int, viscosity: float, magic: float = MAGIC_MIDWAY_WALL, speed: float = 1e-3
-) -> tuple[Array, Array]:
+) -> tuple[Reals, Reals]:
     """Velocity of each row over the lid's, measured and exact, y/H, (height,); started from rest."""
     sides = Sides(left="periodic", right="periodic", top_speed=speed)
     fluid = Fluid(3, height, relaxation_time(viscosity), magic=magic, sides=sides)
@@ -95,7 +93,7 @@ def taylor_green(
     periodic = Sides("periodic", "periodic", "periodic", "periodic")
     fluid = Fluid(cells, cells, relaxation_time(viscosity), operator=operator, sides=periodic)
 
-    def exact(time: float) -> tuple[Array, Array, Array]:
+    def exact(time: float) -> tuple[Reals, Reals, Reals]:
         """The vortices where they have been carried, faded by then."""
         x, y = np.meshgrid(np.arange(cells) - carried * time, np.arange(cells) - 0.5 * carried * time)
         a = top * math.exp(-decay * time)

@@ -4,20 +4,18 @@ Flows through open sides: a channel between two pressures, a plug that comes and
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Reals
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import relaxation_time
 from porescale.validation.lbm.channels import one_thread
 
-Array = NDArray[np.floating]
-
 
 def pressure_channel(
     height: int, length: int, viscosity: float, drop: float, operator: str = "trt"
-) -> tuple[Array, Array]:
+) -> tuple[Reals, Reals]:
     """Velocity between two pressure sides over the exact peak, (height, length), and the exact parabola, (height,).
 
     drop: of density from left to right.  Started from rest, run until 20 of its memories height²/(pi² viscosity) and

@@ -6,8 +6,8 @@ Flows in which collision operators differ: moving frames, thin shear layers, edd
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Reals
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.collision.choose import OPERATORS
@@ -16,7 +16,6 @@ from porescale.lbm.lattice import relaxation_time, viscosity
 from porescale.validation.lbm import channels as channels
 from porescale.validation.lbm.channels import one_thread
 
-Array = NDArray[np.floating]
 PERIODIC = Sides("periodic", "periodic", "periodic", "periodic")
 
 
@@ -51,7 +50,7 @@ def shear_layers(
     speed: float = 0.05,
     passages: float = 2.0,
     smagorinsky: float = 0.0,
-) -> Array:
+) -> Reals:
     """Kinetic energy over that at the start, at ten times, (10,), of two thin shear layers that roll up.
 
     Minion & Brown 1997: u = tanh(80 (y - 1/4)) or tanh(80 (3/4 - y)), v = 0.05 sin(2 pi (x + 1/4)) in a periodic unit
@@ -78,7 +77,7 @@ def shear_layers(
 
 def eddy_channel(
     operator: str, height: int = 32, *, smagorinsky: float = 2.0, tau: float = 0.6, force: float = 3e-5
-) -> tuple[Array, Array]:
+) -> tuple[Reals, Reals]:
     """Velocity of each row of a driven channel whose viscosity is nu + C²|u'|, measured and exact, (height,).
 
     Exact: (nu + C²|u'|) u' = -F (y - H/2), so |u'| = (sqrt(nu² + 4 C² F s) - nu)/(2 C²) at a distance s from the
@@ -88,7 +87,7 @@ def eddy_channel(
     nu, square = viscosity(tau), smagorinsky**2
     s = np.abs(np.arange(height) + 0.5 - height / 2)
 
-    def integral(s: Array) -> Array:
+    def integral(s: Reals) -> Reals:
         """Integral over s of the shear rate at a distance ``s`` from the axis, lattice units."""
         return ((nu**2 + 4 * square * force * s) ** 1.5 / (6 * square * force) - nu * s) / (2 * square)
 

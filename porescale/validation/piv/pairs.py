@@ -8,8 +8,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.piv.estimate.interpolate import coefficients, sample
 from porescale.piv.estimate.measure import Settings, Vectors, measure
@@ -20,7 +20,6 @@ from porescale.piv.images.flows import Flow
 from porescale.piv.images.spots import add_spots
 from porescale.piv.images.synth import Camera, Pair, pair
 
-Array = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 SIZE = (512, 512)
@@ -64,7 +63,7 @@ class Outcome:
     inside: int
 
 
-def errors(made: Pair, found: Vectors) -> tuple[Array, Array]:
+def errors(made: Pair, found: Vectors) -> tuple[Floats, Floats]:
     """Both components' errors, (2, ny, nx) px, and the distance from the nearest solid, (ny, nx) px."""
     x, y = np.meshgrid(found.x, found.y)
     u, v = made.flow.displacement(x, y)
@@ -110,7 +109,7 @@ def stated(name: str, seeds: Iterable[int] = SEEDS) -> tuple[float, float]:
     return _rms(off) / _rms(spread), float(np.mean(np.abs(off) < spread))
 
 
-def bias(diameter: float, shifts: Iterable[float], size: int = 256, settings: Settings | None = None) -> Array:
+def bias(diameter: float, shifts: Iterable[float], size: int = 256, settings: Settings | None = None) -> Floats:
     """Mean error of u on clean pairs of a uniform displacement, px, for each of ``shifts``."""
     camera = Camera((size, size), diameter=diameter, noise=0.0, lost=0.0)
     found = []
@@ -146,7 +145,7 @@ def quintic(size: int = 48) -> float:
     """Largest error of the interpolator on a polynomial of fifth degree over its largest value, away from the edges."""
     y, x = np.mgrid[:size, :size] / size
 
-    def value(x: Array, y: Array) -> Array:
+    def value(x: Floats, y: Floats) -> Floats:
         """The polynomial at x, y."""
         return np.asarray((x - 0.3) ** 5 - 2 * x * x * y**3 + y**5 - x * y + 0.5)
 
@@ -173,7 +172,7 @@ def light(sigma: float) -> float:
     return float(image.sum()) / (2 * np.pi * sigma**2)
 
 
-def _rms(values: Array) -> float:
+def _rms(values: Floats) -> float:
     return float(np.sqrt(np.mean(values**2))) if values.size else 0.0
 
 

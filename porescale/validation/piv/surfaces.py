@@ -1,13 +1,12 @@
 """The surface of a pile, found from the discs of a picture and from what is solid in it.  Pixels."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.piv.fields.surface import of_grains, of_solids
 from porescale.piv.images import flows
 
-Array = NDArray[np.float64]
 VALIDATIONS = Validations()
 
 
@@ -21,8 +20,8 @@ def pile(step: float) -> tuple[list[float], list[float]]:
     x = np.array([60.0, 160.0, 240.0, 200.0, 330.0])
     y = np.array([r, r, r, r + np.sqrt(3) * r, 300.0])
     discs = flows.Discs(x, y, np.full(5, r))
-    columns: Array = 20.0 + step * (np.arange(round(360 / step), dtype=float) + 0.5)
-    rows: Array = 399.5 - np.arange(400, dtype=float)
+    columns: Floats = 20.0 + step * (np.arange(round(360 / step), dtype=float) + 0.5)
+    rows: Floats = 399.5 - np.arange(400, dtype=float)
     solid = discs.inside(*np.meshgrid(columns, rows))
     found = [of_grains(discs, columns), of_solids(columns, rows, solid)]
     exact = r * r * (2 * (2 + np.pi / 2) + 2 + 2 * np.sqrt(3) + np.pi / 2)
