@@ -21,7 +21,7 @@ import numpy as np
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Reals
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.lbm.boundary.sides import Kind, Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
@@ -85,7 +85,7 @@ def measure(
     lower, upper : corners of the window, m;  spacing : of the lattice, m;  direction : of the flow, "x" or "y";
     periodic : whether the window is a whole period along x and y;  walls : whether a no-slip wall stands at its lower
     and its upper flank (otherwise the bed goes on like its mirror image);  relaxation_time, laws, solid_laws : of the
-    lattice, keyword arguments of ``Fluid`` and ``Saturated``: a run's own show what its bed lets through in that run.
+    lattice, keyword arguments of ``Fluid`` and ``SaturatedCells``: those of a run show what its bed lets through in it.
 
     Raises InputError for a window without discs or, unless it is periodic, shorter than four diameters.
     """
@@ -119,14 +119,14 @@ def measure(
         length if whole[0] else 2 * length, cells[1], relaxation_time, force=(SLOWNESS * nu, 0.0),
         sides=Sides("periodic", "periodic", low, high), **(laws or {}),
     )  # fmt: skip
-    wet = Saturated(fluid, size, **(solid_laws or {}))
+    wet = SaturatedCells(fluid, size, **(solid_laws or {}))
     k, share, steady = _flow(fluid, wet, at, length, margin)
     return Measured(
         k * spacing**2, k / across**2, share, across * spacing, across, steady, fluid.step,
     )  # fmt: skip
 
 
-def _flow(fluid: Fluid, wet: Saturated, at: Reals, length: int, margin: int) -> tuple[float, float, bool]:
+def _flow(fluid: Fluid, wet: SaturatedCells, at: Reals, length: int, margin: int) -> tuple[float, float, bool]:
     """K (cells²), solid fraction and whether steady, of discs held at ``at`` in flow along x, driven until steady.
 
     length : columns of the sample;  margin : of these, columns at each face that are left out of the gradient.

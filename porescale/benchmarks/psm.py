@@ -7,7 +7,7 @@ import numpy as np
 
 from porescale.benchmarks.lbm import RELAXATION_TIME, bytes_of, side_of, steps_of
 from porescale.common.evidence.benchmarks import PLAIN, Benchmarks, Dtype, Work
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.lbm.fluid import Fluid
 
 BENCHMARKS = Benchmarks()
@@ -31,7 +31,7 @@ def stirred(side: int, dtype: Dtype) -> Callable[[int], None]:
     phase = np.random.default_rng(1).uniform(0, 2 * np.pi, count)
     velocity = SPEED * np.stack((np.cos(phase), np.sin(phase)), axis=-1)
     centre, spin = home.copy(), SPEED / DIAMETER * np.cos(3 * phase)
-    wet = Saturated(fluid, np.full(count, pitch * math.sqrt(SOLID / math.pi)))
+    wet = SaturatedCells(fluid, np.full(count, pitch * math.sqrt(SOLID / math.pi)))
 
     def run(steps: int) -> None:
         """So many steps; discs turn round every 64."""

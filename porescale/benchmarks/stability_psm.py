@@ -12,7 +12,7 @@ from porescale.benchmarks.stability_lbm import LOOK_EVERY, PERIODIC
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Reals
 from porescale.common.evidence.stability import Axis, Stability, Tried
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.step import Coupled
 from porescale.coupling.weighting.choose import WEIGHTINGS, fitting_weight
@@ -148,7 +148,7 @@ def tow(law: str, x: float, y: float) -> Tried:
     d, nx, ny = 10.0, 60, 40
     parts, speed = variants(False)[law], y * SOUND
     fluid = Fluid(nx, ny, 0.5 + x, operator=parts["operator"], dtype=parts["dtype"])
-    wet = Saturated(
+    wet = SaturatedCells(
         fluid, np.array([d / 2]), solid_operator=parts["solid_operator"], weighting=parts["weighting"]
     )  # fmt: skip
     slope = 0.2  # 11 degrees
@@ -265,7 +265,7 @@ def _resistance(law: str, fraction: float, diameter: float) -> float | None:
         cells, cells, tau, operator=parts["operator"], dtype=parts["dtype"], force=(force, 0.0), sides=PERIODIC
     )  # fmt: skip
     count = across**2
-    wet = Saturated(
+    wet = SaturatedCells(
         fluid, np.full(count, radius), solid_operator=parts["solid_operator"], weighting=parts["weighting"]
     )  # fmt: skip
     place, rest, no_spin = _lattice_of_discs(cells, across), np.zeros((count, 2)), np.zeros(count)

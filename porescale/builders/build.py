@@ -10,9 +10,9 @@ from porescale.builders.initial.frames import any_frames
 from porescale.builders.initial.grains import frames_of, grains_of
 from porescale.builders.initial.rectangles import on_the_lattice
 from porescale.builders.kinds import parts_of
-from porescale.builders.part import Clock
 from porescale.builders.scene import Scene
 from porescale.builders.simulation import Simulation
+from porescale.builders.stepper import Clock
 from porescale.builders.system import System
 from porescale.common.schema.sections import load
 from porescale.coupling.step import buoyant_weight

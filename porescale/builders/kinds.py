@@ -8,8 +8,9 @@ from typing import NamedTuple, TypeVar
 
 from porescale.builders.initial.frames import disc_count, free_rows
 from porescale.builders.initial.rock import has_plates
-from porescale.builders.part import Part, Stepper
+from porescale.builders.stepper import Stepper
 from porescale.builders.system import System
+from porescale.common.record.part import Part
 from porescale.scene.scene import Scene
 
 P = TypeVar("P", bound=Part)

@@ -3,10 +3,11 @@
 from collections.abc import Sequence
 from typing import Any, TypeVar
 
-from porescale.builders.part import Fields, Part, Stepper, overrides
+from porescale.builders.stepper import Fields, Stepper
 from porescale.builders.system import System
 from porescale.common.core.errors import Unstable
 from porescale.common.record.model import Snapshot
+from porescale.common.record.part import Part, acts_between, overrides, restore, row_of, state_of, tables_of
 
 P = TypeVar("P", bound=Part)
 
@@ -28,7 +29,7 @@ class Simulation:
         self.stepper, self.parts = stepper, [stepper, *others]
         self._before = [part.before for part in self.parts if overrides(part, "before")]
         self._after = [part.after for part in self.parts if overrides(part, "after")]
-        self._between = [part for part in self.parts if overrides(part, "before") or overrides(part, "after")]
+        self._between = [part for part in self.parts if acts_between(part)]
 
     @property
     def step(self) -> int:
@@ -80,17 +81,11 @@ class Simulation:
 
     def series(self) -> dict[str, float]:
         """One row: time, and the columns of every part."""
-        row = {"time (s)": self.time}
-        for part in self.parts:
-            row |= part.row()
-        return row
+        return {"time (s)": self.time} | row_of(self.parts)
 
     def tables(self) -> dict[str, dict[str, float]]:
         """A row of each further series: what probes, flux sections and load cells read; {} where there are none."""
-        tables: dict[str, dict[str, float]] = {}
-        for part in self.parts:
-            tables |= part.tables()
-        return tables
+        return tables_of(self.parts)
 
     def snapshot(self) -> Snapshot:
         """Fluid as cells, grains as points."""
@@ -101,10 +96,7 @@ class Simulation:
 
     def state(self) -> dict[str, Any]:
         """Everything needed to go on bit for bit."""
-        state: dict[str, Any] = {"step": self.step}
-        for part in self.parts:
-            state |= part.state()
-        return state
+        return {"step": self.step} | state_of(self.parts)
 
     def restore(self, state: dict[str, Any]) -> None:
         """Take up a state of a simulation built from the same scene.
@@ -112,5 +104,4 @@ class Simulation:
         In the reverse order of the parts: what stands in the fluid is put in place before the fluid is restored.
         """
         self.clock.put(int(state["step"]))
-        for part in reversed(self.parts):
-            part.restore(state)
+        restore(self.parts, state)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from porescale.builders.derive import Derived
 from porescale.builders.initial.frames import Placed
-from porescale.builders.part import Clock
+from porescale.builders.stepper import Clock
 from porescale.common.core.types import AnyArray
 from porescale.coupling.coverage.rectangle import Rectangle
 from porescale.coupling.step import Coupled

@@ -7,7 +7,7 @@
     F_n,T_n  sum over cells of the momentum that the solid gains          load.py
     v_n      corrected by half a step where cells are full                load.py, ``half_step_correction``
 
-``Saturated.advance`` is that step.
+``SaturatedCells.advance`` is that step.
 """
 
 import math
@@ -54,7 +54,7 @@ def row_work(nx: int, row_load: NDArray[np.float64], dtype: np.dtype[Any], *, so
     return RowWork(np.arange(BLOCK).astype(dtype), row_load, scratch, weights)
 
 
-class Saturated:
+class SaturatedCells:
     """Discs of given radii (cells), convex polygons, rectangles and rings that cover cells of the fluid.
 
     force (n, 2), torque (n,): loads of the last step on the discs, lattice units; rectangle_force (m, 2), ring_force,

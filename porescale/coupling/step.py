@@ -1,7 +1,7 @@
 """One coupled step: cover, stream and collide, load, and the contact steps under the held load.
 
     1. the bodies' places and motion in lattice units           ``to_lattice``, immersed.py
-    2. one step of the lattice with the bodies in it            ``Saturated.advance``, psm.py
+    2. one step of the lattice with the bodies in it            ``SaturatedCells.advance``, psm.py
     3. what moves each body: the cells' sum, the fluid inside   ``total_load``, immersed.py
        given back, the weight less buoyancy
     4. contact steps under that load, films in each             ``Grains.step`` or ``Lubrication.step``
@@ -25,7 +25,7 @@ from porescale.coupling.displaced import Displaced, displaced, of_whole_bodies
 from porescale.coupling.immersed import LAYER, CellLoad, Immersed, to_lattice
 from porescale.coupling.immersed_polygons import ImmersedPolygons, corners_of
 from porescale.coupling.lubrication import CELLS, Lubrication
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.dem.grains import Grains
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
@@ -72,7 +72,7 @@ class Coupled:
         self.hydraulic_radius = hydraulic_ratio * discs.radius
         self.hydraulic_radius[seen.stop :] = 0.0
         self.polygons = ImmersedPolygons(grains, scales, acceleration) if seen.stop < discs.count else None
-        self.saturated = Saturated(
+        self.saturated = SaturatedCells(
             fluid, self.hydraulic_radius[seen] / scales.spacing, solid_operator=solid_operator, weighting=weighting,
             rectangles=rectangles, polygons=self.polygons.polygons if self.polygons else None, soft_rim=soft_rim,
         )  # fmt: skip

@@ -9,7 +9,7 @@ from pathlib import Path
 from tests.reference.folders import ROOT
 
 PACKAGES = ("porescale", "continuum_sph")
-KERNELS = {"kernel", "parallel_kernel", "inline", "by_law"}
+KERNELS = {"kernel", "parallel_kernel", "inline", "law_function"}
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 

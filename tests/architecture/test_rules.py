@@ -116,7 +116,7 @@ def test_the_tree_that_the_wrong_ones_differ_from_is_right() -> None:
         {"porescale.dem.wide": f"@kernel\ndef f({MANY}):\n    'Sum.  Flat arguments: bundles cost 7 % of the rate.'\n"},
         {"porescale.cli.options": "def f(a, *, b, c, d, e, f, g, h, i, j): ..."},
         {"porescale.dem.law": "", "porescale.dem.a": BODY_OF_LAW},
-        {"porescale.dem.a": "@by_law\ndef force(x): ...\n@force.of(A)\ndef body(x): ..."},
+        {"porescale.dem.a": "@law_function\ndef force(x): ...\n@force.of(A)\ndef body(x): ..."},
     ],
 )
 def test_a_right_tree_passes(modules: dict[str, str]) -> None:

@@ -6,7 +6,7 @@ from porescale import Scene
 from porescale.builders.build import build
 from porescale.builders.parts.gate import GatePart
 from porescale.common.schema.sections import validate
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.lbm.fluid import Fluid
 
 
@@ -14,7 +14,7 @@ def stirred(places: list[np.ndarray], anew: bool) -> tuple[np.ndarray, np.ndarra
     """Populations and loads of water about discs at these places, one step each; covered anew or as it happens."""
     fluid = Fluid(24, 20, 0.7)
     fluid.set_flow(0.03, 0.01)
-    wet = Saturated(fluid, np.array([3.0, 2.5]))
+    wet = SaturatedCells(fluid, np.array([3.0, 2.5]))
     for place in places:
         if anew:
             wet._placed[:] = np.nan
@@ -32,7 +32,7 @@ def test_discs_that_stand_are_covered_once():
 def test_looking_at_the_cells_between_steps_changes_nothing():
     fluids = [Fluid(24, 20, 0.7) for _ in range(2)]
     place, still, spin = np.array([[7.3, 8.1]]), np.zeros((1, 2)), np.zeros(1)
-    wets = [Saturated(fluid, np.array([3.0])) for fluid in fluids]
+    wets = [SaturatedCells(fluid, np.array([3.0])) for fluid in fluids]
     for step in range(4):
         for k, (fluid, wet) in enumerate(zip(fluids, wets, strict=True)):
             if k and step == 2:

@@ -85,7 +85,7 @@ def lattices(simulation: Simulation, cells: int) -> list[str]:
 
 
 def test_a_dry_scene_makes_no_lattice(monkeypatch):
-    forbid(monkeypatch, "Fluid", "Saturated", "Coupled", "Sides", "Scales")
+    forbid(monkeypatch, "Fluid", "SaturatedCells", "Coupled", "Sides", "Scales")
     simulation = build(dry(gate={"x": 0.008, "opens_at": 0.0005}))
     simulation.advance(STEPS)
     assert (simulation.fluid, simulation.coupled) == (None, None)
@@ -109,7 +109,7 @@ def test_the_walk_finds_the_lattice_of_a_wet_scene():
     assert lattices(build(water()), 60 * 40)
 
 
-@pytest.mark.parametrize("part", ["Fluid", "Saturated", "PairList", "Plate"])
+@pytest.mark.parametrize("part", ["Fluid", "SaturatedCells", "PairList", "Plate"])
 def test_a_forbidden_part_is_noticed_where_it_is_needed(monkeypatch, part):
     # The twin of the constructors that raise: the wet column behind a gate needs them all.
     forbid(monkeypatch, part)
@@ -118,7 +118,7 @@ def test_a_forbidden_part_is_noticed_where_it_is_needed(monkeypatch, part):
 
 
 def test_a_scene_without_grains_makes_no_pair_list_and_covers_no_cell(monkeypatch):
-    forbid(monkeypatch, "PairList", "Grains", "Saturated", "Coupled", "Discs", "Linear")
+    forbid(monkeypatch, "PairList", "Grains", "SaturatedCells", "Coupled", "Discs", "Linear")
     simulation = build(water())
     simulation.advance(STEPS)
     assert (simulation.grains, simulation.coupled, simulation.weight) == (None, None, None)

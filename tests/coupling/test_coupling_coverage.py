@@ -8,7 +8,7 @@ import pytest
 from porescale.coupling.coverage import discs as coverage
 from porescale.coupling.coverage import rows as coverage_rows
 from porescale.coupling.coverage.rows import BLOCK
-from porescale.coupling.psm import BAND_HEIGHT, Saturated
+from porescale.coupling.psm import BAND_HEIGHT, SaturatedCells
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from tests.reference import psm as twin
@@ -20,7 +20,7 @@ def covered(discs, nx=20, ny=17, kinds=("wall", "wall"), motion=(0.0, 0.0, 0.0))
     """The saturated cells of discs (x, y, r)."""
     fluid = Fluid(nx, ny, 0.7, sides=Sides(kinds[0], kinds[0], kinds[1], kinds[1]))
     discs = np.array(discs, float)
-    wet = Saturated(fluid, discs[:, 2], solid_operator="odd-SC1")  # which sees the radius as it is
+    wet = SaturatedCells(fluid, discs[:, 2], solid_operator="odd-SC1")  # which sees the radius as it is
     u, v, w = motion
     wet.cover(discs[:, :2].copy(), np.tile((float(u), float(v)), (len(discs), 1)), np.full(len(discs), float(w)))
     return wet
@@ -135,7 +135,7 @@ def stepped(monkeypatch, height):
     monkeypatch.setattr("porescale.coupling.psm.BAND_HEIGHT", height)
     fluid = Fluid(20, 17, 0.7, sides=Sides("periodic", "periodic", "wall", "slip"))
     fluid.set_flow(0.02, -0.01)
-    wet = Saturated(fluid, np.array([3.5, 3.6, 2.2]))
+    wet = SaturatedCells(fluid, np.array([3.5, 3.6, 2.2]))
     for _ in range(3):
         wet.advance(fluid, np.array([(6.3, 8.2), (13.1, 8.2), (19.7, 16.9)]), np.full((3, 2), 0.01), np.full(3, 0.002))
     return fluid.populations[:, 1:-1, 1:-1].copy(), wet.force, wet.torque
@@ -150,13 +150,13 @@ def test_loads_and_flow_do_not_depend_on_the_bands(monkeypatch, height):
 
 def test_every_band_is_done_once():
     for rows in (1, 8, 9, 64, 1000):
-        wet = Saturated(Fluid(4, rows, 0.7), np.zeros(0))
+        wet = SaturatedCells(Fluid(4, rows, 0.7), np.zeros(0))
         np.testing.assert_array_equal(np.sort(wet._band_order), np.arange(-(-rows // BAND_HEIGHT)))
 
 
 def test_bands_at_the_bottom_are_spread_over_the_threads():
     # 16 of 64 bands hold grains; each of four threads takes a quarter of the order.
-    order = Saturated(Fluid(4, 64 * BAND_HEIGHT, 0.7), np.zeros(0))._band_order
+    order = SaturatedCells(Fluid(4, 64 * BAND_HEIGHT, 0.7), np.zeros(0))._band_order
     share = [int(np.sum(part < 16)) for part in np.split(order, 4)]
     assert max(share) <= 5
     assert sorted(share) != [0, 0, 0, 16]  # in their natural order one thread would do it all
@@ -234,7 +234,7 @@ def test_loads_are_the_same_uncompiled(monkeypatch):
 
 
 def test_the_solid_fields_are_made_when_asked_for():
-    wet = Saturated(Fluid(30, 20, 0.7), np.array([3.0]))
+    wet = SaturatedCells(Fluid(30, 20, 0.7), np.array([3.0]))
     wet.advance(Fluid(30, 20, 0.7), np.array([[8.0, 9.0]]), np.zeros((1, 2)), np.zeros(1))
     assert wet._covered is None
     assert not wet.solid.any()
@@ -242,6 +242,6 @@ def test_the_solid_fields_are_made_when_asked_for():
 
 def test_no_discs_cover_nothing():
     fluid = Fluid(6, 5, 0.7)
-    wet = Saturated(fluid, np.zeros(0))
+    wet = SaturatedCells(fluid, np.zeros(0))
     wet.advance(fluid, np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0))
     assert not wet.solid.any()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import CX
 from tests.reference.memory import peak
@@ -26,8 +26,8 @@ def held(spacing):
     radius = np.full(len(centre), 0.4 * ACROSS * SIDE)
     fluid = Fluid(SIDE, SIDE, 0.8, dtype=np.float32)
     motion = np.zeros_like(centre), np.zeros(len(centre))
-    Saturated(fluid, radius).advance(fluid, centre, *motion)  # compiled before it counts
-    return peak(lambda: Saturated(fluid, radius).advance(fluid, centre, *motion))
+    SaturatedCells(fluid, radius).advance(fluid, centre, *motion)  # compiled before it counts
+    return peak(lambda: SaturatedCells(fluid, radius).advance(fluid, centre, *motion))
 
 
 @pytest.mark.usefixtures("one_thread")

@@ -14,7 +14,7 @@ from porescale.coupling.coverage.discs import cover
 from porescale.coupling.coverage.polygon import Polygons
 from porescale.coupling.coverage.rows import make_patches
 from porescale.coupling.divergence_check import _lightest
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.step import Coupled
 from porescale.dem.bodies.clumps import Body
 from porescale.dem.bodies.frames import chain, framed, polygon
@@ -172,7 +172,7 @@ def test_frames_that_are_no_convex_polygons_are_refused_in_fluid():
     with pytest.raises(InputError, match="no films between polygons"):
         put(polygon(square, 0.2, 2.0), lubrication=True)
     with pytest.raises(ValueError, match="longer than the periodic box"):
-        Saturated(
+        SaturatedCells(
             Fluid(16, 32, 0.8, sides=Sides("periodic", "periodic")),
             np.zeros(0),
             polygons=Polygons([outlines.plate(17, 3)]),
@@ -185,7 +185,7 @@ def test_scenes_without_polygons_never_touch_their_code(monkeypatch):
 
     for name in ("cover_polygons", "pointed", "convex"):
         monkeypatch.setattr(shapes, name, never)
-    wet = Saturated(Fluid(8, 8, 0.7), np.array([2.0]))
+    wet = SaturatedCells(Fluid(8, 8, 0.7), np.array([2.0]))
     wet.cover(np.array([[4.0, 4.0]]), np.zeros((1, 2)), np.zeros(1))
     assert wet.polygons is None
     assert wet.polygon_load.shape == (0, 3)

@@ -9,7 +9,7 @@ from scipy.integrate import simpson
 from porescale.cli.main import PACKAGE
 from porescale.coupling.coverage import soft_rim as rim
 from porescale.coupling.coverage.rows import make_patches
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.psm_kernels import weights_row
 from porescale.coupling.solid.choose import choose_solid
 from porescale.coupling.weighting.choose import choose_weight
@@ -32,12 +32,12 @@ def towed(soft, speed, steps=60, mirrored=False, restart=None):
     spin = speed * np.array([0.05, -0.03])
     if mirrored:
         place, motion, spin = place * (-1, 1) + (40, 0), motion * (-1, 1), -spin
-    wet = Saturated(fluid, np.array([5.5, 4.2]), soft_rim=soft)
+    wet = SaturatedCells(fluid, np.array([5.5, 4.2]), soft_rim=soft)
     for step in range(steps):
         if step == restart:
             kept = copy.deepcopy((fluid.state(), wet.state()))
             fluid = Fluid(40, 30, 0.505, operator="central", sides=PERIODIC)
-            wet = Saturated(fluid, np.array([5.5, 4.2]), soft_rim=soft)
+            wet = SaturatedCells(fluid, np.array([5.5, 4.2]), soft_rim=soft)
             fluid.restore(kept[0])
             wet.restore(kept[1])
         wet.advance(fluid, place, motion, spin)
@@ -111,7 +111,7 @@ def test_fast_flow_does():
 
 def test_what_discs_gain_the_fluid_loses():
     fluid = Fluid(40, 30, 0.505, operator="central", sides=PERIODIC)
-    wet = Saturated(fluid, np.array([5.5, 4.2]), soft_rim=True)
+    wet = SaturatedCells(fluid, np.array([5.5, 4.2]), soft_rim=True)
     place, motion = np.array([(10.2, 12.3), (20.9, 15.1)]), np.array([(0.04, 0.01), (-0.03, 0.02)])
     for _ in range(30):
         before, mass = np.array(fluid.momentum()), fluid.mass_excess()
@@ -135,7 +135,7 @@ def test_left_is_as_good_as_right():
 
 def test_soft_rims_go_with_exact_walls_only():
     with pytest.raises(ValueError, match="exact-wall"):
-        Saturated(Fluid(20, 20, 0.7), np.array([4.0]), solid_operator="SC1", soft_rim=True)
+        SaturatedCells(Fluid(20, 20, 0.7), np.array([4.0]), solid_operator="SC1", soft_rim=True)
 
 
 @pytest.mark.slow

@@ -6,7 +6,7 @@ import pytest
 from porescale.coupling.coverage import through_sides as crossing
 from porescale.coupling.coverage.rectangle import Rectangle, fill_rectangle
 from porescale.coupling.coverage.ring import Ring
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.validation.coupling import rings as lab
@@ -18,7 +18,7 @@ EPS = np.finfo(float).eps
 def covered(nx=20, ny=17, kinds=("wall", "wall"), rectangles=(), rings=(), operator="odd-SC1"):
     """Fractions and velocity of the solid of these shapes."""
     fluid = Fluid(nx, ny, 0.7, sides=Sides(kinds[0], kinds[0], kinds[1], kinds[1]))
-    wet = Saturated(fluid, np.zeros(0), solid_operator=operator, rectangles=rectangles, rings=rings)
+    wet = SaturatedCells(fluid, np.zeros(0), solid_operator=operator, rectangles=rectangles, rings=rings)
     wet.cover(*lab.NO_DISCS)
     return wet
 
@@ -61,7 +61,7 @@ def test_a_ring_covers_what_its_hole_leaves():
 def test_a_ring_with_exact_walls_is_wider_by_its_shift_and_a_rectangle_is_not():
     ring, fluid = Ring((9.5, 8.5), 6.0), Fluid(20, 17, 0.7)
     solid = covered(rings=[ring], operator="exact-wall").solid.sum()
-    shift = Saturated(fluid, np.array([6.0])).covering_radius[0] - 6.0
+    shift = SaturatedCells(fluid, np.array([6.0])).covering_radius[0] - 6.0
     assert shift > 0.01
     assert solid == pytest.approx(20 * 17 - np.pi * (6.0 + shift) ** 2, abs=1e-10)
     assert covered(rectangles=[Rectangle((3.25, 4.5), (9.75, 8.0))], operator="exact-wall").solid.sum() == 6.5 * 3.5
@@ -95,7 +95,7 @@ def test_shapes_that_cannot_be_are_refused():
 
 
 def test_absent_shapes_build_nothing():
-    wet = Saturated(Fluid(8, 8, 0.7), np.array([2.0]))
+    wet = SaturatedCells(Fluid(8, 8, 0.7), np.array([2.0]))
     assert wet.bodies is None
     assert "bodies" not in wet.state()
     assert wet.rectangle_force.shape == wet.ring_force.shape == (0, 2)
@@ -109,7 +109,7 @@ def test_kernels_are_right_as_plain_python():
     np.testing.assert_array_equal(found[:, :4], np.outer([0.5, 1.0, 0.0], [0.75, 1.0, 0.5, 0.0]))
     assert not found[:, 4:].any()
     fluid, shape = Fluid(12, 10, 0.7), Rectangle((-2.0, -2.0), (5.5, 4.0), (0.01, 0.02))
-    wet = Saturated(fluid, np.zeros(0), rectangles=[shape])
+    wet = SaturatedCells(fluid, np.zeros(0), rectangles=[shape])
     wet.cover(*lab.NO_DISCS)
     links, added = crossing.side_links(fluid), fluid.links.added.copy()
     motion = np.array([[1.75, 1.0]]), np.array([[0.01, 0.02]]), np.zeros(1)
@@ -125,7 +125,7 @@ def test_momentum_goes_from_a_moving_rectangle_to_the_fluid():
     # In a periodic box nothing else gives or takes: sum rho u - A U, the fluid inside taken along, changes by the load.
     fluid = Fluid(24, 18, 0.7, sides=Sides("periodic", "periodic", "periodic", "periodic"))
     body = Rectangle((5.3, 4.2), (11.1, 9.9))
-    wet = Saturated(fluid, np.zeros(0), rectangles=[body])
+    wet = SaturatedCells(fluid, np.zeros(0), rectangles=[body])
     given, worst, area = np.zeros(2), 0.0, 5.8 * 5.7
     for step in range(200):
         body.velocity[:] = 0.01 * np.sin(0.05 * step), 0.02 * np.sin(0.03 * step)
@@ -191,7 +191,7 @@ def set_off(rest, *, one_sided=False):
     """
     fluid = Fluid(20, 12, 0.8, sides=Sides(top="slip"))
     gate = Rectangle((8.3, -60.0), (12.0, 200.0))
-    wet = Saturated(fluid, np.zeros(0), rectangles=[gate])
+    wet = SaturatedCells(fluid, np.zeros(0), rectangles=[gate])
     if one_sided:
         wet.bodies._links.share[:] = 0.0
     for step in range(rest + 6):
@@ -226,7 +226,7 @@ def test_a_state_goes_on_bit_for_bit():
         return (
             fluid,
             gate,
-            Saturated(fluid, np.array([2.0]), rectangles=[gate], rings=[Ring((10.0, 8.0), 7.5, spin=1e-4)]),
+            SaturatedCells(fluid, np.array([2.0]), rectangles=[gate], rings=[Ring((10.0, 8.0), 7.5, spin=1e-4)]),
         )
 
     disc = np.array([[4.8, 8.0]]), np.zeros((1, 2)), np.zeros(1)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.solid.choose import choose_solid
 from porescale.coupling.solid.law import SolidCell, blend, momentum_to_solid
 from porescale.coupling.weighting.choose import choose_weight
@@ -41,7 +41,7 @@ def differences(wrong=None, steps=4):
     box.lattice.f = lbm.equilibrium(rho, ux, uy)
     fluid = Fluid(NX, NY, TAU, operator="central", sides=PERIODIC)
     fluid.set_flow(ux, uy, rho)
-    wet = Saturated(fluid, np.array([d.r for d in there]), soft_rim=True)
+    wet = SaturatedCells(fluid, np.array([d.r for d in there]), soft_rim=True)
     wet.soft_rim.slip[:] = SLIP
     worst = np.zeros(4)
     for _ in range(steps):
@@ -103,7 +103,7 @@ def test_slips_at_a_rim_do_not_depend_on_the_place_of_the_sides():
     slips = []
     for x in (10.3, 21.3, 0.3):
         fluid = Fluid(NX, NY, TAU, operator="central", sides=PERIODIC)
-        wet = Saturated(fluid, np.array([4.2]), soft_rim=True)
+        wet = SaturatedCells(fluid, np.array([4.2]), soft_rim=True)
         for _ in range(5):
             wet.advance(fluid, np.array([[x, 9.1]]), np.array([[0.05, 0.02]]), np.zeros(1))
         slips.append(float(wet.soft_rim.slip[0]))

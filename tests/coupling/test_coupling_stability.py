@@ -13,7 +13,7 @@ from porescale.common.evidence.stability import STABLE, UNSTABLE, Row, holds_up_
 from porescale.coupling import limits
 from porescale.coupling.divergence_cause import Circumstances, likely_cause
 from porescale.coupling.divergence_check import DivergenceCheck, worst_cell
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting.choose import WEIGHTINGS
 from porescale.lbm.boundary.sides import Sides
@@ -147,7 +147,7 @@ def test_a_disc_that_is_nowhere_hides_no_fault_of_the_fluid():
 @pytest.mark.parametrize("kind", ["wall", "periodic"])
 def test_a_disc_that_is_nowhere_is_no_crash(where, kind):
     fluid = Fluid(20, 16, 0.8, sides=Sides(kind, kind, kind, kind))
-    wet = Saturated(fluid, np.array([3.0, 3.0, 3.0]))
+    wet = SaturatedCells(fluid, np.array([3.0, 3.0, 3.0]))
     place = np.array([[5.0, 5.0], [where, where], [12.0, 8.0]])
     for _ in range(4):
         wet.advance(fluid, place, np.zeros((3, 2)), np.zeros(3))

@@ -8,7 +8,7 @@ import pytest
 
 from porescale.common.compiled.jit import set_threads
 from porescale.coupling import psm_kernels as solid_collision
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.solid.choose import choose_solid
 from porescale.coupling.weighting.choose import choose_weight
 from porescale.lbm.boundary.sides import Sides
@@ -29,7 +29,7 @@ ROUND_OFF = 120 * EPS
 def wet_and_twin(kinds, discs, force=(2e-5, -1e-5), tau=0.7, operator="exact-wall", twin_operator=None, **switches):
     names = ("left", "right", "bottom", "top")
     fluid = Fluid(22, 18, tau, force=force, sides=Sides(*kinds))
-    other = twin.Saturated(
+    other = twin.SaturatedCells(
         22, 18, tau, force=force, sides={n: (k, 0.0) for n, k in zip(names, kinds, strict=True)},
         operator=twin_operator or operator, **switches,
     )  # fmt: skip
@@ -37,7 +37,7 @@ def wet_and_twin(kinds, discs, force=(2e-5, -1e-5), tau=0.7, operator="exact-wal
     rho, ux, uy = 1 + 0.01 * random.uniform(-1, 1, (18, 22)), *(0.05 * random.uniform(-1, 1, (2, 18, 22)))
     fluid.set_flow(ux, uy, rho)
     other.f = plain.equilibrium(rho, ux, uy)
-    wet = Saturated(fluid, np.array([d.r for d in discs]), solid_operator=operator)
+    wet = SaturatedCells(fluid, np.array([d.r for d in discs]), solid_operator=operator)
     return fluid, wet, other
 
 
@@ -112,7 +112,7 @@ def test_a_correction_that_is_forgotten_is_missed():
         fluid, wet, _ = wet_and_twin(SIDES[0], crowd())
         for step in range(8):
             if step == 5:
-                again = Saturated(fluid, wet.radius)
+                again = SaturatedCells(fluid, wet.radius)
                 if not forget:
                     again.restore(_copied(wet.state()))
                 wet = again

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.solid import exact_wall
 from porescale.coupling.solid.choose import SOLID_OPERATORS, choose_solid
 from porescale.coupling.solid.law import SolidCell, blend, force_share, momentum_to_solid, rates
@@ -145,7 +145,7 @@ def moving(solid, weight, seed, *, mirrored=False):
         centre, velocity = centre * (-1, 1) + (N, 0), velocity * (-1, 1)
     fluid = Fluid(N, N, tau, force=tuple(force), sides=PERIODIC)
     fluid.set_flow(ux, uy, rho)
-    wet = Saturated(fluid, radius, solid_operator=solid, weighting=weight)
+    wet = SaturatedCells(fluid, radius, solid_operator=solid, weighting=weight)
     return fluid, wet, (centre, velocity, spin)
 
 
@@ -174,7 +174,7 @@ def test_what_discs_gain_the_fluid_loses(solid, weight, seed):
 def test_a_neutral_disc_in_uniform_flow_feels_nothing(solid, weight):
     fluid = Fluid(N, N, 0.7, sides=PERIODIC)
     fluid.set_flow(0.03, 0.02)
-    wet = Saturated(fluid, np.array([4.0, 4.1]), solid_operator=solid, weighting=weight)
+    wet = SaturatedCells(fluid, np.array([4.0, 4.1]), solid_operator=solid, weighting=weight)
     centre, velocity = np.array([(8.3, 9.2), (15.9, 9.9)]), np.full((2, 2), (0.03, 0.02))
     force = torque = 0.0
     for _ in range(20):
@@ -242,4 +242,4 @@ def test_every_operator_has_its_weights_and_refuses_others(solid):
     assert [fitting_weight(solid, w) for w in own] == own
     for other in set(WEIGHTINGS) - set(own):
         with pytest.raises(ValueError, match=rf"{other}.*{solid}.*take '{own[0]}'"):
-            Saturated(Fluid(N, N, 0.7), np.array([4.0]), solid_operator=solid, weighting=other)
+            SaturatedCells(Fluid(N, N, 0.7), np.array([4.0]), solid_operator=solid, weighting=other)

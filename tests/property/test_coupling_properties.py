@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 
@@ -19,7 +19,7 @@ radius = st.floats(0.05, N / 2 - 0.03)  # as the fluid sees it, half a box at mo
 
 def coverage(x, y, r, mirrored=False):
     fluid = Fluid(N, N, 0.7, sides=Sides("periodic", "periodic", "periodic", "periodic"))
-    wet = Saturated(fluid, np.array([r]))
+    wet = SaturatedCells(fluid, np.array([r]))
     wet.cover(np.array([[x, y]]), np.zeros((1, 2)), np.zeros(1))
     return wet.solid[:, ::-1] if mirrored else wet.solid
 
@@ -33,7 +33,7 @@ def tolerance(r):
 @given(place, place, radius)
 def test_coverage_adds_up_to_the_disc_and_fills_no_cell_twice(x, y, r):
     e = coverage(x, y, r)
-    seen = float(Saturated(Fluid(N, N, 0.7), np.array([r])).covering_radius[0])
+    seen = float(SaturatedCells(Fluid(N, N, 0.7), np.array([r])).covering_radius[0])
     assert abs(e.sum() - math.pi * seen**2) <= 4 * (r + 1) ** 2 * tolerance(r)
     assert e.min() >= 0.0
     assert e.max() <= 1.0 or 2 * seen > N - 2  # a disc that all but fills the box meets itself
@@ -66,7 +66,7 @@ def test_what_discs_gain_the_fluid_loses(seed, odd):
     if odd:
         fluid.advance()
     discs = random.integers(1, 6)
-    wet = Saturated(fluid, random.uniform(0.3, 5.0, discs))
+    wet = SaturatedCells(fluid, random.uniform(0.3, 5.0, discs))
     before, mass = np.array(fluid.momentum()), fluid.mass_excess()
     wet.advance(fluid, random.uniform(0, N, (discs, 2)), random.uniform(-0.05, 0.05, (discs, 2)), np.full(discs, 0.01))
     # 576 cells with nine populations of 0.05, ten roundings each, all one way

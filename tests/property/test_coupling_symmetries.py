@@ -4,7 +4,7 @@ frames, momentum, and that nothing acts on what is carried along."""
 import numpy as np
 import pytest
 
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting.choose import WEIGHTINGS
 from porescale.lbm.boundary.sides import Sides
@@ -48,7 +48,7 @@ class Scene:
         self.fluid = Fluid(N, N, tau, operator=operator, force=tuple(turn @ force), sides=PERIODIC)
         ux, uy = np.tensordot(turn, velocity, 1)
         self.fluid.set_flow(self.turned(ux, turn) + frame[0], self.turned(uy, turn) + frame[1], self.turned(rho, turn))
-        self.wet = Saturated(self.fluid, self.radius, solid_operator=solid, weighting=weight, soft_rim=soft)
+        self.wet = SaturatedCells(self.fluid, self.radius, solid_operator=solid, weighting=weight, soft_rim=soft)
         if soft:
             self.wet.soft_rim.slip[:] = SLIP
 
@@ -141,7 +141,7 @@ def test_what_discs_gain_the_fluid_loses_and_mass_stays(solid, weight, fluid_ope
     if any(scene.fluid.force):  # how a body force is shared is the matter of test_coupling_operators.py
         scene.fluid = Fluid(N, N, scene.fluid.relaxation_time, operator=fluid_operator, sides=PERIODIC)
         scene.fluid.set_flow(*(0.05 * np.random.default_rng(1).uniform(-1, 1, (2, N, N))), 1.0)
-        scene.wet = Saturated(scene.fluid, scene.radius, solid_operator=solid, weighting=weight, soft_rim=soft)
+        scene.wet = SaturatedCells(scene.fluid, scene.radius, solid_operator=solid, weighting=weight, soft_rim=soft)
     for _ in range(3):  # a half-step correction has then built up
         before, mass = np.array(scene.fluid.momentum()), scene.fluid.mass_excess()
         scene.step()

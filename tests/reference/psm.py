@@ -73,7 +73,7 @@ class Disc:
 
 
 @dataclass
-class Saturated(Lattice):
+class SaturatedCells(Lattice):
     """The lattice with discs in it.
 
     forcing "inside" or "outside" of (1 - B);

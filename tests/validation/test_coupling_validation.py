@@ -98,7 +98,7 @@ def test_forcing_outside_the_fluid_share_is_felt_by_a_disc_at_rest():
     # 0.17 to 0.77 of rho g A that is not there
     loads = {}
     for forcing in ("inside", "outside"):
-        lattice = twin.Saturated(18, 18, 0.8, force=(0.0, -1e-6), operator="odd-SC1", forcing=forcing)
+        lattice = twin.SaturatedCells(18, 18, 0.8, force=(0.0, -1e-6), operator="odd-SC1", forcing=forcing)
         discs = [twin.Disc(9.3, 9.1, 3.0)]
         split = lattice.split(discs)
         lattice.split = lambda _, split=split: split  # it does not move

@@ -2,7 +2,7 @@
 
 from typing import Any, ClassVar, NamedTuple, Protocol, Self
 
-from porescale.common.compiled.jit import by_law
+from porescale.common.compiled.jit import law_function
 from porescale.common.core.types import Floats
 
 
@@ -62,7 +62,7 @@ class StateLaw(Protocol):
         """Work of compression per mass from ρ0 on, ∫ p/ρ² dρ, J/kg."""
 
 
-@by_law
+@law_function
 def pressure_of(ratio, law):
     """Pressure (Pa) and (c/c0)² at ``ratio`` ρ/ρ0, in kernels.
 

@@ -25,5 +25,5 @@ def has_soft_rim(fluid: Fluid) -> bool:
 
 
 def solid_options(fluid: Fluid) -> dict[str, Any]:
-    """What the laws of cells that grains lie in are chosen by: keyword arguments of ``Saturated`` and ``Coupled``."""
+    """What chooses the laws of cells that grains lie in: keyword arguments of ``SaturatedCells`` and ``Coupled``."""
     return {"solid_operator": fluid.solid_operator, "weighting": weight_of(fluid), "soft_rim": has_soft_rim(fluid)}

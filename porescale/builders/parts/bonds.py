@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.builders.initial.frames import Placed, disc_count
-from porescale.builders.part import Clock, Part, Row
+from porescale.builders.stepper import Clock, Row
 from porescale.builders.system import System
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.record.model import Cloud, Snapshot
+from porescale.common.record.part import Part
 from porescale.dem.bodies.bonding import bond, segments_now
 from porescale.dem.bodies.rigid import as_bodies
 from porescale.dem.forces.bonds import BondList, touched

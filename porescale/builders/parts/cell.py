@@ -5,9 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from porescale.builders.part import Clock, Part, Row
+from porescale.builders.stepper import Clock, Row
 from porescale.builders.system import System
 from porescale.common.core.types import Floats
+from porescale.common.record.part import Part
 from porescale.dem.bodies.rigid import areas
 from porescale.dem.grains import Grains
 

@@ -5,10 +5,10 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from porescale.builders.initial.frames import Placed, disc_count
-from porescale.builders.part import Part
 from porescale.builders.system import System
 from porescale.common.core.types import AnyArray
 from porescale.common.record.model import Cloud, Snapshot
+from porescale.common.record.part import Part
 from porescale.dem.grains import Grains
 from porescale.output.frame_clouds import FRAMES, frame_cloud
 

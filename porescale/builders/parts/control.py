@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 
 from porescale.builders.initial.rock import has_plates
-from porescale.builders.part import Clock, Part, Row
+from porescale.builders.stepper import Clock, Row
 from porescale.builders.system import System
+from porescale.common.record.part import Part
 from porescale.dem.grains import Grains
 
 

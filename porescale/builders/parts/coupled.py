@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from porescale.builders.part import Clock, Fields
 from porescale.builders.parts.fluid import FluidPart
+from porescale.builders.stepper import Clock, Fields
 from porescale.builders.system import System
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import AnyArray

@@ -1,7 +1,8 @@
 """The energy budget of the grains, as columns of series.csv."""
 
-from porescale.builders.part import Part, Row
+from porescale.builders.stepper import Row
 from porescale.builders.system import System
+from porescale.common.record.part import Part
 from porescale.dem.grains import Grains
 from porescale.dem.measures.energy import energy_book
 

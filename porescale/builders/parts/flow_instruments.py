@@ -4,11 +4,12 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from porescale.builders.part import Clock, Fields, Part, Row
 from porescale.builders.parts.flow_fields import LAMBDA, total_pressure
 from porescale.builders.parts.fluid import FluidPart
+from porescale.builders.stepper import Clock, Fields, Row
 from porescale.builders.system import System
 from porescale.common.core.types import AnyArray
+from porescale.common.record.part import Part
 from porescale.coupling.step import Coupled
 from porescale.output.sample import Sampler, midpoints
 from porescale.scene.measures.line import Flux

@@ -1,9 +1,10 @@
 """The fluid in series.csv."""
 
-from porescale.builders.part import Part, Row
 from porescale.builders.parts.flow_fields import LAMBDA, fluid_row
 from porescale.builders.parts.fluid import FluidPart
+from porescale.builders.stepper import Row
 from porescale.builders.system import System
+from porescale.common.record.part import Part
 
 
 class FlowSeries(Part):

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from porescale.builders.initial.fluid_options import weight_of
-from porescale.builders.part import Clock, Fields, Stepper
 from porescale.builders.parts.flow_fields import UNITS, derived_fields, total_pressure
+from porescale.builders.stepper import Clock, Fields, Stepper
 from porescale.builders.system import System
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import AnyArray

@@ -3,8 +3,9 @@
 from typing import Any
 
 from porescale.builders.initial.grains import GATE
-from porescale.builders.part import Clock, Part
+from porescale.builders.stepper import Clock
 from porescale.builders.system import System
+from porescale.common.record.part import Part
 from porescale.dem.grains import Grains
 from porescale.lbm.boundary.thin_plate import Plate
 from porescale.lbm.fluid import Fluid

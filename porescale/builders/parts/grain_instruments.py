@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from porescale.builders.initial.frames import Placed, disc_count, free_rows
 from porescale.builders.initial.walls import WallPlaces, middles
-from porescale.builders.part import Clock, Part, Row
 from porescale.builders.parts.frame_measures import solid_in
+from porescale.builders.stepper import Clock, Row
 from porescale.builders.system import System
 from porescale.common.core.types import AnyArray
 from porescale.common.record.model import Cloud, Grid, Snapshot
+from porescale.common.record.part import Part
 from porescale.dem.bodies.rigid import areas, as_bodies, body_of
 from porescale.dem.forces.rectangle import BOTTOM, RIGHT, TOP
 from porescale.dem.forces.rectangle import LEFT as LEFT_FACE

@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.builders.initial.frames import Placed, free_rows
-from porescale.builders.part import Part, Row
 from porescale.builders.parts.frame_measures import coordination_of_bodies
+from porescale.builders.stepper import Row
 from porescale.builders.system import System
+from porescale.common.record.part import Part
 from porescale.dem.discs import FIELDS, Discs
 from porescale.dem.grains import Grains
 from porescale.dem.measures.survey import centre_of_mass, coordination, kinetic_energy, max_overlap

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from porescale.builders.part import Clock, Stepper
+from porescale.builders.stepper import Clock, Stepper
 from porescale.builders.system import System
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import AnyArray

@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from typing import Any
 
-from porescale.builders.part import Clock, Part, Row
+from porescale.builders.stepper import Clock, Row
 from porescale.builders.system import System
+from porescale.common.record.part import Part
 from porescale.coupling.coverage.rectangle import Rectangle as LatticeRectangle
 from porescale.coupling.step import Coupled
 from porescale.dem.forces.rectangle import LEFT, RIGHT, VELOCITY_X

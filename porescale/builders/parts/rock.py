@@ -1,8 +1,9 @@
 """The record of a rock between its plates: rock.csv."""
 
-from porescale.builders.part import Clock, Part, Row
 from porescale.builders.parts.bonds import BondsPart
+from porescale.builders.stepper import Clock, Row
 from porescale.builders.system import System
+from porescale.common.record.part import Part
 from porescale.dem.grains import Grains
 from porescale.scene.bodies.rock import Rock
 from porescale.scene.packing import Packing

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from porescale.builders.part import Part, Row
+from porescale.builders.stepper import Row
 from porescale.builders.system import System
+from porescale.common.record.part import Part
 from porescale.coupling.step import buoyant_weight
 from porescale.dem.resting.sleep import Sleep as Sleepers
 

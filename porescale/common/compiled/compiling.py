@@ -168,7 +168,7 @@ class KernelCache(FunctionCache):
         return f"{name[-120:]}-{key}"
 
 
-def choose_by_law(chosen: Callable[..., Any], bodies: dict[type, Any]) -> None:
+def choose_law_function(chosen: Callable[..., Any], bodies: dict[type, Any]) -> None:
     """Let ``chosen`` mean, in kernels, the body for the type of its last argument."""
 
     def choose(*types: Any) -> Any:

@@ -1,7 +1,7 @@
 """How functions become kernels: compiled by numba when they are first called, and not before.
 
 numba takes longer to import than a wrong scene takes to be found wrong, so what is defined here waits for it: a
-`Kernel` until it is called, and the other functions (`by_law`, `unchecked_view` …) until the first kernel is.
+`Kernel` until it is called, and the other functions (`law_function`, `unchecked_view` …) until the first kernel is.
 compiling.py does the work then, and simd_code.py for simd.py.
 
 Kernels are compiled once and kept on disk.  numba stamps a cached kernel with its own file only, so an edited contact
@@ -132,7 +132,7 @@ def inline(function: F) -> F:
     return _decorator(forceinline=True)(function)
 
 
-def by_law(signature: F) -> Any:
+def law_function(signature: F) -> Any:
     """Make an inline kernel whose body depends on the type of its last argument, the law: a NamedTuple of numbers.
 
     A sweep that takes a law and passes it on is compiled once for each law in use, and kept on disk, which it is not
@@ -161,7 +161,7 @@ def by_law(signature: F) -> Any:
         return add
 
     vars(chosen).update(__name__=signature.__name__, __doc__=signature.__doc__, of=of, py_func=plain, meaning=bodies)
-    when_compiling(lambda machine: machine.choose_by_law(chosen, bodies))
+    when_compiling(lambda machine: machine.choose_law_function(chosen, bodies))
     return chosen
 
 

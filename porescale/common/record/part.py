@@ -1,7 +1,8 @@
 """A part of a simulation: one thing of a scene, with all that it adds to a run.
 
 A simulation is a list of parts.  What a scene does not request is no part of its list, and costs neither memory nor
-time.  The order of the list is the order of the columns of series.csv and of the order in which parts act; states are
+time, neither built nor imported.  In every step: ``before`` of all parts, the physics, the clock, ``after`` of all.
+The order of the list is the order of the columns of series.csv and of the order in which parts act; states are
 restored from the last part to the first, so that a part may rely on what those after it have restored.
 """
 
@@ -12,21 +13,27 @@ from porescale.common.record.model import Snapshot
 
 
 class Part:
-    """What a part can do; what it does not override does nothing.
+    """What a part can do; what it does not override does nothing and costs nothing in the loop over steps.
 
+    Reading methods (row, tables, show, state) leave the state of the simulation as it is.
     key : name of its entry in the state of the simulation; "" for entries that stand beside those of other parts.
     """
 
     key = ""
 
     def before(self) -> None:
-        """Act just before a step."""
+        """Act just before a step; the clock stands at its begin."""
 
     def after(self) -> None:
-        """Act just after a step."""
+        """Act just after a step; the clock stands at its end."""
+
+    @property
+    def idle(self) -> bool:
+        """Whether `before` and `after` have nothing to do in any step to come."""
+        return not acts_between(self)
 
     def check(self) -> None:
-        """Raise Unstable when the state of the part is not finite or out of bounds."""
+        """Raise Unstable, naming cell or grain, quantity and step, where the state is not finite or out of bounds."""
 
     def row(self) -> dict[str, float]:
         """Columns of series.csv, with units in their names; the same every time."""
@@ -45,6 +52,16 @@ class Part:
 
     def restore(self, state: dict[str, Any]) -> None:
         """Take over what `state` of a part of the same scene gave."""
+
+
+def overrides(part: Part, name: str) -> bool:
+    """Whether a part has a method of its own instead of the empty one."""
+    return getattr(type(part), name) is not getattr(Part, name)
+
+
+def acts_between(part: Part) -> bool:
+    """Whether a part has anything to do between steps."""
+    return overrides(part, "before") or overrides(part, "after")
 
 
 def state_of(parts: Iterable[Part]) -> dict[str, Any]:

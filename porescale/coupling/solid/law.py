@@ -18,7 +18,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from porescale.common.compiled.jit import by_law, inline
+from porescale.common.compiled.jit import inline, law_function
 from porescale.lbm.collision.law import collide, numbers
 
 
@@ -75,12 +75,12 @@ class SolidLaw(Protocol):
         """
 
 
-force_share = by_law(SolidLaw.force_share)
-is_soft = by_law(SolidLaw.is_soft)
-rates = by_law(SolidLaw.rates)
-blend = by_law(SolidLaw.blend)
-collide_with_solid = by_law(SolidLaw.collide_with_solid)
-momentum_to_solid = by_law(SolidLaw.momentum_to_solid)
+force_share = law_function(SolidLaw.force_share)
+is_soft = law_function(SolidLaw.is_soft)
+rates = law_function(SolidLaw.rates)
+blend = law_function(SolidLaw.blend)
+collide_with_solid = law_function(SolidLaw.collide_with_solid)
+momentum_to_solid = law_function(SolidLaw.momentum_to_solid)
 
 
 @inline

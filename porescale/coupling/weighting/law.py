@@ -13,7 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.compiled.jit import by_law, kernel
+from porescale.common.compiled.jit import kernel, law_function
 
 
 class WeightLaw(Protocol):
@@ -27,7 +27,7 @@ class WeightLaw(Protocol):
         """
 
 
-weight = by_law(WeightLaw.weight)
+weight = law_function(WeightLaw.weight)
 
 
 @kernel

@@ -26,7 +26,7 @@ rolling speed independent of the observer: Luding 2008, Granular Matter 10, 235.
 from collections.abc import Mapping
 from typing import Any, ClassVar, NamedTuple, Protocol
 
-from porescale.common.compiled.jit import by_law, inline
+from porescale.common.compiled.jit import inline, law_function
 from porescale.common.core.types import Floats
 
 KN, CN, KT, CT, MU, RULE, COMPLIANCE_T, KR, CR, MUR, COMPLIANCE_R = range(11)
@@ -194,7 +194,7 @@ def springs_of(law: KernelLaw) -> int:
     return 1 if law.rolling is None else 2
 
 
-@by_law
+@law_function
 def stiffness(overlap, radius, mass, p, law):
     """(elastic force N/m, normal damping N s/m, scale, 1/scale, tangential and rolling damping N s/m).
 
@@ -203,17 +203,17 @@ def stiffness(overlap, radius, mass, p, law):
     """
 
 
-@by_law
+@law_function
 def stiffness_scale(overlap, radius, law):
     """What tangential and rolling stiffness are in proportion to, at ``overlap`` (m) >= 0, ``radius`` (m) reduced."""
 
 
-@by_law
+@law_function
 def history_scaling(overlap, closing, dt, law):
     """Share of a spring that is left when the overlap (m) has come to what it is at ``closing`` (m/s) over ``dt``."""
 
 
-@by_law
+@law_function
 def stored_normal(overlap, radius, p, law):
     """Elastic energy (J/m) at ``overlap`` (m) > 0, reduced ``radius`` (m), row p (COLUMNS,)."""
 

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.compiled.jit import by_law, inline, kernel, parallel_kernel, prange, threads
+from porescale.common.compiled.jit import inline, kernel, law_function, parallel_kernel, prange, threads
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.forces.pairs import numbers_of, pair_contact, pair_forces, start_forces
@@ -152,7 +152,7 @@ def near_forces(d, pairs, law, dt, cell, sweep):
             torque[i] += moment
 
 
-@by_law
+@law_function
 def all_pair_forces(d, pairs, law, dt, cell, sweep):
     """Overwrite force (n, 2) N/m and torque (n,) N m/m with the external ones and those between discs."""
 
@@ -192,7 +192,7 @@ def surfaces_threads(d, surfaces, law, dt, sweep):
         surfaces_of_block(b, d, surfaces, law, dt, sweep)
 
 
-@by_law
+@law_function
 def blocks_of_surfaces(d, surfaces, law, dt, sweep):
     """As surfaces_threads, by as many threads as ``sweep`` says."""
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.common.compiled.jit import by_law, kernel
+from porescale.common.compiled.jit import kernel, law_function
 from porescale.common.core.types import Floats
 from porescale.dem.motion.leapfrog import move_free
 from porescale.dem.motion.periodic_cell import (
@@ -55,7 +55,7 @@ class Deforming(NamedTuple):
     clock: Floats
 
 
-@by_law
+@law_function
 def cell_now(cell):
     """The cell as used for pairs now; clears the load of a strained one."""
 
@@ -74,7 +74,7 @@ def present_deforming(cell):
     return Straining(s[WIDTH], s[HEIGHT], s[TILT], s[GXX], s[GXY], s[GYY], cell.load)
 
 
-@by_law
+@law_function
 def drift_of(cell):
     """Velocity gradient (gxx, gxy, gyy) 1/s of the step to come."""
 
@@ -91,7 +91,7 @@ def drift_deforming(cell):
     return cell.state[GXX], cell.state[GXY], cell.state[GYY]
 
 
-@by_law
+@law_function
 def steer(velocity, mass, step, dt, cell):
     """Choose the velocity gradient for the step to come, from schedules and from the stress of this one, and add up the
     cell's work;  velocity (n, 2) m/s, mass (n,) kg/m;  step: number within the call;  dt s."""
@@ -114,7 +114,7 @@ def steer_deforming(velocity, mass, step, dt, cell):
     s[WORK] -= 0.5 * s[WIDTH] * s[HEIGHT] * dt * (before + pxx * s[GXX] + pyy * s[GYY] + pxy * s[GXY])
 
 
-@by_law
+@law_function
 def add_clump_terms(c, d, cell):
     """What clumps ``c``, ClumpArrays, change in the sums of a strained cell;  d: DiscArrays, before the kick."""
 
@@ -189,7 +189,7 @@ def room_square(state):
     return room * room if room > 0.0 else -1.0
 
 
-@by_law
+@law_function
 def move_discs(d, pairs, drag, dt, sweep, cell):
     """As kick_drift, in ``cell``; a strained one is strained by the step, too.  d: DiscArrays;  pairs: Pairs."""
 
@@ -254,7 +254,7 @@ def left_affine(position, checked_position, limit_square, state):
     return moved
 
 
-@by_law
+@law_function
 def any_left(position, checked_position, limit_square, cell):
     """Whether some disc has gone further than allowed from where it was listed: the result of move_discs alone."""
 

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from porescale.common.compiled.jit import by_law, inline, parallel_kernel, prange
+from porescale.common.compiled.jit import inline, law_function, parallel_kernel, prange
 from porescale.common.core.types import Floats
 from porescale.dem.contact.budget import BEFORE_SPIN, BEFORE_X, BEFORE_Y, DRAG, EXTERNAL, HOLDERS, add_work
 from porescale.dem.forces.threads import BLOCK, Serial, Threads
@@ -102,7 +102,7 @@ def kick_drift_threads(d, checked_position, limit_square, drag, dt):
     return moved > 0
 
 
-@by_law
+@law_function
 def move_free(d, checked_position, limit_square, drag, dt, sweep):
     """As kick_drift, by as many threads as ``sweep`` says."""
 

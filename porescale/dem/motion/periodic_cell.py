@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from porescale.common.compiled.jit import by_law
+from porescale.common.compiled.jit import law_function
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.cells import minimum_image, tilted_image
 
@@ -60,7 +60,7 @@ def before(position: Floats, velocity: Floats, cell: Still | Straining, dt: floa
     return np.column_stack((x, y)), cell._replace(period_x=cell.period_x / along, period_y=height, tilt=tilt)
 
 
-@by_law
+@law_function
 def image(dx, dy, cell):
     """Components (m) of the way between nearest images in ``cell``."""
 
@@ -79,7 +79,7 @@ def image_straining(dx, dy, cell):
     return tilted_image(dx, dy, cell.period_x, cell.period_y, cell.tilt)
 
 
-@by_law
+@law_function
 def affine_velocity(dx, dy, cell):
     """Velocity (m/s) of the affine motion at (dx, dy) m from where it is zero."""
 
@@ -96,7 +96,7 @@ def drift_straining(dx, dy, cell):
     return cell.gxx * dx + cell.gxy * dy, cell.gyy * dy
 
 
-@by_law
+@law_function
 def add_load(gx, gy, dx, dy, cell):
     """Add a contact to the sums of a strained cell: (gx, gy) N/m on i, (dx, dy) m from i to j.  For one thread only."""
 

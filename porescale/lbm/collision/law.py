@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from porescale.common.compiled.jit import by_law, inline, precision_constants
+from porescale.common.compiled.jit import inline, law_function, precision_constants
 
 
 class Macroscopic(NamedTuple):
@@ -72,10 +72,10 @@ class CollisionLaw(Protocol):
         """
 
 
-half_force = by_law(CollisionLaw.half_force)
-shear_rate = by_law(CollisionLaw.shear_rate)
-collide = by_law(CollisionLaw.collide)
-collide_partial = by_law(CollisionLaw.collide_partial)
+half_force = law_function(CollisionLaw.half_force)
+shear_rate = law_function(CollisionLaw.shear_rate)
+collide = law_function(CollisionLaw.collide)
+collide_partial = law_function(CollisionLaw.collide_partial)
 
 
 class Numbers(NamedTuple):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.evidence.validations import Measured, Validations
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import relaxation_time
@@ -52,7 +52,7 @@ def started(
     across, along = round(wide * diameter), round(0.75 * wide * diameter)
     periodic = Sides("periodic", "periodic", "periodic", "periodic")
     fluid = Fluid(across, along, relaxation_time(speed * diameter / reynolds), operator=operator, sides=periodic)
-    wet = Saturated(fluid, np.array([diameter / 2]), solid_operator=solid_operator, soft_rim=soft_rim)
+    wet = SaturatedCells(fluid, np.array([diameter / 2]), solid_operator=solid_operator, soft_rim=soft_rim)
     direction = np.array([math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])
     motion = speed * direction[None]
     place = np.array([[across / 2 + 0.3, along / 2 + 0.1]]) - (0 if held else 1.5 * diameter * direction)

@@ -14,7 +14,7 @@ from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.coupling.coverage.polygon import Polygons
 from porescale.coupling.coverage.rows import make_patches
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
@@ -70,7 +70,7 @@ def array_drag(
         )  # fmt: skip
         body = Polygons([cells * np.asarray(corners, float)])
         body.centre[0] = 0.5 * cells + place[0], 0.5 * cells + place[1]
-        wet = Saturated(
+        wet = SaturatedCells(
             fluid, np.zeros(0), solid_operator=method.solid_operator, weighting=method.weighting, polygons=body
         )  # fmt: skip
         flux, before = 0.0, math.nan
@@ -93,7 +93,7 @@ def array_torque(
     fluid = Fluid(cells, cells, relaxation_time, operator=method.operator, magic=method.magic, sides=PERIODIC)
     body = Polygons([cells * np.asarray(corners, float)])
     body.centre[0], body.spin[0] = (0.5 * cells + place[0], 0.5 * cells + place[1]), spin
-    wet = Saturated(
+    wet = SaturatedCells(
         fluid, np.zeros(0), solid_operator=method.solid_operator, weighting=method.weighting, polygons=body
     )  # fmt: skip
     with one_thread():

@@ -13,7 +13,7 @@ import numpy as np
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.coupling.coverage.rectangle import Rectangle
 from porescale.coupling.coverage.ring import Ring
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.lbm.boundary.sides import Kind, Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
@@ -54,7 +54,7 @@ def couette_error(
     rows = int(gap) + 4
     fluid = Fluid(4, rows, relaxation_time, sides=Sides("periodic", "periodic", "wall", "wall"))
     slab = Rectangle((0.0, gap), (4.0, gap + rows), (SPEED, 0.0))
-    wet = Saturated(fluid, np.zeros(0), solid_operator=solid_operator, weighting=weighting, rectangles=[slab])
+    wet = SaturatedCells(fluid, np.zeros(0), solid_operator=solid_operator, weighting=weighting, rectangles=[slab])
     nu = viscosity(relaxation_time)
     with one_thread():
         for _ in range(math.ceil(36 * (gap**2 / (math.pi**2 * nu) + 30))):
@@ -83,7 +83,7 @@ def couette_torque(
     fluid = Fluid(cells, cells, relaxation_time)
     at = np.array([centre]) + cells // 2
     ring = Ring(at[0], outer, spin=spin if turning == "ring" else 0.0)
-    wet = Saturated(
+    wet = SaturatedCells(
         fluid, np.array([inner]), solid_operator=solid_operator, weighting=weighting, rings=[ring]
     )  # fmt: skip
     rest, spins = np.zeros((1, 2)), np.array([spin if turning == "disc" else 0.0])
@@ -116,7 +116,7 @@ def lift_gate(
     nx, ny = 30, 24
     fluid = Fluid(nx, ny, 0.8, sides=Sides(top=lid))
     gate = Rectangle((12.3, 0.0), (12.3 + width, ny + 2.0), (0.0, 0.0))
-    wet = Saturated(fluid, np.zeros(0), rectangles=[gate])
+    wet = SaturatedCells(fluid, np.zeros(0), rectangles=[gate])
     gate.velocity[1] = speed
     if not carried and wet.bodies:
         wet.bodies.hold_sides()
@@ -145,7 +145,7 @@ def piston_flux(relaxation_time: float = 0.8, speed: float = 0.002) -> list[floa
     fluid = Fluid(nx, ny, relaxation_time, sides=Sides(right="pressure"))
     piston = Rectangle((-20.0, -1.0), (6.0, ny + 1.0), (speed, 0.0))
     blocks = [Rectangle((40.0, -1.0), (45.0, 7.0)), Rectangle((40.0, 13.0), (45.0, 21.0))]
-    wet = Saturated(fluid, np.zeros(0), rectangles=[piston, *blocks])
+    wet = SaturatedCells(fluid, np.zeros(0), rectangles=[piston, *blocks])
     sums = np.zeros(3)
     start, last, steps = 1500, 0.0, 3000
     with one_thread():

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from porescale.common.evidence.validations import Measured, Validations
-from porescale.coupling.psm import Saturated
+from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.step import Coupled
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
@@ -38,7 +38,7 @@ def weighing(
     """Load over F of a disc held in a closed box under a downward body force F on the fluid, and the area it covers."""
     force = 1e-6
     fluid = Fluid(cells, cells, relaxation_time, force=(0.0, -force))
-    wet = Saturated(fluid, np.array([radius]), solid_operator=method.solid_operator, weighting=method.weighting)
+    wet = SaturatedCells(fluid, np.array([radius]), solid_operator=method.solid_operator, weighting=method.weighting)
     place, rest, no_spin = np.array([[0.3, 0.1]]) + cells / 2, np.zeros((1, 2)), np.zeros(1)
     with one_thread():
         for _ in range(steps):
@@ -51,7 +51,7 @@ def spinning_disc(
 ) -> tuple[list[float], list[float]]:
     """Density at the centre, and torque, of a disc kept spinning (radius 5 in 30 x 30 cells) after ``steps``."""
     fluid = Fluid(30, 30, relaxation_time)
-    wet = Saturated(
+    wet = SaturatedCells(
         fluid, np.array([5.0]), solid_operator=method.solid_operator, weighting=method.weighting
     )  # fmt: skip
     place, rest, turning = np.array([[15.3, 15.1]]), np.zeros((1, 2)), np.array([spin])

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import pytest
 
 from porescale.common.compiled import jit
-from porescale.common.compiled.jit import Kernel, by_law, inline, kernel, precision_constants, tree_sum
+from porescale.common.compiled.jit import Kernel, inline, kernel, law_function, precision_constants, tree_sum
 from porescale.common.compiled.kernel_key import Unknown, key_of
 
 ROOT = Path(jit.__file__).resolve().parents[3]
@@ -21,12 +21,12 @@ PACKAGE = {
     "laws.py": '''
 """What a law is."""
 from typing import NamedTuple
-from porescale.common.compiled.jit import by_law
+from porescale.common.compiled.jit import law_function
 class Soft(NamedTuple):
     stiffness: float
 class Hard(NamedTuple):
     stiffness: float
-@by_law
+@law_function
 def force(overlap, law):
     """Force."""
 ''',
@@ -236,7 +236,7 @@ def test_a_body_counts_under_its_law_only_and_bodies_may_call_for_other_laws():
 
     def users(second):
         """A sweep whose stretch depends on ``second`` by way of a twist that its body makes."""
-        outer, inner = by_law(force), by_law(force)
+        outer, inner = law_function(force), law_function(force)
 
         @inner.of(Twist)
         def twisted(x, law):
