@@ -11,8 +11,7 @@ Quality = Annotated[
     Parameter(help="level of the scene's [quality.…] tables; its quality_default if not given"),
 ]
 Settings = Annotated[
-    list[str] | None,
-    Parameter(name="--set", help="section.key=value, over the scene and its quality; repeatable"),
+    list[str] | None, Parameter(name="--set", help="section.key=value, over the scene and its quality; repeatable")
 ]
 Threads = Annotated[int | None, Parameter(help="threads of the kernels; all cores if not given")]
 Json = Annotated[bool, Parameter(name="--json", help="print JSON instead of tables")]
