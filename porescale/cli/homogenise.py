@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, use_threads
-from porescale.common.cli.sweep import Again, Jobs, Scheduler, chosen_folder, conclude, enlist, laid_over, say
+from porescale.common.cli.folders import output_folder
+from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, say, use_threads
+from porescale.common.cli.sweep import Again, Jobs, Scheduler, conclude, enlist, laid_over
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.version import VERSION
 
@@ -58,7 +59,7 @@ def homogenise(
     asked = asked_of(opened.scene)
     if jobs < 1:
         raise InputError(Fault("--jobs", jobs, "is none", "", ">= 1"))
-    folder = chosen_folder(out, f"{opened.name}_soil")
+    folder = output_folder(out, f"{opened.name}_soil")
     file = _specimen_file(folder, toml(test))
     first = test["grains"]["packing"]["seed"]
     points = [

@@ -37,8 +37,7 @@ def command() -> App:
 
 def synth(
     flow: Annotated[
-        str,
-        Parameter(help="uniform, shear, stagnation, rotation, rankine, lamb_oseen, taylor_green or discs"),
+        str, Parameter(help="uniform, shear, stagnation, rotation, rankine, lamb_oseen, taylor_green or discs")
     ],
     /,
     *,

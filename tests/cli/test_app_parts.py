@@ -11,7 +11,7 @@ import pytest
 
 import porescale
 from porescale import Scene
-from porescale.cli import new, show
+from porescale.cli import run, show
 from porescale.cli.main import PACKAGE
 from porescale.common.core.errors import InputError
 from porescale.common.record.model import Model, Snapshot
@@ -66,7 +66,7 @@ def test_the_package_and_its_help_wait_for_no_compiler():
 
 
 def test_the_template_states_every_section_and_is_a_scene(tmp_path):
-    text = new.template()
+    text = run.template()
     (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
     for level in (None, *LEVELS):
         assert load(tmp_path, Scene, quality=level).grains.packing is not None
@@ -98,7 +98,7 @@ def _sections_in(annotation: Any) -> Iterator[Any]:
 
 
 def test_the_template_names_every_key_of_every_section():
-    text = new.template()
+    text = run.template()
     keys = list(keys_of(Scene, "", set()))
     missing = [key for key in keys if not re.search(rf"(?<!\w){key.rpartition('.')[2]}(?!\w)", text)]
     assert not missing
@@ -120,7 +120,7 @@ def test_the_command_line_is_there_before_arrays_and_models_are():
 
 def test_the_parts_of_the_package_are_those_of_its_modules():
     assert PACKAGE.scene() is Scene
-    assert PACKAGE.template() == new.template()
+    assert PACKAGE.template() == run.template()
     assert PACKAGE.version == porescale.__version__
 
 
@@ -178,7 +178,6 @@ def test_a_cache_that_cannot_be_written_fails_no_run(tmp_path, monkeypatch):
 @pytest.mark.parametrize("overwrite", [False, True])
 def test_both_packages_hand_on_that_a_run_may_be_replaced(tmp_path, monkeypatch, overwrite):
     import continuum_sph.cli
-    from porescale.cli import run
 
     class Asked(Exception):
         pass
@@ -187,7 +186,7 @@ def test_both_packages_hand_on_that_a_run_may_be_replaced(tmp_path, monkeypatch,
         raise Asked(options["overwrite"])
 
     monkeypatch.setattr("porescale.common.record.drive.drive", asked)
-    for part, text in ((run, new.template()), (continuum_sph.cli, continuum_sph.cli.template())):
+    for part, text in ((run, run.template()), (continuum_sph.cli, continuum_sph.cli.template())):
         (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
         scene = load(tmp_path, part.scene_type())
         with pytest.raises(Asked, match=str(overwrite)):

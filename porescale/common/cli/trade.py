@@ -8,19 +8,18 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from porescale.common.cli.options import Scene, Settings, Threads, use_threads
+from porescale.common.cli.folders import output_folder
+from porescale.common.cli.options import Scene, Settings, Threads, say, use_threads
 from porescale.common.cli.package import Package
 from porescale.common.cli.sweep import (
     Again,
     Jobs,
     Scheduler,
     check_points,
-    chosen_folder,
     conclude,
     enlist,
     laid_over,
     module_of,
-    say,
 )
 from porescale.common.core.errors import Fault, InputError
 
@@ -51,7 +50,7 @@ def command(package: Package) -> Callable[..., int]:
         from porescale.common.studies.trade import Errors, front
         from porescale.common.studies.trade_plan import read_plan
 
-        asked, _ = read_plan(find(scene), plan)
+        asked = read_plan(find(scene), plan)
         features = package.features() if package.features else {}
         unknown = [quantity.feature for quantity in asked.quantity if quantity.feature not in ("", *features)]
         if unknown:
@@ -63,7 +62,7 @@ def command(package: Package) -> Callable[..., int]:
         groups = [asked.repeats(point) for _, _, point in variants]
         points = [*truth, *(point for group in groups for point in group)]
         file, name = check_points(package, scene, points, None, settings or ())
-        folder = chosen_folder(out, f"{name}_trade")
+        folder = output_folder(out, f"{name}_trade")
         campaign = Campaign(module_of(package), file, folder / "runs", tuple(settings or ()), None, threads or 1, again)
         slots = enlist(campaign, jobs, scheduler)
         ends = {ended.point.name: ended for ended in campaign.all(points, slots, say)}

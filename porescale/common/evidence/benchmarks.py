@@ -15,17 +15,7 @@ from porescale.common.evidence.timing import Comparison, Timing, interleaved, ra
 if TYPE_CHECKING:
     from rich.table import Table
 
-__all__ = [
-    "Benchmarks",
-    "Comparison",
-    "Row",
-    "Timing",
-    "Work",
-    "copy_bandwidth",
-    "interleaved",
-    "rate",
-    "table",
-]
+__all__ = ["Benchmarks", "Comparison", "Row", "Timing", "Work", "copy_bandwidth", "interleaved", "rate", "table"]
 
 Dtype = Literal["float32", "float64"]
 LARGEST = 10_000_000

@@ -108,10 +108,7 @@ class Canvas:
         colours = self._colours(cloud)[seen].tolist()
         centres, radii = np.rint(at[seen] * ONE).astype(int).tolist(), size[seen]
         rim, rim_colour = np.clip(0.08 * radii, 0.7, 2.0), rgb(RIM)
-        whole, inner = (
-            np.rint(radii * ONE).astype(int).tolist(),
-            np.rint((radii - rim) * ONE).astype(int).tolist(),
-        )
+        whole, inner = (np.rint(radii * ONE).astype(int).tolist(), np.rint((radii - rim) * ONE).astype(int).tolist())
         rimmed = discs & (radii >= 2.5)
         for centre, outer, core, edge, colour in zip(centres, whole, inner, rimmed.tolist(), colours, strict=True):
             if edge:

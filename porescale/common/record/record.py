@@ -104,10 +104,7 @@ class Record:
         snapshots.trim(folder, model.step - 1 if extra else model.step)
         snapshots.assemble(folder)
         card["seconds"] = saved.reached.seconds
-        card["resumed"] = [
-            *card.get("resumed", []),
-            {"at": cards.now(), "step": model.step, "time": model.time, **now},
-        ]
+        card["resumed"] = [*card.get("resumed", []), {"at": cards.now(), "step": model.step, "time": model.time, **now}]
         if changed:
             what = ", ".join(changed)
             print(f"warning: resumed with other {what}: not promised to go on bit for bit", file=sys.stderr)

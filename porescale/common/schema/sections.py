@@ -210,14 +210,7 @@ def _levels(table: Mapping[str, Any], asked: str | None) -> tuple[dict[str, dict
     for name, entries in given.items():
         if name not in LEVELS:
             faults.append(
-                Fault(
-                    f"quality.{name}",
-                    None,
-                    "unknown level",
-                    "",
-                    ", ".join(LEVELS),
-                    nearest(name, LEVELS, "levels"),
-                )
+                Fault(f"quality.{name}", None, "unknown level", "", ", ".join(LEVELS), nearest(name, LEVELS, "levels"))
             )
         elif not isinstance(entries, Mapping):
             faults.append(Fault(f"quality.{name}", entries, "is not a table", repair=f"write [quality.{name}.section]"))

@@ -170,10 +170,10 @@ class Plan(Section):
         return given.quality or self.base.quality, settings_of(settings)
 
 
-def read_plan(scene: Path, given: Path | None) -> tuple[Plan, Path]:
-    """The plan in ``given``, else in trade.toml beside the scene file; and its file.  InputError with all faults."""
+def read_plan(scene: Path, given: Path | None) -> Plan:
+    """The plan in ``given``, else in trade.toml beside the scene file.  InputError with all faults."""
     file = given if given is not None else scene.parent / NAME
     if not scene_file.is_file(file):
         repair = f"write one: [[quantity]], [[knob]], [reference]; see the other cases' {NAME}"
         raise InputError(Fault(str(file), None, "is no file", repair=repair))
-    return validate(Plan, scene_file.read(file), file=str(file)), file
+    return validate(Plan, scene_file.read(file), file=str(file))

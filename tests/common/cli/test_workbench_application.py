@@ -162,7 +162,7 @@ def test_asking_for_help_imports_nothing_heavy() -> None:
         "import sys; from porescale.common.cli.application import application, main\n"
         "from porescale.common.cli.package import Package\n"
         "f = lambda *a, **k: 1 / 0\n"
-        "code = main(application(Package('toy', 's', '1', f, f, f, f, f, f, f, f, f)), ['--help'])\n"
+        "code = main(application(Package('toy', 's', '1', f, f, f, f, f, f, f, f)), ['--help'])\n"
         "heavy = {'numba', 'numpy', 'pint', 'pydantic', 'matplotlib', 'h5py'} & set(sys.modules)\n"
         "sys.exit(code or (str(heavy) if heavy else 0))"
     )
@@ -177,7 +177,7 @@ def test_a_reader_that_leaves_is_no_traceback(tmp_path: Path) -> None:
         "from porescale.common.schema.sections import Section\n"
         "f = lambda *a, **k: 1 / 0\n"
         "show = lambda folder: (folder / str(i) for i in range(100000))\n"
-        "toy = Package('toy', 's', '1', lambda: Section, f, f, f, f, show, f, f, f)\n"
+        "toy = Package('toy', 's', '1', lambda: Section, f, f, f, f, show, f, f)\n"
         "sys.exit(main(application(toy), ['show', '.']))"
     )
     read, write = os.pipe()

@@ -97,12 +97,7 @@ def test_a_generator_goes_on_where_it_was(tmp_path, kind):
 def test_records_and_foreign_byte_orders_keep_their_types(tmp_path):
     record = np.zeros(3, [("a", "<f8"), ("b", [("c", ">i4", (2,))])])
     record["b"]["c"] = 7
-    content = {
-        "record": record,
-        "big": np.arange(3, dtype=">f8"),
-        "text": np.array(["ab", "c"]),
-        "empty": np.array(""),
-    }
+    content = {"record": record, "big": np.arange(3, dtype=">f8"), "text": np.array(["ab", "c"]), "empty": np.array("")}
     write_checkpoint(tmp_path / "c.h5", content)
     read = read_checkpoint(tmp_path / "c.h5")
     for key, array in content.items():

@@ -199,8 +199,7 @@ def test_a_wrong_shape_is_named(write) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "words"),
-    [("a = 1\nb =\nc = 2", "line 2"), ("[x", "line 1, end of file"), ("a = 1\na = 2", "line 2")],
+    ("text", "words"), [("a = 1\nb =\nc = 2", "line 2"), ("[x", "line 1, end of file"), ("a = 1\na = 2", "line 2")]
 )
 def test_broken_toml_names_file_and_line(write, text: str, words: str) -> None:
     line = lines(write(text)).pop()
@@ -261,12 +260,7 @@ def test_settings_are_toml_values_else_texts(write) -> None:
     scene = load(
         file,
         Scene,
-        overrides=[
-            "grains[0].radius=3e-3",
-            "grains.1.repeats=5",
-            "fluid.collision=bgk",
-            "fluid.gravity=[0,1]",
-        ],
+        overrides=["grains[0].radius=3e-3", "grains.1.repeats=5", "fluid.collision=bgk", "fluid.gravity=[0,1]"],
     )
     assert scene.grains[0].radius == 0.003
     assert scene.grains[1].repeats == 5

@@ -53,7 +53,7 @@ settings = { fluid.spacing = 1 }
 
 def plan(tmp_path: Path, text: str = PLAN) -> Plan:
     (tmp_path / "trade.toml").write_text(text)
-    return read_plan(tmp_path / "scene.toml", None)[0]
+    return read_plan(tmp_path / "scene.toml", None)
 
 
 def ended(name: str, outcome: str = "finished", **card: Any) -> Ended:
