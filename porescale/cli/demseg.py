@@ -157,13 +157,13 @@ def convert(
     bonded = deck.jclid == BONDED
     bonds = read_tensions(folder / CF0, build(deck, Options(seed, release, rod=rod))) if bonded else None
     text = toml(scene_of(deck, name, release, UNITS[units], bonds, rod))
-    _refuse_what_scenes_refuse(text)
+    _require_valid_scene(text)
     write_text(file, text)
     print(f"{file}: check it with porescale check {file}")
     return 0
 
 
-def _refuse_what_scenes_refuse(text: str) -> None:
+def _require_valid_scene(text: str) -> None:
     """InputError where the scene of a deck exceeds the limits of scenes."""
     from tempfile import TemporaryDirectory
 

@@ -63,7 +63,7 @@ def varied(options: Sequence[str]) -> list[Point]:
             repair = "write it as --vary contact.friction=0.2,0.5"
             raise InputError(Fault(repr(option), None, "is not key=a,b,c", file="--vary", repair=repair))
         lists.append([f"{key.strip()}={part}" for part in parts])
-    _refuse_too_many([len(part) for part in lists])
+    _require_few_enough([len(part) for part in lists])
     return named([Point("", settings) for settings in itertools.product(*lists)])
 
 
@@ -147,12 +147,12 @@ def _of_toml(path: Path) -> Iterator[Point]:
             if not isinstance(values, list) or not values:
                 raise InputError(Fault(f"vary.{key}", str(values), "is not a list of values"))
             choices.append([f"{key}={literal(value, key)}" for value in values])
-        _refuse_too_many([len(part) for part in choices])
+        _require_few_enough([len(part) for part in choices])
         for settings in itertools.product(*choices):
             yield Point("", settings)
 
 
-def _refuse_too_many(counts: Sequence[int]) -> None:
+def _require_few_enough(counts: Sequence[int]) -> None:
     product = 1
     for count in counts:
         product *= count
