@@ -201,17 +201,13 @@ def _levels(table: Mapping[str, Any], chosen: str | None) -> tuple[dict[str, dic
     """Quality levels of a scene file, the one to use (None: none), and what is wrong with them."""
     given, default = table.get("quality", {}), table.get("quality_default")
     if not isinstance(given, Mapping):
-        return (
-            {},
-            None,
-            [Fault("quality", problem="is not a table of levels", repair="write [quality.draft] and so on")],
-        )
+        fault = Fault("quality", problem="is not a table of levels", repair="write [quality.draft] and so on")
+        return {}, None, [fault]
     faults = []
     for name, entries in given.items():
         if name not in LEVELS:
-            faults.append(
-                Fault(f"quality.{name}", None, "unknown level", "", ", ".join(LEVELS), nearest(name, LEVELS, "levels"))
-            )
+            repair = nearest(name, LEVELS, "levels")
+            faults.append(Fault(f"quality.{name}", None, "unknown level", "", ", ".join(LEVELS), repair))
         elif not isinstance(entries, Mapping):
             faults.append(Fault(f"quality.{name}", entries, "is not a table", repair=f"write [quality.{name}.section]"))
     levels = {name: dict(given[name]) for name in LEVELS if isinstance(given.get(name), Mapping)}

@@ -119,12 +119,7 @@ class Errors:
         if bad is not None:
             nothing = dict.fromkeys((quantity.name for quantity in self.plan.quantity), math.inf)
             return Traded(knob, label, point, bad.outcome, nothing, math.inf, 0.0, *costs(ends), problem=bad.problem)
-        table = np.array(
-            [
-                [self.error(ended, repeat, quantity) for quantity in self.plan.quantity]
-                for repeat, ended in enumerate(ends)
-            ]
-        )
+        table = np.array([[self.error(ended, k, it) for it in self.plan.quantity] for k, ended in enumerate(ends)])
         errors = {quantity.name: rms(table[:, k]) for k, quantity in enumerate(self.plan.quantity)}
         each = [rms(row) for row in table]
         scatter = float(np.std(each, ddof=1)) if len(each) > 1 and np.isfinite(each).all() else 0.0
