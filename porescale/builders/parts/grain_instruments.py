@@ -39,8 +39,6 @@ from porescale.scene.scene import Scene
 
 KERNEL_WIDTH = 2.5
 """Width of the kernel in mean diameters where a scene gives none: some twenty grains are felt at a point."""
-
-
 FIELDS, CONTACTS = "grain_fields", "contacts"
 """Names of the grid and of the cloud in snapshots."""
 
