@@ -45,38 +45,25 @@ def test_a_report_keeps_order_and_says_everything() -> None:
     assert table["groups"]["fluid"][0] == {"name": "τ", "value": 0.8, "unit": "", "note": "0.5 to 1"}
     out = StringIO()
     report.show(Console(file=out, width=100))
-    for word in ("column", "fluid", "τ", "0.8", "0.5 to 1", "count", "7", "0.0003", "yes", "[red]Mach 0.2"):
-        assert word in out.getvalue()
+    words = ("column", "fluid", "τ", "0.8", "0.5 to 1", "count", "7", "0.0003", "yes", "[red]Mach 0.2")
+    assert all(word in out.getvalue() for word in words)
 
 
 def register() -> Validations:
     """One of each kind."""
     made = Validations()
+    hertz = {"source": "Hertz", "because": "two digits"}
+    good = Measured(np.array([1.0, 2.0]), [1.0, 2.1], np.float64(0.05))
+    made.row("lbm.good", source="Poiseuille", because="second order", tolerance=0.1)(lambda: good)
+    made.row("lbm.edge", source="exact", because="round-off", tolerance=0.0)(lambda: Measured(1.0, 1.0, 0.0))
+    made.row("dem.off", tolerance=0.1, slow=True, **hertz)(lambda: Measured(1.0, 2.0, 1.0))
 
-    @made.row("lbm.good", source="Poiseuille", because="second order", tolerance=0.1)
-    def _() -> Measured:
-        return Measured(np.array([1.0, 2.0]), [1.0, 2.1], np.float64(0.05))
-
-    @made.row("lbm.edge", source="exact", because="round-off", tolerance=0.0)
-    def _() -> Measured:
-        return Measured(1.0, 1.0, 0.0)
-
-    @made.row("dem.off", source="Hertz", because="two digits", tolerance=0.1, slow=True)
-    def _() -> Measured:
-        return Measured(1.0, 2.0, 1.0)
-
-    @made.row("dem.broken", source="Hertz", because="two digits", tolerance=0.1)
+    @made.row("dem.broken", tolerance=0.1, **hertz)
     def _() -> Measured:
         raise ZeroDivisionError("no\ngrains")
 
-    @made.row("dem.nan", source="Hertz", because="two digits", tolerance=math.inf)
-    def _() -> Measured:
-        return Measured(1.0, math.nan, math.nan)
-
-    @made.row("dem.negative", source="Hertz", because="two digits", tolerance=0.1)
-    def _() -> Measured:
-        return Measured(1.0, 0.0, -1.0)
-
+    made.row("dem.nan", tolerance=math.inf, **hertz)(lambda: Measured(1.0, math.nan, math.nan))
+    made.row("dem.negative", tolerance=0.1, **hertz)(lambda: Measured(1.0, 0.0, -1.0))
     return made
 
 
@@ -114,7 +101,7 @@ def test_unknown_names_suggest_the_nearest() -> None:
         Benchmarks().run(["lbm"])
 
 
-def test_registers_join_and_refuse_twins() -> None:
+def test_registers_join_and_refuse_twins_and_rows_without_a_reason() -> None:
     joined, other = Validations(), register()
     joined.include(other)
     assert len(list(joined)) == len(list(other))
@@ -122,6 +109,8 @@ def test_registers_join_and_refuse_twins() -> None:
         joined.include(other)
     with pytest.raises(AssertionError):
         joined.row("lbm.good", source="x", because="y", tolerance=0)
+    with pytest.raises(AssertionError):
+        Validations().row("a", source="x", because="", tolerance=0)
 
 
 FILE = """
@@ -149,11 +138,6 @@ def test_a_file_in_the_folder_adds_its_rows(tmp_path, monkeypatch):
     monkeypatch.delitem(sys.modules, "rates_of_toys.more.helper")
     with pytest.raises(AssertionError, match="two rows named late"):
         joined()
-
-
-def test_a_validation_without_a_reason_is_no_validation() -> None:
-    with pytest.raises(AssertionError):
-        Validations().row("a", source="x", because="", tolerance=0)
 
 
 def test_validation_table_shows_verdicts() -> None:
@@ -233,12 +217,8 @@ def test_bandwidth_counts_read_and_write() -> None:
 
 
 def test_a_benchmark_is_held_against_its_plain_work_in_turns(monkeypatch: pytest.MonkeyPatch) -> None:
-    made = Benchmarks()
-
-    @made.row("wet")
-    def _(size: int | None, threads: int, dtype: str) -> list[Work]:
-        return [Work(lambda: None, 30.0, "cells/s", 3), Work(lambda: None, 20.0, "cells/s", 3, variant="plain")]
-
+    works = [Work(lambda: None, 30.0, "cells/s", 3), Work(lambda: None, 20.0, "cells/s", 3, variant="plain")]
+    made = Benchmarks([Benchmark("wet", lambda *_: works)])
     # A call of the plain work takes a quarter of the other's time, for two thirds of its updates.
     monkeypatch.setattr(benchmarks, "interleaved", lambda a, b: 0.25)
     assert [row.name for row in made.run(threads=1, min_seconds=0.0)] == ["wet", "wet.plain"]
@@ -246,11 +226,7 @@ def test_a_benchmark_is_held_against_its_plain_work_in_turns(monkeypatch: pytest
 
 
 def test_benchmark_rows_have_exactly_the_promised_keys() -> None:
-    made = Benchmarks()
-
-    @made.row("plain")
-    def _(size: int | None, threads: int, dtype: str) -> Work:
-        return Work(lambda: None, 10.0, "discs/s", size or 3)
+    made = Benchmarks([Benchmark("plain", lambda size, *_: Work(lambda: None, 10.0, "discs/s", size or 3))])
 
     @made.row("streams")
     def _(size: int | None, threads: int, dtype: str) -> list[Work]:
