@@ -154,6 +154,6 @@ def test_a_state_with_rolling_and_a_budget_goes_on_bit_for_bit():
     first.step(1e-6, count=120)
     second.restore(first.state())
     second.step(1e-6, count=180)
-    for name in ("book", "book_start", "wall_spring"):
+    for name in ("budget", "budget_start", "wall_spring"):
         np.testing.assert_array_equal(getattr(through, name), getattr(second, name))
     np.testing.assert_array_equal(through.pairs.carried, second.pairs.carried)
