@@ -1,15 +1,30 @@
-"""The commands of ``porescale piv``, from the command line to the files: what they write, say, and refuse."""
+"""The commands of ``porescale piv``, from the command line to the files: what they write, say, and refuse.
+
+Films: long ones in bounded memory, moving masks, blank and overexposed frames, averages.
+"""
 
 import csv
 import json
+import os
+from pathlib import Path
 
 import cv2
 import numpy as np
 import pytest
 
+from porescale.cli import piv_measure
 from porescale.cli.main import commands
 from porescale.common.cli.application import main
 from porescale.common.compiled.jit import set_threads, threads
+from porescale.common.pictures.film import write_film
+from porescale.common.record import snapshots
+from porescale.piv.images import flows
+from porescale.piv.images.spots import add_spots, coverage
+from porescale.piv.images.synth import Camera, expose, seeded
+
+ROWS, COLUMNS = 96, 128
+SPEED, DISC = 1.5, 0.2
+"""px a frame: of the flow, and of the disc in it."""
 
 
 @pytest.fixture
@@ -25,6 +40,12 @@ def piv(tmp_path, monkeypatch, capsys):
 
     yield run
     set_threads(before)
+
+
+@pytest.fixture
+def measure(piv):
+    """Runs `porescale piv measure …`, as `piv`."""
+    return lambda *tokens: piv("measure", *tokens, "--threads", "1")
 
 
 def columns(path):
@@ -114,9 +135,6 @@ def test_pictures_of_other_tracers_give_no_field(piv, tmp_path):
 
 
 def test_a_film_is_measured_frame_by_frame(piv, tmp_path):
-    from porescale.piv.images import flows
-    from porescale.piv.images.synth import Camera, expose, seeded
-
     flow, camera, random = flows.uniform(1.5, 0.0), Camera((96, 128)), np.random.default_rng(0)
     x, y, light = seeded(flow, camera, random)
     for k in range(4):
@@ -131,7 +149,121 @@ def test_a_film_is_measured_frame_by_frame(piv, tmp_path):
     for k in range(3):
         # A tenth of a pixel of 1.5: 15 mm/s; pictures of 96 px hold 150 vectors, each of a score of tracers.
         np.testing.assert_allclose(np.median(columns(tmp_path / "m" / f"vectors_{k:04d}.csv")["u"]), 0.015, rtol=0.07)
-    from porescale.common.record import snapshots
-
     times = [next(iter(entry.values())).time for entry in snapshots.catalogue(tmp_path / "m").values()]
     assert times == pytest.approx([2.05, 2.15, 2.25])
+
+
+def shots(count, rows=ROWS, columns=COLUMNS):
+    """Frames of a uniform flow, tracers coming in on the left, past a disc that moves, and masks of it."""
+    random = np.random.default_rng(0)
+    number = round((columns + SPEED * count + 40) * rows / 20)
+    x, y = random.uniform(-20 - SPEED * count, columns + 20, number), random.uniform(-5, rows + 5, number)
+    light = 200 * np.exp(-(random.uniform(-1, 1, number) ** 2))
+    for k in range(count):
+        image, share = np.full((rows, columns), 16.0), np.zeros((rows, columns))
+        near = np.abs(x + SPEED * k - columns / 2) < columns / 2 + 10
+        add_spots(x[near] + SPEED * k, y[near], light[near], 0.7, image)
+        coverage(flows.Discs(np.array([30 + DISC * k]), np.array([48.0]), np.array([12.0])), share)
+        image = image * (1 - share) + 180 * share + random.normal(0, 3, image.shape)
+        yield np.clip(image, 0, 255).astype(np.uint8), ((share > 0.5) * 255).astype(np.uint8)
+
+
+def filmed(count, folder, spoiled=None, size=(ROWS, COLUMNS)):
+    """Write film.mp4 and masks/ into a folder; ``spoiled`` : number of a frame -> grey level of all of it."""
+    (folder / "masks").mkdir()
+
+    def frames():
+        for k, (image, mask) in enumerate(shots(count, *size)):
+            cv2.imwrite(str(folder / "masks" / f"{k:04d}.png"), mask)
+            shown = np.full_like(image, spoiled[k]) if spoiled and k in spoiled else image
+            yield np.repeat(shown[..., None], 3, 2)
+
+    write_film(folder / "film", frames(), 25)
+
+
+def resident() -> int:
+    """Bytes of this process in memory."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+@pytest.mark.slow
+def test_300_frames_take_no_more_memory_than_50_and_say_how_far_they_are(measure, tmp_path, monkeypatch):
+    size = (256, 256)
+    filmed(300, tmp_path, size=size)
+    monkeypatch.setattr(piv_measure, "PATIENCE", 0.0)
+    used, write = [], snapshots.write_part
+
+    def counted(*those):
+        used.append(resident())
+        write(*those)
+
+    monkeypatch.setattr(snapshots, "write_part", counted)
+    code, said, told = measure("film.mp4", "--mask", "masks", "--window", 32, "--out", "m", "--json")
+    assert code == 0
+    assert json.loads(said)["pairs"] == len(used) == 299
+    assert "298 of 299 pairs" in told[-1]
+    # 249 frames of a byte a pixel are 16 MB; a quarter of that is left to names and numbers of snapshots.
+    assert max(used) - used[50] < 0.25 * 249 * size[0] * size[1]
+    first, last = (columns(tmp_path / "m" / f"vectors_{k:04d}.csv") for k in (0, 298))
+    # The mask moves with the disc, as far as vectors a step of 16 px apart show it.
+    at = [it["x"][it["solid"] > 0].mean() for it in (first, last)]
+    assert at[1] - at[0] == pytest.approx(298 * DISC, abs=16)
+    free = (last["solid"] == 0) & (np.hypot(last["x"] - 30 - DISC * 298, last["y"] - 48) > 40)
+    # H.264 takes off some of the faint tracers: a tenth of a pixel.
+    assert np.sqrt(np.mean((last["u"][free] - SPEED) ** 2)) < 0.1
+
+
+def test_a_blank_frame_spoils_its_own_pairs_only(measure, tmp_path):
+    filmed(5, tmp_path, {1: 255})
+    code, said, told = measure("film.mp4", "--mask", "masks", "--out", "m", "--json")
+    assert code == 0
+    assert json.loads(said)["pairs"] == 4
+    assert len(told) == 2
+    assert all("overexposed" in line or "no tracers" in line for line in told)
+    for k, good in enumerate((False, False, True, True)):
+        found = columns(tmp_path / "m" / f"vectors_{k:04d}.csv")
+        assert np.isfinite(found["u"][found["solid"] == 0]).all()
+        assert (found["valid"].mean() > 0.8) == good
+        assert (found["valid"].sum() == 0) != good
+
+
+def test_a_film_that_shows_nothing_is_refused(measure, tmp_path):
+    filmed(4, tmp_path, dict.fromkeys(range(4), 90))
+    code, out, told = measure("film.mp4", "--out", "m")
+    assert (code, out) == (2, "")
+    assert "same tracers" in told[-1]
+    assert not (tmp_path / "m" / "piv.vtkhdf").exists()
+
+
+def test_an_overexposed_half_is_flagged_and_the_whole_refused(measure, tmp_path):
+    for k, (image, _) in enumerate(shots(2)):
+        half = image.copy()
+        half[:, : COLUMNS // 2 - 4] = 255
+        cv2.imwrite(f"half_{k}.png", half)
+        white = np.where(image < 30, 250, 255).astype(np.uint8)
+        white[::7] = 255
+        white[image < 14] = 254
+        white[image >= 14] = 255
+        cv2.imwrite(f"white_{k}.png", white)
+    code, _, _ = measure("half_0.png", "half_1.png", "--csv", "m.csv")
+    assert code == 0
+    found = columns(tmp_path / "m.csv")
+    assert found["valid"][found["x"] < COLUMNS // 2 - 24].max() == 0
+    assert found["valid"][found["x"] > COLUMNS // 2 + 16].mean() > 0.9
+    code, out, told = measure("white_0.png", "white_1.png", "--csv", "w.csv")
+    assert (code, out) == (2, "")
+    assert "overexposed" in told[0]
+
+
+def test_pairs_of_a_film_are_averaged_over_steps_and_regions(measure, tmp_path, monkeypatch):
+    filmed(9, tmp_path)
+    monkeypatch.setattr(piv_measure, "PATIENCE", 0.0)
+    chosen = ("--start", 1, "--end", 8, "--step", 2, "--region", "8,0,128,96", "--average", "--csv", "m.csv")
+    code, _, told = measure("film.mp4", "--mask", "masks", *chosen)
+    assert code == 0
+    assert "pass 1: 1 of 3 pairs" in told[0]
+    found = columns(tmp_path / "m.csv")
+    assert found["x"].min() == 16.0
+    far = (found["solid"] == 0) & (np.hypot(found["x"] - 31, found["y"] - 48) > 28)
+    # Two frames apart: twice the speed; three pairs of a film, a tenth of a pixel.
+    assert np.sqrt(np.mean((found["u"][far] - 2 * SPEED) ** 2)) < 0.1

@@ -72,6 +72,7 @@ def faults_of(place: str) -> dict[str, Callable[[Simulation], None]]:
         "thrown through the floor": at("x", (1,), -1.0),
         "two in one place": crowd(f"{place}x", lambda simulation: own(simulation)[:2]),
         "ten in one place": crowd(f"{place}x", lambda simulation: own(simulation)[:10]),
+        **{f"step times {factor:g}": step("flow", factor) for factor in (100.0, 1e4, NAN, -1.0, 0.0)},
     }  # fmt: skip
 
 
@@ -80,13 +81,11 @@ def lost(simulation: Simulation) -> None:
     simulation.flow.water.pores[POROSITY, second(WATER)(simulation)[0]] = NAN
 
 
-STEPS = (100.0, 1e4, NAN, -1.0, 0.0)
 OF_BUBBLES: dict[str, Callable[[Simulation], None]] = {
     **faults_of(LAYER),
     "density -100": put(f"{LAYER}density", middle(LAYER), -100.0),
     "rate_before 1e+09": put(f"{LAYER}rate_before", middle(LAYER), 1e9),
     "mass times a thousand": times(f"{LAYER}mass", middle(LAYER), 1e3),
-    **{f"step times {factor:g}": step("flow", factor) for factor in STEPS},
 }
 OF_AIR: dict[str, Callable[[Simulation], None]] = {
     **faults_of(WATER),
@@ -99,7 +98,6 @@ OF_AIR: dict[str, Callable[[Simulation], None]] = {
     **{f"soil {name} {value:g}": put(f"{SAND}{name}", index, value) for name, index, value in (
         ("x", (20, 0), NAN), ("stress", (20, 1), NAN), ("stress", (20, 1), 1e12), ("density", 20, -1.0),
         ("v", (20, 0), 1e3))},
-    **{f"step times {factor:g}": step("both", factor) for factor in STEPS},
 }  # fmt: skip
 FAULTS = {**dict.fromkeys(BUBBLES, OF_BUBBLES), "trapped_air": OF_AIR}
 
