@@ -75,7 +75,7 @@ def repeat(package: Package, scene: Path, which: int = 1) -> Promise:
     front = read_front(scene)
     chosen = replace(front, points=front.points[which - 1 :][:1])
     if not chosen.points:
-        raise InputError(Fault("--size", which, "is no point of the front", "", f"1 to {len(front.points)}"))
+        raise InputError(Fault("--size", which, "is not a point of the front", "", f"1 to {len(front.points)}"))
     point = chosen.points[0]
     opened = open_scene(scene, package.scene(), quality=point.quality, overrides=settings(point))
     choice = choose(chosen, point.error, None, lambda _: begun(lambda: package.build(opened.scene)))
