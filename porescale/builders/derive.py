@@ -23,7 +23,7 @@ from porescale.builders.initial.rock import rock_frames
 from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.choose import LAWS
-from porescale.dem.contact.materials import Law
+from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import make_discs
 from porescale.dem.timestep import packing_limit, stable_step
 from porescale.lbm.scales import NAMES, Scales, implied
@@ -44,8 +44,8 @@ class Derived:
     scales: Scales | None = None
     cells: tuple[int, int] | None = None
     gate_column: int | None = None
-    law: Law | None = None  # of the packing, or the first material, with itself
-    wall_law: Law | None = None
+    law: ContactLaw | None = None  # of the packing, or the first material, with itself
+    wall_law: ContactLaw | None = None
     contact_limit: float | None = None  # s, stability limit in a packing
     contact_step: float | None = None  # s
     contact_steps: int | None = None  # per model step

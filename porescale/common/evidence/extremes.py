@@ -76,10 +76,6 @@ class Extremes(Register[Extreme]):
 
     what = "axis"
 
-    def axes(self) -> list[str]:
-        """Names of what is varied, in order."""
-        return list(dict.fromkeys(it.axis for it in self))
-
 
 def write(folder: Path, command: str, rows: Sequence[Row]) -> None:
     """extremes.json, .md and .png into ``folder``, which is made if it is not there; each whole or not at all."""

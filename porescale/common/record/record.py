@@ -77,7 +77,7 @@ class Record:
         """
         if (folder / cards.NAME).exists():
             if not overwrite:
-                _refuse_to_lose(folder)
+                _require_replaceable(folder)
             snapshots.clear(folder)
             older = [f"{name}.csv" for name in _tables_of_run(folder)]
             for name in (SERIES, *older, CHECKPOINT, *MADE_LATER, cards.NAME):
@@ -258,7 +258,7 @@ def _tables_of_run(folder: Path) -> list[str]:
         return []
 
 
-def _refuse_to_lose(folder: Path) -> None:
+def _require_replaceable(folder: Path) -> None:
     """InputError when ``folder`` holds an unfinished run worth keeping."""
     try:
         outcome = cards.read_card(folder).get("outcome")
