@@ -87,7 +87,7 @@ def critical_angle(friction: float, seed: int, grains: int = 300) -> float:
 def known_soil() -> Measured:
     """Parameters found from a synthetic test of a given soil, over those of the soil."""
     found = known_numbers(known_test())
-    return Measured([1.0] * len(found), found, max(abs(value - 1.0) for value in found))
+    return Measured.absolute([1.0] * len(found), found)
 
 
 @VALIDATIONS.row(
@@ -98,8 +98,7 @@ def known_soil() -> Measured:
 )
 def square_array() -> Measured:
     """Flow through the periodic cell of one disc, as through a specimen."""
-    found = array_permeability()
-    return Measured(1.0, found, abs(found - 1.0))
+    return Measured.absolute(1.0, array_permeability())
 
 
 @VALIDATIONS.row(
@@ -113,5 +112,4 @@ def square_array() -> Measured:
 def critical_state() -> Measured:
     """Critical friction angle of four specimens, degrees."""
     found = float(np.mean([critical_angle(0.4, seed) for seed in (1, 2, 3, 4)]))
-    reference = math.degrees(math.asin(0.251))
-    return Measured(reference, found, abs(found - reference))
+    return Measured.absolute(math.degrees(math.asin(0.251)), found)

@@ -198,8 +198,7 @@ def onset(given: Heave = QUICK) -> float:
 def heave_row() -> Measured:
     """Head over i_c s at which the ground behind a pile to half its depth begins to rise, 12 particles over T."""
     low, high = BOUNDS[QUICK.share]
-    found = onset()
-    return Measured(0.5 * (low + high), found, abs(found - 0.5 * (low + high)))
+    return Measured.absolute(0.5 * (low + high), onset())
 
 
 NARROW = {0.25: (2.83, 3.15), 0.5: (2.86, 3.19), 0.75: (3.05, 3.46)}
@@ -239,8 +238,8 @@ def held_row(share: float, name: str) -> None:
     )
     def row() -> Measured:
         """Head over i_c s, held, above which ground behind a pile goes on rising; 12 or 20 particles over T."""
-        found = held(HELD[share])
-        return Measured(0.5 * (low + high), found, abs(found - 0.5 * (low + high)))
+
+    return Measured.absolute(0.5 * (low + high), held(HELD[share]))
 
 
 for buried in HELD:
@@ -271,5 +270,4 @@ def rising(given: Heave, known: float) -> float:
 )
 def rising_row() -> Measured:
     """Column of series.csv over what it should be, soil and water free to move, 16 particles over T."""
-    found = [rising(given, known) for given, known in RISING.items()]
-    return Measured([1.0, 1.0], found, max(abs(one - 1.0) for one in found))
+    return Measured.absolute([1.0, 1.0], [rising(given, known) for given, known in RISING.items()])

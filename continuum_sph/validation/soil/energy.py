@@ -118,8 +118,7 @@ def collapse(seconds: float = 0.3) -> Book:
 )
 def energy_row() -> Measured:
     """Error of the energy budget of a collapse, 0.3 s, over what was lost."""
-    found = collapse().missing()
-    return Measured(0.0, found, abs(found))
+    return Measured.absolute(0.0, collapse().missing())
 
 
 SOFT, STIFF = 1e6, 5.84e6  # Pa
@@ -141,4 +140,4 @@ def run_outs(viscosity: float | None = THICK) -> tuple[float, float]:
 def run_out_row() -> Measured:
     """Front of a column of soil of 1 MPa against that of 5.84 MPa, m."""
     soft, stiff = run_outs()
-    return Measured(stiff, soft, abs(soft - stiff))
+    return Measured.absolute(stiff, soft)

@@ -259,7 +259,7 @@ def permeability() -> Measured:
     """K/R² at 40 cells per diameter, tau 0.8."""
     drags = square_array_drag(40.0, 0.6, places=places(1))
     found = math.pi / 0.6 / float(np.mean(drags))  # K = mu U/G = box/(F/mu U), box = pi R²/c
-    return Measured(gebart(0.6), found, abs(found / gebart(0.6) - 1))
+    return Measured.relative(gebart(0.6), found)
 
 
 @VALIDATIONS.row(
@@ -292,8 +292,7 @@ def dense_hexagonal_arrays() -> Measured:
 )
 def unlike_discs() -> Measured:
     """Drags, and the flow turned aside over that along x; box of 25 cells, tau 0.8."""
-    found = pair_drags(25)
-    return Measured(PAIR, found, float(np.abs(np.divide(found, PAIR) - 1).max()))
+    return Measured.relative(PAIR, pair_drags(25))
 
 
 @VALIDATIONS.row(

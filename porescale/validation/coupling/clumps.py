@@ -104,8 +104,7 @@ EPS = 2.0**-52
 )
 def momentum() -> Measured:
     """Error of the momentum budget over sum m |v| at the start: two clumps that collide in a periodic box."""
-    error = momentum_error_of_clumps()
-    return Measured(0.0, error, error)
+    return Measured.absolute(0.0, momentum_error_of_clumps())
 
 
 @VALIDATIONS.row(
@@ -116,8 +115,7 @@ def momentum() -> Measured:
 )
 def round_limit() -> Measured:
     """Speed of the clump over that of the disc after 300 steps from rest."""
-    found = pair_beside_disc(APART)
-    return Measured(1.0, found, abs(found - 1.0))
+    return Measured.absolute(1.0, pair_beside_disc(APART))
 
 
 @VALIDATIONS.row(
@@ -129,4 +127,4 @@ def round_limit() -> Measured:
 def mirror() -> Measured:
     """Sideways speed and spin of two discs side by side, over the speed down."""
     aside, turning = level_pair()
-    return Measured((0.0, 0.0), (aside, turning), max(abs(aside), abs(turning)))
+    return Measured.absolute((0.0, 0.0), (aside, turning))

@@ -153,8 +153,7 @@ def square(fraction: float, degrees: float) -> Floats:
 )
 def areas() -> Measured:
     """Largest error of the sum of fractions, cells, of a square, a plate and an ellipse at 180 angles and places."""
-    errors = area_errors([regular(4, 100.0), plate(20.0, 2.5), ellipse(10.0, 4.0)], 180)
-    return Measured(0.0, errors, max(errors))
+    return Measured.absolute(0.0, area_errors([regular(4, 100.0), plate(20.0, 2.5), ellipse(10.0, 4.0)], 180))
 
 
 @VALIDATIONS.row(
@@ -171,8 +170,7 @@ def squares() -> Measured:
     cases = [(0.1, 32, turn, drag) for turn, drag in SQUARES.items()]
     cases += [(0.2, 22, turn, drag) for turn, drag in DENSER.items()]
     found = [float(np.mean(array_drag(square(c, turn), cells))) for c, cells, turn, _ in cases]
-    exact = [drag for *_, drag in cases]
-    return Measured(exact, found, float(np.abs(np.divide(found, exact) - 1).max()))
+    return Measured.relative([drag for *_, drag in cases], found)
 
 
 @VALIDATIONS.row(
@@ -184,9 +182,7 @@ def squares() -> Measured:
 )
 def plates() -> Measured:
     """Drag at 24 by 3 cells, tau 0.8, mean over two places."""
-    found = [plate_drag(40, turn) for turn in PLATES]
-    exact = list(PLATES.values())
-    return Measured(exact, found, float(np.abs(np.divide(found, exact) - 1).max()))
+    return Measured.relative(list(PLATES.values()), [plate_drag(40, turn) for turn in PLATES])
 
 
 def plate_drag(cells: int, degrees: float) -> float:
@@ -203,9 +199,7 @@ def plate_drag(cells: int, degrees: float) -> float:
 )
 def turning() -> Measured:
     """Torque over mu w and the cell at 10 cells a side, tau 0.8, sides at 0 and 20 degrees."""
-    found = [array_torque(square(0.2, turn), 22) for turn in TURNING]
-    exact = list(TURNING.values())
-    return Measured(exact, found, float(np.abs(np.divide(found, exact) - 1).max()))
+    return Measured.relative(list(TURNING.values()), [array_torque(square(0.2, turn), 22) for turn in TURNING])
 
 
 def beside_the_disc(corners: int, cells: int = 25, solid_fraction: float = 0.2) -> float:

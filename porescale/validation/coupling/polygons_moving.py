@@ -107,8 +107,7 @@ def loads_on_neutral(steps: int, extra: float = 0.0) -> list[float]:
 )
 def neutral() -> Measured:
     """Largest load, and torque over the size, on three polygons of density 1 that uniform flow carries, 300 steps."""
-    loads = loads_on_neutral(300)
-    return Measured(0.0, loads, max(loads))
+    return Measured.absolute(0.0, loads_on_neutral(300))
 
 
 def momentum_error(steps: int, ratio: float = 2.0, g: float = -1e-5, *, inside: bool = True) -> float:
@@ -142,8 +141,7 @@ def momentum_error(steps: int, ratio: float = 2.0, g: float = -1e-5, *, inside: 
 )
 def momentum() -> Measured:
     """Error of the momentum budget over sum m |v| at the start: polygons and discs in a periodic box under gravity."""
-    errors = [momentum_error(400, ratio) for ratio in (2.0, 0.5)]
-    return Measured([0.0, 0.0], errors, max(errors))
+    return Measured.absolute([0.0, 0.0], [momentum_error(400, ratio) for ratio in (2.0, 0.5)])
 
 
 def level_plate(degrees: float, steps: int = 300) -> tuple[float, float]:
@@ -167,7 +165,7 @@ def level_plate(degrees: float, steps: int = 300) -> tuple[float, float]:
 def mirror() -> Measured:
     """Sideways speed and tip speed of a level plate that sinks, over the speed down."""
     aside, tip = level_plate(0.0)
-    return Measured([0.0, 0.0], [aside, tip], max(abs(aside), abs(tip)))
+    return Measured.absolute([0.0, 0.0], [aside, tip])
 
 
 def half_turn(
@@ -221,5 +219,4 @@ def half_turn(
 )
 def jeffery() -> Measured:
     """Time of half a turn over Jeffery's: ellipse of 48 corners, axes 15 and 7.5 cells, between walls that slide."""
-    found = half_turn(64, 7.5, 3.75, 0.15) / (math.pi * 2.5)
-    return Measured(1.0, found, abs(found - 1))
+    return Measured.absolute(1.0, half_turn(64, 7.5, 3.75, 0.15) / (math.pi * 2.5))

@@ -177,8 +177,7 @@ GAPS = (6.0, 6.25, 6.9)
 def taylor_couette() -> Measured:
     """Torque over the exact one: on disc and ring as the disc turns, then as the ring does; tau 0.6 and 0.8."""
     found = [value for tau in TAUS for turning in ("disc", "ring") for value in torques(tau, turning)]
-    reference = [-1.0, 1.0, 1.0, -1.0] * len(TAUS)
-    return Measured(reference, found, float(np.abs(np.subtract(found, reference)).max()))
+    return Measured.absolute([-1.0, 1.0, 1.0, -1.0] * len(TAUS), found)
 
 
 @VALIDATIONS.row(
@@ -190,8 +189,7 @@ def taylor_couette() -> Measured:
 )
 def sliding() -> Measured:
     """Largest error of velocity over the rectangle's, and of drag, for gaps of 6, 6.25 and 6.9 cells at tau 0.8."""
-    found = [value for gap in GAPS for value in couette_error(gap, 0.8)]
-    return Measured(0.0, found, max(found))
+    return Measured.absolute(0.0, [value for gap in GAPS for value in couette_error(gap, 0.8)])
 
 
 @VALIDATIONS.row(
@@ -203,5 +201,4 @@ def sliding() -> Measured:
 )
 def piston() -> Measured:
     """Flux over the piston's, in the channel before it and in a narrow gap beyond."""
-    found = piston_flux()[:2]
-    return Measured([1.0, 1.0], found, float(np.abs(np.subtract(found, 1.0)).max()))
+    return Measured.absolute([1.0, 1.0], piston_flux()[:2])

@@ -273,8 +273,7 @@ FILMS = (0.02, 0.03, 0.05)
 def channel() -> Measured:
     """Drag F/(mu U) at 10 cells per diameter."""
     drags = [channel_drag(k) for k in (0.2, 0.3)]
-    reference, found = [faxen(k) for _, k in drags], [drag for drag, _ in drags]
-    return Measured(reference, found, float(np.abs(np.divide(found, reference) - 1).max()))
+    return Measured.relative([faxen(k) for _, k in drags], [drag for drag, _ in drags])
 
 
 @VALIDATIONS.row(
@@ -287,7 +286,7 @@ def channel() -> Measured:
 def wide_channel() -> Measured:
     """Drag F/(mu U) at 10 cells per diameter."""
     drag, k = channel_drag(0.1)
-    return Measured(faxen(k), drag, abs(drag / faxen(k) - 1))
+    return Measured.relative(faxen(k), drag)
 
 
 @VALIDATIONS.row(
@@ -300,9 +299,7 @@ def wide_channel() -> Measured:
 )
 def near_wall_row() -> Measured:
     """F/(mu U) along and towards the wall, T/(mu a² w), radius 10 cells, tau 0.6."""
-    found = [near_wall(motion, relaxation_time=0.6) for motion in NEAR_WALL]
-    reference = list(NEAR_WALL.values())
-    return Measured(reference, found, float(np.abs(np.divide(found, reference) - 1).max()))
+    return Measured.relative(list(NEAR_WALL.values()), [near_wall(motion, relaxation_time=0.6) for motion in NEAR_WALL])
 
 
 @VALIDATIONS.row(
@@ -316,7 +313,7 @@ def near_wall_row() -> Measured:
 def films() -> Measured:
     """Force over the law's at gaps of 0.2, 0.3 and 0.5 cells with the correction below one cell, radius 10."""
     found = [near_wall("towards", gap, lubrication=True) / jeffrey_onishi("towards", gap) for gap in FILMS]
-    return Measured([1.0] * len(found), found, float(np.abs(np.subtract(found, 1)).max()))
+    return Measured.absolute([1.0] * len(found), found)
 
 
 @VALIDATIONS.row(
@@ -327,8 +324,7 @@ def films() -> Measured:
 )
 def noise() -> Measured:
     """Rms of the drag over its mean, at 0.01 and 11 degrees to the grid in a periodic box of 4 diameters."""
-    found = towed_noise()
-    return Measured(0.0, found, found)
+    return Measured.absolute(0.0, towed_noise())
 
 
 @VALIDATIONS.row(
@@ -342,7 +338,7 @@ def body_force() -> Measured:
     """Load over F of a disc (5 cells in a closed box of 40) in water under a body force, tau 0.8 and 1.5."""
     pairs = [weighing(tau) for tau in (0.8, 1.5)]
     found, expected = [pair[0] for pair in pairs], [pair[1] for pair in pairs]
-    return Measured(expected, found, float(np.abs(np.divide(found, expected) - 1).max()))
+    return Measured.relative(expected, found)
 
 
 @VALIDATIONS.row(

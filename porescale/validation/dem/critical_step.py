@@ -10,7 +10,7 @@ from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
 from porescale.dem.timestep import packing_limit
-from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS, grows, law_at, relative, row_on_floor
+from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS, grows, law_at, row_on_floor
 
 VALIDATIONS = Validations()
 
@@ -41,9 +41,7 @@ def critical_step(damping_ratio: float, tolerance: float = 2e-3, steps: int = 20
 def contact_row() -> Measured:
     """Longest stable step of a disc pressed on a floor, in sqrt(m/k), h = 0, 0.1, 0.5, 1."""
     ratios = (0.0, 0.1, 0.5, 1.0)
-    exact = [2.0 * (math.hypot(1.0, h) - h) for h in ratios]
-    found = [critical_step(h) for h in ratios]
-    return Measured(exact, found, relative(found, exact))
+    return Measured.relative([2.0 * (math.hypot(1.0, h) - h) for h in ratios], [critical_step(h) for h in ratios])
 
 
 def lattice_frequency(shear: float, waves: int = 48) -> float:
@@ -103,8 +101,7 @@ def lattice_row() -> Measured:
     """
     shears = (0.25, 0.8)
     exact = [2.0 / math.sqrt(lattice_frequency(shear)) for shear in shears]
-    found = [lattice_critical_step(shear) for shear in shears]
-    return Measured(exact, found, relative(found, exact))
+    return Measured.relative(exact, [lattice_critical_step(shear) for shear in shears])
 
 
 def packing_step(shear: float) -> float:

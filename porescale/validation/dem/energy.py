@@ -83,8 +83,7 @@ def repose(settling: int = 12_000, running: int = 100_000, seed: int = 1) -> tup
 def energy_repose() -> Measured:
     """Unaccounted energy over the energy turned over."""
     _, book = repose()
-    share = book["residual (J/m)"] / book["turned over (J/m)"]
-    return Measured(0.0, share, abs(share))
+    return Measured.absolute(0.0, book["residual (J/m)"] / book["turned over (J/m)"])
 
 
 SIDE, PAIRS = 5, 8
@@ -151,8 +150,7 @@ def unaccounted(drives: tuple[str, ...], steps_per_contact: float, seeds: int = 
 def driven() -> Measured:
     """Unaccounted energy over the energy turned over, in boxes without drive, with each, and with all."""
     cases = [("free",), ("placed",), ("pushed",), ("wall turns",), ("servo",), tuple(DRIVES)]
-    found = [unaccounted(names, 200.0) for names in cases]
-    return Measured((0.0,) * len(cases), found, max(found))
+    return Measured.absolute((0.0,) * len(cases), [unaccounted(names, 200.0) for names in cases])
 
 
 @VALIDATIONS.row(

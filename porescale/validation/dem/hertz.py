@@ -11,7 +11,7 @@ from porescale.dem.contact.hertz import Hertz
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
-from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, grows, on_floor, relative
+from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, grows, on_floor
 
 VALIDATIONS = Validations()
 
@@ -103,9 +103,7 @@ def hertz_impact(law: Hertz, speed: float, steps_per_contact: float = 1000.0) ->
 def impact_row() -> Measured:
     """Deepest overlap (m) and duration (s) of an undamped impact at 1 m/s."""
     deepest = HERTZ.overlap_at(MASS, RADIUS, 1.0)
-    exact = (deepest, 2.94327518432201 * deepest)
-    found = hertz_impact(HERTZ, 1.0)
-    return Measured(exact, found, relative(found, exact))
+    return Measured.relative((deepest, 2.94327518432201 * deepest), hertz_impact(HERTZ, 1.0))
 
 
 def hertz_critical_step(share: float, tolerance: float = 2e-3) -> float:
@@ -132,8 +130,7 @@ def hertz_critical() -> Measured:
     """Longest stable step (s) of a disc pressed to 1e-4 and 1e-2 of its radius."""
     shares = (1e-4, 1e-2)
     exact = [2.0 * math.sqrt(MASS / (1.5 * HERTZ.constant(RADIUS) * math.sqrt(s * RADIUS))) for s in shares]
-    found = [hertz_critical_step(share) for share in shares]
-    return Measured(exact, found, relative(found, exact))
+    return Measured.relative(exact, [hertz_critical_step(share) for share in shares])
 
 
 def hertz_grazing_gain(law: Hertz, angles: Floats, speed: float = 1.0) -> Floats:

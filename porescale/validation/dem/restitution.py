@@ -85,8 +85,7 @@ def restitution_pair() -> Measured:
     """Two discs of radius ratio 2, head on, at an angle to the axes."""
     mass = MASS * 4.0 / 5.0
     law = law_at(0.2155, mass=mass)
-    exact, bounced = law.restitution(mass), bounce_pair(law, 2.0, 1000.0)
-    return Measured(exact, bounced, abs(bounced - exact))
+    return Measured.absolute(law.restitution(mass), bounce_pair(law, 2.0, 1000.0))
 
 
 def impact(

@@ -8,7 +8,7 @@ import numpy as np
 from porescale.common.core.constants import GRAVITY
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.dem.contact.linear import Linear
-from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, law_at, on_floor, relative, row_on_floor
+from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, law_at, on_floor, row_on_floor
 
 VALIDATIONS = Validations()
 
@@ -40,9 +40,7 @@ def slide_to_roll(friction: float, speed: float = 1.0, gravity: float = GRAVITY)
 )
 def sliding_to_rolling() -> Measured:
     """A disc set sliding at 1 m/s without spin, mu = 0.2: when it rolls, and how fast."""
-    exact = (1.0 / (3.0 * 0.2 * GRAVITY), 2.0 / 3.0)
-    found = slide_to_roll(0.2)
-    return Measured(exact, found, relative(found, exact))
+    return Measured.relative((1.0 / (3.0 * 0.2 * GRAVITY), 2.0 / 3.0), slide_to_roll(0.2))
 
 
 def incline(
@@ -91,8 +89,7 @@ def incline_row() -> Measured:
         roll, roll / RADIUS,
         GRAVITY * (math.sin(0.8) - 0.1 * math.cos(0.8)), 0.2 * GRAVITY * math.cos(0.8) / RADIUS,
     )  # fmt: skip
-    found = (*incline(0.3, 0.5), *incline(0.8, 0.1))
-    return Measured(exact, found, relative(found, exact))
+    return Measured.relative(exact, (*incline(0.3, 0.5), *incline(0.8, 0.1)))
 
 
 @VALIDATIONS.row(
@@ -105,8 +102,7 @@ def incline_row() -> Measured:
 def incline_arm() -> Measured:
     """Acceleration and angular acceleration on the same inclines."""
     exact = (*incline_exact(0.3, 0.5), *incline_exact(0.8, 0.1))
-    found = (*incline(0.3, 0.5, wait=0.06), *incline(0.8, 0.1, wait=0.06))
-    return Measured(exact, found, relative(found, exact))
+    return Measured.relative(exact, (*incline(0.3, 0.5, wait=0.06), *incline(0.8, 0.1, wait=0.06)))
 
 
 def resisted_incline(slope: float, resistance: float, gravity: float = GRAVITY, wait: float = 0.05) -> float:
@@ -143,5 +139,4 @@ def resisted_acceleration(slope: float, resistance: float, gravity: float = GRAV
 def rolling_incline() -> Measured:
     """Acceleration over g at tan = 0.09 and 0.31 with mu_r = 0.1."""
     exact = [resisted_acceleration(slope, 0.1) / GRAVITY for slope in (0.09, 0.3)]
-    found = [resisted_incline(slope, 0.1) / GRAVITY for slope in (0.09, 0.3)]
-    return Measured(exact, found, float(np.abs(np.subtract(found, exact)).max()))
+    return Measured.absolute(exact, [resisted_incline(slope, 0.1) / GRAVITY for slope in (0.09, 0.3)])

@@ -12,7 +12,7 @@ from porescale.dem.contact.materials import Materials
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
-from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS, free, law_at, relative
+from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS, free, law_at
 
 VALIDATIONS = Validations()
 
@@ -40,9 +40,7 @@ def stack(count: int, gravity: float = GRAVITY, decays: float = 40.0) -> Floats:
 )
 def static_stack() -> Measured:
     """Ten discs on a floor, overlaps in m g/k."""
-    exact = list(range(1, 11))
-    found = stack(10)
-    return Measured(exact, found.tolist(), relative(found, exact))
+    return Measured.relative(list(range(1, 11)), stack(10))
 
 
 def unlike_stack(gravity: float = GRAVITY) -> Floats:
@@ -68,6 +66,4 @@ def unlike_stack(gravity: float = GRAVITY) -> Floats:
 def materials() -> Measured:
     """Overlap over load (m/N per metre): a disc ten times softer than the floor and the disc on it."""
     mixed = 2.0 * 0.1 / 1.1 * STIFFNESS
-    exact = (2.0 / mixed, 1.0 / mixed)
-    found = tuple(float(value) for value in unlike_stack())
-    return Measured(exact, found, relative(found, exact))
+    return Measured.relative((2.0 / mixed, 1.0 / mixed), tuple(float(value) for value in unlike_stack()))
