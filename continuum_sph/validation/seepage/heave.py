@@ -238,8 +238,7 @@ def held_row(share: float, name: str) -> None:
     )
     def row() -> Measured:
         """Head over i_c s, held, above which ground behind a pile goes on rising; 12 or 20 particles over T."""
-
-    return Measured.absolute(0.5 * (low + high), held(HELD[share]))
+        return Measured.absolute(0.5 * (low + high), held(HELD[share]))
 
 
 for buried in HELD:

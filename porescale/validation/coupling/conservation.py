@@ -4,7 +4,7 @@ import numpy as np
 
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.coupling.step import Coupled
-from porescale.validation.coupling.setups import GATE, carried, handful, immersed, without_inner_mass
+from porescale.validation.coupling.setups import GATE, carried, handful, immersed, momentum_error
 
 EPS = float(np.finfo(float).eps)
 VALIDATIONS = Validations()
@@ -55,20 +55,6 @@ def mass() -> Measured:
     return Measured.absolute(0.0, (coupled.fluid.mass_excess() - before) / (coupled.fluid.nx * coupled.fluid.ny))
 
 
-def momentum_error(acceleration: tuple[float, float], steps: int, *, inner_mass: bool = True) -> float:
-    """Largest error of the momentum budget over sum m |v| at the start: colliding discs in a periodic box."""
-    coupled = handful(acceleration=acceleration)
-    if not inner_mass:
-        without_inner_mass(coupled)
-    discs = coupled.grains.discs
-    size = float(np.sum(discs.mass[:, None] * np.abs(discs.velocity)))
-    first, per_step, worst = coupled.momentum(), coupled.weight.sum(axis=0), 0.0
-    for step in range(1, steps + 1):
-        coupled.advance()
-        worst = max(worst, float(np.abs(coupled.momentum() - first - step * per_step).max()))
-    return worst / size
-
-
 @VALIDATIONS.row(
     "coupling.momentum",
     source="Newton: sum rho u + sum(m_p U^n - m_f U^(n-1)) changes by the weights alone",
@@ -77,7 +63,7 @@ def momentum_error(acceleration: tuple[float, float], steps: int, *, inner_mass:
 )
 def momentum() -> Measured:
     """Error of the momentum budget over sum m |v| at the start: discs in a periodic box, with and without weights."""
-    return Measured.absolute(0.0, [momentum_error(acceleration, STEPS) for acceleration in ((0.0, 0.0), FALL)])
+    return Measured.absolute(0.0, [momentum_error(handful(acceleration=way), STEPS) for way in ((0.0, 0.0), FALL)])
 
 
 def lift_gate(coupled: Coupled) -> None:

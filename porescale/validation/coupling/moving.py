@@ -13,8 +13,8 @@ from porescale.common.evidence.validations import Measured, Validations
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.lattice import viscosity
 from porescale.lbm.scales import Scales
-from porescale.validation.coupling.setups import DEFAULT, TAU, Method, immersed
-from porescale.validation.coupling.towed import PERIODIC, RADIUS, faxen, jeffrey_onishi, steady, towed
+from porescale.validation.coupling.setups import DEFAULT, PERIODIC, TAU, Method, immersed
+from porescale.validation.coupling.towed import RADIUS, faxen, jeffrey_onishi, steady, towed
 from porescale.validation.lbm.channels import one_thread
 
 

@@ -15,12 +15,11 @@ from porescale.common.evidence.validations import Measured, Validations
 from porescale.coupling.coverage.polygon import Polygons
 from porescale.coupling.coverage.rows import make_patches
 from porescale.coupling.psm import SaturatedCells
-from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
-from porescale.validation.coupling.setups import DEFAULT, TAU, Method
+from porescale.validation.coupling.setups import DEFAULT, NO_DISCS, PERIODIC, TAU, Method
 from porescale.validation.coupling.towed import square_array_drag
-from porescale.validation.lbm.channels import one_thread
+from porescale.validation.lbm.channels import run
 
 EPS = float(np.finfo(float).eps)
 VALIDATIONS = Validations()
@@ -74,11 +73,9 @@ def array_drag(
             fluid, np.zeros(0), solid_operator=method.solid_operator, weighting=method.weighting, polygons=body
         )  # fmt: skip
         flux, before = 0.0, math.nan
-        with one_thread():
-            while not abs(flux - before) <= change * abs(flux):
-                for _ in range(max(50, math.ceil(cells**2 / (25.0 * nu)))):
-                    wet.advance(fluid, *NO_DISCS)
-                flux, before = fluid.momentum()[0] / cells**2, flux
+        while not abs(flux - before) <= change * abs(flux):
+            run(lambda: wet.advance(fluid, *NO_DISCS), max(50, math.ceil(cells**2 / (25.0 * nu))))  # noqa: B023
+            flux, before = fluid.momentum()[0] / cells**2, flux
         found.append(force * cells**2 / (nu * flux))
     return found
 
@@ -96,9 +93,7 @@ def array_torque(
     wet = SaturatedCells(
         fluid, np.zeros(0), solid_operator=method.solid_operator, weighting=method.weighting, polygons=body
     )  # fmt: skip
-    with one_thread():
-        for _ in range(math.ceil(cells**2 / nu)):
-            wet.advance(fluid, *NO_DISCS)
+    run(lambda: wet.advance(fluid, *NO_DISCS), math.ceil(cells**2 / nu))
     return -float(wet.polygon_load[0, 2]) / (nu * spin * cells**2)
 
 
@@ -118,9 +113,6 @@ def area_errors(shapes: Sequence[Floats], angles: int) -> list[float]:
         found.append(worst)
     return found
 
-
-NO_DISCS = np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0)
-PERIODIC = Sides("periodic", "periodic", "periodic", "periodic")
 
 SQUARES = {0: 26.945294, 20: 27.982393, 45: 29.739357}
 """Drag of square arrays of squares, solid fraction 0.1, turned by so many degrees."""
@@ -167,10 +159,12 @@ def areas() -> Measured:
 )
 def squares() -> Measured:
     """Drag at 10 cells a side, tau 0.8, mean over places."""
-    cases = [(0.1, 32, turn, drag) for turn, drag in SQUARES.items()]
-    cases += [(0.2, 22, turn, drag) for turn, drag in DENSER.items()]
-    found = [float(np.mean(array_drag(square(c, turn), cells))) for c, cells, turn, _ in cases]
-    return Measured.relative([drag for *_, drag in cases], found)
+    found = [
+        float(np.mean(array_drag(square(c, turn), cells)))
+        for c, cells, drags in ((0.1, 32, SQUARES), (0.2, 22, DENSER))
+        for turn in drags
+    ]
+    return Measured.relative([*SQUARES.values(), *DENSER.values()], found)
 
 
 @VALIDATIONS.row(

@@ -36,9 +36,8 @@ def settling_disc(
     step = (relaxation_time - 0.5) / 3 * spacing**2 / nu
     cells = round(0.02 / spacing), round(0.06 / spacing)
     coupled = immersed(
-        cells, [(0.01, 0.04)], diameter / 2, 1250.0,
-        acceleration=(0.0, -9.81), ratio=ratio, scales=Scales(spacing, step, relaxation_time),
-        method=method,
+        cells, [(0.01, 0.04)], diameter / 2, 1250.0, acceleration=(0.0, -9.81), ratio=ratio,
+        scales=Scales(spacing, step, relaxation_time), method=method,
     )  # fmt: skip
     discs, fastest = coupled.grains.discs, 0.0
     while discs.position[0, 1] > 1.5 * diameter:

@@ -1,6 +1,4 @@
-"""Validations of sleep under water: sleepers are in balance with the water too, and a collapse ends as without it.
-
-Heaps that sleep under water: what a current and a grain that sinks do to them, and what sleep makes of a collapse.
+"""Heaps that sleep under water: what a current and a grain that sinks do to them, and what sleep makes of a collapse.
 
 In lattice units.  A contact step is a fluid step, so that the forces which judge a sleeper can be taken from outside.
 """

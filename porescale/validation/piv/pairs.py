@@ -285,8 +285,7 @@ def _table(name: str, tolerance: float, best: str) -> None:
     )
     def measure() -> Measured:
         """Rms error of a component over ten seeds (one where quick), px."""
-
-    return Measured.absolute(0.0, row(name, SEEDS if name != "uniform" else range(1)).rms)
+        return Measured.absolute(0.0, row(name, SEEDS if name != "uniform" else range(1)).rms)
 
 
 for flow, bound, others in (
