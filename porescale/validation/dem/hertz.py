@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from porescale.dem.contact.hertz import Hertz
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
-from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, grows, on_floor
+from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, grows, on_floor, stability_limit
 
 VALIDATIONS = Validations()
 
@@ -110,14 +111,8 @@ def hertz_critical_step(share: float, tolerance: float = 2e-3) -> float:
     """Measured stability limit (s) of a disc pressed on a floor to ``share`` of its radius, undamped, by bisection."""
     load = np.array([[0.0, -HERTZ.constant(RADIUS) * (share * RADIUS) ** 1.5]])
     unit = math.sqrt(MASS / (1.5 * HERTZ.constant(RADIUS) * math.sqrt(share * RADIUS)))
-    low, high = 0.5 * unit, 3.0 * unit
-    while high - low > tolerance * low:
-        middle = 0.5 * (low + high)
-        if grows(on_floor(HERTZ, -share * RADIUS), load, middle, 2000):
-            high = middle
-        else:
-            low = middle
-    return 0.5 * (low + high)
+    pressed = partial(on_floor, HERTZ, -share * RADIUS)
+    return stability_limit(0.5 * unit, 3.0 * unit, tolerance, lambda step: grows(pressed(), load, step, 2000))
 
 
 @VALIDATIONS.row(

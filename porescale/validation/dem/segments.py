@@ -1,7 +1,4 @@
-"""Validations of segments, polygons and bonds: exact answers, and energy that closes.
-
-Small experiments with segments, polygons and bonds that have exact answers, in SI.
-"""
+"""Segments, polygons and bonds: small experiments with exact answers, and energy that closes.  SI."""
 
 import math
 from typing import Any
@@ -21,7 +18,7 @@ from porescale.dem.measures.energy import energy_book
 from porescale.dem.motion.control import Moved
 from porescale.dem.motion.drivers import Clump
 from porescale.validation.dem.momentum import momentum_drift
-from porescale.validation.dem.setups import DENSITY, RADIUS, STIFFNESS, free, law_at
+from porescale.validation.dem.setups import DENSITY, RADIUS, STIFFNESS, first_order, free, law_at
 
 THICKNESS = 0.1 * RADIUS
 OPEN = dict.fromkeys(("left", "right", "bottom", "top"), "open")
@@ -265,11 +262,7 @@ def bouncing_row() -> Measured:
 )
 def bouncing_order() -> Measured:
     """Order at which that falls from 50 to 400 steps in a contact."""
-    orders = []
-    for what in BODIES:
-        coarse, fine = (float(bouncing(what, steps).max()) for steps in (50.0, 400.0))
-        orders.append(math.log(coarse / fine, 8.0))
-    return Measured((1.0,) * len(orders), orders, max(0.0, 1.0 - min(orders)))
+    return first_order(lambda what, steps: float(bouncing(what, steps).max()), BODIES, 50.0, 400.0)
 
 
 @VALIDATIONS.row(
