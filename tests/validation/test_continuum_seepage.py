@@ -5,16 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.cli import PACKAGE
 from continuum_sph.seepage import Resistance, exchange, pores
 from continuum_sph.validation.seepage import consolidation, infiltration, permeameter, saturated_box
 from continuum_sph.validation.seepage.consolidation import LAYER, realised_modulus
-
-VALIDATIONS = PACKAGE.validations()
-
-
-def tolerance(name):
-    return VALIDATIONS[name].tolerance
+from tests.validation.tolerances import tolerance
 
 
 @pytest.mark.slow

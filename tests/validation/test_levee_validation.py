@@ -5,12 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.cli import PACKAGE
 from continuum_sph.soil import SoilFlow
 from continuum_sph.soil.state import GROWN
 from continuum_sph.validation.seepage.levee import FAR, GRAINS, PARTS, QUICK, STIFFER, Levee, gone
-
-VALIDATIONS = PACKAGE.validations()
+from tests.validation.tolerances import tolerance
 
 SLID = Levee(rows=8, end=3.2)
 """Until its soil has slid to the end of the land."""
@@ -37,7 +35,7 @@ def test_with_the_same_diffusion_of_stress_a_stiffer_levee_goes_otherwise():  # 
     stiff = replace(QUICK, stiffness=STIFFER * QUICK.stiffness, calm=QUICK.calm / STIFFER)
     assert stiff.diffusion == pytest.approx(QUICK.diffusion)
     late = [abs(one - other) for one, other in zip(gone(QUICK), gone(stiff), strict=True)]
-    assert max(late) > 2.0 * VALIDATIONS["continuum.levee_stiffness"].tolerance
+    assert max(late) > 2.0 * tolerance("continuum.levee_stiffness")
 
 
 @pytest.mark.slow

@@ -6,21 +6,15 @@ from functools import partial
 import pytest
 
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.cli import PACKAGE
 from continuum_sph.soil import Material
 from continuum_sph.validation.soil import bodies, element, energy, setups, slopes
 from tests.reference import continuum_cases
 from tests.reference.continuum_cases import missed
 from tests.reference.folders import CASES
-
-VALIDATIONS = PACKAGE.validations()
+from tests.validation.tolerances import tolerance
 
 series = partial(continuum_cases.series, Simulation, 200)
 STEEP = "soil.body=[{outline=[[0,0],[3.6,0],[3.6,0.2],[2.04,0.2],[0.5,1.2],[0,1.2]]}]"  # 33 degrees
-
-
-def tolerance(name):
-    return VALIDATIONS[name].tolerance
 
 
 def test_friction_taken_for_the_angle_of_its_tangent_fails_at_another_ratio():

@@ -103,5 +103,5 @@ def weights(count: int, gravity: float = GRAVITY) -> Floats:
 
 
 def slowest_wave(count: int) -> float:
-    """Frequency, rad/s, of the slowest wave of a column of discs on a floor; its critical damping is a drag of twice."""
+    """Frequency, rad/s, of the slowest wave of a column of discs on a floor; drag of twice that ends it soonest."""
     return math.sqrt(STIFFNESS / MASS) * math.pi / (2.0 * count + 1.0)
