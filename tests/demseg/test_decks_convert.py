@@ -94,8 +94,6 @@ FALLEN = {
     "polygon": decks.TRIANGLE.replace("-2 2", "-2 .1"),
 }
 """Bodies that soon meet the floor."""
-
-
 CONTAINER = decks.grains(
     "1 0 1", "1 1 1", "0 0 0", "1 1.0d0", "0 2.11 0", "2 1 2", "0 0 0", "1 -4 1", "4 1", "2 4 1", "4 3", dt="1.0d-5"
 ).replace("10.0d0 0.0d0\n1 0 1", "10.0d0 0.1\n1 0 1")  # fmt: skip

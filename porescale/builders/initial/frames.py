@@ -30,18 +30,13 @@ from porescale.scene.scene import Scene
 
 Kind = Literal["segment", "polygon", "container", "rock", "plate"]
 
-
 Prescribed = tuple[Control | None, Control | None, Control | None]
-
 
 PLATES = ("first plate", "second plate")
 
-
 FREE: Prescribed = (None, None, None)
 
-
 HELD: Prescribed = (Moved(), Moved(), Moved())
-
 
 ROD = 1e-3
 """Width of the rods of a container without thickness, over its size: it must weigh something to be a body."""

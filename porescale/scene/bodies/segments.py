@@ -14,7 +14,6 @@ from porescale.scene.time_function import Component, Turning
 
 Points = tuple[tuple[float, float], ...]
 
-
 Lines = tuple[tuple[float, float, float, float], ...]
 
 
