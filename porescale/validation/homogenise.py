@@ -60,13 +60,13 @@ def array_permeability(share: float = 1.0) -> float:
 
 def critical_angle(friction: float, seed: int, grains: int = 300) -> float:
     """Critical friction angle, degrees, of one specimen of discs with ``friction``."""
-    asked = validate(Scene, {
+    given = validate(Scene, {
         "title": "", "domain": {"width": 0.1, "height": 0.1}, "time": {"end": 1.0},
         "output": {"snapshot_interval": 1.0, "series_interval": 1.0}, "homogenise": {"grains": grains},
         "grains": {"density": 2500, "packing": {**DISCS, "seed": seed}},
         "contact": {"stiffness": 1e7, "tangential_stiffness": 5e6, "restitution": 0.3, "friction": friction},
     })  # fmt: skip
-    test = validate(Scene, specimen(asked))
+    test = validate(Scene, specimen(given))
     simulation = build(test)
     each = max(1, round(test.output.series_interval / simulation.step_seconds))
     rows: list[dict[str, float]] = []

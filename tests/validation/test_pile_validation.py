@@ -8,7 +8,7 @@ import pytest
 from continuum_sph.validation.seepage.heave import (
     APART,
     BOUNDS,
-    CALM,
+    HALF_HEAD,
     HEADS,
     HELD,
     NARROW,
@@ -126,8 +126,8 @@ def test_exit_gradients_known_of_runs_are_those_of_finite_volumes():
 @pytest.mark.slow
 def test_the_exit_gradient_of_a_pile_two_rows_deeper_is_refused():  # the twin that must fail
     row = ROWS["continuum.exit_gradient_in_a_run"]
-    deeper = replace(CALM, share=CALM.share + 2.0 / CALM.rows)
-    read = rising.__wrapped__(deeper, RISING[CALM])
+    deeper = replace(HALF_HEAD, share=HALF_HEAD.share + 2.0 / HALF_HEAD.rows)
+    read = rising.__wrapped__(deeper, RISING[HALF_HEAD])
     assert abs(read - 1.0) > row.tolerance
 
 

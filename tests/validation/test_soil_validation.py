@@ -18,7 +18,7 @@ STEEP = "soil.body=[{outline=[[0,0],[3.6,0],[3.6,0.2],[2.04,0.2],[0.5,1.2],[0,1.
 
 
 def test_friction_taken_for_the_angle_of_its_tangent_fails_at_another_ratio():
-    # tan 30° where the paper's tan φ is sin 30°
+    # tan 30° where tan φ of Maeda & Sakai 2004 is sin 30°
     assert abs(element.failure_ratio(3.0**-0.5) - 3.0) > 0.7
 
 

@@ -27,7 +27,7 @@ ENTRIES = ("stress", "damping", "stopped", "parting", "walls")
 GIVEN = ("parting", "walls")  # what energy comes from; the others are what it goes into
 
 
-class Book:
+class EnergyBudget:
     """Moves a flow step by step and adds up its energies, J/m: ``turned`` over by name, and ``start`` of both kinds."""
 
     def __init__(self, flow: SoilFlow) -> None:
@@ -99,12 +99,12 @@ def run_out(stiffness: float, viscosity: float | None, rows: int = 10, seconds: 
     return float(flow.soil.x[: flow.soil.soil, 0].max()) + 0.5 * flow.law.spacing
 
 
-def collapse(seconds: float = 0.3) -> Book:
+def collapse(seconds: float = 0.3) -> EnergyBudget:
     """The energy budget of the column, collapsing for ``seconds``."""
-    book = Book(released_column())
-    while book.flow.time < seconds:
-        book.advance()
-    return book
+    budget = EnergyBudget(released_column())
+    while budget.flow.time < seconds:
+        budget.advance()
+    return budget
 
 
 @VALIDATIONS.row(

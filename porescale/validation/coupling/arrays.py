@@ -143,7 +143,7 @@ TURNING = {(20, 0.2): (1.001161, 2.509), (14, 0.4): (2.720315, 3.499)}
 """Torque over the box by its cells and solid fraction, and d ln T/d ln R."""
 SHIFT = 0.28125
 """Radius shift times radius, cells², at magic parameter 3/16."""
-ASKED = 0.01
+REQUIRED = 0.01
 """Largest error of a mean over places in a cell up to solid fraction 0.3; of single ones twice that."""
 
 
@@ -188,34 +188,34 @@ def hexagonal(
     source="Stokes drag on square arrays of cylinders, solid fraction 0.1, 0.2, 0.3, by point forces",
     because="1 % was asked for as the mean over places in a cell, and 2 % of single ones, or the row fails: the most"
     " that the radius shift leaves, chosen so that c = 0.6 is met too; 16 places give the mean to 0.01 %",
-    tolerance=ASKED,
+    tolerance=REQUIRED,
 )
 def arrays() -> Measured:
     """Drag at 10 cells per diameter, tau 1, where it is farthest off."""
-    return square((0.1, 0.2, 0.3), (1.0,), ASKED)
+    return square((0.1, 0.2, 0.3), (1.0,), REQUIRED)
 
 
 @VALIDATIONS.row(
     "coupling.square_arrays_at_any_viscosity",
     source="as for square arrays",
     because="as for square arrays: full cells are walls at every tau, and what depends on it lies in the rim",
-    tolerance=ASKED,
+    tolerance=REQUIRED,
     slow=True,
 )
 def arrays_at_any_viscosity() -> Measured:
     """Drag at tau 0.52 and 0.8."""
-    return square((0.1, 0.2, 0.3), (0.52, 0.8), ASKED, count=3)
+    return square((0.1, 0.2, 0.3), (0.52, 0.8), REQUIRED, count=3)
 
 
 @VALIDATIONS.row(
     "coupling.denser_square_array",
     source="as for square arrays, solid fraction 0.4",
     because="asked for: 2 % as the mean over places, 4 % of single ones; the gap is 4 cells wide",
-    tolerance=2 * ASKED,
+    tolerance=2 * REQUIRED,
 )
 def denser_array() -> Measured:
     """Drag at 10 cells per diameter, tau 0.52, 0.8 and 1."""
-    return square((0.4,), (0.52, 0.8, 1.0), 2 * ASKED, count=3)
+    return square((0.4,), (0.52, 0.8, 1.0), 2 * REQUIRED, count=3)
 
 
 @VALIDATIONS.row(
@@ -253,11 +253,11 @@ def permeability() -> Measured:
     "coupling.hexagonal_arrays",
     source="Stokes drag on hexagonal arrays, solid fraction 0.1 to 0.4, along and across rows, by point forces",
     because="as for square arrays; no constant was chosen on these",
-    tolerance=ASKED,
+    tolerance=REQUIRED,
 )
 def hexagonal_arrays() -> Measured:
     """Drag at 10 to 15 cells per diameter, tau 1, mean over places."""
-    return hexagonal(HEXAGONAL, ASKED, relaxation_time=1.0)
+    return hexagonal(HEXAGONAL, REQUIRED, relaxation_time=1.0)
 
 
 @VALIDATIONS.row(
@@ -275,7 +275,7 @@ def dense_hexagonal_arrays() -> Measured:
     "coupling.unlike_discs",
     source="two discs of radius 0.2 and 0.12 in a box, flow driven along x: point forces",
     because="2 %, what single places are allowed: 10 and 6 cells wide; no constant was chosen on these",
-    tolerance=2 * ASKED,
+    tolerance=2 * REQUIRED,
 )
 def unlike_discs() -> Measured:
     """Drags, and the flow turned aside over that along x; box of 25 cells, tau 0.8."""
@@ -287,7 +287,7 @@ def unlike_discs() -> Measured:
     source="drag of the square array, whichever moves, disc or fluid (Galilei); point forces",
     because="1 %, as for arrays that stand, mean over ten cells of way; inertia adds 1.2 % at a Reynolds number of 1"
     " and its square, 0.05 %, at 0.2",
-    tolerance=ASKED,
+    tolerance=REQUIRED,
 )
 def moving() -> Measured:
     """Drag of a disc through a box of four diameters, 10 cells wide: tau 0.8 at 11 and 37 degrees to the grid, tau 1 at
@@ -308,7 +308,7 @@ def order() -> Measured:
     """Order, and errors of the drag at 10, 20 and 40 cells per diameter, c = 0.2, tau 0.8."""
     errors, wide = [], []
     for diameter, count in ((10.0, 4), (20.0, 2), (40.0, 1)):
-        errors.append(square((0.2,), (TAU,), ASKED, diameter=diameter, count=count).error)
+        errors.append(square((0.2,), (TAU,), REQUIRED, diameter=diameter, count=count).error)
         wide.append(2 * round(diameter * math.sqrt(math.pi / 0.8)) * math.sqrt(0.2 / math.pi))
     found = math.log(errors[0] / errors[2]) / math.log(wide[2] / wide[0])
     return Measured([2.0, 0.0, 0.0, 0.0], [found, *errors], abs(found - 2))
@@ -358,11 +358,11 @@ def torque() -> Measured:
     source="as for square arrays, solid fraction 0.2",
     because="as for square arrays: the cells of a wall have rates of their own, and the shift of the radius follows the"
     " magic parameter that an operator has",
-    tolerance=ASKED,
+    tolerance=REQUIRED,
     slow=True,
 )
 def any_operator() -> Measured:
     """Drag at 10 cells per diameter, tau 0.8, by TRT, MRT, BGK and central moments."""
-    rows = [square((0.2,), (TAU,), ASKED, method=Method(operator=name)) for name in ("trt", "mrt", "bgk", "central")]
+    rows = [square((0.2,), (TAU,), REQUIRED, method=Method(operator=name)) for name in ("trt", "mrt", "bgk", "central")]
     found = [float(np.mean(row.measured)) for row in rows]
     return Measured([SQUARE[0.2]] * len(found), found, max(row.error for row in rows))

@@ -127,7 +127,7 @@ PLATES = {0: 13.673741, 30: 18.646834, 90: 71.364736}
 """Drag of square arrays of plates, 0.6 by 0.075 of the period, turned by so many degrees, that turn flow aside freely:
 of the tensor R, R_xx - R_xy²/R_yy."""
 
-ASKED = 0.01
+REQUIRED = 0.01
 """Largest error of a mean over places in a cell, as for discs (arrays.py)."""
 
 
@@ -154,7 +154,7 @@ def areas() -> Measured:
     " along the sides",
     because="1 % as for discs; tips at the corners follow from the radius shift of discs: no constant was chosen on"
     " these",
-    tolerance=ASKED,
+    tolerance=REQUIRED,
     slow=True,
 )
 def squares() -> Measured:
@@ -171,7 +171,7 @@ def squares() -> Measured:
     "coupling.arrays_of_plates",
     source="Stokes drag on square arrays of plates, 8 : 1, along, across and at 30 degrees, by forces along the sides",
     because="1 % as for discs: faces of a plate of 3 cells have a full cell between them",
-    tolerance=ASKED,
+    tolerance=REQUIRED,
     slow=True,
 )
 def plates() -> Measured:
