@@ -9,7 +9,7 @@ from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import POROSITY
 from porescale.common.schema.sections import load
 from tests.reference.folders import ROOT
-from tests.reference.seeded import INF, NAN, Running, crowd, put, running, step, times
+from tests.reference.seeded import INF, NAN, Running, coincide, put, running, step, times
 
 pytestmark = pytest.mark.slow
 CASE = ROOT / "cases" / "trapped_air"
@@ -59,8 +59,8 @@ FAULTS: dict[str, Callable[[Simulation], None]] = {
     "air thrown up": at("x", (1,), 5.0),
     "air thrown through the wall": at("x", (0,), -1.0),
     "air thrown through the floor": at("x", (1,), -1.0),
-    "air: two in one place": crowd(f"{WATER}x", lambda simulation: air(simulation)[:2]),
-    "air: ten in one place": crowd(f"{WATER}x", lambda simulation: air(simulation)[:10]),
+    "air: two in one place": coincide(f"{WATER}x", lambda simulation: air(simulation)[:2]),
+    "air: ten in one place": coincide(f"{WATER}x", lambda simulation: air(simulation)[:10]),
     "porosity about air nan": lost,
     **{f"water {name} {value:g}": put(f"{WATER}{name}", index, value) for name, index, value in (
         ("x", (20, 0), NAN), ("v", (20, 0), 1e3), ("density", 20, NAN), ("density", 20, -1.0), ("mass", 20, NAN),

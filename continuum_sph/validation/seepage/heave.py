@@ -244,9 +244,7 @@ def held_row(share: float, name: str) -> None:
 for buried in HELD:
     held_row(buried, "continuum.heave_under_held_head" + (f"_{100 * buried:.0f}" if buried != QUICK.share else ""))
 
-HALF_HEAD = Heave(
-    rows=16, reach=1.0, cover=0.5, modulus=5e5, permeability=3e-2, first=1.5, last=1.51, rate=5e-3, settle=0.4
-)
+HALF_HEAD = replace(QUICK, rows=16, cover=0.5, first=1.5, last=1.51, rate=5e-3)
 """Ground under half the head that lifts it, below eight rows of water."""
 
 RISING = {HALF_HEAD: 0.6493, replace(HALF_HEAD, share=0.75): 0.3934}
