@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 from porescale.common.cli import application
 from porescale.common.cli.package import Package
+from porescale.common.cli.run import drive_scene
 from porescale.common.core.version import VERSION
 from porescale.common.evidence.register import discovered
 
 if TYPE_CHECKING:
     from continuum_sph.scene.sections import Scene
     from porescale.common.cli.report import Report
-    from porescale.common.core.types import AnyArray
     from porescale.common.record.drive import Outcome
     from porescale.common.record.model import Model
 
@@ -42,42 +42,9 @@ def build(scene: Scene) -> Model:
     return Simulation(scene)
 
 
-def drive(
-    model: Model,
-    folder: Path,
-    scene: Scene,
-    *,
-    card: dict[str, Any],
-    resume: bool,
-    quiet: bool,
-    overwrite: bool = False,
-) -> Outcome:
-    """Run the model to the scene's end and write the run folder."""
-    from porescale.common.record.drive import drive as drive_model
-    from porescale.common.schema.migrations import completing
-
-    return drive_model(
-        model,
-        folder,
-        scene.time.end,
-        snapshot_interval=scene.output.snapshot_interval,
-        series_interval=scene.output.series_interval,
-        checkpoint_seconds=scene.output.checkpoint_seconds,
-        card=card,
-        resume=resume,
-        overwrite=overwrite,
-        quiet=quiet,
-        after=show,
-        today=completing(scene_type(), card, FORMERLY),
-    )
-
-
-def check_resume(folder: Path, card: dict[str, Any]) -> None:
-    """InputError where the run in ``folder`` cannot be gone on with as ``card`` requests."""
-    from porescale.common.record.drive import check_resume
-    from porescale.common.schema.migrations import completing
-
-    check_resume(folder, card, today=completing(scene_type(), card, FORMERLY))
+def drive(model: Model, folder: Path, scene: Scene, **options: Any) -> Outcome:
+    """Run the model to the scene's end and write the run folder; options as of `Package`."""
+    return drive_scene(model, folder, scene, after=show, formerly=FORMERLY, **options)
 
 
 def report(scene: Scene) -> Report:
@@ -139,13 +106,6 @@ TWO = {0: ("water", "#5b8fd0"), 1: ("second fluid", "#e8a33d")}
 """Names and colours of two fluids."""
 
 
-def table(folder: Path, name: str) -> dict[str, AnyArray]:
-    """Columns of a table of the run in ``folder``, "series" for series.csv; {} when there is none."""
-    from porescale.common.record.series import read_series
-
-    return read_series(folder / f"{name}.csv")
-
-
 PACKAGE = Package(
     name="continuum-sph",
     summary="Soil, water and air as layers of smoothed particles (water and soil in a tank, seepage, bubbles).",
@@ -156,14 +116,13 @@ PACKAGE = Package(
     drive=drive,
     report=report,
     show=show,
-    table=table,
     validations=discovered("continuum_sph.validation", "VALIDATIONS"),
     benchmarks=discovered(BENCHMARKS, "BENCHMARKS"),
     case=Path(__file__).resolve().parents[1] / "cases" / "collapsing_water_column",
     extremes=discovered(BENCHMARKS, "EXTREMES"),
     endurance=discovered(BENCHMARKS, "ENDURANCES"),
     parts=discovered(BENCHMARKS, "KINDS"),
-    check_resume=check_resume,
+    formerly=FORMERLY,
 )
 
 

@@ -56,8 +56,8 @@ def measure_window(scene: Scene, grains: Cloud) -> Measured:
     box = (scene.domain.width, scene.domain.height)
     across, low, high = (1, "bottom", "top") if scene.permeability.direction == "x" else (0, "left", "right")
     walls = (
-        lower[across] < near and scene.domain.sides[low].kind == "wall",
-        upper[across] > box[across] - near and scene.domain.sides[high].kind == "wall",
+        lower[across] < near and scene.domain.sides[low].boundary.no_slip,
+        upper[across] > box[across] - near and scene.domain.sides[high].boundary.no_slip,
     )
     return measure(
         grains.position, grains.data["hydraulic_radius"], lower, upper, spacing,

@@ -9,7 +9,7 @@ from porescale.builders.initial.fluid import coupled_of, fluid_of
 from porescale.builders.initial.frames import any_frames
 from porescale.builders.initial.grains import frames_of, grains_of
 from porescale.builders.initial.rectangles import on_the_lattice
-from porescale.builders.kinds import parts_of
+from porescale.builders.kinds import add_parts
 from porescale.builders.scene import Scene
 from porescale.builders.simulation import Simulation
 from porescale.builders.stepper import Clock
@@ -29,7 +29,7 @@ def build(scene: Scene) -> Simulation:
     A packing is settled first, or read from the cache; that can take seconds.
     """
     system = system_of(scene)
-    return Simulation(system, *parts_of(system))
+    return Simulation(system, add_parts(system))
 
 
 def system_of(scene: Scene) -> System:

@@ -23,7 +23,7 @@ from porescale.builders.initial.rock import rock_frames
 from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.choose import LAWS
-from porescale.dem.contact.materials import Law
+from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import make_discs
 from porescale.dem.timestep import packing_limit, stable_step
 from porescale.lbm.scales import NAMES, Scales, implied
@@ -42,8 +42,8 @@ class Derived:
     scales: Scales | None = None
     cells: tuple[int, int] | None = None
     gate_column: int | None = None
-    law: Law | None = None  # of the packing, or the first material, with itself
-    wall_law: Law | None = None
+    law: ContactLaw | None = None  # of the packing, or the first material, with itself
+    wall_law: ContactLaw | None = None
     contact_limit: float | None = None  # s, stability limit in a packing
     contact_step: float | None = None  # s
     contact_steps: int | None = None  # per model step
@@ -127,7 +127,7 @@ def _equal(sizes: list[float]) -> tuple[float, float, float] | None:
 
 
 def _with_frames(
-    scene: Scene, smallest: tuple[float, float], frames: list[Placed], every: list[Law]
+    scene: Scene, smallest: tuple[float, float], frames: list[Placed], every: list[ContactLaw]
 ) -> tuple[float, float]:
     """Mass (kg/m) and radius (m) of the disc that answers as fast as the fastest of discs and frames."""
     radius = smallest[1] if grain_count(scene) else None

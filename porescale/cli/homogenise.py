@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, use_threads
-from porescale.common.cli.sweep import Again, Jobs, Scheduler, chosen_folder, conclude, enlist, laid_over, say
+from porescale.common.cli.folders import output_folder
+from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, say, use_threads
+from porescale.common.cli.sweep import Again, Jobs, Scheduler, conclude, enlist, laid_over
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.version import VERSION
 
@@ -55,14 +56,14 @@ def homogenise(
 
     opened = open_scene(scene, SceneType, quality=quality, overrides=settings or ())
     test = specimen(opened.scene)
-    asked = asked_of(opened.scene)
+    request = asked_of(opened.scene)
     if jobs < 1:
         raise InputError(Fault("--jobs", jobs, "is none", "", ">= 1"))
-    folder = chosen_folder(out, f"{opened.name}_soil")
+    folder = output_folder(out, f"{opened.name}_soil")
     file = _specimen_file(folder, toml(test))
     first = test["grains"]["packing"]["seed"]
     points = [
-        Point(f"packing-{seed}", (f"grains.packing.seed={seed}",)) for seed in range(first, first + asked.packings)
+        Point(f"packing-{seed}", (f"grains.packing.seed={seed}",)) for seed in range(first, first + request.packings)
     ]
     campaign = Campaign("porescale", file, folder / "specimens", threads=threads or 1, again=again)
     slots = enlist(campaign, jobs, scheduler)
@@ -72,7 +73,7 @@ def homogenise(
         say(f"no material file: finish these first, by the same command in {folder}")
         return code
     use_threads(threads)
-    rows = _numbers(opened.scene, ends, asked.cells)
+    rows = _numbers(opened.scene, ends, request.cells)
     words = ["porescale", "homogenise", str(scene), *laid_over(quality, settings)]
     print(write(folder, opened.scene, shlex.join(words), campaign, ends, rows))
     return 0
@@ -173,7 +174,7 @@ def about(
     from porescale.common.core.machine import machine
 
     assert scene.grains
-    packing, asked, fluid = packing_of(scene), asked_of(scene), scene.fluid
+    packing, request, fluid = packing_of(scene), asked_of(scene), scene.fluid
     commit = ends[0].card.get("commit") or {}
     hard, ratio = stiffness_over_pressure(scene), scene.grains.hydraulic_radius_ratio
     doubts = []
@@ -186,11 +187,11 @@ def about(
     made: dict[str, Any] = {
         "package": "porescale", "version": VERSION, "commit": str(commit.get("hash", "")),
         "sources": str(ends[0].card.get("sources", "")), "command": command, "machine": machine()["processor"],
-        "seeds": list(seeds), "grains": asked.grains, "diameter": packing.diameter,
+        "seeds": list(seeds), "grains": request.grains, "diameter": packing.diameter,
         "grain_density": MaterialPlan.of(scene).density(packing.material),
         "settling_friction": packing.settling_friction,
-        "pressure": pressure_of(scene), "stiffness_over_pressure": hard, "inertial_number": asked.inertial_number,
-        "strain": asked.strain, "doubts": doubts,
+        "pressure": pressure_of(scene), "stiffness_over_pressure": hard, "inertial_number": request.inertial_number,
+        "strain": request.strain, "doubts": doubts,
     }  # fmt: skip
     if ratio is not None:
         made |= {"lambda": ratio, "cells": rows[0]["cells"]}

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from cyclopts import App
 
-from porescale.cli import check, demseg, homogenise, new, piv, run, show
+from porescale.cli import demseg, homogenise, piv, run, show
 from porescale.common.cli import application
 from porescale.common.cli.package import Package
 from porescale.common.core.version import VERSION
@@ -17,19 +17,17 @@ PACKAGE = Package(
     summary="Round grains in a viscous fluid at the scale of single pores: DEM, lattice Boltzmann, and films of both.",
     version=VERSION,
     scene=run.scene_type,
-    template=new.template,
+    template=run.template,
     build=run.build,
     drive=run.drive,
-    report=check.report,
+    report=run.report,
     show=show.show,
-    table=run.table,
     validations=discovered("porescale.validation", "VALIDATIONS"),
     benchmarks=discovered(BENCHMARKS, "BENCHMARKS"),
     case=Path(__file__).resolve().parents[2] / "cases" / "column_collapse",
     stability=discovered(BENCHMARKS, "STABILITY"),
     endurance=discovered(BENCHMARKS, "ENDURANCES"),
     parts=discovered(BENCHMARKS, "KINDS"),
-    check_resume=run.check_resume,
     also={demseg.PACKAGE: demseg.show},
     features=run.features,
 )

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import json as json_text
-import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from porescale.cli.piv_quantity import quantity
 from porescale.common.cli.folders import require_writable
-from porescale.common.cli.options import Json, Threads, use_threads
+from porescale.common.cli.options import Json, Threads, say, use_threads
 from porescale.common.core.errors import Fault, InputError
 
 if TYPE_CHECKING:
@@ -74,7 +72,7 @@ def measure(
     shots = Shots(film, mask, tuple(polygon or ()), background)
     zero = 0.0 if time_ is None else quantity("--time", time_, "s")
     measurement = Measurement(shots, settings, average, pixel, seconds, zero)
-    fields = measurement.fields(_aside, _passes(measurement.pairs))
+    fields = measurement.fields(say, _passes(measurement.pairs))
     found = write_fields(
         measurement, _progress(fields, measurement.total), folder, csv=csv, openpiv=openpiv, overlay=overlay
     )  # fmt: skip
@@ -84,8 +82,7 @@ def measure(
 
 def _stem(name: str) -> str:
     """What a folder is called after."""
-    stem = Path(name).stem.strip("*?_ ")
-    return stem or "film"
+    return Path(name).stem.strip("*?_ ") or "film"
 
 
 def _box(text: str | None) -> tuple[int, int, int, int] | None:
@@ -106,15 +103,9 @@ def _scales(scale: str | None, interval: str | None, rate: float | None) -> tupl
     if seconds is None and rate:
         seconds = 1 / rate
     if pixel is not None and seconds is None:
-        raise InputError(
-            Fault("--interval", None, "is needed with --scale", repair='give the time between frames: "5 ms"')
-        )
+        repair = 'give the time between frames: "5 ms"'
+        raise InputError(Fault("--interval", None, "is needed with --scale", repair=repair))
     return pixel, seconds
-
-
-def _aside(text: str) -> None:
-    """Print a text on stderr, beside the outcome."""
-    print(text, file=sys.stderr, flush=True)
 
 
 def _passes(pairs: int) -> Callable[[], None]:
@@ -127,7 +118,7 @@ def _passes(pairs: int) -> Callable[[], None]:
         done += 1
         if time.perf_counter() - last > PATIENCE:
             last = time.perf_counter()
-            _aside(f"pass {(done - 1) // max(1, pairs) + 1}: {(done - 1) % max(1, pairs) + 1} of {pairs} pairs")
+            say(f"pass {(done - 1) // max(1, pairs) + 1}: {(done - 1) % max(1, pairs) + 1} of {pairs} pairs")
 
     return count
 
@@ -140,7 +131,7 @@ def _progress(fields: Iterable[Field], total: int) -> Iterator[Field]:
         now = time.perf_counter()
         if now - last > PATIENCE and number < total:
             left = (now - start) / number * (total - number)
-            print(f"{number} of {total} pairs, about {left:.0f} s left", file=sys.stderr, flush=True)
+            say(f"{number} of {total} pairs, about {left:.0f} s left")
             last = now
 
 
@@ -154,3 +145,19 @@ def _print(found: dict[str, Any], json: bool) -> None:
     print(f"{found['pairs']} pairs, {fluid} vectors in the fluid, {share:.1f} % valid, {found['replaced']} replaced")
     for path in found["files"]:
         print(path)
+
+
+def quantity(key: str, text: str, unit: str) -> float:
+    """A number with or without unit, in ``unit``, positive (or zero for a time)."""
+    from porescale.common.core.units import to_si
+
+    try:
+        value = to_si(float(text), unit)
+    except ValueError:
+        try:
+            value = to_si(text, unit)
+        except ValueError as error:
+            raise InputError(Fault(key, text, str(error), unit)) from error
+    if value < 0 or (value == 0 and key not in ("--time", "--start", "--end")):
+        raise InputError(Fault(key, text, "is out of range", unit, "> 0"))
+    return value

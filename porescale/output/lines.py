@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from porescale.common.core.atomic import write_bytes
+from porescale.lbm.boundary.choose import boundary
 from porescale.output.sample import Sampler, along
 
 if TYPE_CHECKING:
@@ -34,10 +35,10 @@ def write_lines(run: Run, folder: Path) -> list[Path]:
         return []
     grid = run.snapshot(0).grids["fields"]
     ny, nx = grid.shape
-    periodic = scene["domain"]["left"]["kind"] == "periodic", scene["domain"]["bottom"]["kind"] == "periodic"
+    periodic_x, periodic_y = (boundary(scene["domain"][side]["kind"]).periodic for side in ("left", "bottom"))
     ratio = (scene.get("grains") or {}).get("hydraulic_radius_ratio")
     samplers = [
-        Sampler(along(line["start"], line["end"], line["points"]), (nx, ny), grid.spacing[0], periodic)
+        Sampler(along(line["start"], line["end"], line["points"]), (nx, ny), grid.spacing[0], (periodic_x, periodic_y))
         for line in lines
     ]
     text = io.StringIO()

@@ -56,20 +56,20 @@ class Side(Section):
         """Every number belongs to a kind of side."""
         faults = []
         for key, given in (
-            ("speed", self.speed != 0), ("velocity", self.velocity is not None and self.kind != "wall"),
+            ("speed", self.speed != 0), ("velocity", self.velocity is not None and not self.boundary.movable),
             ("stress", self.stress is not None), ("force", self.force is not None),
             ("profile", self.profile != "uniform"), ("pressure", self.pressure is not None),
         ):  # fmt: skip
-            takes = ("wall",) if key in SERVO else tuple(it.name for it in boundaries().values() if key in it.numbers)
+            takes = [it.name for it in boundaries().values() if (it.movable if key in SERVO else key in it.numbers)]
             if given and self.kind not in takes:
                 owner = takes[0]
                 repair = f'leave it out, or write kind = "{owner}"'
                 faults.append(Fault(key, None, f'belongs to a side of kind "{owner}", this is a {self.kind}',
                                     repair=repair))  # fmt: skip
         if "velocity" in self.boundary.required and self.velocity is None:
-            repair = 'write { kind = "velocity", velocity = [0.01, 0] }'
+            repair = f'write {{ kind = "{self.kind}", velocity = [0.01, 0] }}'
             faults.append(Fault("velocity", None, "is missing", "m/s", repair=repair))
-        if self.kind == "wall":
+        if self.boundary.movable:
             faults += check_servo(self, self.velocity is not None)
         if faults:
             raise Refused(*faults)
@@ -98,10 +98,14 @@ class Side(Section):
         if self.speed:
             return f"{self.kind} moving at {self.speed:g} m/s"
         if self.stress or self.force:
-            return "wall under stress" if self.stress else "wall under force"
+            return f"{self.kind} under {'stress' if self.stress else 'force'}"
         if self.velocity is not None:
             u, v = self.velocity
-            return f"velocity ({u:g}, {v:g}) m/s, {self.profile}" if self.open else f"wall moving at ({u:g}, {v:g}) m/s"
+            return (
+                f"velocity ({u:g}, {v:g}) m/s, {self.profile}"
+                if self.open
+                else f"{self.kind} moving at ({u:g}, {v:g}) m/s"
+            )
         return f"{self.kind} {self.pressure or 0.0:g} Pa" if "pressure" in self.boundary.numbers else self.kind
 
 

@@ -235,14 +235,20 @@ LAW_FOLDERS = (
     "porescale.lbm.collision", "porescale.coupling.solid", "porescale.coupling.weighting", "porescale.dem.contact",
     "continuum_sph.water.eos",
 )  # fmt: skip
-"""Folders of laws whose names stand for nothing else (sides of the box are words: wall, slip)."""
+"""Folders of laws whose names stand for nothing else."""
+SIDES = "porescale.lbm.boundary"
+"""The kinds of sides; some are called as quantities and other things are (velocity, wall)."""
+OWN_WORDS = ("porescale.dem", "continuum_sph")
+"""What may not import the lattice: the boxes there have words of their own."""
+QUANTITIES = {"wall", "velocity", "pressure"}
+"""Names of sides that other things have, too: a comparison is with a side where it is with a kind."""
 
 
-def law_names(tree: Tree) -> set[str]:
-    """What the files of the law folders call their laws: ``name="…"``, ``name = "…"`` or ``name: … = "…"``."""
+def law_names(tree: Tree, *folders: str) -> set[str]:
+    """What the files of these folders call their laws: ``name="…"``, ``name = "…"`` or ``name: … = "…"``."""
     found = set()
     for source in tree.modules:
-        if not inside(source.module, *LAW_FOLDERS):
+        if not inside(source.module, *folders):
             continue
         for node in ast.walk(source.tree):
             if isinstance(node, ast.keyword) and node.arg == "name":
@@ -255,20 +261,32 @@ def law_names(tree: Tree) -> set[str]:
                 continue
             if isinstance(value, ast.Constant) and isinstance(value.value, str):
                 found.add(value.value)
-    return found - {"wall"}
+    return found
+
+
+def _of_kind(node: ast.AST) -> bool:
+    """Whether a comparison is with something called kind: ``kind``, ``side.kind``, ``kind(side)``, ``side["kind"]``."""
+    return any(
+        "kind" in (getattr(it, "id", ""), getattr(it, "attr", ""), getattr(it, "value", "")) for it in ast.walk(node)
+    )
 
 
 def rule_7_laws_decide_themselves(tree: Tree) -> Iterator[str]:
-    """No comparison with the name of a law decides anything outside the folder of the law; evidence may choose."""
-    names = law_names(tree)
+    """No comparison with the name of a law or kind of side decides outside its folder; evidence may choose."""
+    laws, sides = law_names(tree, *LAW_FOLDERS) - {"wall"}, law_names(tree, SIDES)
     for source in tree.modules:
-        if inside(source.module, *LAW_FOLDERS) or source.module.split(".")[1:2] in ([it] for it in EVIDENCE):
+        if source.module.split(".")[1:2] in ([it] for it in EVIDENCE):
             continue
+        names = set() if inside(source.module, *LAW_FOLDERS) else laws
+        kinds = set() if inside(source.module, SIDES, *OWN_WORDS) else sides
         for node in ast.walk(source.tree):
-            if isinstance(node, ast.Compare):
-                for it in ast.walk(node):
-                    if isinstance(it, ast.Constant) and it.value in names:
-                        yield f"{source.at(node)}: compares with {it.value!r}"
+            if not isinstance(node, ast.Compare | ast.Match):
+                continue
+            compared = [case.pattern for case in node.cases] if isinstance(node, ast.Match) else [node]
+            found = names | (kinds if _of_kind(getattr(node, "subject", node)) else kinds - QUANTITIES)
+            for it in (it for part in compared for it in ast.walk(part)):
+                if isinstance(it, ast.Constant) and it.value in found:
+                    yield f"{source.at(it)}: compares with {it.value!r}"
 
 
 def rule_8_stubs_are_contracts(tree: Tree) -> Iterator[str]:

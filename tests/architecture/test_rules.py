@@ -35,6 +35,7 @@ UP = "def f():\n    from porescale.builders import build"
 TYPE_CHECKING = "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from porescale.dem.a import A"
 BODY_ELSEWHERE = "from porescale.dem.grains import force\n@force.of(A)\ndef body(x, law): ..."
 BODY_OF_LAW = "from porescale.dem.law import force\n@force.of(A)\ndef body(x): ..."
+NEW_SIDES = 'class Glass:\n    name = "glass"\nclass Wall:\n    name = "wall"'
 WRONG = [
     (rules.rule_1_common_stands_alone, {"porescale.common.record.drive": "import porescale.lbm.fluid"}),
     (rules.rule_1_common_stands_alone, {"porescale.common.core.units": UP}),
@@ -86,6 +87,16 @@ WRONG = [
         rules.rule_7_laws_decide_themselves,
         {"porescale.lbm.collision.new": 'OPERATOR = Row(name="new")', "porescale.lbm.fluid": 'x = y in ("new", "old")'},
     ),
+    *(
+        (rules.rule_7_laws_decide_themselves, {"porescale.lbm.boundary.new": NEW_SIDES, "porescale.builders.build": it})
+        for it in (
+            'x = side.kind == "wall"',
+            'x = "glass" in (left, right)',
+            'x = scene["left"]["kind"] != "wall"',
+            'match side:\n    case "glass":\n        x = 1',
+            'match it.kind:\n    case "slip" | "wall":\n        x = 1',
+        )
+    ),
     (rules.rule_8_stubs_are_contracts, {"porescale.dem.step": BODY_ELSEWHERE}),
 ]
 PRESENT = (
@@ -116,6 +127,8 @@ def test_the_tree_that_the_wrong_ones_differ_from_is_right() -> None:
         {"porescale.dem.wide": f"@kernel\ndef f({MANY}):\n    'Sum.  Flat arguments: bundles cost 7 % of the rate.'\n"},
         {"porescale.cli.options": "def f(a, *, b, c, d, e, f, g, h, i, j): ..."},
         {"porescale.dem.law": "", "porescale.dem.a": BODY_OF_LAW},
+        {"porescale.lbm.boundary.new": NEW_SIDES, "porescale.cli.a": 'x = surface == "wall"'},
+        {"porescale.lbm.boundary.new": NEW_SIDES, "porescale.dem.a": 'x = kind == "glass"'},
         {"porescale.dem.a": "@law_function\ndef force(x): ...\n@force.of(A)\ndef body(x): ..."},
     ],
 )

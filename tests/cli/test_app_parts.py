@@ -3,19 +3,18 @@
 import re
 import sys
 import tomllib
-from collections.abc import Iterator
-from typing import Any, get_args
 
 import numpy as np
 import pytest
 
 import porescale
 from porescale import Scene
-from porescale.cli import new, show
+from porescale.cli import run, show
 from porescale.cli.main import PACKAGE
 from porescale.common.core.errors import InputError
 from porescale.common.record.model import Model, Snapshot
-from porescale.common.schema.sections import LEVELS, Section, load, scene_as_dict
+from porescale.common.schema.messages import every_key
+from porescale.common.schema.sections import LEVELS, load, scene_as_dict
 from tests.reference.folders import ROOT
 from tests.reference.scenes import column, dry, table, write
 from tests.reference.waiting import done
@@ -57,16 +56,12 @@ def test_the_package_and_its_help_wait_for_no_compiler():
     for command in commands:
         words = [sys.executable, "-c", watch.format(command)]
         assert done(words, cwd=ROOT).returncode == 0
-    compiled = [
-        sys.executable,
-        "-c",
-        watch.format("import porescale.common.compiled.compiling"),
-    ]  # the twin: it would be seen
-    assert done(compiled, cwd=ROOT).returncode == 1
+    words = [sys.executable, "-c", watch.format("import porescale.common.compiled.compiling")]
+    assert done(words, cwd=ROOT).returncode == 1  # the twin: it would be seen
 
 
 def test_the_template_states_every_section_and_is_a_scene(tmp_path):
-    text = new.template()
+    text = run.template()
     (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
     for level in (None, *LEVELS):
         assert load(tmp_path, Scene, quality=level).grains.packing is not None
@@ -80,27 +75,10 @@ def test_the_template_states_every_section_and_is_a_scene(tmp_path):
         assert not missing, f"{section}: {missing}"
 
 
-def keys_of(section: Any, path: str, seen: set[Any]) -> Iterator[str]:
-    """Keys of a section and of those within it, with their path, each section once."""
-    for name, field in section.model_fields.items():
-        yield f"{path}{name}"
-        for inner in _sections_in(field.annotation):
-            if inner not in seen:
-                seen.add(inner)
-                yield from keys_of(inner, f"{path}{name}.", seen)
-
-
-def _sections_in(annotation: Any) -> Iterator[Any]:
-    if isinstance(annotation, type) and issubclass(annotation, Section):
-        yield annotation
-    for part in get_args(annotation):
-        yield from _sections_in(part)
-
-
 def test_the_template_names_every_key_of_every_section():
-    text = new.template()
-    keys = list(keys_of(Scene, "", set()))
-    missing = [key for key in keys if not re.search(rf"(?<!\w){key.rpartition('.')[2]}(?!\w)", text)]
+    text = run.template()
+    keys = set(every_key(Scene))
+    missing = [key for key in keys if not re.search(rf"(?<!\w){key[-1]}(?!\w)", text)]
     assert not missing
     assert len(keys) > 150
     assert not re.search(r"(?<!\w)diametre(?!\w)", text)  # the twin: a key that is none is not found
@@ -120,7 +98,7 @@ def test_the_command_line_is_there_before_arrays_and_models_are():
 
 def test_the_parts_of_the_package_are_those_of_its_modules():
     assert PACKAGE.scene() is Scene
-    assert PACKAGE.template() == new.template()
+    assert PACKAGE.template() == run.template()
     assert PACKAGE.version == porescale.__version__
 
 
@@ -178,7 +156,6 @@ def test_a_cache_that_cannot_be_written_fails_no_run(tmp_path, monkeypatch):
 @pytest.mark.parametrize("overwrite", [False, True])
 def test_both_packages_hand_on_that_a_run_may_be_replaced(tmp_path, monkeypatch, overwrite):
     import continuum_sph.cli
-    from porescale.cli import run
 
     class Asked(Exception):
         pass
@@ -187,7 +164,7 @@ def test_both_packages_hand_on_that_a_run_may_be_replaced(tmp_path, monkeypatch,
         raise Asked(options["overwrite"])
 
     monkeypatch.setattr("porescale.common.record.drive.drive", asked)
-    for part, text in ((run, new.template()), (continuum_sph.cli, continuum_sph.cli.template())):
+    for part, text in ((run, run.template()), (continuum_sph.cli, continuum_sph.cli.template())):
         (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
         scene = load(tmp_path, part.scene_type())
         with pytest.raises(Asked, match=str(overwrite)):

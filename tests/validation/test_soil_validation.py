@@ -1,6 +1,5 @@
 """What must fail where rows of soil hold, and the cases of soil at their default quality."""
 
-import importlib.util
 from functools import partial
 
 import pytest
@@ -11,7 +10,7 @@ from continuum_sph.soil import Material
 from continuum_sph.validation.soil import bodies, element, energy, setups, slopes
 from tests.reference import continuum_cases
 from tests.reference.continuum_cases import missed
-from tests.reference.folders import CASES
+from tests.reference.folders import script
 
 VALIDATIONS = PACKAGE.validations()
 
@@ -89,14 +88,6 @@ def test_stress_diffused_by_sound_lets_a_slope_creep():
 @pytest.mark.parametrize("case", ["geostatic_column", "dry_slope", "soil_column_collapse"])
 def test_soil_does_as_its_case_says(case):
     assert missed(case, series(case)) == []
-
-
-def script(case):
-    """The script of a case, as a module of its own."""
-    spec = importlib.util.spec_from_file_location(f"case_{case}", CASES / case / f"{case}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.mark.slow

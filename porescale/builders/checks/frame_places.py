@@ -16,7 +16,7 @@ from porescale.builders.initial.frames import Placed
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.dem.contact.choose import LAWS
-from porescale.dem.contact.materials import Law
+from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import Discs
 from porescale.dem.motion.control import Control, Moved, schedule_of
 from porescale.dem.motion.control import Placed as PlacedControl
@@ -189,7 +189,7 @@ def _cross(one: Floats, other: Floats) -> bool:
     return bool(np.any((left(a, b, c) * left(a, b, d) < 0.0) & (left(c, d, a) * left(c, d, b) < 0.0)))
 
 
-def thin_for(placed: Sequence[Placed], speed: float, mass: float, law: Law) -> str:
+def thin_for(placed: Sequence[Placed], speed: float, mass: float, law: ContactLaw) -> str:
     """A doubt about frames that the speed (m/s) to expect would press through each other; "" where there is none.
 
     mass (kg/m): of a mean grain.  A head-on impact of two goes  v sqrt(m/2k)  deep on springs, and by Hertz's law
@@ -230,7 +230,7 @@ def strays(scene: Scene, placed: Sequence[Placed]) -> list[str]:
                 corner = at[out.any(axis=1).argmax()]
                 said.append(
                     f"{it.name or it.key} leaves the box at t = {time:.3g} s, at ({corner[0]:.3g}, {corner[1]:.3g}) m:"
-                    " the sides push it there, and that is in its record and in the energy book; make the box larger"
+                    " the sides push it there, and that is in its record and in the energy budget; make the box larger"
                 )
                 break
     return said

@@ -19,12 +19,8 @@ from porescale.scene.scene import Scene
 
 TOUCH = 1e-3
 """Overlap, over the smaller diameter, up to which grains placed by hand may start."""
-
-
 WEAK = 1e-6
 """Gravity, m/s², below which nothing settles in a lifetime."""
-
-
 EDGE = 1e-9
 """Relative slack of a packing's edges: 8 mm + 4 mm is 12 mm whatever its last bit."""
 

@@ -31,12 +31,8 @@ from porescale.scene.scene import Scene
 
 BLUNT = 1.2
 """Drag coefficient of a cylinder in cross flow at Reynolds numbers of 10² to 10⁵."""
-
-
 UNIT: dict[str, Any] = {"relaxation_time": 1.0, "force": (0.0, 0.0), "dtype": "float64"}
 """Numbers for a law that is only looked at."""
-
-
 Sizes = tuple[float, float, float]
 
 

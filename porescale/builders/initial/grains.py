@@ -32,11 +32,8 @@ from porescale.scene.scene import Scene
 
 GATE = "gate"
 
-
 UNTOUCHED = Linear(1.0, 0.0)
 """Contact law where all discs are held: nothing comes of it."""
-
-
 NO_DISCS = make_discs(np.zeros((0, 2)), np.zeros(0), np.zeros(0))
 
 

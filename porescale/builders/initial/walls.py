@@ -23,7 +23,7 @@ def wall_names(walls: Sequence[Wall]) -> list[str]:
 def moving_sides(domain: Domain) -> list[str]:
     """Sides that move, at a velocity or by a servo."""
     return [name for name, it in domain.sides.items()
-            if it.kind == "wall" and (it.velocity is not None or it.stress or it.force)]  # fmt: skip
+            if it.boundary.movable and (it.velocity is not None or it.stress or it.force)]  # fmt: skip
 
 
 def add_walls(domain: Domain, walls: Sequence[Wall], grains: Grains) -> None:

@@ -1,13 +1,13 @@
 """`bench [NAME…]`: rates in updates per second."""
 
-import json as json_text
 import sys
 from collections.abc import Callable
+from dataclasses import asdict
 from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from porescale.common.cli.options import Json, Threads
+from porescale.common.cli.options import Json, List, Threads, print_json, say
 from porescale.common.cli.package import Package
 
 
@@ -19,7 +19,7 @@ def command(package: Package) -> Callable[..., int]:
         size: Annotated[int | None, Parameter(help="cells along a side, discs, …; each one's own if not given")] = None,
         threads: Threads = None,
         dtype: Annotated[Literal["float32", "float64"], Parameter(help="type of the fields")] = "float64",
-        list_: Annotated[bool, Parameter(name="--list", help="only say which there are")] = False,
+        list_: List = False,
         json: Json = False,
     ) -> int:
         """Measure rates, in updates per second, and their share of the memory bandwidth measured beside them."""
@@ -33,9 +33,9 @@ def command(package: Package) -> Callable[..., int]:
         rows = []
         for row in register.run(names, size=size, threads=threads, dtype=dtype):
             rows.append(row)
-            print(f"{row.name}: {row.rate:.4g} {row.unit}", file=sys.stderr, flush=True)
+            say(f"{row.name}: {row.rate:.4g} {row.unit}")
         if json:
-            print(json_text.dumps([row.as_dict() for row in rows], indent=1, allow_nan=False))
+            print_json(map(asdict, rows))
         else:
             from rich.console import Console
 

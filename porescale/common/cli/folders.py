@@ -7,12 +7,18 @@ from pathlib import Path
 from porescale.common.core.errors import Fault, InputError
 
 
-def study_folder(out: str) -> Path:
-    """The folder that ``--out`` names; InputError where it names none or cannot be written."""
+def named_folder(out: str | None, name: str = "") -> Path:
+    """The folder that ``--out`` names, ``name`` in runs/ where it is not given; InputError where it is empty."""
     if out == "":
         raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
-    require_writable(Path(out), "--out")
-    return Path(out)
+    return Path("runs") / name if out is None else Path(out)
+
+
+def output_folder(out: str | None, name: str = "") -> Path:
+    """As `named_folder`; InputError where it cannot be written, too."""
+    folder = named_folder(out, name)
+    require_writable(folder, "--out")
+    return folder
 
 
 def require_writable(folder: Path, key: str) -> None:

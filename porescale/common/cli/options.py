@@ -1,7 +1,10 @@
 """Options that several commands share."""
 
+import json
+import sys
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -11,11 +14,21 @@ Quality = Annotated[
     Parameter(help="level of the scene's [quality.…] tables; its quality_default if not given"),
 ]
 Settings = Annotated[
-    list[str] | None,
-    Parameter(name="--set", help="section.key=value, over the scene and its quality; repeatable"),
+    list[str] | None, Parameter(name="--set", help="section.key=value, over the scene and its quality; repeatable")
 ]
 Threads = Annotated[int | None, Parameter(help="threads of the kernels; all cores if not given")]
 Json = Annotated[bool, Parameter(name="--json", help="print JSON instead of tables")]
+List = Annotated[bool, Parameter(name="--list", help="only say which there are")]
+
+
+def say(text: str) -> None:
+    """Write one line of progress to stderr."""
+    print(text, file=sys.stderr, flush=True)
+
+
+def print_json(rows: Iterable[Mapping[str, Any]]) -> None:
+    """Print rows as a JSON list."""
+    print(json.dumps(list(rows), indent=1, allow_nan=False))
 
 
 def use_threads(count: int | None) -> int:

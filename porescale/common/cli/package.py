@@ -10,44 +10,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from porescale.common.cli.report import Report
+    from porescale.common.core.types import AnyArray
     from porescale.common.evidence.benchmarks import Benchmarks
     from porescale.common.evidence.endurance import Endurances
     from porescale.common.evidence.extremes import Extremes
     from porescale.common.evidence.overhead import SceneKinds
     from porescale.common.evidence.stability import Stability
     from porescale.common.evidence.validations import Validations
+    from porescale.common.record.drive import Outcome
     from porescale.common.schema.sections import Section
-
-
-class Outcome(Protocol):
-    """Result of a run: how it ended."""
-
-    @property
-    def outcome(self) -> str:
-        """How the run ended: "finished" or "already finished"."""
-
-    @property
-    def step(self) -> int:
-        """Number of steps done."""
-
-    @property
-    def time(self) -> float:
-        """Simulated time reached, s."""
-
-    @property
-    def seconds(self) -> float:
-        """Wall-clock time of the run, all sessions together."""
-
-    @property
-    def snapshots(self) -> int:
-        """Number of snapshots on disk."""
-
-    @property
-    def steps_per_second(self) -> float:
-        """Speed of this session; 0 if nothing was left to do."""
 
 
 class Drive(Protocol):
@@ -71,6 +43,13 @@ class Drive(Protocol):
         """
 
 
+def run_table(folder: Path, name: str) -> Mapping[str, AnyArray]:
+    """Columns of a table of the run in ``folder``, "series" for series.csv; {} when there is none."""
+    from porescale.common.record.series import read_series
+
+    return read_series(folder / f"{name}.csv")
+
+
 @dataclass(frozen=True)
 class Package:
     """A simulator's parts.
@@ -85,8 +64,7 @@ class Package:
     validations, benchmarks : give the registers;  case : folder of a case whose front `bench` measures again, or None;
     stability : flows of a stability map;  extremes : tries of `study extremes`;  endurance : flows of `study
     endurance`;  parts : scenes of `study parts`;  each None if there are none;
-    check_resume : InputError where the run in a folder cannot be resumed with a card; None if only a model can
-    find out;
+    formerly : tables like those of a scene, with what was done before keys were there whose defaults do something else;
     features : what trade studies read of a run folder at a time (None: its last snapshot), by name, None if there is
     nothing.
     """
@@ -100,14 +78,14 @@ class Package:
     drive: Drive
     report: Callable[[Any], Report]
     show: Callable[[Path], Iterable[Path]]
-    table: Callable[[Path, str], Mapping[str, NDArray[Any]]]
     validations: Callable[[], Validations]
     benchmarks: Callable[[], Benchmarks]
+    table: Callable[[Path, str], Mapping[str, AnyArray]] = run_table
     case: Path | None = None
     stability: Callable[[], Stability] | None = None
     extremes: Callable[[], Extremes] | None = None
     endurance: Callable[[], Endurances] | None = None
     parts: Callable[[], SceneKinds] | None = None
-    check_resume: Callable[[Path, dict[str, Any]], None] | None = None
+    formerly: Mapping[str, Any] = field(default_factory=dict)
     also: Mapping[str, Callable[[Path], Iterable[Path]]] = field(default_factory=dict)
-    features: Callable[[], Mapping[str, Callable[[Path, float | None], NDArray[Any]]]] | None = None
+    features: Callable[[], Mapping[str, Callable[[Path, float | None], AnyArray]]] | None = None

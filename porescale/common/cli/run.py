@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-import resource
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
 from porescale.common.cli import pick
-from porescale.common.cli.folders import require_writable, unusable
+from porescale.common.cli.folders import named_folder, require_writable, unusable
 from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, use_threads
-from porescale.common.cli.package import Outcome, Package
+from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.machine import peak_bytes
 from porescale.common.record.read_card import NAME as CARD
 from porescale.common.record.read_card import read_card
 
 if TYPE_CHECKING:
-    from porescale.common.schema.sections import Opened
+    from porescale.common.record.drive import Outcome
+    from porescale.common.record.model import Model
+    from porescale.common.schema.sections import Opened, Section
 
 
 def command(package: Package) -> Callable[..., int]:
@@ -48,24 +51,22 @@ def command(package: Package) -> Callable[..., int]:
         require_scene(scene)
         chosen = None
         if error is not None or budget is not None:
-            check_choices(quality, resume)
+            _require_free_choice(quality, resume)
             use_threads(threads)
             chosen = pick.pick(package, scene, error, budget, settings or (), quiet=quiet)
             settings = [*chosen.point.settings, *(settings or ())]
         level = chosen.point.quality if chosen else quality
         opened = open_scene(scene, package.scene(), quality=level, overrides=settings or ())
-        if out == "":
-            raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
-        folder = Path(out) if out is not None else Path("runs") / opened.name
+        folder = named_folder(out, opened.name)
         check_folder(folder, package.name, resume=resume, overwrite=overwrite)
         card = card_of(package, opened)
         if chosen is not None:
             card["picked"] = chosen.as_dict()
         begun = time.perf_counter()
         warnings = package.report(opened.scene).warnings  # what contradicts itself is refused
-        if resume and package.check_resume is not None:
-            package.check_resume(folder, card)
-        use_threads(threads)  # numba counts them; unless moving frames were to be judged, it is imported only now
+        if resume:
+            check_scene_resume(package, folder, card)
+        use_threads(threads)  # numba counts them; unless moving frames were to be checked, it is imported only now
         for warning in warnings:
             print(f"warning: {warning}", file=sys.stderr)
         model = package.build(opened.scene)
@@ -77,6 +78,67 @@ def command(package: Package) -> Callable[..., int]:
         return 0
 
     return run
+
+
+def drive_scene(
+    model: Model,
+    folder: Path,
+    scene: Any,
+    *,
+    card: dict[str, Any],
+    after: Callable[[Path], object],
+    formerly: Mapping[str, Any] = MappingProxyType({}),
+    **options: Any,
+) -> Outcome:
+    """`drive` the model for as long as its scene says, with rows, snapshots and checkpoints when it says.
+
+    after, options : of `drive`;  formerly : of `Package`.
+    """
+    from porescale.common.record.drive import drive
+
+    return drive(
+        model,
+        folder,
+        scene.time.end,
+        snapshot_interval=scene.output.snapshot_interval,
+        series_interval=scene.output.series_interval,
+        checkpoint_seconds=scene.output.checkpoint_seconds,
+        card=card,
+        after=after,
+        today=_completing(type(scene), card, formerly),
+        **options,
+    )
+
+
+def check_scene_resume(package: Package, folder: Path, card: dict[str, Any]) -> None:
+    """InputError where the run in ``folder`` cannot be gone on with as ``card`` requests."""
+    from porescale.common.record.drive import check_resume
+
+    check_resume(folder, card, today=_completing(package.scene(), card, package.formerly))
+
+
+def _completing(
+    scene_type: type[Section], card: Mapping[str, Any], formerly: Mapping[str, Any] = MappingProxyType({})
+) -> Callable[[Mapping[str, Any]], Mapping[str, Any]]:
+    """What completes the full scene on an older run's card with the keys that came after it, at what they were before.
+
+    That is their default, or what ``formerly``, tables like those of a scene, says where the default does something
+    else.  Files that it names are looked for where the scene of ``card`` lies, with which the run is resumed.  A
+    scene that is none today stays as it is.
+    """
+
+    from porescale.common.schema import scene_file
+    from porescale.common.schema.sections import scene_as_dict, validate
+
+    def completed(scene: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The scene of a card with the keys that came later."""
+        folder = Path(card["scene_file"]).parent if "scene_file" in card else None
+        try:
+            return scene_as_dict(validate(scene_type, scene_file.merge(formerly, scene), folder=folder))
+        except InputError:
+            return scene
+
+    return completed
 
 
 def card_of(package: Package, opened: Opened[Any]) -> dict[str, Any]:
@@ -93,7 +155,7 @@ def card_of(package: Package, opened: Opened[Any]) -> dict[str, Any]:
     }
 
 
-def check_choices(quality: str | None, resume: bool) -> None:
+def _require_free_choice(quality: str | None, resume: bool) -> None:
     """InputError where what a front picks is given, too."""
     for option, given in (("--quality", quality), ("--resume", resume)):
         if given:
@@ -106,13 +168,13 @@ def check_folder(folder: Path, package: str, *, resume: bool, overwrite: bool) -
     if resume and overwrite:
         raise InputError(Fault("--resume", None, "contradicts --overwrite", repair="give one of them"))
     try:
-        _refuse_content(folder, package, resume=resume, overwrite=overwrite)
+        _require_fitting_content(folder, package, resume=resume, overwrite=overwrite)
     except OSError as error:  # a name too long, a folder that may not be looked into
         raise unusable(folder, "--out", error) from error
     require_writable(folder, "--out")
 
 
-def _refuse_content(folder: Path, package: str, *, resume: bool, overwrite: bool) -> None:
+def _require_fitting_content(folder: Path, package: str, *, resume: bool, overwrite: bool) -> None:
     """InputError when what is in ``folder`` does not go with the options."""
     if folder.exists() and not folder.is_dir():
         raise InputError(Fault("--out", str(folder), "is a file", repair="name a folder"))
@@ -133,13 +195,12 @@ def _refuse_content(folder: Path, package: str, *, resume: bool, overwrite: bool
 
 def summary(command: str, name: str, folder: Path, outcome: Outcome) -> str:
     """Text with the cost of the run and the files to look at."""
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
     speed = f", {outcome.steps_per_second:.4g} steps/s" if outcome.steps_per_second else ""
     names = [path.name for path in folder.iterdir() if path.is_file()] if folder.is_dir() else []
     files = ", ".join(sorted(it for it in names if not it.startswith(".")))
     return (
         f"{name}: {outcome.outcome} at t = {outcome.time:.6g} s, step {outcome.step}; "
-        f"{outcome.seconds:.3g} s{speed}, {outcome.snapshots} snapshots, {peak / 2**20:.0f} MiB at most\n"
+        f"{outcome.seconds:.3g} s{speed}, {outcome.snapshots} snapshots, {peak_bytes() / 2**20:.0f} MiB at most\n"
         f"look at {folder}: {files}\n"
         f"more pictures: {command} show {folder}"
     )

@@ -1,7 +1,6 @@
-"""`study trade` and `levels SCENE`, `study stability [FLOW…]`: where it stays stable and is right, `study extremes`."""
+"""`study …`: what accuracy costs (trade, levels), where to trust it (stability, extremes, endurance), and parts."""
 
 import json as json_text
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import asdict
@@ -9,26 +8,50 @@ from typing import Annotated
 
 from cyclopts import App, Parameter
 
-from porescale.common.cli import endurance, levels, parts, trade
-from porescale.common.cli.folders import study_folder
-from porescale.common.cli.options import Json, Threads, use_threads
+from porescale.common.cli import trade
+from porescale.common.cli.folders import output_folder
+from porescale.common.cli.options import Json, List, Scene, Threads, print_json, say, use_threads
 from porescale.common.cli.package import Package
+from porescale.common.cli.trade import circumstances
+from porescale.common.core.errors import Fault, InputError
 
 
 def command(package: Package) -> App:
-    """The `study` command of a package, with a command for each kind of study."""
+    """The `study` command of a package, with a command for each kind of study that it has."""
     app = App(name="study", help="Measure what accuracy costs, and where it can be trusted.")
     app.command(trade.command(package))
-    app.command(levels.command(package))
-    if package.stability is not None:
-        app.command(_stability(package))
-    if package.extremes is not None:
-        app.command(_extremes(package))
-    if package.endurance is not None:
-        app.command(endurance.command(package))
-    if package.parts is not None:
-        app.command(parts.command(package))
+    app.command(_levels(package))
+    offered = {_stability: package.stability, _extremes: package.extremes, _endurance: package.endurance,
+               _parts: package.parts}  # fmt: skip
+    for study, register in offered.items():
+        if register is not None:
+            app.command(study(package))
     return app
+
+
+def _command_line(package: Package, study: str, names: tuple[str, ...], *more: str) -> str:
+    """The words that run a study of these names again."""
+    return " ".join([package.name, "study", study, *map(json_text.dumps, names), *more])
+
+
+def _levels(package: Package) -> Callable[..., int]:
+    """The `study levels` command."""
+
+    def levels(scene: Scene, /) -> int:
+        """Pick draft, standard and fine from the scene's front, and fail where its levels are something else.
+
+        Draft is the cheapest point whose error is allowed, standard the most accurate, fine the reference.
+        """
+        from porescale.common.schema.scene_file import find
+        from porescale.common.studies.levels import APART, apart, compared
+
+        rows = compared(package, find(scene))
+        print("\n".join(row.line() for row in rows))
+        near = apart(rows) < APART
+        print(f"fine costs {apart(rows):.3g} times a draft" + (f", less than {APART:g} times" if near else ""))
+        return 1 if near or any(row.wrong for row in rows) else 0
+
+    return levels
 
 
 def _extremes(package: Package) -> Callable[..., int]:
@@ -37,31 +60,30 @@ def _extremes(package: Package) -> Callable[..., int]:
     def extremes(
         *names: Annotated[str, Parameter(help="what is varied; all if not given")],
         out: Annotated[str, Parameter(help="folder of extremes.json, .md and .png")] = "runs/extremes",
-        list_: Annotated[bool, Parameter(name="--list", help="only say what is varied")] = False,
+        list_: List = False,
         threads: Threads = 1,
         json: Json = False,
     ) -> int:
         """Try more and more extreme input: what is stable, what is refused before it starts, what is stopped, and
         why."""
-        from porescale.common.evidence import extremes as made
+        from porescale.common.evidence import extremes as study
 
         assert package.extremes is not None
         tries = package.extremes().chosen(names)
         if list_:
             print("\n".join(dict.fromkeys(it.axis for it in tries)))
             return 0
-        folder = study_folder(out)
+        folder = output_folder(out)
         use_threads(threads)
         rows = []
         for it in tries:
             rows.append(it.tried())
-            print(f"{it.axis} {it.value}: {rows[-1].end} ({len(rows)} of {len(tries)})", file=sys.stderr, flush=True)
-        asked = " ".join(["study extremes", *(json_text.dumps(name) for name in names)])
-        made.write(folder, f"{package.name} {asked}", rows)
+            say(f"{it.axis} {it.value}: {rows[-1].end} ({len(rows)} of {len(tries)})")
+        study.write(folder, _command_line(package, "extremes", names), rows)
         if json:
-            print(json_text.dumps([asdict(row) for row in rows], indent=1, allow_nan=False))
+            print_json(map(asdict, rows))
         else:
-            print(f"{len(rows)} tries; {folder / made.NAME}.md, .png")
+            print(f"{len(rows)} tries; {folder / study.NAME}.md, .png")
         return 0
 
     return extremes
@@ -74,19 +96,19 @@ def _stability(package: Package) -> Callable[..., int]:
         *names: Annotated[str, Parameter(help="flows, or rooms for all of theirs; all if not given")],
         out: Annotated[str, Parameter(help="folder of stability.json, .csv, .md and .png")] = "runs/stability",
         quick: Annotated[bool, Parameter(help="few laws at few values: seconds")] = False,
-        list_: Annotated[bool, Parameter(name="--list", help="only say which flows there are")] = False,
+        list_: List = False,
         threads: Threads = 1,
         json: Json = False,
     ) -> int:
         """Map where each law stays stable and where it is right, over flows that go from mild to extreme."""
-        from porescale.common.evidence import stability_files as study_files
+        from porescale.common.evidence import stability_files as study
 
         assert package.stability is not None
         flows = package.stability().chosen(names)
         if list_:
             print("\n".join(f"{flow.name}: {flow.title}" for flow in flows))
             return 0
-        folder = study_folder(out)
+        folder = output_folder(out)
         use_threads(threads)
         rows, start, done = [], time.perf_counter(), 0
         total = sum(flow.count(quick) for flow in flows)
@@ -97,13 +119,94 @@ def _stability(package: Package) -> Callable[..., int]:
                     done += 1
                 spent = time.perf_counter() - start
                 left = f"{done} of {total}, about {spent / done * (total - done):.0f} s left"
-                print(f"{flow.name}: {law} ({left})", file=sys.stderr, flush=True)
-        asked = " ".join(["study stability", *names, *(["--quick"] if quick else [])])
-        study_files.write(folder, f"{package.name} {asked}", package.version, flows, rows, quick)
+                say(f"{flow.name}: {law} ({left})")
+        words = " ".join([package.name, "study stability", *names, *(["--quick"] if quick else [])])
+        study.write(folder, words, package.version, flows, rows, quick)
         if json:
-            print(json_text.dumps([row.as_dict() for row in rows], indent=1, allow_nan=False))
+            print_json(row.as_dict() for row in rows)
         else:
-            print(f"{len(rows)} tries in {time.perf_counter() - start:.0f} s; {folder / study_files.NAME}.md, .png")
+            print(f"{len(rows)} tries in {time.perf_counter() - start:.0f} s; {folder / study.NAME}.md, .png")
         return 0
 
     return stability
+
+
+def _endurance(package: Package) -> Callable[..., int]:
+    """The `study endurance` command."""
+
+    def endurance(
+        *names: Annotated[str, Parameter(help="what lasts; all if not given")],
+        steps: Annotated[int, Parameter(help="of each")] = 1_000_000,
+        out: Annotated[str, Parameter(help="folder of endurance.json, .md and .png")] = "runs/endurance",
+        resume: Annotated[bool, Parameter(help="keep what an earlier call has finished there")] = False,
+        list_: List = False,
+        threads: Threads = 1,
+        json: Json = False,
+    ) -> int:
+        """Run small things for a million steps: what creeps of mass, momentum, places, memory; what is found wrong."""
+        from porescale.common.evidence import endurance as study
+
+        assert package.endurance is not None
+        chosen = package.endurance().chosen(names)
+        if list_:
+            print("\n".join(f"{it.name}: {it.title}" for it in chosen))
+            return 0
+        if steps < study.MARKS:
+            raise InputError(Fault("--steps", steps, "is too few to look at", "", f">= {study.MARKS}"))
+        folder = output_folder(out)
+        use_threads(threads)
+        kept = study.finished(folder) if resume else {}
+        words = _command_line(package, "endurance", names, f"--steps {steps}")
+        for it in chosen:
+            if it.name in kept and kept[it.name][0].steps == it.steps(steps):
+                say(f"{it.name}: kept")
+                continue
+            kept[it.name] = study.endure(it, steps, say)
+            ordered = [line for flow in package.endurance().chosen() for line in kept.get(flow.name, [])]
+            study.write(folder, circumstances(package, words, threads or 1), ordered)
+        lines = [line for it in chosen for line in kept[it.name]]
+        if json:
+            print_json(map(asdict, lines))
+        else:
+            for line in lines:
+                verdict = "holds" if line.holds else "CREEPS"
+                print(f"{line.flow}: {line.quantity} {verdict}, off by {line.off:.3g} of {line.allowed:.3g} allowed")
+        return 0 if all(line.holds for line in lines) else 1
+
+    return endurance
+
+
+def _parts(package: Package) -> Callable[..., int]:
+    """The `study parts` command."""
+
+    def parts(
+        *names: Annotated[str, Parameter(help="kinds of scenes; all if not given")],
+        out: Annotated[str, Parameter(help="folder of parts.json and .md")] = "runs/parts",
+        rounds: Annotated[int, Parameter(help="in which each is timed in turns with what it is held against")] = 15,
+        list_: List = False,
+        json: Json = False,
+    ) -> int:
+        """Measure what each kind of scene builds and costs, beside the smallest kernel for it, one thread."""
+        from porescale.common.evidence import overhead as study
+
+        assert package.parts is not None
+        kinds = package.parts().chosen(names)
+        if list_:
+            print("\n".join(f"{kind.name} (beside {kind.beside})" for kind in kinds))
+            return 0
+        if rounds < 1:
+            raise InputError(Fault("--rounds", rounds, "is out of range", "", ">= 1"))
+        folder = output_folder(out)
+        use_threads(1)
+        rows = []
+        for kind in kinds:
+            rows.append(study.measure(kind, rounds))
+            say(f"{kind.name}: {rows[-1].ratio:.3f} of {kind.beside}")
+        study.write(folder, circumstances(package, _command_line(package, "parts", names), 1), rows)
+        if json:
+            print_json(map(asdict, rows))
+        else:
+            print(f"{len(rows)} kinds; {folder / study.NAME}.md")
+        return 0
+
+    return parts

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shlex
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -11,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from porescale.common.cli.folders import require_writable
-from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene
+from porescale.common.cli.folders import output_folder
+from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, say
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
 
@@ -56,18 +55,17 @@ def command(package: Package) -> Callable[..., int]:
         require_scene(scene)
         points = chosen_points(table, vary or ())
         file, name = check_points(package, scene, points, quality, settings or ())
-        folder = chosen_folder(out, f"{name}_sweep")
+        folder = output_folder(out, f"{name}_sweep")
         campaign = Campaign(module_of(package), file, folder, tuple(settings or ()), quality, threads or 1, again)
         jobs = enlist(campaign, jobs, scheduler)
         rows, ends, order = expected(file), [], {point.name: at for at, point in enumerate(points)}
         varying = [word for text in vary or () for word in ("--vary", text)]
-        asked = [package.name, "sweep", str(scene), *([str(table)] if table else []), *varying]
-        words = shlex.join([*asked, *laid_over(quality, settings)])
+        words = [package.name, "sweep", str(scene), *([str(table)] if table else []), *varying]
+        command_line = shlex.join([*words, *laid_over(quality, settings)])
         for ended in campaign.all(points, jobs, say):
             ends.append(ended)
             ends.sort(key=lambda one: order[one.point.name])
-            asks = rows or columns_at_end(package, ends)
-            sweep_files.write(folder, words, ends, asks, package.table)
+            sweep_files.write(folder, command_line, ends, rows or columns_at_end(package, ends), package.table)
         print(f"{folder / sweep_files.NAME}.csv, .md, .png")
         return conclude(ends)
 
@@ -114,15 +112,6 @@ def laid_over(quality: str | None, settings: Sequence[str] | None) -> list[str]:
     return level + [word for text in settings or () for word in ("--set", text)]
 
 
-def chosen_folder(out: str | None, name: str) -> Path:
-    """The folder to write; InputError if it cannot be written."""
-    if out == "":
-        raise InputError(Fault("--out", out, "is empty", repair="name a folder"))
-    folder = Path(out) if out is not None else Path("runs") / name
-    require_writable(folder, "--out")
-    return folder
-
-
 def enlist(campaign: Campaign, jobs: int, scheduler: str | None) -> int:
     """How many points at a time; with a scheduler its workers take them."""
     if jobs < 1:
@@ -154,11 +143,11 @@ def expected(scene: Path) -> list[dict[str, Any]]:
     rows = read(file).get("expected", [])
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise InputError(Fault("expected", None, "is no list of tables", repair="write [[expected]]", file=str(file)))
-    asked = [row for row in rows if {"name", "column", "at"} <= row.keys()]
-    faults = [Fault(f"expected {row['name']!r}", None, said, file=str(file)) for row in asked if (said := wrong(row))]
+    readable = [row for row in rows if {"name", "column", "at"} <= row.keys()]
+    faults = [Fault(f"expected {row['name']!r}", None, it, file=str(file)) for row in readable if (it := wrong(row))]
     if faults:
         raise InputError(faults)
-    return asked
+    return readable
 
 
 def columns_at_end(package: Package, ends: Sequence[Ended]) -> list[dict[str, Any]]:
@@ -168,11 +157,6 @@ def columns_at_end(package: Package, ends: Sequence[Ended]) -> list[dict[str, An
             names = list(package.table(ended.folder, "series"))[1:]
             return [{"name": name, "column": name, "at": "end"} for name in names]
     return []
-
-
-def say(text: str) -> None:
-    """Write one line of progress to stderr."""
-    print(text, file=sys.stderr, flush=True)
 
 
 def conclude(ends: Sequence[Ended]) -> int:

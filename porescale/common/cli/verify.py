@@ -1,13 +1,11 @@
 """`verify [NAME…]`: the validations."""
 
-import json as json_text
-import sys
 from collections.abc import Callable
 from typing import Annotated
 
 from cyclopts import Parameter
 
-from porescale.common.cli.options import Json, Threads, use_threads
+from porescale.common.cli.options import Json, List, Threads, print_json, say, use_threads
 from porescale.common.cli.package import Package
 
 
@@ -17,7 +15,7 @@ def command(package: Package) -> Callable[..., int]:
     def verify(
         *names: Annotated[str, Parameter(help="validations, or rooms for all of theirs; all if not given")],
         slow: Annotated[bool, Parameter(alias="--all", help="the slow ones too")] = False,
-        list_: Annotated[bool, Parameter(name="--list", help="only say which there are")] = False,
+        list_: List = False,
         threads: Threads = None,
         json: Json = False,
     ) -> int:
@@ -33,10 +31,10 @@ def command(package: Package) -> Callable[..., int]:
         for item in chosen:
             rows.append(item.run())
             verdict = "pass" if rows[-1].passed else "FAIL"
-            print(f"{verdict} {item.name} ({rows[-1].seconds:.1f} s)", file=sys.stderr, flush=True)
+            say(f"{verdict} {item.name} ({rows[-1].seconds:.1f} s)")
         failed = sum(not row.passed for row in rows)
         if json:
-            print(json_text.dumps([row.as_dict() for row in rows], indent=1, allow_nan=False))
+            print_json(row.as_dict() for row in rows)
         else:
             from rich.console import Console
 

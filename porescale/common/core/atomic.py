@@ -124,10 +124,5 @@ def owned(folder: Path, *, wait: bool = False) -> Iterator[bool]:
 def folder_in_use(folder: Path) -> InputError:
     """The error for a folder that a living run holds."""
     return InputError(
-        Fault(
-            "run folder",
-            str(folder),
-            "another run is writing here",
-            repair="wait for it or name another folder",
-        )
+        Fault("run folder", str(folder), "another run is writing here", repair="wait for it or name another folder")
     )

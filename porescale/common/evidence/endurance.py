@@ -24,7 +24,7 @@ MEMORY = "peak memory (MiB)"
 GROWTH = 1.0
 """MiB by which the peak may grow: the interpreter's own memory; a leak of a byte a step is as much in a million."""
 FOUND = "found wrong ()"
-ASK_EVERY = 100
+CHECK_EVERY = 100
 """Steps between checks of the state, as in a run."""
 
 
@@ -62,9 +62,9 @@ class Endurance:
     settles: int = 1
     share: float = 1.0
 
-    def steps(self, asked: int) -> int:
-        """Number of steps out of ``asked`` ones that this row does."""
-        return max(MARKS, round(self.share * asked))
+    def steps(self, requested: int) -> int:
+        """Number of steps out of ``requested`` ones that this row does."""
+        return max(MARKS, round(self.share * requested))
 
 
 @dataclass(frozen=True)
@@ -112,18 +112,18 @@ def endure(it: Endurance, steps: int, say: Say = lambda text: None) -> list[Line
 
     # Before the first mark kernels are compiled or loaded: memory counts from there.
     lines = [line(each.name, seen[each.name], each.allowed(steps), each.because) for each in it.held]
-    asked = f"all is well, asked every {ASK_EVERY} steps"
     return [
-        *lines, line(FOUND, found, 0.0, asked, 0),
+        *lines,
+        line(FOUND, found, 0.0, f"all is well, asked every {CHECK_EVERY} steps", 0),
         line(MEMORY, memory, GROWTH, "nothing is kept from step to step", max(1, it.settles)),
-    ]  # fmt: skip
+    ]
 
 
 def _advance(run: Lasting, steps: int, say: Say) -> int:
     """So many steps; how often something was found wrong."""
     wrong = 0
-    for done in range(0, steps, ASK_EVERY):
-        run.advance(min(ASK_EVERY, steps - done))
+    for done in range(0, steps, CHECK_EVERY):
+        run.advance(min(CHECK_EVERY, steps - done))
         try:
             run.check()
         except Unstable as error:

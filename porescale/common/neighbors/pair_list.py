@@ -237,16 +237,9 @@ class PairList:
     def _check_periods(self, cutoff: float) -> None:
         for axis, name in enumerate(("width", "height")):
             if self.periodic[axis] and self.period[axis] < 2.0 * cutoff:
-                raise InputError(
-                    Fault(
-                        f"periodic {name}",
-                        self.period[axis],
-                        "shorter than two cutoffs of the pair search",
-                        "m",
-                        f">= {2.0 * cutoff:.6g}",
-                        "use a larger box or smaller particles",
-                    )
-                )
+                problem, repair = "shorter than two cutoffs of the pair search", "use a larger box or smaller particles"
+                allowed = f">= {2.0 * cutoff:.6g}"
+                raise InputError(Fault(f"periodic {name}", self.period[axis], problem, "m", allowed, repair))
 
     def _grid(self, columns: int, rows: int) -> Grid:
         """The box cut into so many cells."""

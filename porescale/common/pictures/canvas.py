@@ -4,13 +4,10 @@ import cv2
 import numpy as np
 
 from porescale.common.core.types import AnyArray
-from porescale.common.pictures.look import GRAIN, PAPER, PLATE, RIM, WALL, Survey, magnitude, rgb
+from porescale.common.pictures.look import GRAIN, ONE, PAPER, PLATE, RIM, SHIFT, WALL, Survey, magnitude, rgb
 from porescale.common.pictures.shapes import paint_marks, paint_shapes
 from porescale.common.record.model import Cloud, Grid, Snapshot
 
-SHIFT = 4
-"""OpenCV coordinates in sixteenths of a pixel."""
-ONE = 1 << SHIFT
 SPECK = 4.0
 """Arrows shorter than this many pixels are left out."""
 
@@ -108,17 +105,12 @@ class Canvas:
         colours = self._colours(cloud)[seen].tolist()
         centres, radii = np.rint(at[seen] * ONE).astype(int).tolist(), size[seen]
         rim, rim_colour = np.clip(0.08 * radii, 0.7, 2.0), rgb(RIM)
-        whole, inner = (
-            np.rint(radii * ONE).astype(int).tolist(),
-            np.rint((radii - rim) * ONE).astype(int).tolist(),
-        )
+        whole, inner = (np.rint(it * ONE).astype(int).tolist() for it in (radii, radii - rim))
         rimmed = discs & (radii >= 2.5)
         for centre, outer, core, edge, colour in zip(centres, whole, inner, rimmed.tolist(), colours, strict=True):
             if edge:
                 cv2.circle(image, centre, outer, rim_colour, -1, cv2.LINE_AA, SHIFT)
-                cv2.circle(image, centre, core, colour, -1, cv2.LINE_AA, SHIFT)
-            else:
-                cv2.circle(image, centre, outer, colour, -1, cv2.LINE_AA, SHIFT)
+            cv2.circle(image, centre, core if edge else outer, colour, -1, cv2.LINE_AA, SHIFT)
         if discs and "angle" in cloud.data:
             self._spokes(image, at[seen], radii, np.asarray(cloud.data["angle"], float)[seen])
 

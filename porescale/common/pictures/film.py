@@ -31,9 +31,7 @@ def film(folder: Path | str, look: Look | None = None, *, rate: int | None = Non
     painter = painter_of(run, replace(look or Look(), **changes))
     rate = rate or min(30, max(5, round(len(run) / WATCHABLE)))
     return write_film(
-        run.folder / "film",
-        (painter.paint(snapshot) for snapshot in run.snapshots(painter.survey.look.cells)),
-        rate,
+        run.folder / "film", (painter.paint(snapshot) for snapshot in run.snapshots(painter.survey.look.cells)), rate
     )
 
 

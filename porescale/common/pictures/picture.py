@@ -52,10 +52,7 @@ class Painter:
         self.height = max(48, round((top - bottom) * per_metre))
         self.x = round(LEFT * self.unit)
         self.y = round(TOP * self.unit)
-        self.full = (
-            _even(self.x + self.width + aside * self.unit),
-            _even(self.y + self.height + BOTTOM * self.unit),
-        )
+        self.full = (_even(self.x + self.width + aside * self.unit), _even(self.y + self.height + BOTTOM * self.unit))
         self.canvas = Canvas(found, self.width, self.height)
         self.background = self._background()
 
@@ -241,12 +238,7 @@ def _legend(figure: Figure, look: Look, corner: tuple[float, float], font: float
     """The kinds and their colours."""
     patches = [Patch(facecolor=colour, edgecolor="none", label=label) for label, colour in look.kinds.values()]
     figure.legend(
-        handles=patches,
-        loc="upper left",
-        bbox_to_anchor=corner,
-        fontsize=font,
-        frameon=False,
-        handlelength=1.0,
+        handles=patches, loc="upper left", bbox_to_anchor=corner, fontsize=font, frameon=False, handlelength=1.0
     )
 
 

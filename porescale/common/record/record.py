@@ -77,7 +77,7 @@ class Record:
         """
         if (folder / cards.NAME).exists():
             if not overwrite:
-                _refuse_to_lose(folder)
+                _require_replaceable(folder)
             snapshots.clear(folder)
             older = [f"{name}.csv" for name in _tables_of_run(folder)]
             for name in (SERIES, *older, CHECKPOINT, *MADE_LATER, cards.NAME):
@@ -104,10 +104,7 @@ class Record:
         snapshots.trim(folder, model.step - 1 if extra else model.step)
         snapshots.assemble(folder)
         card["seconds"] = saved.reached.seconds
-        card["resumed"] = [
-            *card.get("resumed", []),
-            {"at": cards.now(), "step": model.step, "time": model.time, **now},
-        ]
+        card["resumed"] = [*card.get("resumed", []), {"at": cards.now(), "step": model.step, "time": model.time, **now}]
         if changed:
             what = ", ".join(changed)
             print(f"warning: resumed with other {what}: not promised to go on bit for bit", file=sys.stderr)
@@ -261,7 +258,7 @@ def _tables_of_run(folder: Path) -> list[str]:
         return []
 
 
-def _refuse_to_lose(folder: Path) -> None:
+def _require_replaceable(folder: Path) -> None:
     """InputError when ``folder`` holds an unfinished run worth keeping."""
     try:
         outcome = cards.read_card(folder).get("outcome")

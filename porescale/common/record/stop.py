@@ -19,10 +19,10 @@ class StopRequest:
     """Truthy once a stop of the run was requested."""
 
     def __init__(self) -> None:
-        self.asked = False
+        self.requested = False
 
     def __bool__(self) -> bool:
-        return self.asked
+        return self.requested
 
 
 @contextmanager
@@ -44,7 +44,7 @@ def polite_stop() -> Iterator[StopRequest]:
 
     def ask(number: int, frame: FrameType | None) -> None:
         """Note the first signal; a second one ends the process as it would have without this."""
-        request.asked = True
+        request.requested = True
         restore()
 
     for number in before:

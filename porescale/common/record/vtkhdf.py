@@ -287,10 +287,7 @@ def _kind(file: h5py.File) -> str:
 def _geometry(file: h5py.File) -> tuple[tuple[float, float], tuple[float, float]]:
     """Origin and spacing of a grid in the plane, m."""
     at = file["VTKHDF"].attrs
-    return (float(at["Origin"][0]), float(at["Origin"][1])), (
-        float(at["Spacing"][0]),
-        float(at["Spacing"][1]),
-    )
+    return (float(at["Origin"][0]), float(at["Origin"][1])), (float(at["Spacing"][0]), float(at["Spacing"][1]))
 
 
 def _columns(file: h5py.File) -> dict[str, Column]:

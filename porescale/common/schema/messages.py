@@ -72,11 +72,7 @@ def _placed(key: Key, fault: Fault) -> tuple[Key, Fault]:
 
 
 def _fault(
-    item: Mapping[str, Any],
-    key: Key,
-    owners: Sequence[type[BaseModel]],
-    field: FieldInfo | None,
-    root: type[BaseModel],
+    item: Mapping[str, Any], key: Key, owners: Sequence[type[BaseModel]], field: FieldInfo | None, root: type[BaseModel]
 ) -> Fault:
     """Fault made from one pydantic error."""
     kind, context, value = item["type"], item.get("ctx", {}), item["input"]
@@ -119,12 +115,7 @@ def _fault(
     problem = str(item["msg"]).removeprefix("Value error, ").removeprefix("Assertion failed, ")
     problem = problem[:1].lower() + problem[1:]
     return Fault(
-        name,
-        shown,
-        problem.replace("input should be", "should be"),
-        unit,
-        allowed,
-        f"give the {help}" if help else "",
+        name, shown, problem.replace("input should be", "should be"), unit, allowed, f"give the {help}" if help else ""
     )
 
 

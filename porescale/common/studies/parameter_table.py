@@ -12,6 +12,7 @@ options  ``--vary contact.friction=0.2,0.5``, repeatable: every combination.
 import csv
 import itertools
 import json
+import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -63,8 +64,7 @@ def varied(options: Sequence[str]) -> list[Point]:
             repair = "write it as --vary contact.friction=0.2,0.5"
             raise InputError(Fault(repr(option), None, "is not key=a,b,c", file="--vary", repair=repair))
         lists.append([f"{key.strip()}={part}" for part in parts])
-    _refuse_too_many([len(part) for part in lists])
-    return named([Point("", settings) for settings in itertools.product(*lists)])
+    return named(_combinations(lists))
 
 
 def crossed(points: Sequence[Point], others: Sequence[Point]) -> list[Point]:
@@ -147,17 +147,15 @@ def _of_toml(path: Path) -> Iterator[Point]:
             if not isinstance(values, list) or not values:
                 raise InputError(Fault(f"vary.{key}", str(values), "is not a list of values"))
             choices.append([f"{key}={literal(value, key)}" for value in values])
-        _refuse_too_many([len(part) for part in choices])
-        for settings in itertools.product(*choices):
-            yield Point("", settings)
+        yield from _combinations(choices)
 
 
-def _refuse_too_many(counts: Sequence[int]) -> None:
-    product = 1
-    for count in counts:
-        product *= count
-    if product > MOST:
-        raise InputError(Fault("points", product, "are too many combinations", "", f"<= {MOST}"))
+def _combinations(lists: Sequence[Sequence[str]]) -> list[Point]:
+    """A point for every choice of one setting out of each list; InputError where they are too many."""
+    count = math.prod(map(len, lists))
+    if count > MOST:
+        raise InputError(Fault("points", count, "are too many combinations", "", f"<= {MOST}"))
+    return [Point("", settings) for settings in itertools.product(*lists)]
 
 
 def _split(text: str) -> list[str]:

@@ -45,11 +45,7 @@ def write(
     dear = about.get("reference", {}).get("core_seconds", 0.0)
     files.write_files(folder, {FRONT: front_json(about | {"packings": dict(packings)}, points, caveats or {})})
     files.write_study(
-        folder,
-        NAME,
-        csv=csv_text(points),
-        md=markdown(about, points, packings),
-        png=picture(points, packings, dear),
+        folder, NAME, csv=csv_text(points), md=markdown(about, points, packings), png=picture(points, packings, dear)
     )
 
 

@@ -122,10 +122,10 @@ class Plan(Section):
 
     @pydantic.model_validator(mode="after")
     def _has_reference(self) -> "Plan":
-        if self.reference is None and any(asked.exact is None for asked in self.quantity):
+        if self.reference is None and any(it.exact is None for it in self.quantity):
             repair = "add [reference], a run finer than all, or exact values"
             raise Refused(Fault("reference", None, "is absent, and not every quantity is exact", repair=repair))
-        names = [asked.name for asked in self.quantity]
+        names = [it.name for it in self.quantity]
         if len(set(names)) < len(names):
             raise Refused(Fault("quantity", ", ".join(names), "have one name twice"))
         return self
@@ -170,10 +170,10 @@ class Plan(Section):
         return given.quality or self.base.quality, settings_of(settings)
 
 
-def read_plan(scene: Path, given: Path | None) -> tuple[Plan, Path]:
-    """The plan in ``given``, else in trade.toml beside the scene file; and its file.  InputError with all faults."""
+def read_plan(scene: Path, given: Path | None) -> Plan:
+    """The plan in ``given``, else in trade.toml beside the scene file.  InputError with all faults."""
     file = given if given is not None else scene.parent / NAME
     if not scene_file.is_file(file):
         repair = f"write one: [[quantity]], [[knob]], [reference]; see the other cases' {NAME}"
         raise InputError(Fault(str(file), None, "is no file", repair=repair))
-    return validate(Plan, scene_file.read(file), file=str(file)), file
+    return validate(Plan, scene_file.read(file), file=str(file))

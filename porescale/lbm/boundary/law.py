@@ -54,8 +54,9 @@ class Boundary(Protocol):
 
     What follows from it:  passes : fluid comes in or goes out;  periodic : it is joined to the opposite side, which
     must be of the same kind;  mirrors : it reverses the velocity across it and leaves the one along it;
-    prescribes_velocity : its links add 6 w c . u of the side's velocity;  settles : it settles its links itself.
-    A kind with none of these holds the fluid and stops it.
+    prescribes_velocity : its links add 6 w c . u of the side's velocity;  settles : it settles its links itself;
+    movable : in a dry scene it may also move, at a velocity or under a stress or force.
+    A kind with none of these holds the fluid and stops it; grains pass through a periodic one alone.
     """
 
     name: str
@@ -69,11 +70,17 @@ class Boundary(Protocol):
     mirrors: bool = False
     prescribes_velocity: bool = False
     settles: bool = False
+    movable: bool = False
 
     @property
     def closed(self) -> bool:
         """Whether no fluid crosses a side of this kind."""
         return not (self.passes or self.periodic)
+
+    @property
+    def no_slip(self) -> bool:
+        """Whether the fluid has the velocity of a side of this kind there, and does not cross it."""
+        return self.closed and not self.mirrors
 
     def partner(self, bounds: Any, link: Link) -> tuple[int, float]:
         """Flat inner slot of a link that this kind owns, and what is added to it on the way in: half-way bounce-back

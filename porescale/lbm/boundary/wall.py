@@ -19,6 +19,7 @@ class Wall(Boundary):
     purpose = "holds the fluid and stops it, or drags it along"
     order, precedence = 0, 1
     numbers = ("speed",)
+    movable = True
 
     def partner(self, bounds: Any, link: Link) -> tuple[int, float]:
         """The reversed link, and 6 w c . u."""

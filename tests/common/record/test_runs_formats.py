@@ -18,6 +18,7 @@ from porescale import Scene
 from porescale.cli.main import PACKAGE as PORESCALE
 from porescale.common.cli.application import application, main
 from porescale.common.cli.package import Package
+from porescale.common.cli.run import check_scene_resume
 from porescale.common.core.errors import InputError
 from porescale.common.record.checkpoint import read_checkpoint, read_header
 from porescale.common.record.open_run import open_run
@@ -171,11 +172,10 @@ def test_keys_that_came_later_are_no_change_where_they_do_nothing_new(kept_run):
     run = kept_run("continuum_run_format_1")
     scene = scene_as_dict(load(run / "scene.toml", Ground, overrides=["numerics.noise_floor=0"]))
     card = {"package": "continuum-sph", "scene": scene, "scene_file": str(run / "scene.toml")}
-    assert CONTINUUM.check_resume is not None
-    CONTINUUM.check_resume(run, card)
+    check_scene_resume(CONTINUUM, run, card)
     scene["numerics"]["courant"] = 0.2  # the twin that must fail: a key that the run had
     with pytest.raises(InputError, match=r"was 0\.25; resume with 0\.25, or start another run"):
-        CONTINUUM.check_resume(run, card)
+        check_scene_resume(CONTINUUM, run, card)
 
 
 def card_of(folder: Path, number: object) -> None:

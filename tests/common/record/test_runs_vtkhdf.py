@@ -23,11 +23,7 @@ def snapshot(k: int) -> Snapshot:
         "grain": random.integers(-3, 9, (4, 6)),
     }
     grid = Grid((0.1, -0.2), (1e-3, 2e-3), cells, {"velocity": "m/s", "pressure": "Pa"})
-    data = {
-        "radius": random.random(n),
-        "velocity": random.random((n, 3)),
-        "name": np.arange(n, dtype=np.int32),
-    }
+    data = {"radius": random.random(n), "velocity": random.random((n, 3)), "name": np.arange(n, dtype=np.int32)}
     cloud = Cloud(random.random((n, 2)), data, {"radius": "m", "velocity": "m/s"})
     return Snapshot(0.1 * k + 0.03, 10 * k, {"fields": grid}, {"grains": cloud})
 

@@ -53,9 +53,8 @@ def test_a_csv_gives_a_point_for_each_row(tmp_path):
 
 def test_toml_gives_points_as_they_are_and_every_combination(tmp_path):
     file = tmp_path / "table.toml"
-    file.write_text(
-        '[[point]]\nname = "a"\n"decay.rate" = "2 1/s"\n[vary]\ndecay.rate = [1, 2]\ndecay.start = [0.5, 1e-5]\n'
-    )
+    point, vary = '[[point]]\nname = "a"\n"decay.rate" = "2 1/s"\n', "decay.rate = [1, 2]\ndecay.start = [0.5, 1e-5]\n"
+    file.write_text(f"{point}[vary]\n{vary}")
     points = read_points(file)
     assert points[0] == Point("a", ('decay.rate="2 1/s"',))
     assert [point.settings for point in points[1:]] == [
@@ -74,13 +73,8 @@ def test_options_are_split_at_commas_outside_brackets_and_quotes():
 
 
 def test_names_are_folders_anywhere_and_differ():
-    names = [
-        p.name
-        for p in named(
-            [Point("", ('a.b="x/../y"',)), Point("../up", ()), Point("Same", ()), Point("same", ()), Point("..", ())]
-        )
-    ]
-    assert names == ["b=x_.._y", "up", "Same", "same-2", "point"]
+    given = [Point("", ('a.b="x/../y"',)), *(Point(name, ()) for name in ("../up", "Same", "same", ".."))]
+    assert [point.name for point in named(given)] == ["b=x_.._y", "up", "Same", "same-2", "point"]
 
 
 @pytest.mark.parametrize(
@@ -142,9 +136,8 @@ def test_finished_points_are_left_alone_and_begun_ones_resume(tmp_path):
     assert sorted(ended.outcome for ended in ends) == ["finished", "finished", "unstable"]
     assert [words[-1] for words in second.called] == ["--resume"]
     third = Machine()
-    assert all(
-        ended.outcome == "finished" for ended in campaign(tmp_path, third, again=True).all(points, 1, said.append)
-    )
+    ends = list(campaign(tmp_path, third, again=True).all(points, 1, said.append))
+    assert {ended.outcome for ended in ends} == {"finished"}
     assert [words[-1] for words in third.called] == ["--overwrite"]
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from porescale.output.case import expected
-from tests.end_to_end.test_dem_cases import CASES, script
+from tests.reference.folders import CASES, script
 
 pytestmark = pytest.mark.slow
 

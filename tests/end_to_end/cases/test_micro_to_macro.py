@@ -1,8 +1,6 @@
 """The case from grains to the continuum: its material file is of its scene, and both columns do as it says."""
 
-import importlib.util
 import math
-import sys
 import tomllib
 from types import ModuleType
 
@@ -11,21 +9,15 @@ import pytest
 from porescale import load
 from porescale.analysis.homogenise import asked_of, packing_of, pressure_of, stiffness_over_pressure
 from porescale.output.case import expected
-from tests.reference.folders import ROOT
+from tests.reference.folders import CASES, script
 
-CASE = ROOT / "cases" / "micro_to_macro"
+CASE = CASES / "micro_to_macro"
 
 
 @pytest.fixture(scope="module")
 def case() -> ModuleType:
     """The case's script as a module."""
-    spec = importlib.util.spec_from_file_location("case_micro_to_macro", CASE / "micro_to_macro.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
+    return script("micro_to_macro")
 
 
 def row(name: str) -> tuple[float, float]:

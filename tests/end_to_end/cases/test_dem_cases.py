@@ -1,31 +1,31 @@
 """Cases of grains that are scripts: each measures what its expected.toml says, and would say so if it did not."""
 
-import importlib.util
 import math
 import re
-import sys
 from dataclasses import replace
-from types import ModuleType
 
 import numpy as np
 import pytest
 
 from porescale.output.case import conclude, expected, missed, stage
-from tests.reference.folders import CASES
+from tests.reference.folders import CASES, script
 
 SCRIPTS = sorted(path.stem for path in CASES.glob("*/*.py") if path.stem == path.parent.name)
+MEASURED = {
+    "bouncing_disc": "a disc bounces as high as its restitution says",
+    "chain_pulse": "a pulse runs along a chain as Bessel functions say",
+    "step_stability": "the longest step is that of lagged damping",
+    "rolling_on_a_slope": "a disc rolls alike on springs a hundred times as stiff",
+    "dry_column_collapse": "run-out of dry columns grows with their aspect ratio as published",
+    "clump": "a clump keeps its energy and comes to rest on both discs",
+    "biaxial_compression": "dense and loose specimens come to one critical state between walls",
+    "simple_shear": "dense and loose cells come to one critical state without walls",
+    "grain_size": "a shear box of few grains is stronger than one of many",
+    "tumbling_plate": "a light plate flutters in water and a heavy one tumbles",
+}
+"""Cases whose script measures every row at once, and what it shows."""
+QUICK = ("chain_pulse", "step_stability", "rolling_on_a_slope")
 KEYS = {"name", "value", "tolerance", "unit", "because"}
-
-
-def script(case: str) -> ModuleType:
-    """The script of a case, as a module of its own."""
-    spec = importlib.util.spec_from_file_location(f"case_{case}", CASES / case / f"{case}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.mark.parametrize("case", SCRIPTS)
@@ -62,11 +62,11 @@ def test_a_case_is_concluded_by_table_picture_and_exit_code(tmp_path):
         missed(tmp_path, {})
 
 
-@pytest.mark.slow
-def test_a_disc_bounces_as_high_as_its_restitution_says():
-    case = script("bouncing_disc")
-    numbers, _ = case.measure()
-    assert missed(CASES / "bouncing_disc", numbers) == []
+@pytest.mark.parametrize(
+    "case", [pytest.param(case, marks=[] if case in QUICK else [pytest.mark.slow]) for case in MEASURED]
+)
+def test_a_case_measures_what_it_expects(case):
+    assert missed(CASES / case, script(case).measure()[0]) == []
 
 
 def test_a_disc_under_the_other_rule_bounces_otherwise():
@@ -79,22 +79,12 @@ def test_a_disc_under_the_other_rule_bounces_otherwise():
     assert abs(high[0] - row["value"]) > 10 * row["tolerance"]
 
 
-def test_a_pulse_runs_along_a_chain_as_bessel_functions_say():
-    numbers, _ = script("chain_pulse").measure()
-    assert missed(CASES / "chain_pulse", numbers) == []
-
-
 def test_a_pulse_that_parts_the_discs_does_not(monkeypatch):
     # The twin that must fail: a kick that moves discs by more than their overlap, and springs only push.
     case = script("chain_pulse")
     monkeypatch.setattr(case, "KICK", 2000.0)
     numbers, _ = case.measure()
     assert "largest difference from the Bessel profile" in missed(CASES / "chain_pulse", numbers)
-
-
-def test_the_longest_step_is_that_of_lagged_damping():
-    numbers, _ = script("step_stability").measure()
-    assert missed(CASES / "step_stability", numbers) == []
 
 
 def test_the_longest_step_is_not_that_of_central_damping():
@@ -104,11 +94,6 @@ def test_the_longest_step_is_not_that_of_central_damping():
     central = {name: 2.0 if name.startswith("longest") else value for name, value in numbers.items()}
     assert missed(CASES / "step_stability", central) == [f"longest step, h = {h:g}" for h in case.RATIOS[1:]]
     assert case.gains(0.45).max() > 0.1  # nor does a bounce forgive what a contact at rest does
-
-
-def test_a_disc_rolls_alike_on_springs_a_hundred_times_as_stiff():
-    numbers, _ = script("rolling_on_a_slope").measure()
-    assert missed(CASES / "rolling_on_a_slope", numbers) == []
 
 
 def test_a_disc_that_slips_does_not(monkeypatch):
@@ -151,13 +136,6 @@ def test_a_small_column_collapses_and_what_rolled_away_does_not_count():
     assert not case.together(far, run.radius)[np.argmax(far[:, 0])]
 
 
-@pytest.mark.slow
-def test_run_out_of_dry_columns_grows_with_their_aspect_ratio_as_published():
-    case = script("dry_column_collapse")
-    numbers, _ = case.measure()
-    assert missed(CASES / "dry_column_collapse", numbers) == []
-
-
 def test_run_out_as_in_experiments_or_in_proportion_to_height_does_not():
     # The twins that must fail: the upper edge of the experiments, and tall columns that run as squat ones do.
     case = script("dry_column_collapse")
@@ -186,12 +164,6 @@ def test_a_clump_weighs_what_its_union_weighs_and_bounces_as_a_rigid_body():
     assert missed(CASES / "clump", numbers | {name: speed / made}) == [name]
 
 
-@pytest.mark.slow
-def test_a_clump_keeps_its_energy_and_comes_to_rest_on_both_discs():
-    numbers, _ = script("clump").measure()
-    assert missed(CASES / "clump", numbers) == []
-
-
 def test_a_small_dense_specimen_opens_between_sides_that_bear_their_stress():
     case = script("biaxial_compression")
     rough, smooth = (case.compress("dense", 1, friction, 100, strain=0.03) for friction in (0.5, 0.0))
@@ -199,13 +171,6 @@ def test_a_small_dense_specimen_opens_between_sides_that_bear_their_stress():
     assert rough.volume[-1] > 0.002
     assert case.smooth(rough).max() > 1.5 * case.smooth(smooth).max()  # 24 and 9 degrees in large specimens
     assert rough.inertial < 1e-3
-
-
-@pytest.mark.slow
-def test_dense_and_loose_specimens_come_to_one_critical_state_between_walls():
-    case = script("biaxial_compression")
-    numbers, _ = case.measure()
-    assert missed(CASES / "biaxial_compression", numbers) == []
 
 
 @pytest.mark.slow
@@ -233,12 +198,6 @@ def test_a_small_dense_cell_opens_as_it_is_sheared():
 
 
 @pytest.mark.slow
-def test_dense_and_loose_cells_come_to_one_critical_state_without_walls():
-    numbers, _ = script("simple_shear").measure()
-    assert missed(CASES / "simple_shear", numbers) == []
-
-
-@pytest.mark.slow
 def test_cells_without_friction_do_not_come_to_that_state():
     # The twin that must fail: they shear at a tenth of the stress, as densely as they were packed.
     case = script("simple_shear")
@@ -254,12 +213,6 @@ def test_grains_eight_times_as_large_do_the_same_to_the_bit(monkeypatch):
     np.testing.assert_array_equal(small[1], large[1])
     monkeypatch.setattr(case, "RATE", 4.0 * case.RATE)  # the twin that must fail: another inertial number
     assert np.abs(case.element(8.0)[1] - large[1]).max() > 1e-3
-
-
-@pytest.mark.slow
-def test_a_shear_box_of_few_grains_is_stronger_than_one_of_many():
-    numbers, _ = script("grain_size").measure()
-    assert missed(CASES / "grain_size", numbers) == []
 
 
 def test_a_strength_that_knows_no_grain_size_does_not():
@@ -314,13 +267,6 @@ def test_rock_of_discs_packed_without_friction_bears_more(monkeypatch):
     firm = case.said("discs", [case.pair("discs", seed, case.lab.COUNT) for seed in range(3)])
     off = {f"discs: {what}" for what in ("stiffness", "tensile strength", "compressive strength")}
     assert set(missed(CASES / "rock", others | firm)) >= off
-
-
-@pytest.mark.slow
-def test_a_light_plate_flutters_in_water_and_a_heavy_one_tumbles():
-    case = script("tumbling_plate")
-    numbers, _ = case.measure()
-    assert missed(CASES / "tumbling_plate", numbers) == []
 
 
 @pytest.mark.slow

@@ -1,8 +1,6 @@
 """Decks of the DEMseg tutorial as cases: each measures what its expected.toml says, and would say so if it did not."""
 
-import importlib.util
 import math
-import sys
 from dataclasses import replace
 
 import pytest
@@ -11,21 +9,10 @@ from porescale.demseg.build import Options
 from porescale.demseg.deck import GM, NEW, read_deck
 from porescale.demseg.trace import finer, first_touch, trace, unbalanced
 from porescale.output.case import expected, missed
-from tests.reference.folders import CASES
+from tests.reference.folders import CASES, script
 
 DECKS = sorted(path.parent for path in CASES.glob(f"demseg_*/**/{GM}"))
 FAST = ("disc", "clump", "segment", "triangle", "control", "chain")
-
-
-def measured(case):
-    """What the script of a case measures."""
-    spec = importlib.util.spec_from_file_location(f"case_{case}", CASES / case / f"{case}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module.measure()[0]
 
 
 @pytest.mark.parametrize("folder", DECKS, ids=lambda folder: str(folder.relative_to(CASES)))
@@ -39,7 +26,7 @@ def test_the_decks_are_well_formed(folder):
 @pytest.mark.parametrize("name", [*FAST, "repose"])
 def test_a_deck_of_the_tutorial_gives_what_its_case_expects(name):
     case = f"demseg_{name}"
-    assert missed(CASES / case, measured(case)) == []
+    assert missed(CASES / case, script(case).measure()[0]) == []
 
 
 def test_at_half_the_critical_step_energy_runs_away():

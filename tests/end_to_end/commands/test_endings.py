@@ -122,32 +122,6 @@ def test_every_fault_of_a_file_is_said_at_once(ends, tmp_path):
     assert all(line.startswith(str(tmp_path / "wrong.toml")) for line in said)
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (("run", "nowhere"), "no scene here"),
-        (("run", "SCENE", "--quality", "finest"), "quality"),
-        (("run", "SCENE", "--quality", "fine"), "no such level"),
-        (("run", "SCENE", "--set", "fluid.viscosity"), "--set"),
-        (("run", "SCENE", "--set", "fluid.viscosity=-1"), "--set"),
-        (("run", "SCENE", "--set", "fluid.hue=1"), "fluid.hue"),
-        (("run", "SCENE", "--threads", "0"), "--threads"),
-        (("run", "SCENE", "--out", "SCENE"), "is a file"),
-        (("run", "SCENE", "--resume", "--out", "nowhere"), "holds no run to resume"),
-        (("run", "SCENE", "--speed", "3"), "--speed"),
-        (("show", "nowhere"), "no run here (card.json is missing)"),
-        (("swim", "SCENE"), "swim"),
-    ],
-)
-def test_wrong_use_is_one_line(ends, scene, tmp_path, monkeypatch, words, said):
-    monkeypatch.chdir(tmp_path)
-    code, lines = ends(*(scene if word == "SCENE" else word for word in words))
-    assert code == 2
-    assert len(lines) == 1
-    assert said in lines[0]
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_a_run_is_not_overwritten_by_accident_nor_resumed_as_another(ends, folder, scene):
     before = (folder / "series.csv").read_bytes()
     code, (line,) = ends("run", scene, "--out", folder)

@@ -1,6 +1,5 @@
 """Cases that film a run and measure the film do what their expected.toml says, and would say so if they did not."""
 
-import importlib.util
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -13,19 +12,7 @@ from porescale.common.schema.sections import open_scene
 from porescale.output.case import expected, missed
 from porescale.piv.fields.field import Field
 from porescale.piv.images.synth import Camera
-from tests.reference.folders import CASES
-
-
-def script(case, name=None):
-    """The script of a case as a module."""
-    path = CASES / case / f"{name or case}.py"
-    spec = importlib.util.spec_from_file_location(f"case_{path.stem}", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
+from tests.reference.folders import CASES, script
 
 
 @pytest.fixture(scope="module")

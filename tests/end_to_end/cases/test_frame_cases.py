@@ -5,7 +5,7 @@ import re
 import pytest
 
 from porescale import open_run
-from tests.end_to_end.test_cases import CASES, expected, missed
+from tests.end_to_end.cases.test_cases import CASES, expected, missed
 
 CASE = "tipping_tray"
 SETTLED = "time.end=0.5"

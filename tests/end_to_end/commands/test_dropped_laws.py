@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.reference.folders import ROOT
+from tests.reference.waiting import done
 
 LAWS = {
     "lbm/collision/shear_only.py": '''
@@ -214,11 +215,9 @@ stiffness = 1e4
 restitution = 0.8
 """
 NAMES = {
-    "operator": "shear-only",
-    "solid_operator": "half-bounce",
-    "weighting": "square",
-    "side": "belt",
-}
+    "operator": "shear-only", "solid_operator": "half-bounce", "weighting": "square", "side": "belt",
+    "law": "stiffening",
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -236,28 +235,23 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def porescale(tree: Path, *words: object) -> subprocess.CompletedProcess[str]:
     """The command line of that tree."""
-    return subprocess.run(
-        [sys.executable, "-m", "porescale", *map(str, words)], cwd=tree, capture_output=True, text=True,
-        env={**os.environ, "PYTHONPATH": str(tree)}, check=False,
-    )  # fmt: skip
+    return done([sys.executable, "-m", "porescale", *words], cwd=tree, env={**os.environ, "PYTHONPATH": str(tree)})
 
 
-def scene(folder: Path, **names: str) -> Path:
+def scene(folder: Path, text: str = SCENE, **names: str) -> Path:
     """A scene with these laws."""
     folder.mkdir()
-    (folder / "scene.toml").write_text(SCENE.format(**{**NAMES, **names}), encoding="utf-8")
+    (folder / "scene.toml").write_text(text.format(**{**NAMES, **names}), encoding="utf-8")
     return folder
 
 
 @pytest.mark.parametrize("key", NAMES)
 def test_check_offers_a_law_that_was_dropped_into_its_folder(tree: Path, tmp_path: Path, key: str) -> None:
-    found = porescale(tree, "check", scene(tmp_path / "wrong", **{key: "nonsense"}))
+    wrong = scene(tmp_path / "wrong", DRY if key == "law" else SCENE, **{key: "nonsense"})
+    found = porescale(tree, "check", wrong)
     assert found.returncode == 2
     assert NAMES[key] in found.stdout + found.stderr
-    ours = subprocess.run(
-        [sys.executable, "-m", "porescale", "check", str(tmp_path / "wrong")], cwd=ROOT, capture_output=True, text=True,
-        check=False,
-    )  # fmt: skip
+    ours = porescale(ROOT, "check", wrong)
     assert NAMES[key] not in (ours.stdout + ours.stderr).replace(f'"{NAMES[key]}"', "")
 
 
@@ -267,33 +261,18 @@ def test_new_offers_them_too(tree: Path, tmp_path: Path) -> None:
     assert all(name in text for name in NAMES.values())
 
 
-def dry(folder: Path, law: str) -> Path:
-    """A dry scene with this contact law."""
-    folder.mkdir()
-    (folder / "scene.toml").write_text(DRY.format(law=law), encoding="utf-8")
-    return folder
-
-
-def test_a_contact_law_that_was_dropped_is_offered(tree: Path, tmp_path: Path) -> None:
-    found = porescale(tree, "check", dry(tmp_path / "wrong", "nonsense"))
-    assert found.returncode == 2
-    assert "'stiffening'" in found.stdout + found.stderr
-    assert porescale(tree, "new", tmp_path / "new").returncode == 0
-    assert "stiffening" in (tmp_path / "new" / "scene.toml").read_text(encoding="utf-8")
-
-
 def test_a_contact_law_that_was_dropped_runs(tree: Path, tmp_path: Path) -> None:
     rows = []
-    for law in ("linear", "stiffening"):
-        done = porescale(tree, "run", dry(tmp_path / law, law), "--quiet")
-        assert done.returncode == 0, done.stdout + done.stderr
+    for law in ("linear", NAMES["law"]):
+        ended = porescale(tree, "run", scene(tmp_path / law, DRY, law=law), "--quiet")
+        assert ended.returncode == 0, ended.stdout + ended.stderr
         rows.append((tree / "runs" / law / "series.csv").read_text(encoding="utf-8"))
     assert rows[0] != rows[1]  # a bounce from another spring
 
 
 def test_they_run(tree: Path, tmp_path: Path) -> None:
-    done = porescale(tree, "run", scene(tmp_path / "all"), "--quiet")
-    assert done.returncode == 0, done.stdout + done.stderr
+    ended = porescale(tree, "run", scene(tmp_path / "all"), "--quiet")
+    assert ended.returncode == 0, ended.stdout + ended.stderr
 
 
 def test_a_case_is_a_scene_in_a_folder(tree: Path) -> None:

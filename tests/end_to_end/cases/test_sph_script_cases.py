@@ -13,7 +13,7 @@ from continuum_sph.validation.seepage import permeameter as verify_seepage
 from continuum_sph.validation.water import fluids as trials_fluids
 from porescale.output import case as cases
 from porescale.output.case import expected, missed
-from tests.end_to_end.test_dem_cases import CASES, script
+from tests.reference.folders import CASES, script
 
 pytestmark = pytest.mark.slow
 PLACES = ("height at 0.25 L", "height at 0.5 L", "height at 0.75 L")

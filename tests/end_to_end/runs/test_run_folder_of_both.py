@@ -36,11 +36,6 @@ def untouched(tmp_path_factory) -> Callable[[str], tuple[Program, Path]]:
     return make
 
 
-def said(capsys: pytest.CaptureFixture[str]) -> list[str]:
-    """Lines on stderr but for warnings."""
-    return [line for line in capsys.readouterr().err.splitlines() if not line.startswith("warning: ")]
-
-
 def output(values: dict[str, Any], finer: float) -> list[str]:
     """Settings for intervals of rows, snapshots and checkpoints a ``finer``-th as long."""
     found = values["output"]
@@ -82,11 +77,11 @@ def test_another_scene_is_another_run(tmp_path, untouched, name):  # the twin th
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, pytest.param(signal.SIGINT, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", NAMES)
-def test_a_run_asked_to_stop_saves_the_step_says_so_and_goes_on(tmp_path, capsys, untouched, name, number):
+def test_a_run_asked_to_stop_saves_the_step_says_so_and_goes_on(tmp_path, complaints, untouched, name, number):
     one, folder = untouched(name)
     out = tmp_path / "run"
     assert one.run(out, happens=lambda: signal.raise_signal(number)) == 130
-    (line,) = said(capsys)
+    (line,) = complaints()
     card = open_run(out).card
     assert line.startswith(f"interrupted at step {card['step']} ")
     assert "resume to continue" in line
@@ -97,15 +92,15 @@ def test_a_run_asked_to_stop_saves_the_step_says_so_and_goes_on(tmp_path, capsys
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_folder_that_goes_ends_its_run_in_a_line_and_is_not_made_again(tmp_path, capsys, untouched, name):
+def test_a_folder_that_goes_ends_its_run_in_a_line_and_is_not_made_again(tmp_path, complaints, untouched, name):
     one, folder = untouched(name)
     out, elsewhere = tmp_path / "run", tmp_path / "elsewhere"
     assert one.run(out, happens=lambda: shutil.rmtree(out)) == 1
-    (line,) = said(capsys)
+    (line,) = complaints()
     assert "the run folder was moved or removed" in line
     assert not out.exists()
     assert one.run(out, *output(one.values, 1.0), happens=lambda: out.rename(elsewhere)) == 1
-    (line,) = said(capsys)
+    (line,) = complaints()
     assert not out.exists()
     whole(elsewhere)
     assert one.run(elsewhere, "--resume") == 0  # where it lies now
@@ -113,7 +108,7 @@ def test_a_folder_that_goes_ends_its_run_in_a_line_and_is_not_made_again(tmp_pat
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_second_run_in_the_folder_is_refused_and_the_first_does_not_notice(tmp_path, capsys, untouched, name):
+def test_a_second_run_in_the_folder_is_refused_and_the_first_does_not_notice(tmp_path, complaints, untouched, name):
     one, folder = untouched(name)
     out, codes = tmp_path / "run", []
 
@@ -122,7 +117,7 @@ def test_a_second_run_in_the_folder_is_refused_and_the_first_does_not_notice(tmp
 
     assert one.run(out, happens=second) == 0
     assert codes == [2, 2, 2]
-    first, *others = said(capsys)
+    first, *others = complaints()
     assert "already holds a run" in first
     assert len(others) == 2
     assert all("another run is writing here" in line for line in others)
@@ -130,9 +125,9 @@ def test_a_second_run_in_the_folder_is_refused_and_the_first_does_not_notice(tmp
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_folder_below_a_file_is_refused_before_anything_is_built(tmp_path, capsys, untouched, name):
+def test_a_folder_below_a_file_is_refused_before_anything_is_built(tmp_path, complaints, untouched, name):
     one, _ = untouched(name)
     (tmp_path / "file").write_text("mine")
     assert one.run(tmp_path / "file" / "run", happens=lambda: pytest.fail("it ran")) == 2
-    assert len(said(capsys)) == 1
+    assert len(complaints()) == 1
     assert (tmp_path / "file").read_text() == "mine"
