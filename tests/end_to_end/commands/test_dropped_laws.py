@@ -229,7 +229,7 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (root / "porescale" / place).write_text(text, encoding="utf-8")
     for place in ("cases", "tests/fingerprints"):
         shutil.copytree(ROOT / place, root / place, ignore=shutil.ignore_patterns("*.png", "__pycache__"))
-    dry(root / "cases" / "bounce", "linear")
+    scene(root / "cases" / "bounce", DRY, law="linear")
     return root
 
 
@@ -277,11 +277,8 @@ def test_they_run(tree: Path, tmp_path: Path) -> None:
 
 def test_a_case_is_a_scene_in_a_folder(tree: Path) -> None:
     assert porescale(tree, "check", "cases/bounce").returncode == 0
-    done = porescale(tree, "run", "cases/bounce", "--quiet")
-    assert done.returncode == 0, done.stdout + done.stderr
+    ended = porescale(tree, "run", "cases/bounce", "--quiet")
+    assert ended.returncode == 0, ended.stdout + ended.stderr
     assert (tree / "runs" / "bounce" / "montage.png").exists()
-    listed = subprocess.run(
-        [sys.executable, "-m", "tests.fingerprints", "list"], cwd=tree, capture_output=True, text=True,
-        env={**os.environ, "PYTHONPATH": str(tree)}, check=True,
-    )  # fmt: skip
-    assert "scene/bounce" in listed.stdout
+    words = [sys.executable, "-m", "tests.fingerprints", "list"]
+    assert "scene/bounce" in done(words, cwd=tree, env={**os.environ, "PYTHONPATH": str(tree)}).stdout
