@@ -12,11 +12,12 @@ from porescale.common.core.types import Floats
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem import checkpoint, laws, listing, sanity, steering
 from porescale.dem.bodies.bonding import framed_parts
-from porescale.dem.contact.materials import Law, Materials
+from porescale.dem.contact.law import ContactLaw
+from porescale.dem.contact.materials import Materials
 from porescale.dem.discs import Discs
 from porescale.dem.forces.rectangle import Rectangle
 from porescale.dem.forces.walls import HIGH, LOW, PRESENT, VELOCITY, Box, Plate, X
-from porescale.dem.measures.energy import open_book
+from porescale.dem.measures.energy import open_budget
 from porescale.dem.motion.affine_strain import Deforming
 from porescale.dem.motion.periodic_cell import Still
 from porescale.dem.motion.rigid_and_driven import DriverArrays
@@ -42,10 +43,10 @@ class Grains(State):
     def __init__(
         self,
         discs: Discs,
-        law: Law | Materials,
+        law: ContactLaw | Materials,
         box: Box,
         *,
-        wall_law: Law | None = None,
+        wall_law: ContactLaw | None = None,
         plates: Sequence[Plate] = (),
         skin: float | None = None,
         material: ArrayLike | None = None,
@@ -56,7 +57,7 @@ class Grains(State):
         super().__init__(discs, box, list(plates), numbers, SKIN * mean_radius if skin is None else skin, energy)
         self.set_law(law, wall_law)
 
-    def set_law(self, law: Law | Materials, wall_law: Law | None = None) -> None:
+    def set_law(self, law: ContactLaw | Materials, wall_law: ContactLaw | None = None) -> None:
         """Use ``law`` between discs and ``wall_law`` (default: the same) at sides and plates from now on.
 
         Raises InputError as laws.set_law does.
@@ -90,7 +91,7 @@ class Grains(State):
     def set_rectangles(self, rectangles: Sequence[Rectangle]) -> None:
         """Put these rectangles, and no others, into the box; without contacts so far.  InputError beside segments."""
         if self.segments is not None and rectangles:
-            raise InputError(Fault("rectangles", problem="do not meet segments", repair="make them frames"))
+            raise InputError(Fault("rectangles", problem="do not touch segments", repair="make them frames"))
         self.rectangle_frictions = [it.friction for it in rectangles]
         self.rectangles = np.array([it.row() for it in rectangles]).reshape(-1, 6)
         self.rectangle_laws = laws.surface_laws(self, self.rectangle_frictions)
@@ -126,9 +127,9 @@ class Grains(State):
             return
         if dt != self.last_dt:
             self.seconds, self.steps_of_dt, self.last_dt = self.time, 0, dt
-        if self.book is not None and self.book_start is None:
+        if self.budget is not None and self.budget_start is None:
             self.current_pairs()
-            self.book_start = open_book(self, self.book, dt)
+            self.budget_start = open_budget(self, self.budget, dt)
         motion: DriverArrays | None = None
         cell: Still | Deforming = self.still
         if self.drivers is not None:
@@ -147,8 +148,8 @@ class Grains(State):
             if not may_turn(self, law):
                 d = d._replace(angle=d.angle[:0])
             done, self.stale = contact_steps(
-                left, dt, drag, left == count, d, self.pair_arrays(), law, self.surfaces(),
-                self.sweeps.now(pairs, self.surface_count, self.book is not None, alone), motion, cell,
+                left, dt, drag, left == count, d[:], self.pair_arrays()[:], law, self.surfaces()[:],
+                self.sweeps.now(pairs, self.surface_count, self.budget is not None, alone), motion, cell,
                 framed_parts(self, self.seconds, self.steps_of_dt),
             )  # fmt: skip
             left -= done

@@ -4,8 +4,7 @@ import math
 from collections.abc import Sequence
 
 from porescale.dem.bodies.clumps import Clumps, fastest
-from porescale.dem.contact.law import Springs
-from porescale.dem.contact.materials import Law
+from porescale.dem.contact.law import ContactLaw, Springs
 from porescale.dem.discs import Discs
 
 NEIGHBOURS = 6
@@ -24,7 +23,7 @@ def dampings(hard: Springs) -> tuple[float, float, float]:
     return hard.damping, hard.tangential_damping, hard.rolling_damping * hard.rolls
 
 
-def lightest(clumps: Clumps, discs: Discs, laws: Sequence[Law]) -> float:
+def lightest(clumps: Clumps, discs: Discs, laws: Sequence[ContactLaw]) -> float:
     """Mass (kg/m) that the smallest disc would have if its packing limit (packing_limit) were that of the
     fastest clump under all of ``laws``; infinite where all clumps are with a prescribed velocity.
 
@@ -60,7 +59,7 @@ def packing_factor(normal: float, tangential: float, rolling: float = 0.0) -> fl
     return max(NEIGHBOURS * (normal + tangential), 4.0 * NEIGHBOURS * (tangential + rolling))
 
 
-def packing_limit(law: Law, mass: float, radius: float | None = None) -> float:
+def packing_limit(law: ContactLaw, mass: float, radius: float | None = None) -> float:
     """Stability limit (s) in any packing whose lightest disc has ``mass`` (kg/m), damping lagged half a
     step.  The law of Hertz also needs its ``radius`` (m), and takes the stiffness at its ``deepest`` overlap.
 
@@ -73,7 +72,7 @@ def packing_limit(law: Law, mass: float, radius: float | None = None) -> float:
     return 2.0 / (0.5 * b + math.sqrt(0.25 * b * b + a))
 
 
-def _tangents(law: Law, mass: float, radius: float | None) -> Springs:
+def _tangents(law: ContactLaw, mass: float, radius: float | None) -> Springs:
     """The springs that are as stiff as ``law`` ever is for the lightest disc."""
     if radius is None and law.needs_radius:
         raise ValueError(f"the stable step of the law {law.name!r} depends on the radius")
@@ -81,7 +80,7 @@ def _tangents(law: Law, mass: float, radius: float | None) -> Springs:
 
 
 def stable_step(
-    laws: Law | Sequence[Law],
+    laws: ContactLaw | Sequence[ContactLaw],
     mass: float,
     radius: float | None = None,
     *,

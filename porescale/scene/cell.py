@@ -43,7 +43,7 @@ class Cell(Section):
             faults.append(Fault("", None, "strains nothing", repair="give a rate or a stress, or leave it out"))
         for rate, stress in zip(RATES, STRESSES, strict=True):
             if rate in given and stress in given:
-                faults.append(Fault(stress, None, f"and {rate} cannot both be told", repair="give one of them"))
+                faults.append(Fault(stress, None, f"and {rate} cannot both be given", repair="give one of them"))
         stressed = any(name in given for name in STRESSES)
         if stressed and self.fastest is None:
             problem, repair = "is missing: the largest rate under a stress", "add it, such as 1"

@@ -123,7 +123,7 @@ class Component(Section):
     def _one(self) -> "Component":
         given = [key for key in self.UNITS if getattr(self, key) is not None]
         if len(given) > 1:
-            raise Refused(Fault(given[1], None, f"and {given[0]} cannot both be told", repair="give one of them"))
+            raise Refused(Fault(given[1], None, f"and {given[0]} cannot both be given", repair="give one of them"))
         return self
 
     @property

@@ -117,7 +117,7 @@ def test_a_scene_of_segments_runs_as_its_deck_to_round_off(tmp_path, gm, bc, sec
     assert other.inertia == pytest.approx(own.inertia, rel=1e-12)
     deck.advance(900)
     scene.advance(900)
-    assert deck.grains.book is not None
+    assert deck.grains.budget is not None
     assert np.abs(deck.grains.steering.clumps.spin).max() > 0.1 or "control" in sections  # it has met something
     # Places are off by eps of 10 from the start; a bounce multiplies that by how far a body comes over how deep it
     # goes, some 1e2: 10 eps 1e2 = 2e-13 a bounce, of which there are a few.

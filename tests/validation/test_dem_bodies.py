@@ -34,9 +34,9 @@ def test_with_free_rotation_the_shear_modulus_is_another():  # the twin that mus
     assert abs(bodies.lattice_moduli(0.5)[2] - with_held) < 4e-4 < abs(with_held - without)
 
 
-def test_the_book_of_a_servo_without_its_work_does_not_close():  # the twin that must fail
-    book = boxed.book_of(("servo",), 200.0, 0)
-    without = abs(book["residual (J/m)"] + book["work of moving surfaces (J/m)"]) / book["turned over (J/m)"]
+def test_the_budget_of_a_servo_without_its_work_does_not_close():  # the twin that must fail
+    budget = boxed.budget_of(("servo",), 200.0, 0)
+    without = abs(budget["residual (J/m)"] + budget["work of moving surfaces (J/m)"]) / budget["turned over (J/m)"]
     assert without > 10 * VALIDATIONS["dem.energy_book_of_driven_bodies"].tolerance
 
 

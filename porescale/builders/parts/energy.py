@@ -3,7 +3,7 @@
 from porescale.builders.stepper import Row
 from porescale.builders.system import System
 from porescale.common.record.part import Part
-from porescale.dem.measures.energy import energy_book
+from porescale.dem.measures.energy import energy_budget
 
 RESIDUAL = "residual (J/m)"
 
@@ -17,5 +17,5 @@ class EnergyPart(Part):
 
     def row(self) -> Row:
         """Columns of the series, J/m, the residual last."""
-        book = energy_book(self.grains, self.acceleration)
-        return {**{name: value for name, value in book.items() if name != RESIDUAL}, RESIDUAL: book[RESIDUAL]}
+        budget = energy_budget(self.grains, self.acceleration)
+        return {**{name: value for name, value in budget.items() if name != RESIDUAL}, RESIDUAL: budget[RESIDUAL]}

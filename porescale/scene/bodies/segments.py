@@ -94,7 +94,7 @@ class PolygonBody(Framed):
             missing = "number" if self.number is None else "within"
             faults.append(Fault(missing, None, "is needed with the other", repair="give both, or neither"))
         if self.number is not None and self.at:
-            faults.append(Fault("at", None, "and number cannot both be told", repair="give one of them"))
+            faults.append(Fault("at", None, "and number cannot both be given", repair="give one of them"))
         if self.size_spread and self.number is None:
             faults.append(Fault("size_spread", self.size_spread, "is of polygons placed at random", repair="leave out"))
         if self.within and not (self.within[0] < self.within[2] and self.within[1] < self.within[3]):

@@ -12,7 +12,7 @@ from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import HIGH, Box, Plate
 from porescale.dem.grains import Grains
-from porescale.dem.measures.energy import energy_book
+from porescale.dem.measures.energy import energy_budget
 from porescale.dem.motion.control import Moved, Placed, Pushed
 from porescale.dem.motion.drivers import Clump
 from porescale.dem.motion.time_function import Sine
@@ -31,8 +31,8 @@ def impact_residual(law: Linear, steps_per_contact: float, phases: int = 20) -> 
         d = grains.discs
         d.velocity[0], d.spin[0] = (0.6, -1.0), 0.3 / RADIUS
         grains.step(dt, count=int(1.4 * steps_per_contact) + 3)
-        book = energy_book(grains)
-        total.append(abs(book["residual (J/m)"]) / book["turned over (J/m)"])
+        budget = energy_budget(grains)
+        total.append(abs(budget["residual (J/m)"]) / budget["turned over (J/m)"])
     return float(np.mean(total))
 
 
@@ -70,7 +70,7 @@ def repose(settling: int = 12_000, running: int = 100_000, seed: int = 1) -> tup
     grains.step(5e-5, weights, count=settling)
     grains.plates[0, HIGH] = 4.0
     grains.step(5e-5, weights, count=running)
-    return grains, energy_book(grains, (0.0, -980.0))
+    return grains, energy_budget(grains, (0.0, -980.0))
 
 
 @VALIDATIONS.row(
@@ -82,8 +82,8 @@ def repose(settling: int = 12_000, running: int = 100_000, seed: int = 1) -> tup
 )
 def energy_repose() -> Measured:
     """Unaccounted energy over the energy turned over."""
-    _, book = repose()
-    share = book["residual (J/m)"] / book["turned over (J/m)"]
+    _, budget = repose()
+    share = budget["residual (J/m)"] / budget["turned over (J/m)"]
     return Measured(0.0, share, abs(share))
 
 
@@ -127,25 +127,25 @@ def shaken(drives: tuple[str, ...], seed: int, law: Linear = LAW) -> Grains:
     return grains
 
 
-def book_of(drives: tuple[str, ...], steps_per_contact: float, seed: int, law: Linear = LAW) -> dict[str, float]:
+def budget_of(drives: tuple[str, ...], steps_per_contact: float, seed: int, law: Linear = LAW) -> dict[str, float]:
     """Energy budget of a box after 60 over the rate of a contact; steps in the contact of two whole discs."""
     grains = shaken(drives, seed, law)
     dt = math.pi / (math.sqrt(2.0) * RATE * steps_per_contact)
     weights = np.column_stack((np.zeros(grains.discs.count), -GRAVITY * grains.discs.mass))
     grains.step(dt, weights, count=int(LASTS / dt))
-    return energy_book(grains, (0.0, -GRAVITY))
+    return energy_budget(grains, (0.0, -GRAVITY))
 
 
 def unaccounted(drives: tuple[str, ...], steps_per_contact: float, seeds: int = 6) -> float:
     """Mean size of the residual over the energy turned over."""
-    books = [book_of(drives, steps_per_contact, seed) for seed in range(seeds)]
-    return float(np.mean([abs(book["residual (J/m)"]) / book["turned over (J/m)"] for book in books]))
+    budgets = [budget_of(drives, steps_per_contact, seed) for seed in range(seeds)]
+    return float(np.mean([abs(budget["residual (J/m)"]) / budget["turned over (J/m)"] for budget in budgets]))
 
 
 @VALIDATIONS.row(
     "dem.energy_book_of_driven_bodies",
     source="first law: clumps, bodies moved and pushed, walls that move, turn and bear a load, tutorial I-2 and I-3",
-    because="a dashpot is booked half a step too long at touch: w0 dt/pi = 1/200 of what is lost, at T_c/200",
+    because="a dashpot is counted half a step too long at touch: w0 dt/pi = 1/200 of what is lost, at T_c/200",
     tolerance=1.0 / 200.0,
 )
 def driven() -> Measured:

@@ -17,7 +17,7 @@ from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import Discs, make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
-from porescale.dem.measures.energy import energy_book
+from porescale.dem.measures.energy import energy_budget
 from porescale.dem.motion.control import Moved
 from porescale.dem.motion.drivers import Clump
 from porescale.validation.dem.momentum import momentum_drift
@@ -89,9 +89,9 @@ def residuals(grains: Grains, seconds: float, steps_per_contact: float, gravity:
     dt, load, found, most = lasts / steps_per_contact, weights(grains.discs, gravity), [], 0.0
     for _ in range(100):
         grains.step(dt, load, count=int(0.01 * seconds / dt))
-        book = energy_book(grains, (0.0, -gravity))
-        most = max(most, *(book[f"kinetic energy of {kind} (J/m)"] for kind in ("translation", "rotation")))
-        found.append(abs(book["residual (J/m)"]))
+        budget = energy_budget(grains, (0.0, -gravity))
+        most = max(most, *(budget[f"kinetic energy of {kind} (J/m)"] for kind in ("translation", "rotation")))
+        found.append(abs(budget["residual (J/m)"]))
     return np.array(found) / most
 
 
@@ -275,7 +275,7 @@ def bouncing_order() -> Measured:
 @VALIDATIONS.row(
     "dem.energy_of_polygons_that_rub",
     source="first law: polygons, rods, discs and clumps that collide, rub and lose energy in dashpots",
-    because="a dashpot is booked half a step too long at touch: 2 h w0 dt = 2 0.1 pi/200 of what it takes",
+    because="a dashpot is counted half a step too long at touch: 2 h w0 dt = 2 0.1 pi/200 of what it takes",
     tolerance=0.2 * math.pi / 200.0,
 )
 def rubbing() -> Measured:

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from porescale.common.core.types import Floats
+from porescale.dem.contact.law import ContactLaw
 from porescale.dem.contact.linear import Linear
-from porescale.dem.contact.materials import Law, Materials
+from porescale.dem.contact.materials import Materials
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
@@ -42,7 +43,7 @@ def row_on_floor(count: int, gaps: ArrayLike, law: Linear) -> Grains:
     return free(np.column_stack((x, RADIUS + np.broadcast_to(np.asarray(gaps, float), (count,)))), law, floor=True)
 
 
-def on_floor(law: Law | Materials, gaps: ArrayLike, **options: Any) -> Grains:
+def on_floor(law: ContactLaw | Materials, gaps: ArrayLike, **options: Any) -> Grains:
     """Discs far apart in a row, ``gaps`` (m) above a floor without sides."""
     gap = np.atleast_1d(np.asarray(gaps, float))
     places = np.column_stack((APART * np.arange(len(gap)), RADIUS + gap))

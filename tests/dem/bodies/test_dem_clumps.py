@@ -157,7 +157,7 @@ def test_fast_clumps_follow_the_slow_twin():
     np.testing.assert_allclose(grains.discs.position[:, 0], [b.x for b in world.bodies], rtol=0, atol=1e-9)
 
 
-def test_members_of_a_clump_do_not_meet_and_stay_where_they_are():
+def test_members_of_a_clump_do_not_touch_and_stay_where_they_are():
     grains = cloud()
     table, d = grains.steering.clumps, grains.discs
     pairs = grains.current_pairs()

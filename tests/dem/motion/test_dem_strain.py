@@ -36,7 +36,7 @@ def test_an_affine_strain_of_a_lattice_leaves_it_homogeneous(component):
     np.testing.assert_allclose(grains.discs.position, before @ moved.T, rtol=0, atol=400 * EPS * start[0] * 10)
 
 
-def test_discs_that_are_not_told_of_the_strain_do_not_stay_homogeneous():  # the twin that must fail
+def test_discs_without_the_affine_velocity_do_not_stay_homogeneous():  # the twin that must fail
     grains = lattice(Linear(1e7, 0.0, 0.0), 6)
     before, dt = grains.discs.position.copy(), grains.stable_step()
     grains.steering.strain_cell(xy=0.01 / (400 * dt))
@@ -138,7 +138,7 @@ def test_a_list_that_follows_the_strain_misses_no_contact():
     np.testing.assert_array_equal(thin.discs.position, thick.discs.position)
 
 
-def test_a_lattice_that_goes_round_meets_its_images_again():
+def test_a_lattice_that_goes_round_touches_its_images_again():
     # After a shear of one whole width per height the images are the same ones again: forces return to round-off.
     grains = lattice(Linear(1e7), 6)
     grains.hold(slice(None))
@@ -210,16 +210,16 @@ def test_a_cell_without_contacts_shrinks_under_pressure_at_its_limit():
 
 
 @pytest.mark.parametrize(
-    ("told", "key"),
+    ("given", "key"),
     [
         ({"pressure": (1.0, None)}, "cell.limit"),
         ({"pressure": (1.0, None), "limit": 1.0, "share": 2.5}, "cell.share"),
         ({"xx": 1.0, "pressure": (1.0, None), "limit": 1.0}, "both a rate and a stress"),
     ],
 )
-def test_a_strain_without_sense_is_refused(told, key):
+def test_a_strain_without_sense_is_refused(given, key):
     with pytest.raises(InputError, match=key):
-        lattice(LAW, 6).steering.strain_cell(**told)
+        lattice(LAW, 6).steering.strain_cell(**given)
 
 
 def test_only_a_cell_that_is_periodic_both_ways_can_be_strained():

@@ -216,7 +216,7 @@ def test_what_stands_is_copied_to_one_place():
 
 
 @pytest.mark.parametrize("more", [{"energy": True}, {"plates": [Plate(0.8, 0.0, 1.0, name="gate")]}, {"hold": False}])
-def test_with_a_book_a_plate_or_nothing_held_each_step_is_done(monkeypatch, more):
+def test_with_a_budget_a_plate_or_nothing_held_each_step_is_done(monkeypatch, more):
     done = counted(monkeypatch)
     grains = run(row(**more))
     assert done == [18]
