@@ -114,13 +114,11 @@ class Validations(Register[Validation]):
         self, name: str, *, source: str, because: str, tolerance: float, slow: bool = False
     ) -> Callable[[Callable[[], Measured]], Callable[[], Measured]]:
         """Register the decorated function, which measures and returns a `Measured`."""
-        assert name not in self._rows, f"two validations named {name}"
         assert tolerance >= 0
         assert source, "a validation names its source"
         assert because, "a tolerance has a reason"
 
         def register(measure: Callable[[], Measured]) -> Callable[[], Measured]:
-            """Keep ``measure`` as the validation; returns it."""
             self.add(Validation(name, source, because, tolerance, slow, measure))
             return measure
 
