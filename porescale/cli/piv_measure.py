@@ -60,7 +60,11 @@ def measure(
     for path, key in ((csv, "--csv"), (openpiv, "--openpiv")):
         if path is not None:
             require_writable(path.parent, key)
-    folder = out if out or ((csv or openpiv) and not overlay) else Path("runs") / f"piv_{_stem(films[0])}"
+    folder = (
+        out
+        if out or ((csv or openpiv) and not overlay)
+        else Path("runs") / f"piv_{Path(films[0]).stem.strip('*?_ ') or 'film'}"
+    )
     if folder is not None:
         require_writable(folder, "--out")
     if no_slip and not (mask or polygon):
@@ -78,11 +82,6 @@ def measure(
     )  # fmt: skip
     _print(found, json)
     return 0
-
-
-def _stem(name: str) -> str:
-    """What a folder is called after."""
-    return Path(name).stem.strip("*?_ ") or "film"
 
 
 def _box(text: str | None) -> tuple[int, int, int, int] | None:
@@ -113,7 +112,6 @@ def _passes(pairs: int) -> Callable[[], None]:
     done, last = 0, time.perf_counter()
 
     def count() -> None:
-        """Count one more pair, and report progress at intervals."""
         nonlocal done, last
         done += 1
         if time.perf_counter() - last > PATIENCE:

@@ -91,7 +91,6 @@ class Benchmarks(Register[Benchmark]):
         """
 
         def register(prepare: Prepare) -> Prepare:
-            """Keep ``prepare`` under the name; returns it."""
             self.add(Benchmark(name, prepare))
             return prepare
 

@@ -49,9 +49,10 @@ class Canvas:
             self._arrows(image, grid)
         lines = self.look.lines(snapshot) if callable(self.look.lines) else self.look.lines
         for ends in lines:
-            at, thick = self.pixels(np.array(ends, float)), max(2, self.width // 250)
-            self._line(image, at, rgb(RIM), thick + 2)
-            self._line(image, at, rgb(PLATE), thick)
+            start, end = np.rint(self.pixels(np.array(ends, float)) * ONE).astype(int).tolist()
+            thick = max(2, self.width // 250)
+            cv2.line(image, start, end, rgb(RIM), thick + 2, cv2.LINE_AA, SHIFT)
+            cv2.line(image, start, end, rgb(PLATE), thick, cv2.LINE_AA, SHIFT)
         if self.look.marks and len(marks := self.look.marks(snapshot)):
             paint_marks(image, self.pixels(np.array(marks, float).reshape(-1, 2)).reshape(-1, 2, 2))
         return image
@@ -154,11 +155,6 @@ class Canvas:
             outline = [np.rint(shape * ONE).astype(np.int32)]
             cv2.fillPoly(image, outline, rgb(PAPER), cv2.LINE_AA, SHIFT)
             cv2.polylines(image, outline, True, rgb(RIM), 1, cv2.LINE_AA, SHIFT)
-
-    def _line(self, image: AnyArray, ends: AnyArray, colour: tuple[int, int, int], thickness: int) -> None:
-        """A segment between two pixel positions, (2, 2)."""
-        start, end = np.rint(ends * ONE).astype(int).tolist()
-        cv2.line(image, start, end, colour, thickness, cv2.LINE_AA, SHIFT)
 
 
 def _arrow(middle: AnyArray, along: AnyArray, length: float) -> AnyArray:

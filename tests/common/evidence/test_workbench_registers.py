@@ -108,7 +108,7 @@ def test_registers_join_and_refuse_twins_and_rows_without_a_reason() -> None:
     with pytest.raises(AssertionError):
         joined.include(other)
     with pytest.raises(AssertionError):
-        joined.row("lbm.good", source="x", because="y", tolerance=0)
+        joined.row("lbm.good", source="x", because="y", tolerance=0)(lambda: Measured(1.0, 1.0, 0.0))
     with pytest.raises(AssertionError):
         Validations().row("a", source="x", because="", tolerance=0)
 
