@@ -36,8 +36,8 @@ def _free(system: System) -> bool:
 def _measures_grains(system: System) -> bool:
     """Whether a scene measures its grains beyond series.csv."""
     it = system.scene
-    asked = it.region or it.coarse_graining or it.output.forces or it.output.contacts
-    return bool(system.grains and it.grains and asked)
+    requested = it.region or it.coarse_graining or it.output.forces or it.output.contacts
+    return bool(system.grains and it.grains and requested)
 
 
 KINDS = (
@@ -57,8 +57,8 @@ KINDS = (
         lambda it: bool(it.fluid and (it.scene.probe or it.scene.flux or it.scene.loads)),
         "flow_instruments.FlowInstruments",
     ),
-    Kind(("control",), lambda it: len(it.recorded) > (2 if has_plates(it.scene) else 0), "control.ControlPart"),
-    Kind(("rock",), lambda it: bool(it.grains and has_plates(it.scene)), "rock.RockPart"),
+    Kind(("control",), lambda it: len(it.recorded) > (2 if has_plates(it.scene.rock) else 0), "control.ControlPart"),
+    Kind(("rock",), lambda it: bool(it.grains and has_plates(it.scene.rock)), "rock.RockPart"),
 )
 
 OF_THE_START = ("contact", "material", "wall", "lubrication")

@@ -61,7 +61,7 @@ def add_clumps(scene: Scene, grains: Grains, placed: Sequence[Placed] = ()) -> N
     """Bind the discs of clumps, which come after all other free grains and before those that are held, and frames of
     the corners that come last."""
     plan = MaterialPlan.of(scene)
-    sizes = [len(body) for body in members(scene)]
+    sizes = [len(body) for body in members(scene.clump)]
     corners = sum(len(it.frame.corners) for it in placed)
     first = grains.discs.count - corners - len(scene.disc) - sum(sizes)
     ends = first + np.cumsum([0, *sizes])

@@ -59,11 +59,6 @@ class Placed:
         return self.kind not in ("container", "plate") and not all(isinstance(it, Moved) for it in self.prescribed)
 
 
-def any_frames(scene: Scene) -> bool:
-    """Whether a scene has bodies of segments."""
-    return bool(scene.segment or scene.polygon or scene.container or scene.rock)
-
-
 def placed_frames(scene: Scene) -> list[Placed]:
     """The frames that are placed by hand, in their order; raises InputError at one that cannot be, by its key."""
     found: list[Placed] = []

@@ -16,6 +16,7 @@ from porescale.dem.discs import Discs, make_discs
 from porescale.dem.motion.control import Placed as PlacedControl
 from porescale.dem.motion.time_function import Constant, Schedule, Sine, Table
 from porescale.dem.prepare.tessellate import delaunay, shrunk, voronoi
+from porescale.scene.bodies.rock import Rock
 from porescale.scene.packing import Packing
 from porescale.scene.scene import Scene
 
@@ -23,9 +24,9 @@ BEYOND = 0.1
 """Of the length of a plate's side of the sample: how far it stands out at both ends."""
 
 
-def has_plates(scene: Scene) -> bool:
-    """Whether a scene has a rock between plates."""
-    return scene.rock is not None and scene.rock.plates != "none"
+def has_plates(rock: Rock | None) -> bool:
+    """Whether there is a rock, and it is between plates."""
+    return rock is not None and rock.plates != "none"
 
 
 def rock_discs(scene: Scene, law: ContactLaw) -> Discs | None:

@@ -12,7 +12,7 @@ class ControlPart(Part):
     def __init__(self, system: System) -> None:
         assert system.grains
         self.clock, self.grains = system.clock, system.grains
-        self.recorded = system.recorded[: -2 if has_plates(system.scene) else None]
+        self.recorded = system.recorded[: -2 if has_plates(system.scene.rock) else None]
 
     def tables(self) -> dict[str, Row]:
         """control.csv: displacement since the start, forces of contacts and of the control.
