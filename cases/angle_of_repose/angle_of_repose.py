@@ -15,7 +15,7 @@ from porescale.dem.discs import make_discs
 from porescale.dem.forces.rectangle import Rectangle
 from porescale.dem.forces.walls import HIGH, Box, Plate
 from porescale.dem.grains import Grains
-from porescale.dem.measures.energy import energy_book
+from porescale.dem.measures.energy import energy_budget
 from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
@@ -29,7 +29,7 @@ FOOT, HEAD = 0.15, 0.85
 
 @dataclass
 class Heap:
-    """grains at the end; their energy book, erg/cm; the book's step, s."""
+    """grains at the end; their energy budget, erg/cm; the book's step, s."""
 
     grains: Grains
     book: dict[str, float]
@@ -54,7 +54,7 @@ def heap(friction: float = TUTORIAL, seed: int = 1, dt: float = DT, book: bool =
         grains.hold(slice(None), x=False, y=False)
         discs.spin[:] = 0.0
     grains.step(dt, weights, count=round(RUNNING * DT / dt))
-    return Heap(grains, energy_book(grains, (0.0, -GRAVITY)) if book else {})
+    return Heap(grains, energy_budget(grains, (0.0, -GRAVITY)) if book else {})
 
 
 def outline(grains: Grains, points: int = 160) -> tuple[Floats, Floats]:

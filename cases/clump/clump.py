@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from porescale import build, load
 from porescale.common.core.types import Floats
 from porescale.dem.grains import Grains
-from porescale.dem.measures.energy import energy_book
+from porescale.dem.measures.energy import energy_budget
 from porescale.output.case import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
@@ -26,7 +26,7 @@ def clump(
     stiffer: float = 1.0, step: float = STEP, *, book: bool = False, **contact: float
 ) -> tuple[Grains, Floats]:  # fmt: skip
     """The scene's clump with ``stiffer`` contacts, its ``step`` (s) and other keys of [contact], and with or without
-    an energy book; its weights (n, 2)."""
+    an energy budget; its weights (n, 2)."""
     told = {"stiffness": 1e7 * stiffer, "step": step, **contact}
     settings = [f"contact.{key}={value!r}" for key, value in told.items()]
     simulation = build(load(SCENE, settings=[*settings, f"output.energy={str(book).lower()}"]))
@@ -146,7 +146,7 @@ def draw() -> Figure:
                 axes[0].add_patch(Circle(1e2 * d.position[i], 1e2 * d.radius[i], fc="none", ec=colours[k // 80 % 4]))
         grains.step(STEP, weight, count=10)
         time.append(grains.time)
-        book.append(energy_book(grains, (0.0, -GRAVITY)))
+        book.append(energy_budget(grains, (0.0, -GRAVITY)))
         spins.append(float(c.spin[0]))
     names = {"potential energy (J/m)": "potential", "kinetic energy of translation (J/m)": "of translation",
              "kinetic energy of rotation (J/m)": "of rotation", "elastic energy, normal (J/m)": "elastic"}  # fmt: skip

@@ -11,7 +11,7 @@ HERE = Path(__file__).resolve().parent
 
 
 def measure() -> tuple[dict[str, float], Figure]:
-    """Mass and inertia, first touch, and what the energy book lacks, at the deck's step and at a tenth of it."""
+    """Mass and inertia, first touch, and what the energy budget lacks, at the deck's step and at a tenth of it."""
     made, numbers = fallen(HERE)
     figure, axes = stage(2, 9.0, 3.2)
     draw_fall(axes[0], axes[1], made, (0, 35, 80, 120))

@@ -6,10 +6,9 @@ from pathlib import Path
 from porescale.builders.cost import require_memory
 from porescale.builders.derive import derive
 from porescale.builders.initial.fluid import coupled_of, fluid_of
-from porescale.builders.initial.frames import any_frames
 from porescale.builders.initial.grains import frames_of, grains_of
 from porescale.builders.initial.rectangles import on_the_lattice
-from porescale.builders.kinds import parts_of
+from porescale.builders.kinds import add_parts
 from porescale.builders.scene import Scene
 from porescale.builders.simulation import Simulation
 from porescale.builders.stepper import Clock
@@ -29,20 +28,18 @@ def build(scene: Scene) -> Simulation:
     A packing is settled first, or read from the cache; that can take seconds.
     """
     system = system_of(scene)
-    return Simulation(system, *parts_of(system))
+    return Simulation(system, add_parts(system))
 
 
 def system_of(scene: Scene) -> System:
     """Fluid and grains of ``scene`` at time 0; raises InputError."""
     derived = derive(scene)
     require_memory(derived)
-    made = System(scene, derived, Clock(derived.model_step))
-    if any_frames(scene):
-        made.frames = frames_of(scene, derived)
+    made = System(scene, derived, Clock(derived.model_step), frames=frames_of(scene, derived))
     if scene.grains or scene.disc or scene.rectangle:
         made.grains, made.recorded = grains_of(scene, derived, made.frames)
     if scene.fluid:
-        made.fluid = fluid_of(scene, derived)
+        made.fluid = fluid_of(scene.fluid, scene.domain, derived)
     if derived.scales:
         made.rectangles = on_the_lattice(scene.rectangle, derived.scales)
     if made.fluid and made.grains:

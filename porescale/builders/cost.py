@@ -16,8 +16,6 @@ CELLS_PER_SECOND, DISCS_PER_SECOND = 150e6, 15e6
 CALLS, COUPLED_CALLS = 5e-6, 45e-6
 """Seconds of a step that do not depend on its size, without and with coupling (measured on 2400 cells, 31 grains):
 without them a run of a small scene would make every machine look slow."""
-
-
 SIDE = 10
 """What a side of a polygon costs, in discs, at the most (verify measures it)."""
 

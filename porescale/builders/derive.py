@@ -23,11 +23,13 @@ from porescale.builders.initial.rock import rock_frames
 from porescale.builders.scene import Scene
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.choose import LAWS
-from porescale.dem.contact.materials import Law
+from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import make_discs
 from porescale.dem.timestep import packing_limit, stable_step
 from porescale.lbm.scales import NAMES, Scales, implied
+from porescale.scene.bodies.gate import Gate
 from porescale.scene.contact import Contact
+from porescale.scene.domain import Domain
 from porescale.scene.fluid import Fluid
 from porescale.scene.lattice import is_whole
 
@@ -42,8 +44,8 @@ class Derived:
     scales: Scales | None = None
     cells: tuple[int, int] | None = None
     gate_column: int | None = None
-    law: Law | None = None  # of the packing, or the first material, with itself
-    wall_law: Law | None = None
+    law: ContactLaw | None = None  # of the packing, or the first material, with itself
+    wall_law: ContactLaw | None = None
     contact_limit: float | None = None  # s, stability limit in a packing
     contact_step: float | None = None  # s
     contact_steps: int | None = None  # per model step
@@ -61,7 +63,9 @@ def derive(scene: Scene) -> Derived:
     """All of the above; raises InputError with every refusal, each with its repair."""
     faults: list[Fault] = []
     warnings: list[str] = []
-    scales, cells, column = _lattice(scene, faults) if scene.fluid else (None, None, None)
+    scales = cells = column = None
+    if scene.fluid:
+        scales, cells, column = _lattice(scene.fluid, scene.domain, scene.gate, faults)
     if scene.gate and any(scene.domain.periodic):
         faults.append(Fault("gate", None, "stands in a periodic box", repair="give the box walls"))
     check_compressed(scene, faults)
@@ -81,7 +85,10 @@ def derive(scene: Scene) -> Derived:
         if scene.rock and not faults:
             frames = [*frames, *rock_frames(scene, law)]
         if frames:
-            smallest = _with_frames(scene, smallest, frames, every)
+            radius = smallest[1] if grain_count(scene) else None  # of the smallest disc, where there is any
+            light = lightest_frame(frames, every, radius)
+            if light is not None:
+                smallest = (light if radius is None else min(smallest[0], light)), smallest[1]
         limit = min(packing_limit(it, *smallest) for it in every)
         safe = stable_step(every, *smallest)
         if frames and scales:
@@ -91,14 +98,18 @@ def derive(scene: Scene) -> Derived:
     speed = expected_speed(scene, scales, sizes, frames)
     if frames and law:
         warnings += filter(None, [thin_for(frames, speed, mean_mass, law)])
-    warnings += strays(scene, frames)
+    warnings += strays(scene.domain, scene.time.end, frames)
     variation = 0.0
     if scales:
-        light = too_light(frames, scales.spacing, scales.density)
-        warnings += filter(None, [too_few_cells(frames, scales.spacing), light])
+        doubts = too_few_cells(frames, scales.spacing), too_light(frames, scales.spacing, scales.density)
+        warnings += filter(None, doubts)
         variation = check_regime(scene, scales, speed, sizes, faults, warnings)
-    _loads(scene, faults)
-    check_controls(scene, grain_count(scene) - len(scene.disc), faults)
+    free = grain_count(scene) - len(scene.disc)
+    for number in scene.loads.grains if scene.loads else ():
+        if not 0 <= number < free:
+            allowed = f"0 to {free - 1}" if free else "none: there are no grains"
+            faults.append(Fault("loads.grains", number, "there is no such grain", "", allowed))
+    check_controls(scene, free, faults)
     if faults:
         raise InputError(faults)
     return Derived(
@@ -124,26 +135,6 @@ def _frames(scene: Scene, faults: list[Fault]) -> list[Placed]:
 def _equal(sizes: list[float]) -> tuple[float, float, float] | None:
     """Smallest, mean and largest of some diameters, None without any."""
     return (min(sizes), sum(sizes) / len(sizes), max(sizes)) if sizes else None
-
-
-def _with_frames(
-    scene: Scene, smallest: tuple[float, float], frames: list[Placed], every: list[Law]
-) -> tuple[float, float]:
-    """Mass (kg/m) and radius (m) of the disc that answers as fast as the fastest of discs and frames."""
-    radius = smallest[1] if grain_count(scene) else None
-    light = lightest_frame(frames, every, radius)
-    if light is None:
-        return smallest
-    return (light if radius is None else min(smallest[0], light)), smallest[1]
-
-
-def _loads(scene: Scene, faults: list[Fault]) -> None:
-    """Grains whose loads are requested must exist."""
-    count = grain_count(scene) - len(scene.disc)
-    for number in scene.loads.grains if scene.loads else ():
-        if not 0 <= number < count:
-            allowed = f"0 to {count - 1}" if count else "none: there are no grains"
-            faults.append(Fault("loads.grains", number, "there is no such grain", "", allowed))
 
 
 def fluid_scales(fluid: Fluid) -> Scales:
@@ -185,17 +176,17 @@ def diameters(scene: Scene, *, held: bool = True) -> tuple[float, float, float] 
     return min(sizes), mean, max(sizes)
 
 
-def _lattice(scene: Scene, faults: list[Fault]) -> tuple[Scales, tuple[int, int], int | None]:
-    assert scene.fluid is not None
-    scales = fluid_scales(scene.fluid)
+def _lattice(
+    fluid: Fluid, domain: Domain, gate: Gate | None, faults: list[Fault]
+) -> tuple[Scales, tuple[int, int], int | None]:
+    """Scales, cells, and the column that the gate stands left of."""
+    scales = fluid_scales(fluid)
     h = scales.spacing
-    for key, length in (("domain.width", scene.domain.width), ("domain.height", scene.domain.height)):
-        _whole(key, length, h, faults)
-    column = None
-    if scene.gate:
-        _whole("gate.x", scene.gate.x, h, faults)
-        column = round(scene.gate.x / h)
-    return scales, (round(scene.domain.width / h), round(scene.domain.height / h)), column
+    _whole("domain.width", domain.width, h, faults)
+    _whole("domain.height", domain.height, h, faults)
+    if gate:
+        _whole("gate.x", gate.x, h, faults)
+    return scales, (round(domain.width / h), round(domain.height / h)), round(gate.x / h) if gate else None
 
 
 def _whole(key: str, length: float, spacing: float, faults: list[Fault]) -> None:

@@ -4,137 +4,28 @@ A part is imported where it is made, so that nothing of an absent section is.
 """
 
 from collections.abc import Callable
-from typing import NamedTuple, TypeVar
+from importlib import import_module
+from typing import Any, NamedTuple
 
 from porescale.builders.initial.frames import disc_count, free_rows
 from porescale.builders.initial.rock import has_plates
 from porescale.builders.stepper import Stepper
 from porescale.builders.system import System
-from porescale.common.record.part import Part
 from porescale.scene.scene import Scene
-
-P = TypeVar("P", bound=Part)
-Parts = list[Part]
 
 
 class Kind(NamedTuple):
-    """sections : that it is built from;  wanted : whether a system has it;  make : of the system and the parts before
-    it."""
+    """sections : that it is built from;  wanted : whether a system has it;  name : of its file and class."""
 
     sections: tuple[str, ...]
     wanted: Callable[[System], bool]
-    make: Callable[[System, Parts], Part]
+    name: str
 
 
-def _one(kind: type[P], parts: Parts) -> P:
-    """The part of a class that another one needs."""
-    return next(part for part in parts if isinstance(part, kind))
-
-
-def stepper_of(system: System) -> Stepper:
-    """The part that advances a system: fluid, dry grains, or both."""
-    if system.coupled:
-        from porescale.builders.parts.coupled import CoupledPart
-
-        return CoupledPart.build(system)
-    if system.fluid:
-        from porescale.builders.parts.fluid import FluidPart
-
-        return FluidPart.build(system)
-    from porescale.builders.parts.grains import GrainsPart
-
-    return GrainsPart.build(system)
-
-
-def _grain_series(system: System, parts: Parts) -> Part:
-    from porescale.builders.parts.grain_series import GrainSeries
-
-    return GrainSeries.build(system)
-
-
-def _sleep(system: System, parts: Parts) -> Part:
-    from porescale.builders.parts.sleep import SleepPart
-
-    return SleepPart.build(system)
-
-
-def _flow_series(system: System, parts: Parts) -> Part:
-    from porescale.builders.parts.flow_series import FlowSeries
-    from porescale.builders.parts.fluid import FluidPart
-
-    return FlowSeries.build(system, _one(FluidPart, parts))
-
-
-def _gate(system: System, parts: Parts) -> Part:
-    from porescale.builders.parts.gate import GatePart
-
-    return GatePart.build(system)
-
-
-def _rectangles(system: System, parts: Parts) -> Part:
-    from porescale.builders.parts.rectangles import RectanglesPart
-
-    return RectanglesPart.build(system)
-
-
-def _cell(system: System, parts: Parts) -> Part:
-    from porescale.builders.parts.cell import CellPart
-
-    return CellPart.build(system)
-
-
-def _grain_cloud(system: System, parts: Parts) -> Part:
-    from porescale.builders.parts.clouds import GrainCloud
-
-    if system.scene.cell is None:
-        return GrainCloud.build(system)
-    from porescale.builders.parts.cell import CellPart
-
-    return GrainCloud.build(system, _one(CellPart, parts).seen)
-
-
-def _frame_cloud(system: System, parts: Parts) -> Part:
-    from porescale.builders.parts.clouds import FrameCloud
-
-    return FrameCloud.build(system)
-
-
-def _bonds(system: System, parts: Parts) -> Part:
-    from porescale.builders.parts.bonds import BondsPart
-
-    return BondsPart.build(system)
-
-
-def _energy(system: System, parts: Parts) -> Part:
-    from porescale.builders.parts.energy import EnergyPart
-
-    return EnergyPart.build(system)
-
-
-def _grain_instruments(system: System, parts: Parts) -> Part:
-    from porescale.builders.parts.grain_instruments import GrainInstruments
-
-    return GrainInstruments.build(system)
-
-
-def _flow_instruments(system: System, parts: Parts) -> Part:
-    from porescale.builders.parts.flow_instruments import FlowInstruments
-    from porescale.builders.parts.fluid import FluidPart
-
-    return FlowInstruments.build(system, _one(FluidPart, parts))
-
-
-def _control(system: System, parts: Parts) -> Part:
-    from porescale.builders.parts.control import ControlPart
-
-    return ControlPart.build(system)
-
-
-def _rock(system: System, parts: Parts) -> Part:
-    from porescale.builders.parts.bonds import BondsPart
-    from porescale.builders.parts.rock import RockPart
-
-    return RockPart.build(system, _one(BondsPart, parts))
+def _made(name: str, system: System) -> Any:
+    """The part of that name; it may use those of the system that were made before."""
+    file, _, kind = name.partition(".")
+    return getattr(import_module(f"porescale.builders.parts.{file}"), kind)(system)
 
 
 def _free(system: System) -> bool:
@@ -145,29 +36,29 @@ def _free(system: System) -> bool:
 def _measures_grains(system: System) -> bool:
     """Whether a scene measures its grains beyond series.csv."""
     it = system.scene
-    asked = it.region or it.coarse_graining or it.output.forces or it.output.contacts
-    return bool(system.grains and it.grains and asked)
+    requested = it.region or it.coarse_graining or it.output.forces or it.output.contacts
+    return bool(system.grains and it.grains and requested)
 
 
 KINDS = (
-    Kind(("grains",), _free, _grain_series),
-    Kind(("sleep",), lambda it: bool(it.grains and it.scene.sleep), _sleep),
-    Kind(("fluid",), lambda it: it.fluid is not None, _flow_series),
-    Kind(("gate",), lambda it: it.scene.gate is not None, _gate),
-    Kind(("rectangle",), lambda it: bool(it.scene.rectangle), _rectangles),
-    Kind(("cell",), lambda it: bool(it.grains and it.scene.cell), _cell),
-    Kind(("grains", "disc", "clump"), lambda it: bool(it.grains and disc_count(it.grains)), _grain_cloud),
-    Kind(("segment", "polygon", "container"), lambda it: bool(it.frames), _frame_cloud),
-    Kind(("bonds", "rock"), lambda it: bool(it.grains and (it.scene.bonds or it.scene.rock)), _bonds),
-    Kind(("grains",), lambda it: bool(it.grains and it.scene.output.energy), _energy),
-    Kind(("region", "coarse_graining"), _measures_grains, _grain_instruments),
+    Kind(("grains",), _free, "grain_series.GrainSeries"),
+    Kind(("sleep",), lambda it: bool(it.grains and it.scene.sleep), "sleep.SleepPart"),
+    Kind(("fluid",), lambda it: it.fluid is not None, "flow_series.FlowSeries"),
+    Kind(("gate",), lambda it: it.scene.gate is not None, "gate.GatePart"),
+    Kind(("rectangle",), lambda it: bool(it.scene.rectangle), "rectangles.RectanglesPart"),
+    Kind(("cell",), lambda it: bool(it.grains and it.scene.cell), "cell.CellPart"),
+    Kind(("grains", "disc", "clump"), lambda it: bool(it.grains and disc_count(it.grains)), "clouds.GrainCloud"),
+    Kind(("segment", "polygon", "container"), lambda it: bool(it.frames), "clouds.FrameCloud"),
+    Kind(("bonds", "rock"), lambda it: bool(it.grains and (it.scene.bonds or it.scene.rock)), "bonds.BondsPart"),
+    Kind(("grains",), lambda it: bool(it.grains and it.scene.output.energy), "energy.EnergyPart"),
+    Kind(("region", "coarse_graining"), _measures_grains, "grain_instruments.GrainInstruments"),
     Kind(
         ("probe", "flux", "loads"),
         lambda it: bool(it.fluid and (it.scene.probe or it.scene.flux or it.scene.loads)),
-        _flow_instruments,
+        "flow_instruments.FlowInstruments",
     ),
-    Kind(("control",), lambda it: len(it.recorded) > (2 if has_plates(it.scene) else 0), _control),
-    Kind(("rock",), lambda it: bool(it.grains and has_plates(it.scene)), _rock),
+    Kind(("control",), lambda it: len(it.recorded) > (2 if has_plates(it.scene.rock) else 0), "control.ControlPart"),
+    Kind(("rock",), lambda it: bool(it.grains and has_plates(it.scene.rock)), "rock.RockPart"),
 )
 
 OF_THE_START = ("contact", "material", "wall", "lubrication")
@@ -182,11 +73,12 @@ SECTIONS = tuple(
 """Sections that build something, in the order of a scene."""
 
 
-def parts_of(system: System) -> tuple[Stepper, Parts]:
-    """What carries the physics, and the other parts of a system."""
-    stepper = stepper_of(system)
-    parts: Parts = [stepper]
+def add_parts(system: System) -> Stepper:
+    """Make all parts of a system, in their order; returns the first, which carries the physics."""
+    name = "coupled.CoupledPart" if system.coupled else "fluid.FluidPart" if system.fluid else "grains.GrainsPart"
+    stepper: Stepper = _made(name, system)
+    system.parts.append(stepper)
     for kind in KINDS:
         if kind.wanted(system):
-            parts.append(kind.make(system, parts))
-    return stepper, parts[1:]
+            system.parts.append(_made(kind.name, system))
+    return stepper

@@ -13,7 +13,10 @@ from porescale.common.cli.report import Report
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting.choose import WEIGHTINGS
 from porescale.lbm.collision.choose import OPERATORS
+from porescale.scene.bodies.disc import Disc
 from porescale.scene.bodies.segments import PolygonBody, SegmentBody
+from porescale.scene.fluid import Fluid
+from porescale.scene.grains import Grains
 from porescale.scene.scene import Scene
 
 WEEK = 7 * 86400.0
@@ -27,18 +30,18 @@ def report(scene: Scene) -> Report:
     out = Report(scene.title or "scene")
     _parts(scene, out)
     if derived.scales:
-        _lattice(scene, derived, out)
+        _lattice(derived, out)
     if scene.fluid:
-        _operators(scene, out)
+        _operators(scene.fluid, bool(scene.grains or scene.disc or scene.rectangle), out)
     if scene.disc:
-        _discs(scene, derived, out)
+        _discs(scene.disc, derived, out)
     if scene.grains:
-        _grains(scene, derived, out)
+        _grains(scene.grains, derived.grain_count - len(scene.disc), derived, out)
         _contact(derived, out)
     if derived.corners:
         _frames(scene, derived, out)
     if scene.fluid and scene.grains:
-        _regime(scene, derived, out)
+        _regime(scene.grains.density, math.hypot(*scene.gravity), derived, out)
     _cost(scene, derived, out)
     for warning in derived.warnings:
         out.warn(warning)
@@ -52,7 +55,7 @@ def _parts(scene: Scene, out: Report) -> None:
     out.row("sides", ", ".join(f"{name} {side.text()}" for name, side in scene.domain.sides.items()))
 
 
-def _lattice(scene: Scene, derived: Derived, out: Report) -> None:
+def _lattice(derived: Derived, out: Report) -> None:
     s, cells = derived.scales, derived.cells
     assert s is not None
     assert cells is not None
@@ -67,47 +70,43 @@ def _lattice(scene: Scene, derived: Derived, out: Report) -> None:
     out.row("Mach number", derived.speed / s.sound_speed, "", "below 0.1")
 
 
-def _operators(scene: Scene, out: Report) -> None:
-    """The laws that were chosen, with a word on each."""
-    fluid = scene.fluid
-    assert fluid is not None
+def _operators(fluid: Fluid, solid: bool, out: Report) -> None:
+    """The laws that were chosen, with a word on each; ``solid`` : whether anything solid is in the fluid."""
     out.heading("Operators")
     out.row("collision", fluid.operator, "", OPERATORS[fluid.operator].purpose)
     out.row("magic parameter", fluid.magic, "", "3/16: walls half-way between nodes")
     out.row("Smagorinsky constant", fluid.smagorinsky or "none")
-    if scene.grains or scene.disc or scene.rectangle:
+    if solid:
         out.row("solid", fluid.solid_operator, "", SOLID_OPERATORS[fluid.solid_operator].purpose)
         out.row("rim", "soft" if has_soft_rim(fluid) else "sharp", "", "soft: for grains that the fluid passes fast")
         out.row("weight", weight_of(fluid), "", WEIGHTINGS[weight_of(fluid)].purpose)
     out.row("precision", fluid.precision)
 
 
-def _discs(scene: Scene, derived: Derived, out: Report) -> None:
+def _discs(discs: Sequence[Disc], derived: Derived, out: Report) -> None:
     out.heading("Held discs")
-    out.row("number", len(scene.disc), "", f"{sum(it.fastest > 0 for it in scene.disc)} of them towed or turned")
-    out.row("fastest", max(it.fastest for it in scene.disc), "m/s")
+    out.row("number", len(discs), "", f"{sum(it.fastest > 0 for it in discs)} of them towed or turned")
+    out.row("fastest", max(it.fastest for it in discs), "m/s")
     if derived.scales:
-        least = min(it.diameter for it in scene.disc)
+        least = min(it.diameter for it in discs)
         out.row("cells per diameter", least / derived.scales.spacing, "", "of the smallest")
-        speed = max([derived.speed, *(it.fastest for it in scene.disc)])
-        out.row("Reynolds number", speed * max(it.diameter for it in scene.disc) / derived.scales.viscosity, "",
+        speed = max([derived.speed, *(it.fastest for it in discs)])
+        out.row("Reynolds number", speed * max(it.diameter for it in discs) / derived.scales.viscosity, "",
                 "U d/nu of the largest at the largest speed to expect")  # fmt: skip
 
 
-def _grains(scene: Scene, derived: Derived, out: Report) -> None:
-    assert scene.grains is not None
+def _grains(grains: Grains, count: int, derived: Derived, out: Report) -> None:
     assert derived.diameters is not None
     out.heading("Grains")
-    out.row("number", derived.grain_count - len(scene.disc))
+    out.row("number", count)
     low, mean, high = derived.diameters
     out.row("diameter", f"{low:.4g} … {high:.4g}, mean {mean:.4g}", "m")
     if derived.scales:
-        ratio = scene.grains.hydraulic_radius_ratio or 1.0
+        ratio = grains.hydraulic_radius_ratio or 1.0
         out.row("cells per diameter", mean / derived.scales.spacing)
         out.row("hydraulic radius ratio", ratio, "", "lambda; 1 seals a 2-D bed at rest")
         out.row("cells per hydraulic diameter", ratio * mean / derived.scales.spacing)
-        packing = scene.grains.packing
-        if packing:
+        if packing := grains.packing:
             _bed(packing.packing_fraction * ratio**2, (0.5 * ratio * mean) ** 2, out)
 
 
@@ -152,27 +151,21 @@ def _contact(derived: Derived, out: Report) -> None:
     out.row("contact steps per model step", derived.contact_steps or 1)
 
 
-def _regime(scene: Scene, derived: Derived, out: Report) -> None:
+def _regime(density: float, gravity: float, derived: Derived, out: Report) -> None:
+    """Of grains of a density (kg/m³) under a gravity (m/s²)."""
     s = derived.scales
     assert s is not None
-    assert scene.grains is not None
     assert derived.diameters is not None
-    d, ratio = derived.diameters[1], scene.grains.density / s.density
+    d, ratio = derived.diameters[1], density / s.density
     reynolds = derived.speed * d / s.viscosity
     out.heading("Regime")
     out.row("density ratio", ratio, "", "grains over fluid")
-    out.row(
-        "Archimedes number", abs(ratio - 1) * math.hypot(*scene.gravity) * d**3 / s.viscosity**2, "", "(s - 1) g d³/nu²"
-    )
+    out.row("Archimedes number", abs(ratio - 1) * gravity * d**3 / s.viscosity**2, "", "(s - 1) g d³/nu²")
     out.row("Reynolds number", reynolds, "", "U d/nu at the largest speed to expect")
     out.row("Stokes number", ratio * reynolds / 18, "", "s Re/18: viscous below 1, inertial above 10")
     if derived.density_variation:
-        out.row(
-            "density variation by pore pressure",
-            derived.density_variation,
-            "",
-            "3 (rho_s - rho) g phi H/(rho c²), below 0.05",
-        )
+        out.row("density variation by pore pressure", derived.density_variation, "",
+                "3 (rho_s - rho) g phi H/(rho c²), below 0.05")  # fmt: skip
 
 
 def _cost(scene: Scene, derived: Derived, out: Report) -> None:
@@ -181,9 +174,8 @@ def _cost(scene: Scene, derived: Derived, out: Report) -> None:
     out.heading("Cost")
     out.row("steps", steps, "", f"of {derived.model_step:.3g} s")
     out.row("memory", memory(derived) / 2**20, "MiB")
-    out.row(
-        "time", seconds, "s", "by this machine's last run" if measured else "a guess until this machine has done a run"
-    )
+    known = "by this machine's last run" if measured else "a guess until this machine has done a run"
+    out.row("time", seconds, "s", known)
     if seconds > WEEK:
         out.warn(
             f"the run is expected to take {seconds / 86400:.3g} days, more than a week; a coarser spacing, "

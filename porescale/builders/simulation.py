@@ -1,6 +1,5 @@
 """A simulation: the parts that a scene has sections for, driven through time.  A `Model` of `common.record`."""
 
-from collections.abc import Sequence
 from typing import Any, TypeVar
 
 from porescale.builders.stepper import Fields, Stepper
@@ -21,12 +20,12 @@ class Simulation:
     of segments.
     """
 
-    def __init__(self, system: System, stepper: Stepper, others: Sequence[Part]) -> None:
-        """``others`` : in the order of their columns, tables, arrays and state."""
+    def __init__(self, system: System, stepper: Stepper) -> None:
+        """``system`` : with its parts in the order of their columns, tables, arrays and state;  ``stepper`` : of it."""
         self.scene, self.derived, self.clock = system.scene, system.derived, system.clock
         self.fluid, self.grains, self.coupled = system.fluid, system.grains, system.coupled
         self.weight, self.frames = system.weight, system.frames
-        self.stepper, self.parts = stepper, [stepper, *others]
+        self.stepper, self.parts = stepper, system.parts
         self._before = [part.before for part in self.parts if overrides(part, "before")]
         self._after = [part.after for part in self.parts if overrides(part, "after")]
         self._between = [part for part in self.parts if acts_between(part)]

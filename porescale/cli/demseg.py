@@ -21,6 +21,8 @@ CHECKPOINT_SECONDS = 30.0
 """Wall-clock time between checkpoints."""
 Folder = Annotated[Path, Parameter(help="folder with in_gm.dat and in_bc.dat")]
 Seed = Annotated[int, Parameter(help="of the random discs of mode 0")]
+Release = Annotated[Literal["overlap", "force"], Parameter(help="contacts end without overlap, or without force")]
+Rod = Annotated[float | None, Parameter(help="width of segments that weigh; 2 thick, or 0.1, if not given")]
 
 
 def command() -> App:
@@ -37,11 +39,9 @@ def run(
     *,
     out: Annotated[Path | None, Parameter(help="run folder; runs/ and the name of the deck's if not given")] = None,
     seed: Seed = 0,
-    release: Annotated[
-        Literal["overlap", "force"], Parameter(help="contacts end without overlap, or without force")
-    ] = "overlap",
+    release: Release = "overlap",
     rule: Annotated[Literal["outline", "each", "printed"], Parameter(help="of contacts with segments")] = "outline",
-    rod: Annotated[float | None, Parameter(help="width of segments that weigh; 2 thick, or 0.1, if not given")] = None,
+    rod: Rod = None,
     threads: Threads = None,
     resume: Annotated[bool, Parameter(help="go on with the run in the run folder")] = False,
     overwrite: Annotated[bool, Parameter(help="replace the run in the run folder")] = False,
@@ -89,7 +89,6 @@ def drive_deck(
     deck = model.deck
 
     def after(finished: Path) -> None:
-        """Leave the pictures and the deck's own files."""
         show(finished)
         model.write(finished)
 
@@ -134,10 +133,8 @@ def convert(
         Parameter(help="of the deck; plain: its numbers are taken as SI. Densities of mm-g are g/mm^3"),
     ] = "plain",
     seed: Seed = 0,
-    release: Annotated[
-        Literal["overlap", "force"], Parameter(help="contacts end without overlap, or without force")
-    ] = "overlap",
-    rod: Annotated[float | None, Parameter(help="width of segments that weigh; 2 thick, or 0.1, if not given")] = None,
+    release: Release = "overlap",
+    rod: Rod = None,
     overwrite: Annotated[bool, Parameter(help="replace the file")] = False,
 ) -> int:
     """Make a scene of a deck that does not go on from another run."""
@@ -157,13 +154,13 @@ def convert(
     bonded = deck.jclid == BONDED
     bonds = read_tensions(folder / CF0, build(deck, Options(seed, release, rod=rod))) if bonded else None
     text = toml(scene_of(deck, name, release, UNITS[units], bonds, rod))
-    _refuse_what_scenes_refuse(text)
+    _require_valid_scene(text)
     write_text(file, text)
     print(f"{file}: check it with porescale check {file}")
     return 0
 
 
-def _refuse_what_scenes_refuse(text: str) -> None:
+def _require_valid_scene(text: str) -> None:
     """InputError where the scene of a deck exceeds the limits of scenes."""
     from tempfile import TemporaryDirectory
 

@@ -47,7 +47,7 @@ def homogenise(
     homogenise.csv and .png show what it stands on.  What was stopped goes on when called again.
     """
     require_scene(scene)
-    from porescale.analysis.homogenise import asked_of, specimen
+    from porescale.analysis.homogenise import section_of, specimen
     from porescale.builders.scene import Scene as SceneType
     from porescale.common.schema.sections import open_scene
     from porescale.common.studies.parameter_table import Point
@@ -56,14 +56,14 @@ def homogenise(
 
     opened = open_scene(scene, SceneType, quality=quality, overrides=settings or ())
     test = specimen(opened.scene)
-    asked = asked_of(opened.scene)
+    request = section_of(opened.scene)
     if jobs < 1:
-        raise InputError(Fault("--jobs", jobs, "is none", "", ">= 1"))
+        raise InputError(Fault("--jobs", jobs, "is out of range", "", ">= 1"))
     folder = output_folder(out, f"{opened.name}_soil")
     file = _specimen_file(folder, toml(test))
     first = test["grains"]["packing"]["seed"]
     points = [
-        Point(f"packing-{seed}", (f"grains.packing.seed={seed}",)) for seed in range(first, first + asked.packings)
+        Point(f"packing-{seed}", (f"grains.packing.seed={seed}",)) for seed in range(first, first + request.packings)
     ]
     campaign = Campaign("porescale", file, folder / "specimens", threads=threads or 1, again=again)
     slots = enlist(campaign, jobs, scheduler)
@@ -73,7 +73,7 @@ def homogenise(
         say(f"no material file: finish these first, by the same command in {folder}")
         return code
     use_threads(threads)
-    rows = _numbers(opened.scene, ends, asked.cells)
+    rows = _numbers(opened.scene, ends, request.cells)
     words = ["porescale", "homogenise", str(scene), *laid_over(quality, settings)]
     print(write(folder, opened.scene, shlex.join(words), campaign, ends, rows))
     return 0
@@ -169,12 +169,12 @@ def about(
     scene: Tables, command: str, ends: Sequence[Ended], rows: Sequence[Mapping[str, float]], seeds: Sequence[int]
 ) -> dict[str, Any]:
     """Origin of the numbers: [made] of the material file."""
-    from porescale.analysis.homogenise import HARD, asked_of, packing_of, pressure_of, stiffness_over_pressure
+    from porescale.analysis.homogenise import HARD, packing_of, pressure_of, section_of, stiffness_over_pressure
     from porescale.builders.initial.contact_laws import MaterialPlan
     from porescale.common.core.machine import machine
 
     assert scene.grains
-    packing, asked, fluid = packing_of(scene), asked_of(scene), scene.fluid
+    packing, request, fluid = packing_of(scene), section_of(scene), scene.fluid
     commit = ends[0].card.get("commit") or {}
     hard, ratio = stiffness_over_pressure(scene), scene.grains.hydraulic_radius_ratio
     doubts = []
@@ -187,11 +187,11 @@ def about(
     made: dict[str, Any] = {
         "package": "porescale", "version": VERSION, "commit": str(commit.get("hash", "")),
         "sources": str(ends[0].card.get("sources", "")), "command": command, "machine": machine()["processor"],
-        "seeds": list(seeds), "grains": asked.grains, "diameter": packing.diameter,
+        "seeds": list(seeds), "grains": request.grains, "diameter": packing.diameter,
         "grain_density": MaterialPlan.of(scene).density(packing.material),
         "settling_friction": packing.settling_friction,
-        "pressure": pressure_of(scene), "stiffness_over_pressure": hard, "inertial_number": asked.inertial_number,
-        "strain": asked.strain, "doubts": doubts,
+        "pressure": pressure_of(scene), "stiffness_over_pressure": hard, "inertial_number": request.inertial_number,
+        "strain": request.strain, "doubts": doubts,
     }  # fmt: skip
     if ratio is not None:
         made |= {"lambda": ratio, "cells": rows[0]["cells"]}

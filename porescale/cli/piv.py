@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import App, Parameter
 
-from porescale.cli.piv_measure import measure
-from porescale.cli.piv_quantity import quantity
+from porescale.cli.piv_measure import measure, quantity
 from porescale.common.cli.folders import require_writable
 from porescale.common.cli.options import Json
 from porescale.common.core.errors import Fault, InputError
@@ -120,7 +119,7 @@ def render(
     stop = last if end is None else quantity("--end", end, "s")
     if not first <= begin < stop <= last:
         text = f"{begin:g} to {stop:g}"
-        raise InputError(Fault("--start, --end", text, "is no part of the run", "s", f"{first:g} to {last:g}"))
+        raise InputError(Fault("--start, --end", text, "is not within the run", "s", f"{first:g} to {last:g}"))
     pixel, speed = fastest(opened, begin, stop)
     pixel = pixel if scale is None else quantity("--scale", scale, "m")
     pause = 4 * pixel / speed if interval is None else quantity("--interval", interval, "s")
@@ -151,6 +150,7 @@ def compare(
     circulation, surfaces of piles.
     """
     from porescale.common.core.atomic import write_text
+    from porescale.common.evidence.files import finite
     from porescale.piv.fields import compare as comparing
     from porescale.piv.fields.of_run import surface_of_run
     from porescale.piv.fields.pictures import comparison
@@ -164,7 +164,7 @@ def compare(
     first, second = _field(reference, moment), _field(other, moment)
     one, two = (surface_of_run(path, first.x, moment) if path.is_dir() else None for path in (reference, other))
     found = comparing.compare(first, second, within, factor, (one, two))
-    text = json_text.dumps(_finite(found.as_dict()), indent=1, allow_nan=False)
+    text = json_text.dumps(finite(found.as_dict()), indent=1, allow_nan=False)
     if out is not None:
         write_text(out / "compare.json", text + "\n")
         print(comparison(first, second, found, out / "compare.png", (reference.name, other.name)), file=sys.stderr)
@@ -182,8 +182,7 @@ def compare(
         unit = unit.split("/")[0].split(" ")[0]
         print(f"surface of the pile, {highest:.4g} {unit} high: rms {rms:.4g}, largest {largest:.4g}, mean {mean:.4g}")
     for row in found.as_dict()["vortices"]:
-        told = [_vortex(row[key], area) for key in ("reference", "other")]
-        print(f"vortex: {told[0]} | {told[1]}")
+        print(f"vortex: {_vortex(row['reference'], area)} | {_vortex(row['other'], area)}")
     return 0
 
 
@@ -203,12 +202,3 @@ def _field(path: Path, moment: float | None) -> Field:
         repair = f"porescale piv measure {path} --out FOLDER, then compare FOLDER"
         raise InputError(Fault("field", str(path), "is a film that has not been measured", repair=repair))
     return field_of_run(path, moment) if path.is_dir() else read(path)
-
-
-def _finite(value: Any) -> Any:
-    """``value`` with numbers that are not finite as None."""
-    if isinstance(value, dict):
-        return {key: _finite(it) for key, it in value.items()}
-    if isinstance(value, list):
-        return [_finite(it) for it in value]
-    return None if isinstance(value, float) and value - value != 0 else value

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import json as json_text
-import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from porescale.cli.piv_quantity import quantity
 from porescale.common.cli.folders import require_writable
-from porescale.common.cli.options import Json, Threads, use_threads
+from porescale.common.cli.options import Json, Threads, say, use_threads
 from porescale.common.core.errors import Fault, InputError
 
 if TYPE_CHECKING:
@@ -62,7 +60,11 @@ def measure(
     for path, key in ((csv, "--csv"), (openpiv, "--openpiv")):
         if path is not None:
             require_writable(path.parent, key)
-    folder = out if out or ((csv or openpiv) and not overlay) else Path("runs") / f"piv_{_stem(films[0])}"
+    folder = (
+        out
+        if out or ((csv or openpiv) and not overlay)
+        else Path("runs") / f"piv_{Path(films[0]).stem.strip('*?_ ') or 'film'}"
+    )
     if folder is not None:
         require_writable(folder, "--out")
     if no_slip and not (mask or polygon):
@@ -74,18 +76,12 @@ def measure(
     shots = Shots(film, mask, tuple(polygon or ()), background)
     zero = 0.0 if time_ is None else quantity("--time", time_, "s")
     measurement = Measurement(shots, settings, average, pixel, seconds, zero)
-    fields = measurement.fields(_aside, _passes(measurement.pairs))
+    fields = measurement.fields(say, _passes(measurement.pairs))
     found = write_fields(
         measurement, _progress(fields, measurement.total), folder, csv=csv, openpiv=openpiv, overlay=overlay
     )  # fmt: skip
     _print(found, json)
     return 0
-
-
-def _stem(name: str) -> str:
-    """What a folder is called after."""
-    stem = Path(name).stem.strip("*?_ ")
-    return stem or "film"
 
 
 def _box(text: str | None) -> tuple[int, int, int, int] | None:
@@ -94,8 +90,9 @@ def _box(text: str | None) -> tuple[int, int, int, int] | None:
         return None
     try:
         left, top, right, bottom = (int(part) for part in text.split(","))
-    except ValueError as error:
-        raise InputError(Fault("--region", text, "is no region", allowed="left,top,right,bottom, whole px")) from error
+    except ValueError:
+        allowed = "left,top,right,bottom, whole px"
+        raise InputError(Fault("--region", text, "is not a region", allowed=allowed)) from None
     return left, top, right, bottom
 
 
@@ -106,15 +103,9 @@ def _scales(scale: str | None, interval: str | None, rate: float | None) -> tupl
     if seconds is None and rate:
         seconds = 1 / rate
     if pixel is not None and seconds is None:
-        raise InputError(
-            Fault("--interval", None, "is needed with --scale", repair='give the time between frames: "5 ms"')
-        )
+        repair = 'give the time between frames: "5 ms"'
+        raise InputError(Fault("--interval", None, "is needed with --scale", repair=repair))
     return pixel, seconds
-
-
-def _aside(text: str) -> None:
-    """Print a text on stderr, beside the outcome."""
-    print(text, file=sys.stderr, flush=True)
 
 
 def _passes(pairs: int) -> Callable[[], None]:
@@ -122,12 +113,11 @@ def _passes(pairs: int) -> Callable[[], None]:
     done, last = 0, time.perf_counter()
 
     def count() -> None:
-        """Count one more pair, and report progress at intervals."""
         nonlocal done, last
         done += 1
         if time.perf_counter() - last > PATIENCE:
             last = time.perf_counter()
-            _aside(f"pass {(done - 1) // max(1, pairs) + 1}: {(done - 1) % max(1, pairs) + 1} of {pairs} pairs")
+            say(f"pass {(done - 1) // max(1, pairs) + 1}: {(done - 1) % max(1, pairs) + 1} of {pairs} pairs")
 
     return count
 
@@ -140,7 +130,7 @@ def _progress(fields: Iterable[Field], total: int) -> Iterator[Field]:
         now = time.perf_counter()
         if now - last > PATIENCE and number < total:
             left = (now - start) / number * (total - number)
-            print(f"{number} of {total} pairs, about {left:.0f} s left", file=sys.stderr, flush=True)
+            say(f"{number} of {total} pairs, about {left:.0f} s left")
             last = now
 
 
@@ -154,3 +144,19 @@ def _print(found: dict[str, Any], json: bool) -> None:
     print(f"{found['pairs']} pairs, {fluid} vectors in the fluid, {share:.1f} % valid, {found['replaced']} replaced")
     for path in found["files"]:
         print(path)
+
+
+def quantity(key: str, text: str, unit: str) -> float:
+    """A number with or without unit, in ``unit``, positive (or zero for a time)."""
+    from porescale.common.core.units import to_si
+
+    try:
+        value = to_si(float(text), unit)
+    except ValueError:
+        try:
+            value = to_si(text, unit)
+        except ValueError as error:
+            raise InputError(Fault(key, text, str(error), unit)) from error
+    if value < 0 or (value == 0 and key not in ("--time", "--start", "--end")):
+        raise InputError(Fault(key, text, "is out of range", unit, "> 0"))
+    return value

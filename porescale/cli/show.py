@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,8 +42,8 @@ def show(folder: Path) -> list[Path]:
         view=(0.0, scene["domain"]["width"], 0.0, scene["domain"]["height"]),
     )
     written = [*pictures(folder, look), film(folder, look)]
-    for name in scene["output"].get("fields", ()):
-        written.append(paint_last(folder, name, replace(look, field=name, label="")))
+    fields = scene["output"].get("fields", ())
+    written += [paint_last(folder, name, replace(look, field=name, label="")) for name in fields]
     if scene.get("grains") is not None:
         written += [write_surface(run, folder)] if "grains" in run.clouds else []
         written += write_grain_pictures(run, folder, look)
@@ -62,7 +63,6 @@ def gate_lines(scene: dict[str, Any]) -> Callable[[Snapshot], list[Line]]:
     gate, height = scene.get("gate"), scene["domain"]["height"]
 
     def lines(snapshot: Snapshot) -> list[Line]:
-        """What is left of the gate."""
         if gate is None:
             return []
         since = snapshot.time - gate["opens_at"]
@@ -81,10 +81,7 @@ def solid_lines(scene: dict[str, Any]) -> Callable[[Snapshot], list[Line]]:
     gate, size = gate_lines(scene), (scene["domain"]["width"], scene["domain"]["height"])
 
     def lines(snapshot: Snapshot) -> list[Line]:
-        """The gate, and each rectangle where it is by then."""
-        found = gate(snapshot)
-        for section in scene.get("rectangle") or ():
-            found += outline(section, snapshot.time, size)
-        return found
+        outlines = (outline(section, snapshot.time, size) for section in scene.get("rectangle") or ())
+        return [*gate(snapshot), *chain.from_iterable(outlines)]
 
     return lines

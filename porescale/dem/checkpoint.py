@@ -28,7 +28,7 @@ def state_of(grains: State) -> dict[str, Any]:
         "held": grains.held.copy(),
         "withheld": grains.withheld.copy(),
         **({name: getattr(grains, name).copy() for name in RECTANGLES} if len(grains.rectangles) else {}),
-        **({} if grains.book is None else {"book": grains.book.copy(), "book_start": _start_of_book(grains)}),
+        **({} if grains.budget is None else {"book": grains.budget.copy(), "book_start": _start_of_budget(grains)}),
         **({} if grains.drivers is None else {"steering": grains.drivers.state(grains.walls)}),
         **({} if grains.segments is None else {"segments": grains.segments.state()}),
         **({} if grains.bonds is None else {"bonds": grains.bonds.state()}),
@@ -41,9 +41,9 @@ def state_of(grains: State) -> dict[str, Any]:
     }
 
 
-def _start_of_book(grains: State) -> Floats:
+def _start_of_budget(grains: State) -> Floats:
     """Copy of the start of the energy budget, empty before the first step."""
-    return np.zeros(0) if grains.book_start is None else grains.book_start.copy()
+    return np.zeros(0) if grains.budget_start is None else grains.budget_start.copy()
 
 
 def restore(grains: State, state: dict[str, Any]) -> None:
@@ -55,10 +55,10 @@ def restore(grains: State, state: dict[str, Any]) -> None:
         if own.shape != given.shape:
             raise InputError(Fault(f"state.{name}", given.shape, "wrong shape", allowed=str(own.shape)))
         own[...] = given
-    if grains.book is not None:
-        grains.book[:] = state["book"]
+    if grains.budget is not None:
+        grains.budget[:] = state["book"]
         start = np.array(state["book_start"])
-        grains.book_start = start if len(start) else None
+        grains.budget_start = start if len(start) else None
     grains.held, grains.withheld = np.array(state["held"], np.uint8), np.array(state["withheld"])
     if grains.drivers is not None:
         grains.drivers.restore(state["steering"], grains.walls, grains.pairs)

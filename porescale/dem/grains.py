@@ -9,14 +9,14 @@ from numpy.typing import ArrayLike
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
-from porescale.common.neighbors.pair_list import PairList
 from porescale.dem import checkpoint, laws, listing, sanity, steering
 from porescale.dem.bodies.bonding import framed_parts
-from porescale.dem.contact.materials import Law, Materials
+from porescale.dem.contact.law import ContactLaw
+from porescale.dem.contact.materials import Materials
 from porescale.dem.discs import Discs
 from porescale.dem.forces.rectangle import Rectangle
 from porescale.dem.forces.walls import HIGH, LOW, PRESENT, VELOCITY, Box, Plate, X
-from porescale.dem.measures.energy import open_book
+from porescale.dem.measures.energy import open_budget
 from porescale.dem.motion.affine_strain import Deforming
 from porescale.dem.motion.periodic_cell import Still
 from porescale.dem.motion.rigid_and_driven import DriverArrays
@@ -39,13 +39,22 @@ class Grains(State):
     The first step starts from velocities half a step back; for a start from rest that is the same.
     """
 
+    # Functions over a State, as methods.
+    set_law = laws.set_law
+    hold = steering.hold
+    list_up_to = listing.list_up_to
+    current_pairs = listing.current_pairs
+    refresh = listing.refresh
+    check = sanity.check
+    state = checkpoint.state_of
+
     def __init__(
         self,
         discs: Discs,
-        law: Law | Materials,
+        law: ContactLaw | Materials,
         box: Box,
         *,
-        wall_law: Law | None = None,
+        wall_law: ContactLaw | None = None,
         plates: Sequence[Plate] = (),
         skin: float | None = None,
         material: ArrayLike | None = None,
@@ -55,13 +64,6 @@ class Grains(State):
         numbers = laws.material_numbers(law, material, discs.count)
         super().__init__(discs, box, list(plates), numbers, SKIN * mean_radius if skin is None else skin, energy)
         self.set_law(law, wall_law)
-
-    def set_law(self, law: Law | Materials, wall_law: Law | None = None) -> None:
-        """Use ``law`` between discs and ``wall_law`` (default: the same) at sides and plates from now on.
-
-        Raises InputError as laws.set_law does.
-        """
-        laws.set_law(self, law, wall_law)
 
     @property
     def steering(self) -> steering.Steering:
@@ -90,7 +92,7 @@ class Grains(State):
     def set_rectangles(self, rectangles: Sequence[Rectangle]) -> None:
         """Put these rectangles, and no others, into the box; without contacts so far.  InputError beside segments."""
         if self.segments is not None and rectangles:
-            raise InputError(Fault("rectangles", problem="do not meet segments", repair="make them frames"))
+            raise InputError(Fault("rectangles", problem="do not touch segments", repair="make them frames"))
         self.rectangle_frictions = [it.friction for it in rectangles]
         self.rectangles = np.array([it.row() for it in rectangles]).reshape(-1, 6)
         self.rectangle_laws = laws.surface_laws(self, self.rectangle_frictions)
@@ -126,9 +128,9 @@ class Grains(State):
             return
         if dt != self.last_dt:
             self.seconds, self.steps_of_dt, self.last_dt = self.time, 0, dt
-        if self.book is not None and self.book_start is None:
+        if self.budget is not None and self.budget_start is None:
             self.current_pairs()
-            self.book_start = open_book(self, self.book, dt)
+            self.budget_start = open_budget(self, self.budget, dt)
         motion: DriverArrays | None = None
         cell: Still | Deforming = self.still
         if self.drivers is not None:
@@ -147,8 +149,8 @@ class Grains(State):
             if not may_turn(self, law):
                 d = d._replace(angle=d.angle[:0])
             done, self.stale = contact_steps(
-                left, dt, drag, left == count, d, self.pair_arrays(), law, self.surfaces(),
-                self.sweeps.now(pairs, self.surface_count, self.book is not None, alone), motion, cell,
+                left, dt, drag, left == count, d[:], self.pair_arrays()[:], law, self.surfaces()[:],
+                self.sweeps.now(pairs, self.surface_count, self.budget is not None, alone), motion, cell,
                 framed_parts(self, self.seconds, self.steps_of_dt),
             )  # fmt: skip
             left -= done
@@ -159,22 +161,6 @@ class Grains(State):
         if len(self.held):
             self.withheld /= count
             self.static = what_stands(self, drag)
-
-    def hold(self, disc: int | slice | Floats, x: bool = True, y: bool = True, rotation: bool = True) -> None:
-        """Hold these components of the velocity of discs from now on, and release the others: see steering.hold."""
-        steering.hold(self, disc, x, y, rotation)
-
-    def list_up_to(self, gap: float) -> None:
-        """List all pairs with a gap below ``gap`` (m) from now on; InputError where the box is too small for that."""
-        listing.list_up_to(self, gap)
-
-    def current_pairs(self) -> PairList:
-        """The pair list, rebuilt first if it is due, as the next step would; fetch its arrays anew after each step."""
-        return listing.current_pairs(self)
-
-    def refresh(self, anew: bool = False) -> None:
-        """Bring the pair list up to date; call it after moving or resizing discs by hand.  anew: build it always."""
-        listing.refresh(self, anew)
 
     def plate(self, name: str) -> int:
         """Index of the plate called ``name``; raises InputError when there is none."""
@@ -196,15 +182,6 @@ class Grains(State):
         """(x, lower end, upper end) of the plate, m."""
         row = self.plates[self.plate(name)]
         return float(row[X]), float(row[LOW]), float(row[HIGH])
-
-    def check(self) -> None:
-        """Raise Unstable, naming grain, quantity and step, when the state is not finite or out of bounds; see
-        sanity.py."""
-        sanity.check(self)
-
-    def state(self) -> dict[str, Any]:
-        """Everything needed to go on bit for bit (law, box and the number of plates are the scene's)."""
-        return checkpoint.state_of(self)
 
     def restore(self, state: dict[str, Any]) -> None:
         """Overwrite all that ``state()`` holds, bit for bit; raises InputError when numbers of parts differ."""

@@ -9,12 +9,12 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.bodies.rigid import masses
-from porescale.dem.contact.law import COLUMNS, springs_of
-from porescale.dem.contact.materials import Law, Materials
+from porescale.dem.contact.law import COLUMNS, ContactLaw, springs_of
+from porescale.dem.contact.materials import Materials
 from porescale.dem.state import State
 
 
-def material_numbers(law: Law | Materials, material: ArrayLike | None, count: int) -> NDArray[np.uint8] | None:
+def material_numbers(law: ContactLaw | Materials, material: ArrayLike | None, count: int) -> NDArray[np.uint8] | None:
     """Numbers (count,) of the discs' materials, or None where there is one; InputError at a number that is none."""
     if not isinstance(law, Materials) or len(law.names) == 1:
         return None
@@ -27,7 +27,7 @@ def material_numbers(law: Law | Materials, material: ArrayLike | None, count: in
     return given.astype(np.uint8)
 
 
-def set_law(grains: State, law: Law | Materials, wall_law: Law | None = None) -> None:
+def set_law(grains: State, law: ContactLaw | Materials, wall_law: ContactLaw | None = None) -> None:
     """Use ``law`` between discs and ``wall_law`` (default: the same) at sides and plates from now on.
 
     One law holds between all materials.  Raises InputError when the laws are of different kinds, or have fewer

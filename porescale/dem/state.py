@@ -13,8 +13,8 @@ from porescale.common.core.types import Floats
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.arrays import DiscArrays, Pairs, Surface, Surfaces, contact_arrays
 from porescale.dem.contact.budget import BUDGET
-from porescale.dem.contact.law import KernelLaw
-from porescale.dem.contact.materials import Law, Materials
+from porescale.dem.contact.law import ContactLaw, KernelLaw
+from porescale.dem.contact.materials import Materials
 from porescale.dem.discs import Discs
 from porescale.dem.forces.bonds import BondList
 from porescale.dem.forces.segment_list import SegmentList
@@ -60,8 +60,8 @@ class Sleeping(Protocol):
 class State:
     """Discs, the laws of their contacts, and what they touch.
 
-    discs, box, material (n,) uint8 or None where there is one;  book (n, BUDGET) or None: energy budget, see
-    measures/energy.py, book_start: its values before the first step.
+    discs, box, material (n,) uint8 or None where there is one;  budget (n, BUDGET) or None: of energy, see
+    measures/energy.py, budget_start: its values before the first step.
     Laws: law (as given), wall_law, laws_at_walls (one for each material), laws (all in use), contact (as kernels take
     it), free_law (as steps of free discs take it, None: not computed yet), springs: springs of a contact.
     Walls: wall_names, walls (w, WALL), wall_frictions (None: that of the law), wall_laws (w, m, COLUMNS), wall_spring
@@ -80,10 +80,10 @@ class State:
     static: where nothing can move, see resting/static.py.
     """
 
-    law: Law | Materials
-    wall_law: Law | None
-    laws_at_walls: list[Law]
-    laws: list[Law]
+    law: ContactLaw | Materials
+    wall_law: ContactLaw | None
+    laws_at_walls: list[ContactLaw]
+    laws: list[ContactLaw]
     contact: KernelLaw
     body_mass: Floats
     wall_laws: Floats
@@ -97,8 +97,8 @@ class State:
         """Discs in ``box`` with ``plates``, without laws (laws.set_law) and so without a pair list."""
         count = discs.count
         self.discs, self.box, self.material, self.skin = discs, box, material, skin
-        self.book = np.zeros((count, BUDGET)) if energy else None
-        self.book_start: Floats | None = None
+        self.budget = np.zeros((count, BUDGET)) if energy else None
+        self.budget_start: Floats | None = None
         self.springs = 0
         self.free_law: KernelLaw | None = None
         self.wall_names, self.walls = box.walls()
@@ -136,7 +136,7 @@ class State:
         return DiscArrays(
             d.position, d.angle, d.velocity, d.spin, d.radius, d.mass, d.inertia, d.force, d.torque,
             self.external_force, self.external_torque, self.held, self.withheld, self.body_mass, self.material,
-            self.book,
+            self.budget,
         )  # fmt: skip
 
     def some_discs(self, discs: NDArray[Any]) -> DiscArrays:
@@ -198,4 +198,4 @@ class State:
         """Normal stiffness (N/m) and dashpot (N s/m) of the stiffest contact there can be."""
         d = self.discs
         found = [law.stiffest(float(d.mass.min()), float(d.radius.min())) for law in self.laws]
-        return max(law.stiffness for law in found), max(law.damping for law in found)
+        return max(it.stiffness[0] for it in found), max(it.damping[0] for it in found)

@@ -10,7 +10,7 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.dem.bodies.clumps import Body, Clumps
 from porescale.dem.bodies.rigid import masses
-from porescale.dem.contact.materials import Law
+from porescale.dem.contact.law import ContactLaw
 from porescale.dem.forces.walls import TURN
 from porescale.dem.listing import refresh
 from porescale.dem.motion import affine_strain as cells
@@ -91,9 +91,9 @@ class Steering(Drivers):
         clump, index = self._locate(body)
         kept = [k for k, row in enumerate(self._controls) if row[:2] != (clump, index)]
         self._controls, self._given = [self._controls[k] for k in kept], self._given[kept]
-        told = [(axis, control) for axis, control in enumerate((x, y, rotation)) if control is not None]
-        self._controls += [(clump, index, axis, control) for axis, control in told]
-        self._given = np.concatenate((self._given, np.zeros((len(told), 2))))
+        given = [(axis, control) for axis, control in enumerate((x, y, rotation)) if control is not None]
+        self._controls += [(clump, index, axis, control) for axis, control in given]
+        self._given = np.concatenate((self._given, np.zeros((len(given), 2))))
         held = [control is not None and KINDS[type(control)] != PUSH for control in (x, y, rotation)]
         if clump:
             self.clumps.held[index] = held
@@ -159,7 +159,7 @@ class Steering(Drivers):
     def _drive(
         self,
         name: str,
-        told: Sequence[tuple[int, Schedule]],
+        given: Sequence[tuple[int, Schedule]],
         low: int = -1,
         high: int = -1,
         numbers: Sequence[float] = (0.0,) * 6,
@@ -168,8 +168,8 @@ class Steering(Drivers):
         kept = [k for k, row in enumerate(self._drives) if row[0] != wall]
         self._drives, self._servo = [self._drives[k] for k in kept], self._servo[kept]
         self._grains.walls[wall, TURN - 2 :] = 0.0
-        self._drives += [(wall, mode, low, high, schedule) for mode, schedule in told]
-        self._servo = np.concatenate((self._servo, np.array([numbers] * len(told), float)))
+        self._drives += [(wall, mode, low, high, schedule) for mode, schedule in given]
+        self._servo = np.concatenate((self._servo, np.array([numbers] * len(given), float)))
         self._compile()
 
     def strain_cell(
@@ -226,6 +226,6 @@ class Steering(Drivers):
         area = float(self.cell[cells.WIDTH] * self.cell[cells.HEIGHT])
         return np.array(cells.pressure(d.velocity, d.mass, self.load, area))
 
-    def lightest(self, laws: Sequence[Law]) -> float:
+    def lightest(self, laws: Sequence[ContactLaw]) -> float:
         """Mass (kg/m) of a disc with the same stable step as the clumps, see timestep.lightest."""
         return lightest(self.clumps, self._grains.discs, laws)

@@ -8,6 +8,7 @@ velocities of half a step before (lagged damping):
 import numpy as np
 
 from porescale.common.compiled.jit import kernel
+from porescale.dem.arrays import DiscArrays, Pairs, Surfaces
 from porescale.dem.forces.bonds import pull_bonds
 from porescale.dem.forces.rectangle import move_rectangles
 from porescale.dem.forces.segments import add_segment_forces
@@ -25,15 +26,19 @@ MARK_AGAIN = 3
 
 
 @kernel
-def contact_steps(count, dt, drag, first, d, pairs, law, surfaces, sweep, motion, cell, framed):
+def contact_steps(count, dt, drag, first, discs, pair_list, law, around, sweep, motion, cell, framed):
     """Up to ``count`` contact steps of ``dt`` (s); returns (steps done, whether the pair list must be rebuilt first to
     go on).
 
-    drag 1/s: background damping;  first: withheld forces are summed anew;  d: DiscArrays;  pairs: Pairs;  law see
-    contact/law.py;  surfaces: Surfaces;  sweep: by one thread or several, see forces/threads.py;  motion: of what is no
-    free disc, None or DriverArrays;  cell: Still or Deforming;  framed: None or (Segments, Bonds), in a cell that
-    stands still.  Overwrites the state of discs, springs, plates, rectangles.
+    drag 1/s: background damping;  first: withheld forces are summed anew;  discs, pair_list, around: the members of
+    DiscArrays, Pairs and Surfaces as plain tuples;  law see contact/law.py;  sweep: by one thread or several, see
+    forces/threads.py;  motion: of what is no free disc, None or DriverArrays;  cell: Still or Deforming;  framed: None
+    or (Segments, Bonds), in a cell that stands still.  Overwrites the state of discs, springs, plates, rectangles.
+
+    numba recognizes a NamedTuple more slowly: a call for one step of 100 discs takes 10.0 us with plain tuples, 12.1 us
+    with NamedTuples, 9.6 us with each array an argument (a call for ten steps: 44.5, 46.8, 44.4 us).
     """
+    d, pairs, surfaces = DiscArrays(*discs), Pairs(*pair_list), Surfaces(*around)
     sweep.near[:] = 1
     for step in range(count):
         all_pair_forces(d, pairs, law, dt, cell_now(cell), sweep)

@@ -23,7 +23,7 @@ from porescale.common.record.series import NAME as SERIES
 from porescale.common.record.series import read_series
 from porescale.dem.bodies.frames import cells_of
 from porescale.dem.grains import Grains
-from porescale.dem.measures.energy import LOSSES, WORKS, energy_book
+from porescale.dem.measures.energy import LOSSES, WORKS, energy_budget
 from porescale.demseg.build import Options, bodies_now, bonded, build, posture, with_bodies
 from porescale.demseg.deck import BC, BONDED, CF, CF0, GM, GO_ON, Body, Deck, boundary_text, grains_text, read_deck
 from porescale.demseg.numbers import table
@@ -96,16 +96,16 @@ class DeckRun:
 
     def series(self) -> dict[str, float]:
         """Time, step and the columns of energy.dat."""
-        book = energy_book(self.grains, self.deck.gravity)
+        budget = energy_budget(self.grains, self.deck.gravity)
         values = (
-            book["potential energy (J/m)"],
-            sum(value for name, value in book.items() if name.startswith("kinetic")),
-            sum(value for name, value in book.items() if name.startswith("elastic")),
-            sum(book[name] for name in LOSSES if name not in FRICTION),
-            sum(book[name] for name in FRICTION),
-            sum(book[name] for name in WORKS),
-            book["work of external forces (J/m)"],
-            book["residual (J/m)"],
+            budget["potential energy (J/m)"],
+            sum(value for name, value in budget.items() if name.startswith("kinetic")),
+            sum(value for name, value in budget.items() if name.startswith("elastic")),
+            sum(budget[name] for name in LOSSES if name not in FRICTION),
+            sum(budget[name] for name in FRICTION),
+            sum(budget[name] for name in WORKS),
+            budget["work of external forces (J/m)"],
+            budget["residual (J/m)"],
         )
         row = {"time": self.time, "step": self.deck.iloop + self.step}
         return row | dict(zip(ENERGY, values, strict=True))

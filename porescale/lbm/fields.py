@@ -97,13 +97,6 @@ def _split(place: Reals, count: int) -> tuple[NDArray[np.int64], Reals]:
     return low, place - low
 
 
-def along_line(field: Reals, start: tuple[float, float], end: tuple[float, float], count: int) -> tuple[Reals, Reals]:
-    """Distance from ``start`` and value at ``count`` equally spaced points of a line, ends included, each (count,)."""
-    share = np.linspace(0.0, 1.0, count)
-    points = np.asarray(start) + share[:, None] * (np.asarray(end, float) - np.asarray(start))
-    return share * float(np.hypot(end[0] - start[0], end[1] - start[1])), at_points(field, points)
-
-
 def shear_stress(fluid: Fluid) -> tuple[Reals, Reals]:
     """Viscous shear stress in every cell, (xx - yy)/2 and xy, each (ny, nx): rho nu (du/dx - dv/dy) and
     rho nu (du/dy + dv/dx), an eddy viscosity's included.

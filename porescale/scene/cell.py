@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 import pydantic
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.common.schema.sections import Section, quantity
 from porescale.scene.time_function import TimeFunction, with_time_functions
 
 RATES, STRESSES = ("rate_xx", "rate_yy", "rate_xy"), ("stress_xx", "stress_yy", "shear_stress")
@@ -35,21 +35,18 @@ class Cell(Section):
     def _time_functions(cls, table: Any) -> Any:
         return with_time_functions(table, cls.UNITS)
 
-    @pydantic.model_validator(mode="after")
-    def _sensible(self) -> "Cell":
+    def _faults(self) -> list[Fault]:
         faults = []
         given = [name for name in (*RATES, *STRESSES) if getattr(self, name) is not None]
         if not given:
             faults.append(Fault("", None, "strains nothing", repair="give a rate or a stress, or leave it out"))
         for rate, stress in zip(RATES, STRESSES, strict=True):
             if rate in given and stress in given:
-                faults.append(Fault(stress, None, f"and {rate} cannot both be told", repair="give one of them"))
+                faults.append(Fault(stress, None, f"and {rate} cannot both be given", repair="give one of them"))
         stressed = any(name in given for name in STRESSES)
         if stressed and self.fastest is None:
             problem, repair = "is missing: the largest rate under a stress", "add it, such as 1"
             faults.append(Fault("fastest", None, problem, "1/s", "> 0", repair))
         if self.fastest is not None and not stressed:
             faults.append(Fault("fastest", self.fastest, "belongs to a stress", "1/s", repair="leave it out"))
-        if faults:
-            raise Refused(*faults)
-        return self
+        return faults

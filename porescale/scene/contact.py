@@ -11,15 +11,11 @@ from porescale.scene.ranges import FRICTION
 
 STIFFNESS: Any = {"ge": 0, "le": 1e15}
 
-
 DASHPOT: Any = {"ge": 0, "le": 1e12}
-
 
 RATIO: Any = {"ge": 0, "le": 1e3}
 
-
 DAMPED = ("damping", "damping_ratio", "restitution")
-
 
 LAWS: list[str] = []
 """Names of contact laws: the register, put here by builders/scene.py."""

@@ -11,10 +11,7 @@ from porescale.lbm.scales import AGREEMENT, NAMES, implied
 
 WHOLE = 1e-6
 """A length is a whole number of cells if it misses by less than this share of a cell or of itself."""
-
-
 UNITS = {"spacing": "m", "step": "s", "relaxation_time": "", "viscosity": "m^2/s"}
-
 
 ROUND = (1, 5, 2)
 """Leading digits of a round spacing, the likeliest first: a misprint is most often one of the exponent."""

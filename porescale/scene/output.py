@@ -23,4 +23,4 @@ class Output(Section):
     forces: bool = pydantic.Field(
         False, description="force and moment of grains on every wall, plate, rectangle and held disc: forces.csv"
     )
-    energy: bool = pydantic.Field(False, description="energy book of the grains, as columns of series.csv")
+    energy: bool = pydantic.Field(False, description="energy budget of the grains, as columns of series.csv")

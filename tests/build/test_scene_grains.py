@@ -30,7 +30,7 @@ def test_the_card_of_a_scene_makes_the_same_scene():
 
 def test_no_book_is_kept_unless_asked():
     simulation = build(loose(grain(0.002, 0.002)))
-    assert simulation.grains.book is None
+    assert simulation.grains.budget is None
     assert "residual (J/m)" not in simulation.series()
 
 

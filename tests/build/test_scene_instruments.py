@@ -72,7 +72,6 @@ def test_vorticity_of_a_solid_rotation_is_twice_its_rate():
 def test_a_section_over_whole_cells_counts_what_flows_through_them():
     simulation = build(water(**MEASURED))
     simulation.advance(200)
-    assert simulation.fluid
     _, ux, _, _ = simulation.fields()
     row = simulation.tables()["flux"]
     spacing = 0.0002

@@ -69,7 +69,6 @@ def test_the_template_with_its_grain_uncommented_is_checked_and_built(tmp_path: 
     scene = load_scene(path)
     report(scene)
     simulation = build(scene)
-    assert simulation.grains is not None
     assert simulation.grains.discs.radius[-1] == 0.00075
     start = simulation.grains.discs.position.copy()
     simulation.advance(20)

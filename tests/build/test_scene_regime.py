@@ -44,9 +44,9 @@ def test_a_light_grain_rises():
 
 
 def test_the_height_of_a_packing_is_along_gravity():
-    assert column_height(column()) == pytest.approx(0.0055, rel=1e-12)
-    aside = {"gravity": [-9.81, 0.0], "grains__packing__settle": False}
-    assert column_height(column(**aside)) == pytest.approx(0.004, rel=1e-12)
+    packing = column().grains.packing
+    assert column_height(packing, (0.0, -9.81)) == pytest.approx(0.0055, rel=1e-12)
+    assert column_height(packing, (-9.81, 0.0)) == pytest.approx(0.004, rel=1e-12)
 
 
 def test_a_body_force_is_reckoned_with_grains_in_its_way_too():

@@ -3,8 +3,6 @@
 import re
 import sys
 import tomllib
-from collections.abc import Iterator
-from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -15,7 +13,8 @@ from porescale.cli import run, show
 from porescale.cli.main import PACKAGE
 from porescale.common.core.errors import InputError
 from porescale.common.record.model import Model, Snapshot
-from porescale.common.schema.sections import LEVELS, Section, load, scene_as_dict
+from porescale.common.schema.messages import every_key
+from porescale.common.schema.sections import LEVELS, load, scene_as_dict
 from tests.reference.folders import ROOT
 from tests.reference.scenes import column, dry, table, write
 from tests.reference.waiting import done
@@ -57,12 +56,8 @@ def test_the_package_and_its_help_wait_for_no_compiler():
     for command in commands:
         words = [sys.executable, "-c", watch.format(command)]
         assert done(words, cwd=ROOT).returncode == 0
-    compiled = [
-        sys.executable,
-        "-c",
-        watch.format("import porescale.common.compiled.compiling"),
-    ]  # the twin: it would be seen
-    assert done(compiled, cwd=ROOT).returncode == 1
+    words = [sys.executable, "-c", watch.format("import porescale.common.compiled.compiling")]
+    assert done(words, cwd=ROOT).returncode == 1  # the twin: it would be seen
 
 
 def test_the_template_states_every_section_and_is_a_scene(tmp_path):
@@ -80,27 +75,10 @@ def test_the_template_states_every_section_and_is_a_scene(tmp_path):
         assert not missing, f"{section}: {missing}"
 
 
-def keys_of(section: Any, path: str, seen: set[Any]) -> Iterator[str]:
-    """Keys of a section and of those within it, with their path, each section once."""
-    for name, field in section.model_fields.items():
-        yield f"{path}{name}"
-        for inner in _sections_in(field.annotation):
-            if inner not in seen:
-                seen.add(inner)
-                yield from keys_of(inner, f"{path}{name}.", seen)
-
-
-def _sections_in(annotation: Any) -> Iterator[Any]:
-    if isinstance(annotation, type) and issubclass(annotation, Section):
-        yield annotation
-    for part in get_args(annotation):
-        yield from _sections_in(part)
-
-
 def test_the_template_names_every_key_of_every_section():
     text = run.template()
-    keys = list(keys_of(Scene, "", set()))
-    missing = [key for key in keys if not re.search(rf"(?<!\w){key.rpartition('.')[2]}(?!\w)", text)]
+    keys = set(every_key(Scene))
+    missing = [key for key in keys if not re.search(rf"(?<!\w){key[-1]}(?!\w)", text)]
     assert not missing
     assert len(keys) > 150
     assert not re.search(r"(?<!\w)diametre(?!\w)", text)  # the twin: a key that is none is not found

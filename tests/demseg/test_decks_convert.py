@@ -94,8 +94,6 @@ FALLEN = {
     "polygon": decks.TRIANGLE.replace("-2 2", "-2 .1"),
 }
 """Bodies that soon meet the floor."""
-
-
 CONTAINER = decks.grains(
     "1 0 1", "1 1 1", "0 0 0", "1 1.0d0", "0 2.11 0", "2 1 2", "0 0 0", "1 -4 1", "4 1", "2 4 1", "4 3", dt="1.0d-5"
 ).replace("10.0d0 0.0d0\n1 0 1", "10.0d0 0.1\n1 0 1")  # fmt: skip
@@ -119,7 +117,7 @@ def test_a_scene_of_segments_runs_as_its_deck_to_round_off(tmp_path, gm, bc, sec
     assert other.inertia == pytest.approx(own.inertia, rel=1e-12)
     deck.advance(900)
     scene.advance(900)
-    assert deck.grains.book is not None
+    assert deck.grains.budget is not None
     assert np.abs(deck.grains.steering.clumps.spin).max() > 0.1 or "control" in sections  # it has met something
     # Places are off by eps of 10 from the start; a bounce multiplies that by how far a body comes over how deep it
     # goes, some 1e2: 10 eps 1e2 = 2e-13 a bounce, of which there are a few.

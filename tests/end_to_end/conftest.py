@@ -36,6 +36,12 @@ def porescale() -> Callable[..., int]:
     return run
 
 
+@pytest.fixture
+def complaints(capsys: pytest.CaptureFixture[str]) -> Callable[[], list[str]]:
+    """Gives the lines on stderr since the last call, but for warnings."""
+    return lambda: [line for line in capsys.readouterr().err.splitlines() if not line.startswith("warning: ")]
+
+
 @pytest.fixture(scope="session")
 def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The scene file of a small column behind a gate that lifts."""

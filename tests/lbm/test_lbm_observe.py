@@ -87,9 +87,6 @@ def test_bilinear_fields_are_read_exactly_up_to_the_sides():
     expected = 1 + 2 * points[:, 0] - points[:, 1] + 0.5 * points[:, 0] * points[:, 1]
     # A dozen roundings of numbers up to 30.
     np.testing.assert_allclose(observe.at_points(values, points), expected, rtol=0, atol=12 * 30 * EPS)
-    distance, along = observe.along_line(values, (0.0, 1.0), (6.0, 1.0), 4)
-    np.testing.assert_allclose(distance, [0, 2, 4, 6], rtol=0, atol=6 * EPS)
-    np.testing.assert_allclose(along, 2.5 * distance, rtol=0, atol=12 * 30 * EPS)
     assert observe.at_points(np.ones((1, 1)), [(0.2, 0.9)]) == 1
 
 

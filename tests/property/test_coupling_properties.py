@@ -1,4 +1,4 @@
-"""Coverage holds its area and its symmetries wherever the disc lies; loads sum to what the fluid loses."""
+"""Coverage holds its area and its symmetries wherever the disc lies."""
 
 import math
 
@@ -29,7 +29,7 @@ def tolerance(r):
     return 16 * EPS * max(r, 1) ** 2 + 1e-12
 
 
-@settings(deadline=None, max_examples=150)
+@settings(max_examples=150)
 @given(place, place, radius)
 def test_coverage_adds_up_to_the_disc_and_fills_no_cell_twice(x, y, r):
     e = coverage(x, y, r)
@@ -39,7 +39,6 @@ def test_coverage_adds_up_to_the_disc_and_fills_no_cell_twice(x, y, r):
     assert e.max() <= 1.0 or 2 * seen > N - 2  # a disc that all but fills the box meets itself
 
 
-@settings(deadline=None, max_examples=100)
 @given(place, place, radius, st.integers(-N, N), st.integers(-N, N))
 def test_coverage_moves_with_the_disc(x, y, r, across, along):
     # Where a centre is moved by whole cells it is rounded: at most 2 N eps = 1e-14, of a rim that passes fast through
@@ -49,27 +48,8 @@ def test_coverage_moves_with_the_disc(x, y, r, across, along):
     assert np.abs(there - here).max() <= tolerance(r) + math.sqrt(2 * r * 2 * N * EPS) * 2 * N * EPS + 4 * N * EPS
 
 
-@settings(deadline=None, max_examples=100)
 @given(place, place, radius)
 def test_coverage_mirrors(x, y, r):
     np.testing.assert_allclose(
         coverage(N - x, y, r, mirrored=True), coverage(x, y, r), rtol=0, atol=tolerance(r) + 4 * N * EPS
     )
-
-
-@settings(deadline=None, max_examples=30)
-@given(st.integers(0, 10_000), st.booleans())
-def test_what_discs_gain_the_fluid_loses(seed, odd):
-    random = np.random.default_rng(seed)
-    fluid = Fluid(N, N, random.uniform(0.51, 2.0), sides=Sides("periodic", "periodic", "periodic", "periodic"))
-    fluid.set_flow(*(0.05 * random.uniform(-1, 1, (2, N, N))), 1 + 0.05 * random.uniform(-1, 1, (N, N)))
-    if odd:
-        fluid.advance()
-    discs = random.integers(1, 6)
-    wet = SaturatedCells(fluid, random.uniform(0.3, 5.0, discs))
-    before, mass = np.array(fluid.momentum()), fluid.mass_excess()
-    wet.advance(fluid, random.uniform(0, N, (discs, 2)), random.uniform(-0.05, 0.05, (discs, 2)), np.full(discs, 0.01))
-    # 576 cells with nine populations of 0.05, ten roundings each, all one way
-    bound = N * N * 9 * 0.05 * 10 * EPS
-    assert np.abs(np.array(fluid.momentum()) - before + wet.force.sum(axis=0)).max() < bound
-    assert abs(fluid.mass_excess() - mass) < bound

@@ -24,7 +24,7 @@ def heap(seed, count):
     return at[~away.any(axis=1)], size[~away.any(axis=1)]
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(numbers, st.integers(1, 7))
 def test_every_union_has_positive_shares_with_its_mass_centre_and_inertia(seed, count):
     at, size = heap(seed, count)
@@ -41,7 +41,6 @@ def test_every_union_has_positive_shares_with_its_mass_centre_and_inertia(seed, 
     assert table.mass[0] == union.area
 
 
-@settings(max_examples=100, deadline=None)
 @given(numbers, st.integers(2, 6), st.floats(0.0, 6.28))
 def test_a_union_is_the_same_wherever_it_lies_and_however_it_is_turned(seed, count, angle):
     at, size = heap(seed, count)
@@ -53,7 +52,7 @@ def test_a_union_is_the_same_wherever_it_lies_and_however_it_is_turned(seed, cou
     assert abs(there.second_moment - here.second_moment) < 1e-11 * here.second_moment
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(numbers, st.integers(1, 6))
 def test_no_disc_adds_more_than_itself(seed, count):
     at, size = heap(seed, count)
@@ -65,14 +64,14 @@ def test_no_shares_lie_outside_of_the_hull():  # the twin that must fail
     assert shares(np.ones(3), np.array([[1.0, 0.0], [2.0, 1.0], [2.0, -1.0]]), 1.0) is None
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(numbers, st.floats(0.0, 1.0))
 def test_momentum_and_angular_momentum_of_colliding_clumps_are_kept_to_round_off(seed, friction):
     # As for discs: sums over 60 members round at 60 eps of their scale, a thousand steps add up to 30 times that.
     assert max(momentum_drift(clumped_cloud(seed, friction), 1000)) < 30 * 60 * EPS
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.floats(0.7, 1.4), st.floats(0.7, 1.4), st.floats(-0.6, 0.6), numbers)
 def test_no_unlisted_pair_comes_within_reach_while_there_is_room(across, up, slope, seed):
     state = np.zeros(STATE)

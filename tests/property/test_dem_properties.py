@@ -23,7 +23,7 @@ def thrown(seed, mirrored=False):
     return Grains(discs, Linear(1e6, 5.0, 3e5, 4.0, 0.4), Box((-0.0525, 0.0), (0.0525, 0.105)))
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.integers(0, 10_000))
 def test_a_mirror_image_stays_a_mirror_image_to_the_bit(seed):
     here, there = thrown(seed), thrown(seed, mirrored=True)
@@ -58,7 +58,7 @@ def taken_minus_stored(path, law, dt, friction=coulomb.py_func):
     return least
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(slips, st.floats(0.0, 50.0))
 def test_friction_never_returns_more_than_it_took(path, damping):
     # The force at the end of a step does the step's work: it exceeds the spring's mean by k_t ds/2 >= 0
@@ -78,14 +78,14 @@ def test_resetting_the_spring_to_the_limit_with_the_dashpot_creates_energy():  #
     assert taken_minus_stored([(10.0, 100.0)], law, 1e-6, common) < -10.0
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(st.integers(0, 10_000), st.integers(2, 80), st.floats(0.0, 1.0))
 def test_momentum_and_angular_momentum_are_kept_to_round_off(seed, count, friction):
     # A sum over 80 discs rounds at 80 * 1e-16 of its scale, a thousand steps add up to 30 times that.
     assert max(momentum_drift(cloud(count, seed, friction), 1000)) < 30 * 80 * 1e-16
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(st.lists(st.floats(0.0, 2 * np.pi), min_size=6, max_size=6), st.floats(0.0, 1.0))
 def test_no_set_of_neighbours_is_stiffer_than_the_packing_factor(angles, shear):
     # Single disc on contacts of twice the stiffness, as in packing_factor; 60 degrees apart or more.

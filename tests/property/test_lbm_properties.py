@@ -38,7 +38,7 @@ def run(fluid, steps=STEPS):
     return fluid
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(seeds, taus, kinds, kinds, st.floats(-0.05, 0.05), operators)
 def test_no_side_makes_or_loses_mass(seed, tau, columns, rows, speed, operator):
     sides = Sides(*columns, *rows, speed, -speed, 0.5 * speed, speed)
@@ -48,7 +48,7 @@ def test_no_side_makes_or_loses_mass(seed, tau, columns, rows, speed, operator):
     assert abs(run(fluid).mass_excess() - before) < BOUND
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 @given(seeds, taus, st.floats(-1e-3, 1e-3), st.floats(-1e-3, 1e-3), operators)
 def test_a_periodic_box_gains_the_body_force_and_nothing_else(seed, tau, fx, fy, operator):
     sides = Sides("periodic", "periodic", "periodic", "periodic")
@@ -72,7 +72,7 @@ def numbers(left, right, bottom, top):
     return along | through | dense | {"bottom_density": 1 + abs(bottom), "top_density": 1 + abs(top)}
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(seeds, taus, kinds | open_kinds, kinds | open_kinds, operators)
 def test_a_mirrored_box_mirrors_to_the_bit(seed, tau, columns, rows, operator):
     # The collision sums opposite pairs in an order that mirroring maps onto itself.
@@ -91,7 +91,7 @@ def test_a_mirrored_box_mirrors_to_the_bit(seed, tau, columns, rows, operator):
         np.testing.assert_array_equal(ours, sign * theirs[:, ::-1])
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(seeds, taus, kinds | open_kinds, kinds | open_kinds, operators)
 def test_a_turned_box_turns(seed, tau, columns, rows, operator):
     # Rows and columns change places; sums are then in another order: round-off.

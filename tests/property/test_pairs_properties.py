@@ -29,7 +29,7 @@ def situations(draw):
     return x, reach, skin, lower, upper, draw(st.tuples(st.booleans(), st.booleans())), draw(st.booleans())
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(situations())
 def test_lists_what_the_definition_lists(situation):
     x, reach, skin, lower, upper, periodic, full = situation
@@ -42,7 +42,6 @@ def test_lists_what_the_definition_lists(situation):
     assert rows_of(listed) == neighbours(x, reach, skin, lower, upper, periodic, full)
 
 
-@settings(max_examples=100, deadline=None)
 @given(situations(), st.integers(0, 2**32 - 1))
 def test_a_half_list_is_the_upper_half_of_a_full_one_at_any_order_of_points(situation, seed):
     x, reach, skin, lower, upper, periodic, _ = situation

@@ -49,7 +49,7 @@ def identical(one, other):
     return one == other
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=120)
 @given(st.dictionaries(st.text(max_size=6), VALUES, max_size=5))
 def test_a_state_comes_back_bit_for_bit(state):
     with tempfile.TemporaryDirectory() as folder:

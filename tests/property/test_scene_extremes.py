@@ -35,7 +35,7 @@ def say(changes: dict[str, Any]) -> None:
         report(validate(Scene, table(**changes)))
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.dictionaries(st.sampled_from(KEYS), numbers(), max_size=8), st.booleans(), st.booleans())
 def test_any_numbers_end_in_a_report_or_in_refusals(changes, wet, settle):
     if not wet:

@@ -54,8 +54,36 @@ def whole_run(folder: Path) -> object:
     return [run.snapshot(k) for k in range(len(run))], run.series, run.table("beads")
 
 
-def deck(name: str) -> Callable[[Path], Path]:
-    return lambda folder: Path(shutil.copytree(CASES / name, folder / name))
+GREY = np.arange(64 * 64, dtype=np.uint8).reshape(64, 64)
+TEXTS = {
+    "circles.csv": "x,y,radius\n0.1,0.2,0.01\n0.3,0.2,0.01\n",
+    "field.csv": "x,y,u,v,valid,replaced,solid,correlation,uncertainty\n"
+    + "\n".join(f"{x},{y},1.5,-0.5,1,0,0,0.9,0.01" for y in (8, 16) for x in (8, 16, 24)) + "\n",
+    "field.txt": "# x y u v flags mask\n" + "".join(f"{x} {y} 1 2 0 0\n" for y in (8, 16) for x in (8, 16)),
+    "points.csv": 'name,fluid.spacing,gate.x\na,"1 mm",0.1\nb,2e-3,\n',
+    "points.toml": '[[point]]\nname = "a"\nfluid.spacing = "1 mm"\n[vary]\ngate.x = [0.1, 0.2]\n',
+    "trade.toml": '[[quantity]]\nname = "e"\ncolumn = "y"\nscale = 1\nexact = 2\n[[knob]]\nname = "k"\n'
+                  '[[knob.point]]\nlabel = "1"\nsettings = { a.b = 1 }\n',
+    "front.json": '{"format": 2, "machine": {"processor": "p"}, "date": "d", "points": [{"label": "a","on_front": true,'
+                  '"error": 0.1, "scatter": 0, "core_seconds": 1, "besides": 1, "time": 1, "pace": 1,'
+                  '"errors": {}, "but": "","quality": null,"settings": ["a.b=1"]}]}',
+}  # fmt: skip
+"""Files of text, by name."""
+WRITERS: dict[str, Read] = {
+    "packing.h5": lambda file: write_packing(file, np.array([[0.1, 0.2], [0.3, 0.2]]), np.array([0.01, 0.02])),
+    "checkpoint.h5": lambda file: write_checkpoint(
+        file, {"step": 3, "time": 0.5, "seconds": 1.0, "state": {"x": np.arange(7.0), "name": "a"}}
+    ),
+    "picture.png": lambda file: cv2.imwrite(str(file), GREY),
+    "circles.png": lambda file: cv2.imwrite(
+        str(file), photograph(np.array([[30.0, 20.0], [60.0, 20.0], [45.0, 60.0]]), np.full(3, 10.0), (80, 90))
+    ),
+    "film.mp4": lambda file: write_film(
+        file.with_name("film"), (np.dstack([np.roll(GREY, k)] * 3) for k in range(4)), 10
+    ).rename(file),
+    "expected.toml": lambda file: shutil.copy(CASES / "lifting_gate" / "expected.toml", file),
+}
+"""Other files, by name."""
 
 
 def made(folder: Path, name: str) -> Path:
@@ -67,7 +95,7 @@ def made(folder: Path, name: str) -> Path:
         return folder / part / "scene.toml"
     if kind == "deck":
         case, _, part = part.partition("/")
-        return deck(case)(folder) / part
+        return Path(shutil.copytree(CASES / case, folder / case)) / part
     if kind == "ground":
         file.write_text(grounds.SCENES[file.stem])
     elif part == "material.toml":
@@ -76,41 +104,10 @@ def made(folder: Path, name: str) -> Path:
     if kind == "run":
         run_toy(folder / "run", duration=0.04)
         return folder / "run" / part
-    if part == "circles.csv":
-        file.write_text("x,y,radius\n0.1,0.2,0.01\n0.3,0.2,0.01\n")
-    elif part == "packing.h5":
-        write_packing(file, np.array([[0.1, 0.2], [0.3, 0.2]]), np.array([0.01, 0.02]))
-    elif part == "checkpoint.h5":
-        write_checkpoint(file, {"step": 3, "time": 0.5, "seconds": 1.0, "state": {"x": np.arange(7.0), "name": "a"}})
-    elif part == "field.csv":
-        rows = "\n".join(f"{x},{y},1.5,-0.5,1,0,0,0.9,0.01" for y in (8, 16) for x in (8, 16, 24))
-        file.write_text(f"x,y,u,v,valid,replaced,solid,correlation,uncertainty\n{rows}\n")
-    elif part == "field.txt":
-        file.write_text("# x y u v flags mask\n" + "".join(f"{x} {y} 1 2 0 0\n" for y in (8, 16) for x in (8, 16)))
-    elif part == "picture.png":
-        cv2.imwrite(str(file), np.arange(64 * 64, dtype=np.uint8).reshape(64, 64))
-    elif part == "circles.png":
-        at, radius = np.array([[30.0, 20.0], [60.0, 20.0], [45.0, 60.0]]), np.full(3, 10.0)
-        cv2.imwrite(str(file), photograph(at, radius, (80, 90)))
-    elif part == "film.mp4":
-        grey = np.arange(64 * 64, dtype=np.uint8).reshape(64, 64)
-        write_film(folder / "film", (np.dstack([np.roll(grey, k)] * 3) for k in range(4)), 10).rename(file)
-    elif part == "points.csv":
-        file.write_text('name,fluid.spacing,gate.x\na,"1 mm",0.1\nb,2e-3,\n')
-    elif part == "points.toml":
-        file.write_text('[[point]]\nname = "a"\nfluid.spacing = "1 mm"\n[vary]\ngate.x = [0.1, 0.2]\n')
-    elif part == "trade.toml":
-        file.write_text('[[quantity]]\nname = "e"\ncolumn = "y"\nscale = 1\nexact = 2\n[[knob]]\nname = "k"\n'
-                        '[[knob.point]]\nlabel = "1"\nsettings = { a.b = 1 }\n')  # fmt: skip
-    elif part == "expected.toml":
-        shutil.copy(CASES / "lifting_gate" / part, file)
-    elif part == "front.json":
-        file.write_text('{"format": 2, "machine": {"processor": "p"}, "date": "d", "points": [{"label": "a",'
-                        '"on_front": true,'
-                        '"error": 0.1, "scatter": 0, "core_seconds": 1, "besides": 1, "time": 1, "pace": 1,'
-                        '"errors": {}, "but": "",'
-                        '"quality": null,'
-                        '"settings": ["a.b=1"]}]}')  # fmt: skip
+    if part in TEXTS:
+        file.write_text(TEXTS[part])
+    elif part in WRITERS:
+        WRITERS[part](file)
     return file
 
 

@@ -122,7 +122,7 @@ def resumed(dice: random.Random, folder: Path) -> Line:
     parts = [part for part in PARTS if (run / part).exists()]
     _spoil(dice, run / dice.choice(parts), run / "spoilt", 0.05)
     (run / "spoilt").replace(run / dice.choice(parts))
-    if whose == "continuum_sph":  # which compiles much before it resumes: end_to_end/test_wrong_checkpoints.py
+    if whose == "continuum_sph":  # which compiles much before it resumes: end_to_end/runs/test_wrong_checkpoints.py
         return Line(
             dice.choice(list(SAMPLES)), dice.choice((("show", "run"), ("run", "run/scene.toml", "--out", "run")))
         )

@@ -1,6 +1,21 @@
-"""Where things lie in a checkout."""
+"""Where things lie in a checkout, and scripts of cases as modules."""
 
+import importlib.util
+import sys
 from pathlib import Path
+from types import ModuleType
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES, DOCS, SAMPLES = ROOT / "cases", ROOT / "docs", ROOT / "tests" / "samples"
+
+
+def script(case: str, name: str = "") -> ModuleType:
+    """A new module of the script of a case, or of its script ``name``."""
+    path = CASES / case / f"{name or case}.py"
+    spec = importlib.util.spec_from_file_location(f"case_{path.stem}", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module

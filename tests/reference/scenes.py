@@ -2,11 +2,14 @@
 
 import copy
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from porescale import Scene
+from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
 
 COLUMN: dict[str, Any] = {
@@ -60,6 +63,13 @@ def water(**changes: Any) -> Scene:
         "domain__left": "periodic", "domain__right": "periodic",
     }  # fmt: skip
     return column(**{**given, **changes})
+
+
+def refusals(make: Callable[[], object]) -> list[str]:
+    """The lines of the InputError that ``make`` raises."""
+    with pytest.raises(InputError) as caught:
+        make()
+    return [fault.line() for fault in caught.value.faults]
 
 
 def grain(x: float, y: float, diameter: float = 0.001, **more: Any) -> dict[str, Any]:

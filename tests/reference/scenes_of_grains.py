@@ -3,14 +3,11 @@
 from typing import Any
 
 import numpy as np
-import pytest
 
 from porescale import Scene
 from porescale.builders.build import build
 from porescale.builders.derive import derive
-from porescale.common.core.errors import InputError
-from porescale.common.schema.sections import validate
-from tests.reference.scenes import dry, grain, table
+from tests.reference.scenes import column, dry, grain, refusals
 
 
 def loose(*grains: dict[str, Any], **changes: Any) -> Scene:
@@ -30,9 +27,7 @@ def framed(**changes: Any) -> Scene:
 def lines(**changes: Any) -> list[str]:
     """The refusals of a dry box with two grains, changed as in ``table``."""
     given = {"fluid": None, "gate": None, "grains": {"density": 2500, "grain": [grain(0.002, 0.002)]}}
-    with pytest.raises(InputError) as caught:
-        derive(validate(Scene, table(**{**given, **changes})))
-    return [fault.line() for fault in caught.value.faults]
+    return refusals(lambda: derive(column(**{**given, **changes})))
 
 
 def resumed(scene: Scene, before: int, after: int) -> tuple[Any, Any]:

@@ -59,13 +59,11 @@ def test_a_number_that_one_packing_lacks_is_left_out():
 def test_a_scene_takes_over_every_number(tmp_path):
     material(tmp_path)
     soil = scene(tmp_path).soil
-    assert soil is not None
     assert soil.density == pytest.approx(0.81 * 2500.0, rel=1e-14)
     assert (soil.porosity, soil.stiffness, soil.reference) == pytest.approx((0.19, 2.5e5, 300.0), rel=1e-14)
     assert (soil.friction_angle, soil.dilatancy_angle, soil.poisson) == pytest.approx((0.31, 0.0, 0.35), rel=1e-14)
     assert soil.permeability == pytest.approx(4e-9 * DENSITY * GRAVITY / VISCOSITY, rel=1e-14)
     peak = scene(tmp_path, 'strength = "peak"\n').soil
-    assert peak is not None
     assert (peak.friction_angle, peak.dilatancy_angle) == pytest.approx((0.42, 0.12), rel=1e-14)
 
 
@@ -77,7 +75,6 @@ def test_the_water_of_the_file_reader_is_that_of_a_scene_without_any():
 def test_what_the_scene_says_wins(tmp_path):
     material(tmp_path)
     soil = scene(tmp_path, 'friction_angle = "25 degree"\npermeability = "1 cm/s"\n').soil
-    assert soil is not None
     assert soil.friction_angle == pytest.approx(math.radians(25.0))
     assert soil.permeability == pytest.approx(0.01)
     assert soil.porosity == pytest.approx(0.19)
@@ -86,8 +83,6 @@ def test_what_the_scene_says_wins(tmp_path):
 def test_permeability_is_that_of_the_scenes_own_water(tmp_path):
     material(tmp_path)
     plain, thick = scene(tmp_path).soil, scene(tmp_path, water='[water]\nviscosity = "0.01 Pa s"\ndensity = 500\n').soil
-    assert plain is not None
-    assert thick is not None
     assert thick.permeability == pytest.approx(plain.permeability * 0.5 * VISCOSITY / 0.01, rel=1e-12)
 
 

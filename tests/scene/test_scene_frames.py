@@ -15,7 +15,7 @@ from porescale.builders.report import report
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import scene_as_dict, validate
-from tests.reference.scenes import grain, water
+from tests.reference.scenes import grain, refusals, water
 from tests.reference.scenes_of_grains import BOX, assert_same_bits, framed, lines, loose, resumed
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -179,9 +179,7 @@ def test_bodies_of_segments_that_cannot_be_are_refused_by_name(changes, line):
 
 def _built(**changes: Any) -> list[str]:
     """Refusals that only come with the grains."""
-    with pytest.raises(InputError) as caught:
-        build(framed(grains={"grain": [grain(2e-3, 2e-3)]}, **changes))
-    return [fault.line() for fault in caught.value.faults]
+    return refusals(lambda: build(framed(grains={"grain": [grain(2e-3, 2e-3)]}, **changes)))
 
 
 def test_a_wet_scene_says_that_bonds_are_dry():

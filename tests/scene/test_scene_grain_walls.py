@@ -102,10 +102,7 @@ def test_walls_are_taken_up_again_to_the_bit():
     ("changes", "line"),
     [
         ({"domain__top": {"kind": "wall", "stress": 100}}, "domain.top.fastest: is missing"),
-        (
-            {"domain__top": {"kind": "wall", "fastest": 1}},
-            "domain.top.fastest = 1.0 m/s: belongs",
-        ),
+        ({"domain__top": {"kind": "wall", "fastest": 1}}, "domain.top.fastest = 1.0 m/s: belongs"),
         ({"domain__top": {**LID, "force": 1.0}}, "domain.top.force: a wall has one of velocity, stress and force"),
         ({"domain__top": {**LID, "kind": "slip"}}, 'domain.top.stress: belongs to a side of kind "wall"'),
         ({"domain__top": {**LID, "stress": "1 m"}}, "domain.top.stress = '1 m': 'm' does not measure"),

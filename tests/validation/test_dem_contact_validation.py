@@ -7,22 +7,16 @@ import numpy as np
 import pytest
 from scipy.special import jv
 
-from porescale.cli.main import PACKAGE
 from porescale.common.core.constants import GRAVITY
 from porescale.dem.contact import hertz
 from porescale.dem.contact.hertz import Hertz
 from porescale.dem.discs import FIELDS
-from porescale.dem.measures.energy import energy_book
+from porescale.dem.measures.energy import energy_budget
 from porescale.validation.dem import hertz as impacts
 from porescale.validation.dem import rolling, setups, stacks, threads, waves
 from porescale.validation.dem.momentum import cloud, momentum_drift
 from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, TANGENTIAL, law_at
-
-VALIDATIONS = PACKAGE.validations()
-
-
-def tolerance(name):
-    return VALIDATIONS[name].tolerance
+from tests.validation.tolerances import tolerance
 
 
 def test_a_dashpot_that_does_not_know_the_overlap_depends_on_speed():
@@ -97,14 +91,14 @@ def test_the_softer_material_alone_is_not_the_pair():
     assert abs(stacks.unlike_stack()[1] * 0.1 * STIFFNESS - 1.0) > 1e6 * tolerance("dem.unlike_materials_in_contact")
 
 
-def test_a_book_without_friction_does_not_close():
+def test_a_budget_without_friction_does_not_close():
     law = law_at(0.0, **TANGENTIAL)
     grains = setups.on_floor(law, 1e-6, energy=True)
     grains.discs.velocity[0] = 0.6, -1.0
     grains.step(law.contact_time(MASS) / 200.0, count=300)
-    book = energy_book(grains)
-    share = book["residual (J/m)"] / book["turned over (J/m)"]
-    forgotten = (book["residual (J/m)"] - book["lost in friction (J/m)"]) / book["turned over (J/m)"]
+    budget = energy_budget(grains)
+    share = budget["residual (J/m)"] / budget["turned over (J/m)"]
+    forgotten = (budget["residual (J/m)"] - budget["lost in friction (J/m)"]) / budget["turned over (J/m)"]
     assert abs(share) < 1e-3
     assert abs(forgotten) > 0.1
 

@@ -1,30 +1,23 @@
 """What must fail where rows of soil hold, and the cases of soil at their default quality."""
 
-import importlib.util
 from functools import partial
 
 import pytest
 
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.cli import PACKAGE
 from continuum_sph.soil import Material
 from continuum_sph.validation.soil import bodies, element, energy, setups, slopes
 from tests.reference import continuum_cases
 from tests.reference.continuum_cases import missed
-from tests.reference.folders import CASES
-
-VALIDATIONS = PACKAGE.validations()
+from tests.reference.folders import script
+from tests.validation.tolerances import tolerance
 
 series = partial(continuum_cases.series, Simulation, 200)
 STEEP = "soil.body=[{outline=[[0,0],[3.6,0],[3.6,0.2],[2.04,0.2],[0.5,1.2],[0,1.2]]}]"  # 33 degrees
 
 
-def tolerance(name):
-    return VALIDATIONS[name].tolerance
-
-
 def test_friction_taken_for_the_angle_of_its_tangent_fails_at_another_ratio():
-    # tan 30° where the paper's tan φ is sin 30°
+    # tan 30° where tan φ of Maeda & Sakai 2004 is sin 30°
     assert abs(element.failure_ratio(3.0**-0.5) - 3.0) > 0.7
 
 
@@ -89,14 +82,6 @@ def test_stress_diffused_by_sound_lets_a_slope_creep():
 @pytest.mark.parametrize("case", ["geostatic_column", "dry_slope", "soil_column_collapse"])
 def test_soil_does_as_its_case_says(case):
     assert missed(case, series(case)) == []
-
-
-def script(case):
-    """The script of a case, as a module of its own."""
-    spec = importlib.util.spec_from_file_location(f"case_{case}", CASES / case / f"{case}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.mark.slow

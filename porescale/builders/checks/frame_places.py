@@ -16,13 +16,15 @@ from porescale.builders.initial.frames import Placed
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.dem.contact.choose import LAWS
-from porescale.dem.contact.materials import Law
+from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import Discs
 from porescale.dem.motion.control import Control, Moved, schedule_of
 from porescale.dem.motion.control import Placed as PlacedControl
 from porescale.dem.motion.time_function import schedule_rows, value_at
 
 if TYPE_CHECKING:
+    from porescale.scene.contact import Contact
+    from porescale.scene.domain import Domain
     from porescale.scene.scene import Scene
 
 
@@ -38,29 +40,29 @@ WAVES = 0.5
 
 def check_frames(scene: Scene, placed: Sequence[Placed], discs: Discs, names: Sequence[str]) -> list[Fault]:
     """Faults of the places of frames among each other and the discs placed by hand, which have ``names``."""
-    faults = [*_out_of_the_box(scene, placed), *_too_thin(scene, placed)]
+    faults = [*_out_of_the_box(scene.domain, placed), *_too_thin(scene.contact, placed)]
     moving = [it for it in placed if it.kind != "container"]
     if scene.wall and moving and not faults:
         corners = np.concatenate([np.array(it.frame.corners) for it in moving])
         reach = np.concatenate([np.full(len(it.frame.corners), it.frame.thickness) for it in moving])
         keys = [it.key for it in moving for _ in it.frame.corners]
         faults += across_walls(scene, corners, reach, keys, 0.0)
-    found = None if faults else first_overlap(scene, placed, discs, names)
+    found = None if faults else first_overlap(scene.grains.overlap if scene.grains else 0.0, placed, discs, names)
     return faults + ([found] if found else [])
 
 
-def require_frames_apart(scene: Scene, placed: Sequence[Placed], discs: Discs, names: Sequence[str]) -> None:
-    """InputError naming the first frame that lies in another, or in a disc; the first discs are the packing's."""
-    packed = discs.count - len(names)
-    every = [*["a grain of the packing"] * packed, *names]
-    found = first_overlap(scene, placed, discs, every)
+def require_frames_apart(share: float, placed: Sequence[Placed], discs: Discs, names: Sequence[str]) -> None:
+    """InputError naming the first frame that lies in another, or in a disc; the first discs are the packing's;
+    share : of the smaller one's size that may overlap."""
+    every = [*["a grain of the packing"] * (discs.count - len(names)), *names]
+    found = first_overlap(share, placed, discs, every)
     if found:
         raise InputError(found)
 
 
-def _out_of_the_box(scene: Scene, placed: Sequence[Placed]) -> list[Fault]:
+def _out_of_the_box(domain: Domain, placed: Sequence[Placed]) -> list[Fault]:
     """The first frame of each section that reaches out of a box with solid sides, or is as long as a period."""
-    size, periodic = np.array([scene.domain.width, scene.domain.height]), np.array(scene.domain.periodic)
+    size, periodic = np.array([domain.width, domain.height]), np.array(domain.periodic)
     faults: dict[str, Fault] = {}
     for it in placed:
         at = np.array(it.frame.corners)
@@ -77,10 +79,10 @@ def _out_of_the_box(scene: Scene, placed: Sequence[Placed]) -> list[Fault]:
     return list(faults.values())
 
 
-def _too_thin(scene: Scene, placed: Sequence[Placed]) -> list[Fault]:
+def _too_thin(contact: Contact | None, placed: Sequence[Placed]) -> list[Fault]:
     """Frames without thickness that can touch: nothing would push them apart.  Hertz's law needs one everywhere."""
     bare = [it for it in placed if it.frame.thickness == 0.0]
-    needs_radius = scene.contact is not None and LAWS[scene.contact.law].needs_radius
+    needs_radius = contact is not None and LAWS[contact.law].needs_radius
     if not bare or not (needs_radius or (len(bare) > 1 and any(it.free for it in bare))):
         return []
     problem = "two segments without thickness go through each other"
@@ -91,9 +93,8 @@ def _too_thin(scene: Scene, placed: Sequence[Placed]) -> list[Fault]:
     return [Fault(f"{bare[0].key}.thickness", 0.0, problem, "m", "> 0", repair)]
 
 
-def first_overlap(scene: Scene, placed: Sequence[Placed], discs: Discs, names: Sequence[str]) -> Fault | None:
+def first_overlap(share: float, placed: Sequence[Placed], discs: Discs, names: Sequence[str]) -> Fault | None:
     """A fault for the first frame, in their order, that lies too deep in a disc (``names``) or an earlier frame."""
-    share = scene.grains.overlap if scene.grains else 0.0
     shapes = [_Shape(it) for it in placed]
     low, high = np.array([it.low for it in shapes]), np.array([it.high for it in shapes])
     thickness = np.array([it.thickness for it in shapes])
@@ -189,7 +190,7 @@ def _cross(one: Floats, other: Floats) -> bool:
     return bool(np.any((left(a, b, c) * left(a, b, d) < 0.0) & (left(c, d, a) * left(c, d, b) < 0.0)))
 
 
-def thin_for(placed: Sequence[Placed], speed: float, mass: float, law: Law) -> str:
+def thin_for(placed: Sequence[Placed], speed: float, mass: float, law: ContactLaw) -> str:
     """A doubt about frames that the speed (m/s) to expect would press through each other; "" where there is none.
 
     mass (kg/m): of a mean grain.  A head-on impact of two goes  v sqrt(m/2k)  deep on springs, and by Hertz's law
@@ -210,15 +211,15 @@ def thin_for(placed: Sequence[Placed], speed: float, mass: float, law: Law) -> s
     )
 
 
-def strays(scene: Scene, placed: Sequence[Placed]) -> list[str]:
-    """Words on containers that leave a box with solid sides as they move, and are pushed by these then."""
-    size, periodic = np.array([scene.domain.width, scene.domain.height]), np.array(scene.domain.periodic)
+def strays(domain: Domain, end: float, placed: Sequence[Placed]) -> list[str]:
+    """Warnings of containers that leave a box with solid sides as they move, which pushes them, up to ``end`` (s)."""
+    size, periodic = np.array([domain.width, domain.height]), np.array(domain.periodic)
     said = []
     for it in placed:
         motion = [control for control in it.prescribed if control is not None]
         if it.kind != "container" or len(motion) != len(it.prescribed):
             continue
-        times = np.linspace(0.0, scene.time.end, LOOKS)
+        times = np.linspace(0.0, end, LOOKS)
         x, y, turn = (_path(control, times) for control in motion)
         about = np.array(it.frame.mass_properties().centroid)
         arms = np.array(it.frame.corners) - about
@@ -230,7 +231,7 @@ def strays(scene: Scene, placed: Sequence[Placed]) -> list[str]:
                 corner = at[out.any(axis=1).argmax()]
                 said.append(
                     f"{it.name or it.key} leaves the box at t = {time:.3g} s, at ({corner[0]:.3g}, {corner[1]:.3g}) m:"
-                    " the sides push it there, and that is in its record and in the energy book; make the box larger"
+                    " the sides push it there, and that is in its record and in the energy budget; make the box larger"
                 )
                 break
     return said

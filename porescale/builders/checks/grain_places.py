@@ -8,6 +8,7 @@ from porescale.builders.checks.wall_places import across_walls
 from porescale.builders.initial.placed import hand_names, placed
 from porescale.builders.initial.rectangles import beside
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Floats
 from porescale.common.neighbors.placement import DENSEST
 from porescale.dem.discs import Discs
 from porescale.dem.grains import SKIN
@@ -19,12 +20,8 @@ from porescale.scene.scene import Scene
 
 TOUCH = 1e-3
 """Overlap, over the smaller diameter, up to which grains placed by hand may start."""
-
-
 WEAK = 1e-6
 """Gravity, m/s², below which nothing settles in a lifetime."""
-
-
 EDGE = 1e-9
 """Relative slack of a packing's edges: 8 mm + 4 mm is 12 mm whatever its last bit."""
 
@@ -40,9 +37,10 @@ def check_grain_places(scene: Scene, sizes: tuple[float, float, float] | None, f
         check_rectangles(scene, x, r, names, faults)
     if sizes is None:
         return
-    if _check_periods(scene, sizes, faults):
-        return
     packing = scene.grains.packing if scene.grains else None
+    # The skin follows the mean radius; that of a packing is drawn, so its upper bound counts.
+    if _too_short(scene.domain, sizes[2], SKIN * (sizes[2] if packing else sizes[1]) / 2, faults):
+        return
     if packing:
         _check_packing(packing, scene.domain, scene.gate, faults)
         if packing.settle:
@@ -77,11 +75,7 @@ def require_apart(discs: Discs, scene: Scene, packed: int) -> None:
 
 
 def deepest(
-    x: NDArray[np.float64],
-    r: NDArray[np.float64],
-    domain: Domain,
-    first: int = 0,
-    group: NDArray[np.int64] | None = None,
+    x: Floats, r: Floats, domain: Domain, first: int = 0, group: NDArray[np.int64] | None = None
 ) -> tuple[int, int, float] | None:
     """(i, j, overlap in m) of the deepest overlap, i > j and i >= ``first``, or None; also through periodic sides.
 
@@ -112,16 +106,12 @@ def deepest(
     return int(i[worst]), int(j[worst]), float(depth[worst])
 
 
-def _check_periods(scene: Scene, sizes: tuple[float, float, float], faults: list[Fault]) -> bool:
-    """Whether a periodic side is shorter than two cutoffs of the pair search, where a grain touches another twice."""
-    _, mean, largest = sizes
-    # The skin follows the mean radius; that of a packing is drawn, so its upper bound counts.
-    skin = SKIN * (largest if scene.grains and scene.grains.packing else mean) / 2
+def _too_short(domain: Domain, largest: float, skin: float, faults: list[Fault]) -> bool:
+    """Whether a periodic side is shorter than two cutoffs of the pair search, largest diameter and ``skin`` (m): a
+    grain would touch another twice."""
     least = 2 * (largest + skin)
-    sides = (("width", scene.domain.width, "wide"), ("height", scene.domain.height, "high"))
-    short = [
-        side for side, periodic in zip(sides, _periodic(scene.domain), strict=True) if periodic and side[1] < least
-    ]
+    sides = (("width", domain.width, "wide"), ("height", domain.height, "high"))
+    short = [side for side, periodic in zip(sides, domain.periodic, strict=True) if periodic and side[1] < least]
     for name, length, word in short:
         problem = "is periodic and so short that a grain would meet another twice"
         repair = f"make the box {least:.4g} m {word}, or the grains smaller"
@@ -193,9 +183,7 @@ def _loose_sides(scene: Scene, packing: Packing) -> str:
     return " and ".join(loose)
 
 
-def _check_overlap(
-    x: NDArray[np.float64], r: NDArray[np.float64], scene: Scene, names: list[str], packed: int, faults: list[Fault]
-) -> None:
+def _check_overlap(x: Floats, r: Floats, scene: Scene, names: list[str], packed: int, faults: list[Fault]) -> None:
     """Name the deepest overlap; discs from ``packed`` on have ``names``."""
     group = np.full(len(r), -1)
     own = hand_names(scene)[1]
@@ -218,7 +206,7 @@ def _plain(name: str) -> str:
     return name.removeprefix("grains.").replace("[", " ").rstrip("]")
 
 
-def _misplaced(name: str, at: NDArray[np.float64], problem: str, repair: str) -> Fault:
+def _misplaced(name: str, at: Floats, problem: str, repair: str) -> Fault:
     return Fault(name, f"({at[0]:g}, {at[1]:g})", problem, "m", repair=repair)
 
 

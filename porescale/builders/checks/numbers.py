@@ -7,7 +7,7 @@ from porescale.scene.scene import Scene
 
 def check_controls(scene: Scene, count: int, faults: list[Fault]) -> None:
     """Add faults of controls; ``count``: grains that are free, the discs of clumps last."""
-    bodies = members(scene)
+    bodies = members(scene.clump)
     single, seen, names = count - sum(map(len, bodies)), [], []
     for k, it in enumerate(scene.control):
         body, number = it.of

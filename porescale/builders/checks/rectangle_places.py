@@ -17,6 +17,8 @@ from porescale.dem.discs import Discs
 from porescale.scene.bodies.rectangle import Rectangle, travelled
 
 if TYPE_CHECKING:
+    from porescale.scene.bodies.gate import Gate
+    from porescale.scene.packing import Packing
     from porescale.scene.scene import Scene
 
 EDGE = 1e-9
@@ -52,10 +54,11 @@ def check_rectangles(
     places (n, 2) m, radii (n,) m, names: of discs, grains or held, that were placed by hand.
     """
     _check_box(scene, faults)
-    _check_packing(scene, faults)
+    if scene.grains and scene.grains.packing:
+        _check_packing(scene.grains.packing, scene.rectangle, faults)
     _check_discs(scene, places, radii, names, faults)
     slack = EDGE * max(scene.domain.width, scene.domain.height)
-    gate = _gate(scene)
+    gate = _gate(scene.gate, scene.domain.height) if scene.gate else None
     for k, it in enumerate(scene.rectangle):
         for j in range(k):
             time = first_meeting(it, scene.rectangle[j], scene.time.end, slack)
@@ -94,13 +97,10 @@ def phases(one: Rectangle | Body, other: Rectangle | Body, end: float) -> list[P
     return list(itertools.pairwise(times)) or [(0.0, 0.0)]
 
 
-def _gate(scene: Scene) -> tuple[Body, float] | None:
-    """The gate, and until when it stands (s)."""
-    if scene.gate is None:
-        return None
-    x, rises = scene.gate.x, scene.gate.lift_speed
-    body = Body((x, 0.0), (x, scene.domain.height), (0.0, rises or 0.0), scene.gate.opens_at)
-    return body, NEVER if rises else scene.gate.opens_at
+def _gate(it: Gate, height: float) -> tuple[Body, float]:
+    """The gate in a box of a height (m), and until when it stands (s)."""
+    body = Body((it.x, 0.0), (it.x, height), (0.0, it.lift_speed or 0.0), it.opens_at)
+    return body, NEVER if it.lift_speed else it.opens_at
 
 
 def _in_the_way(k: int, what: str, time: float) -> Fault:
@@ -156,12 +156,9 @@ def _beyond(size: Pair) -> dict[str, Body]:
     }  # fmt: skip
 
 
-def _check_packing(scene: Scene, faults: list[Fault]) -> None:
+def _check_packing(packing: Packing, sections: Sequence[Rectangle], faults: list[Fault]) -> None:
     """A packing is placed clear of rectangles, and settles between them, not onto them."""
-    packing = scene.grains.packing if scene.grains else None
-    if packing is None:
-        return
-    for k, it in enumerate(scene.rectangle):
+    for k, it in enumerate(sections):
         wide = min(it.upper[0], packing.left + packing.width) - max(it.lower[0], packing.left)
         if wide <= EDGE * packing.width or it.lower[1] >= packing.bottom + packing.height * (1 - EDGE):
             continue
@@ -184,9 +181,7 @@ def _check_discs(scene: Scene, places: AnyArray, radii: AnyArray, names: Sequenc
             spans = [(0.0, 0.0)] if velocity is None else phases(it, path, scene.time.end)
             if any(nearest(it, path, place, *span) < radius * (1 - TOUCH) for span in spans):
                 at_once = nearest(it, path, place, 0.0, 0.0) < radius * (1 - TOUCH)
-                problem = (
-                    f"{'stands in' if at_once else 'and'} rectangle {k}{'' if at_once else ' run into each other'}"
-                )
+                problem = f"stands in rectangle {k}" if at_once else f"and rectangle {k} run into each other"
                 faults.append(Fault(name, None, problem, repair="move one of them"))
                 break
 

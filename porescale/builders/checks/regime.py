@@ -27,16 +27,16 @@ from porescale.common.core.errors import Fault
 from porescale.coupling.limits import HELD_ONLY
 from porescale.lbm.collision.choose import choose
 from porescale.lbm.scales import Scales
+from porescale.scene.bodies.rectangle import Rectangle
+from porescale.scene.bodies.segments import Container
+from porescale.scene.domain import Domain
+from porescale.scene.packing import Packing
 from porescale.scene.scene import Scene
 
 BLUNT = 1.2
 """Drag coefficient of a cylinder in cross flow at Reynolds numbers of 10² to 10⁵."""
-
-
 UNIT: dict[str, Any] = {"relaxation_time": 1.0, "force": (0.0, 0.0), "dtype": "float64"}
 """Numbers for a law that is only looked at."""
-
-
 Sizes = tuple[float, float, float]
 
 
@@ -50,7 +50,7 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None, fra
     Fluid under a body force: the parabola between the walls across it, which grains in its way only slow down; under a
     difference of pressure the same, or Bernoulli's speed if that is less.  Prescribed motion counts as it is.
     """
-    g, speed = math.hypot(*scene.gravity), max(given_speed(scene), _framed_speed(scene, frames))
+    g, speed = math.hypot(*scene.gravity), max(given_speed(scene), _framed_speed(scene.container, frames))
     if scene.grains and sizes:
         for grain in by_hand(scene):
             speed = max(speed, math.hypot(*grain.velocity) + abs(grain.spin) * grain.diameter / 2)
@@ -62,13 +62,14 @@ def expected_speed(scene: Scene, scales: Scales | None, sizes: Sizes | None, fra
             driving = abs(scene.grains.density / scales.density - 1) * g
             free = min(free, terminal_speed(sizes[2], driving, scales.viscosity))
             if packing:
-                free = max(free, 0.5 * math.sqrt(packing.packing_fraction * driving * column_height(scene)))
+                height = column_height(packing, scene.gravity)
+                free = max(free, 0.5 * math.sqrt(packing.packing_fraction * driving * height))
         speed = max(speed, free)
     if scene.fluid and scales:
         push = math.hypot(*scene.fluid.body_force) / scales.density
         across = min(scene.domain.width, scene.domain.height)
         speed = max(speed, push * across**2 / (8 * scales.viscosity))
-        speed = max(speed, _pressed_speed(scene, scales))
+        speed = max(speed, _pressed_speed(scene.domain, scales))
     return speed
 
 
@@ -85,25 +86,24 @@ def given_speed(scene: Scene) -> float:
     return max(speeds)
 
 
-def _pressed_speed(scene: Scene, scales: Scales) -> float:
+def _pressed_speed(d: Domain, scales: Scales) -> float:
     """Speed (m/s) that the largest difference of pressure between sides can drive."""
-    sides = scene.domain.sides.items()
-    held = {name: side.pressure or 0.0 for name, side in sides if "pressure" in side.boundary.numbers}
+    held = {name: side.pressure or 0.0 for name, side in d.sides.items() if "pressure" in side.boundary.numbers}
     if len(held) < 2:
         return 0.0
-    d, drop = scene.domain, max(held.values()) - min(held.values())
+    drop = max(held.values()) - min(held.values())
     along, across = (d.width, d.height) if {"left", "right"} <= set(held) else (d.height, d.width)
     parabola = drop / along / scales.density * across**2 / (8 * scales.viscosity)
     return min(parabola, math.sqrt(2 * drop / scales.density))
 
 
-def _framed_speed(scene: Scene, frames: Sequence[Placed]) -> float:
+def _framed_speed(containers: Sequence[Container], frames: Sequence[Placed]) -> float:
     """The largest speed that bodies of segments start with or are prescribed to have, m/s."""
     speeds = [0.0]
     for it in frames:
         size = float(np.ptp(np.array(it.frame.corners), axis=0).max())
         speeds.append(math.hypot(*it.frame.velocity) + abs(it.frame.spin) * size)
-    for one in scene.container:
+    for one in containers:
         size = float(np.ptp(np.array(one.chain or one.ends).reshape(-1, 2), axis=0).max())
         speeds.append(math.hypot(one.x.fastest, one.y.fastest) + one.rotation.fastest * size)
     return max(speeds)
@@ -128,12 +128,10 @@ def fall(scene: Scene, sense: float, frames: Sequence[Placed] = ()) -> tuple[flo
     return max([0.0, *(last - (along[0] * x + along[1] * y) for x, y in starts)]), unending
 
 
-def column_height(scene: Scene) -> float:
-    """Extent of the packing along gravity, m; 0 without one."""
-    packing, g = scene.grains.packing if scene.grains else None, math.hypot(*scene.gravity)
-    if packing is None or g == 0:
-        return 0.0
-    return (abs(scene.gravity[0]) * packing.width + abs(scene.gravity[1]) * packing.height) / g
+def column_height(packing: Packing, gravity: tuple[float, float]) -> float:
+    """Extent of a packing along gravity (m/s²), m; 0 without gravity."""
+    g = math.hypot(*gravity)
+    return (abs(gravity[0]) * packing.width + abs(gravity[1]) * packing.height) / g if g else 0.0
 
 
 def terminal_speed(diameter: float, reduced_gravity: float, viscosity: float) -> float:
@@ -163,7 +161,7 @@ def check_regime(
     """
     _check_mach(scales, speed, faults, warnings)
     _check_operator(scene, scales, speed, sizes, warnings)
-    _check_thickness(scene, scales, warnings)
+    _check_thickness(scene.rectangle, scales, warnings)
     if sizes is None:
         return 0.0
     assert scene.fluid
@@ -185,7 +183,8 @@ def check_regime(
             "hydraulic_radius_ratio = 1 seals a two-dimensional bed at rest, since its pores do not connect: "
             "it breaches at a rate set by numerical leak; 0.7 to 0.9 opens them"
         )
-    return _check_pore_pressure(scene, scales, faults, warnings)
+    weight = abs(scene.grains.density - scales.density) * math.hypot(*scene.gravity) * packing.packing_fraction
+    return _check_pore_pressure(weight, column_height(packing, scene.gravity), scales, faults, warnings)
 
 
 def _check_operator(scene: Scene, scales: Scales, speed: float, sizes: Sizes | None, warnings: list[str]) -> None:
@@ -218,9 +217,9 @@ def _check_operator(scene: Scene, scales: Scales, speed: float, sizes: Sizes | N
         )
 
 
-def _check_thickness(scene: Scene, scales: Scales, warnings: list[str]) -> None:
+def _check_thickness(sections: Sequence[Rectangle], scales: Scales, warnings: list[str]) -> None:
     """Rectangles that may fill no cell wholly."""
-    for k, it in enumerate(scene.rectangle):
+    for k, it in enumerate(sections):
         thinnest = min(it.upper[a] - it.lower[a] for a in range(2))
         if thinnest < CELLS_THICK * scales.spacing * (1 - 1e-9):
             warnings.append(
@@ -241,13 +240,12 @@ def _check_mach(scales: Scales, speed: float, faults: list[Fault], warnings: lis
         warnings.append(f"{problem}: errors grow as its square; {repair}")
 
 
-def _check_pore_pressure(scene: Scene, scales: Scales, faults: list[Fault], warnings: list[str]) -> float:
-    """Density variation 3 |rho_s - rho0| g phi H/(rho0 c²) when pore water takes the column's weight, c = h/dt."""
-    assert scene.grains is not None
-    packing = scene.grains.packing
-    assert packing is not None
-    weight = abs(scene.grains.density - scales.density) * math.hypot(*scene.gravity) * packing.packing_fraction
-    variation = 3 * weight * column_height(scene) / (scales.density * scales.velocity**2)
+def _check_pore_pressure(
+    weight: float, height: float, scales: Scales, faults: list[Fault], warnings: list[str]
+) -> float:
+    """Density variation 3 w H/(rho0 c²) when pore water takes the column's weight, c = h/dt;  weight : buoyant,
+    w = |rho_s - rho0| g phi, N/m³;  height : H, m."""
+    variation = 3 * weight * height / (scales.density * scales.velocity**2)
     if variation <= DENSITY_WARN:
         return variation
     problem = f"pore pressure under the packing can change the fluid's density by {variation:.2g}"

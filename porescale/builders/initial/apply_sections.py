@@ -27,7 +27,7 @@ def apply_sections(scene: Scene, grains: Grains, mass: float, placed: Sequence[P
     """
     materials = MaterialPlan.of(scene).laws(mass) if scene.grains else None
     if scene.output.energy:
-        grains.book = np.zeros((grains.discs.count, BUDGET))
+        grains.budget = np.zeros((grains.discs.count, BUDGET))
     if materials:
         own = [it.frame.material for it in placed for _ in it.frame.corners]
         names = names_of(scene, grains.discs.count - len(own))

@@ -10,7 +10,7 @@ from porescale.builders.initial.frames import Placed, bind_frames
 from porescale.builders.initial.placed import members
 from porescale.dem.bodies.clumps import Body
 from porescale.dem.bodies.union import outline
-from porescale.dem.contact.materials import Law
+from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
@@ -28,7 +28,7 @@ def least_density(plan: MaterialPlan, clumps: Iterable[Clump]) -> float:
     return min(found)
 
 
-def lightest(clumps: Iterable[Clump], plan: MaterialPlan, every: list[Law]) -> float:
+def lightest(clumps: Iterable[Clump], plan: MaterialPlan, every: list[ContactLaw]) -> float:
     """Mass (kg/m) of the disc that answers as fast as the fastest clump , at least one.
 
     Raises InputError at a clump that no rigid body can be.
@@ -61,7 +61,7 @@ def add_clumps(scene: Scene, grains: Grains, placed: Sequence[Placed] = ()) -> N
     """Bind the discs of clumps, which come after all other free grains and before those that are held, and frames of
     the corners that come last."""
     plan = MaterialPlan.of(scene)
-    sizes = [len(body) for body in members(scene)]
+    sizes = [len(body) for body in members(scene.clump)]
     corners = sum(len(it.frame.corners) for it in placed)
     first = grains.discs.count - corners - len(scene.disc) - sum(sizes)
     ends = first + np.cumsum([0, *sizes])

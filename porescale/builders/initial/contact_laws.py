@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 from porescale.dem.contact.choose import LAWS
-from porescale.dem.contact.materials import Law, Materials
+from porescale.dem.contact.law import ContactLaw
+from porescale.dem.contact.materials import Materials
 from porescale.scene.contact import DAMPED, Contact, Material, Touch
 from porescale.scene.scene import Scene
 
@@ -17,7 +18,7 @@ def merged(contact: Contact, own: Touch | None = None) -> dict[str, float]:
     return {**above, **over}
 
 
-def law_of(numbers: dict[str, float], contact: Contact, mass: float) -> Law:
+def law_of(numbers: dict[str, float], contact: Contact, mass: float) -> ContactLaw:
     """The law of ``numbers``; a restitution that depends on the mass is that of two grains of ``mass`` (kg/m)."""
     return LAWS[contact.law].from_numbers(numbers, contact.release, mass, contact.deepest)
 
@@ -77,7 +78,7 @@ class MaterialPlan:
             between[one, other] = mixing.law(one, other).with_numbers(pair.numbers(), both)
         return Materials(laws, between, contact.wall_material or None)
 
-    def law_and_others(self, material: str, mass: float) -> tuple[Law, Law, list[Law]]:
+    def law_and_others(self, material: str, mass: float) -> tuple[ContactLaw, ContactLaw, list[ContactLaw]]:
         """Contact law of a material with itself, its law at walls, and all laws that there are.
 
         mass (kg/m): of a grain of mean diameter, whose restitution is meant where one is given.

@@ -26,7 +26,7 @@ def add_controls(scene: Scene, grains: Grains, placed: Sequence[Placed] = ()) ->
         grains.steering.control(body_of(scene, it), *map(control_of, (it.x, it.y, it.rotation)))
     watched = [(it.called, body_of(scene, it)) for it in scene.control if it.record]
     watched += zip((it.name for it in placed if it.record), own, strict=True)
-    if has_plates(scene):
+    if has_plates(scene.rock):
         watched += zip(PLATES, plates_of(grains), strict=True)
     if watched:
         grains.steering.watch(*(body for _, body in watched))

@@ -15,22 +15,22 @@ from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
 from porescale.scene.domain import Domain
+from porescale.scene.fluid import Fluid as FluidSection
 from porescale.scene.scene import Scene
 
 
-def fluid_of(scene: Scene, derived: Derived) -> Fluid:
+def fluid_of(section: FluidSection, domain: Domain, derived: Derived) -> Fluid:
     """The lattice at the start."""
-    assert scene.fluid
     assert derived.cells
     assert derived.scales
     unit = derived.scales.body_force
-    fx, fy = (component / unit for component in scene.fluid.body_force)
+    fx, fy = (component / unit for component in section.body_force)
     fluid = Fluid(
-        *derived.cells, derived.scales.relaxation_time, **collision_options(scene.fluid), force=(fx, fy),
-        sides=lattice_sides(scene.domain, derived.scales, derived.cells), dtype=scene.fluid.precision,
+        *derived.cells, derived.scales.relaxation_time, **collision_options(section), force=(fx, fy),
+        sides=lattice_sides(domain, derived.scales, derived.cells), dtype=section.precision,
     )  # fmt: skip
-    if scene.fluid.velocity != (0.0, 0.0):
-        fluid.set_flow(*(component / derived.scales.velocity for component in scene.fluid.velocity))
+    if section.velocity != (0.0, 0.0):
+        fluid.set_flow(*(component / derived.scales.velocity for component in section.velocity))
     return fluid
 
 
@@ -57,13 +57,12 @@ def coupled_of(
     """Fluid and grains, coupled with the radii of the scene: grains times lambda, held discs unchanged."""
     assert scene.fluid
     assert derived.scales
-    ratio = np.ones(grains.discs.count)
+    ratio: Any = np.ones(grains.discs.count)
     if scene.grains and scene.grains.hydraulic_radius_ratio:
         ratio[: disc_count(grains) - len(scene.disc)] = scene.grains.hydraulic_radius_ratio
-    size: Any = ratio
     films = scene.lubrication
     return Coupled(
-        fluid, grains, derived.scales, hydraulic_ratio=size, contact_steps=derived.contact_steps or 1,
+        fluid, grains, derived.scales, hydraulic_ratio=ratio, contact_steps=derived.contact_steps or 1,
         acceleration=scene.gravity, **solid_options(scene.fluid),
         lubrication=films is not None, film_gap=films.gap if films else 1.0, rectangles=rectangles,
     )  # fmt: skip

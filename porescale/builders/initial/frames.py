@@ -18,7 +18,7 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.dem.bodies.clumps import Body
 from porescale.dem.bodies.frames import Frame, add_frames, chain, corner_discs, framed, from_ends, polygon, skin_of
-from porescale.dem.contact.materials import Law
+from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
@@ -30,18 +30,13 @@ from porescale.scene.scene import Scene
 
 Kind = Literal["segment", "polygon", "container", "rock", "plate"]
 
-
 Prescribed = tuple[Control | None, Control | None, Control | None]
-
 
 PLATES = ("first plate", "second plate")
 
-
 FREE: Prescribed = (None, None, None)
 
-
 HELD: Prescribed = (Moved(), Moved(), Moved())
-
 
 ROD = 1e-3
 """Width of the rods of a container without thickness, over its size: it must weigh something to be a body."""
@@ -62,11 +57,6 @@ class Placed:
     def free(self) -> bool:
         """Whether forces move it: it is one of the grains."""
         return self.kind not in ("container", "plate") and not all(isinstance(it, Moved) for it in self.prescribed)
-
-
-def any_frames(scene: Scene) -> bool:
-    """Whether a scene has bodies of segments."""
-    return bool(scene.segment or scene.polygon or scene.container or scene.rock)
 
 
 def placed_frames(scene: Scene) -> list[Placed]:
@@ -224,7 +214,7 @@ def free_rows(grains: Grains, placed: Sequence[Placed], held: int) -> NDArray[np
     return np.concatenate((np.arange(discs - held), discs + np.flatnonzero(owner)))
 
 
-def lightest_frame(placed: Sequence[Placed], every: list[Law], radius: float | None) -> float | None:
+def lightest_frame(placed: Sequence[Placed], every: list[ContactLaw], radius: float | None) -> float | None:
     """Mass (kg/m) of the disc that answers as fast as the fastest frame that forces move; None without any.
 
     radius (m): of the smallest disc that can lie at a segment, None without discs.

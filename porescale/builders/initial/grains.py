@@ -32,11 +32,8 @@ from porescale.scene.scene import Scene
 
 GATE = "gate"
 
-
 UNTOUCHED = Linear(1.0, 0.0)
 """Contact law where all discs are held: nothing comes of it."""
-
-
 NO_DISCS = make_discs(np.zeros((0, 2)), np.zeros(0), np.zeros(0))
 
 
@@ -89,8 +86,8 @@ def grains_of(scene: Scene, derived: Derived, frames: list[Placed]) -> tuple[Gra
     added = len(scene.disc) + len(by_hand(scene))
     if added:
         require_apart(discs, scene, discs.count - added)
-    if frames and packing and not scene.rock:
-        require_frames_apart(scene, frames, discs, placed(scene)[0])
+    if scene.grains and frames and packing and not scene.rock:
+        require_frames_apart(scene.grains.overlap, frames, discs, placed(scene)[0])
     return grains, recorded
 
 

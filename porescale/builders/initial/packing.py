@@ -7,8 +7,8 @@ import numpy as np
 from porescale.common.core.errors import InputError
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.grading import graded_radii, lognormal_radii
+from porescale.dem.contact.law import ContactLaw
 from porescale.dem.contact.linear import Linear
-from porescale.dem.contact.materials import Law
 from porescale.dem.prepare.compaction import Compactor, Compressed, kept
 from porescale.scene.packing import Packing
 
@@ -31,7 +31,7 @@ def radii_of(packing: Packing) -> Floats | None:
     return None
 
 
-def compressed(packing: Packing, density: float, periodic: tuple[bool, bool], law: Law) -> Compressed:
+def compressed(packing: Packing, density: float, periodic: tuple[bool, bool], law: ContactLaw) -> Compressed:
     """The packing pressed to its pressure or fraction; density: of the grains, kg/m³;  periodic: the sides of its
     rectangle.  Keys of faults are those of the scene."""
     assert isinstance(law, Linear)  # check_compressed has made sure

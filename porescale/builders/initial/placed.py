@@ -1,11 +1,13 @@
 """Free bodies placed by hand: grains, and the discs of clumps, with their numbers."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from porescale.builders.initial.random_polygons import copies_of
+from porescale.scene.bodies.clump import Clump
 from porescale.scene.bodies.disc import Disc
 from porescale.scene.grains import Grain
 from porescale.scene.scene import Scene
@@ -23,11 +25,11 @@ class Member:
     material: str
 
 
-def members(scene: Scene) -> list[list[Member]]:
-    """The discs of every clump of a scene, copy by copy."""
+def members(clumps: Sequence[Clump]) -> list[list[Member]]:
+    """The discs of every clump, copy by copy."""
     return [
         [Member(*it.turned(copy, disc[:2]), 2 * disc[2], it.velocity, it.spin, it.material) for disc in it.discs]
-        for it in scene.clump
+        for it in clumps
         for copy in range(len(it.at))
     ]
 
@@ -35,7 +37,7 @@ def members(scene: Scene) -> list[list[Member]]:
 def by_hand(scene: Scene) -> list[Grain | Member]:
     """All that is placed by hand and free: grains, then the discs of clumps."""
     grains = scene.grains.grain if scene.grains else ()
-    return [*grains, *(disc for body in members(scene) for disc in body)]
+    return [*grains, *(disc for body in members(scene.clump) for disc in body)]
 
 
 def hand_names(scene: Scene) -> tuple[list[str], list[int]]:

@@ -11,11 +11,12 @@ from porescale.builders.initial.packing import compressed
 from porescale.builders.initial.time_functions import schedule_of
 from porescale.common.core.types import Floats
 from porescale.dem.bodies.frames import chain, polygon
-from porescale.dem.contact.materials import Law
+from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import Discs, make_discs
 from porescale.dem.motion.control import Placed as PlacedControl
 from porescale.dem.motion.time_function import Constant, Schedule, Sine, Table
 from porescale.dem.prepare.tessellate import delaunay, shrunk, voronoi
+from porescale.scene.bodies.rock import Rock
 from porescale.scene.packing import Packing
 from porescale.scene.scene import Scene
 
@@ -23,12 +24,12 @@ BEYOND = 0.1
 """Of the length of a plate's side of the sample: how far it stands out at both ends."""
 
 
-def has_plates(scene: Scene) -> bool:
-    """Whether a scene has a rock between plates."""
-    return scene.rock is not None and scene.rock.plates != "none"
+def has_plates(rock: Rock | None) -> bool:
+    """Whether there is a rock, and it is between plates."""
+    return rock is not None and rock.plates != "none"
 
 
-def rock_discs(scene: Scene, law: Law) -> Discs | None:
+def rock_discs(scene: Scene, law: ContactLaw) -> Discs | None:
     """The discs of a rock of discs, at rest; None of polygons."""
     assert scene.rock
     assert scene.grains
@@ -40,7 +41,7 @@ def rock_discs(scene: Scene, law: Law) -> Discs | None:
     return make_discs(at, radius, plan.density(packing.material))
 
 
-def rock_frames(scene: Scene, law: Law) -> list[Placed]:
+def rock_frames(scene: Scene, law: ContactLaw) -> list[Placed]:
     """Polygons of a rock and its plates, the first plate before the second.  The packing is read from the cache, or
     pressed, which takes seconds."""
     assert scene.rock
@@ -91,7 +92,7 @@ def _times(schedule: Schedule, factor: float) -> Schedule:
 
 
 @lru_cache(maxsize=2)
-def _pressed(packing: Packing, density: float, law: Law) -> tuple[Floats, Floats]:
+def _pressed(packing: Packing, density: float, law: ContactLaw) -> tuple[Floats, Floats]:
     """Centres (n, 2) m and radii (n,) m of the packing pressed in its rectangle."""
     discs = compressed(packing, density, (False, False), law).grains.discs
     return discs.position.copy(), discs.radius.copy()

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.builders.initial.frames import Placed, disc_count
-from porescale.builders.stepper import Clock, Row
+from porescale.builders.stepper import Row
 from porescale.builders.system import System
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.record.model import Cloud, Snapshot
@@ -61,23 +61,17 @@ class Bodies:
 class BondsPart(Part):
     """Makes the bonds of a scene at their times.  made : how many sections have been."""
 
-    def __init__(self, clock: Clock, sections: Sequence[tuple[str, Bonds]], grains: Grains, bodies: Bodies) -> None:
-        """``sections`` : each with its key."""
-        self.clock, self.grains, self.bodies = clock, grains, bodies
-        self.sections = sorted(sections, key=lambda it: it[1].at)
+    def __init__(self, system: System) -> None:
+        """Of a scene with [bonds] or [rock], whose pieces are all bonded at the start."""
+        assert system.grains
+        self.clock, self.grains = system.clock, system.grains
+        self.bodies = Bodies(system.grains, system.frames, system.held)
+        whole = [("rock", Bonds(bodies=(), known=()))] if system.scene.rock else []
+        own = [(f"bonds[{k}]", it) for k, it in enumerate(system.scene.bonds)]
+        self.sections = sorted([*whole, *own], key=lambda it: it[1].at)
         self.chosen = [self.bodies.chosen(it.bodies, key) for key, it in self.sections]
         self.made = 0
         self.before()  # what is bonded at time 0 is there in the first record
-
-    @classmethod
-    def build(cls, system: System) -> "BondsPart":
-        """The part of a scene with [bonds] or [rock], whose pieces are all bonded at the start."""
-        scene = system.scene
-        assert system.grains
-        whole = [("rock", Bonds(bodies=(), known=()))] if scene.rock else []
-        own = [(f"bonds[{k}]", it) for k, it in enumerate(scene.bonds)]
-        bodies = Bodies(system.grains, system.frames, system.held)
-        return cls(system.clock, [*whole, *own], system.grains, bodies)
 
     def before(self) -> None:
         """Bond what is to be bonded in the step that begins nearest to its time."""

@@ -5,26 +5,20 @@ from typing import Any
 
 import numpy as np
 
-from porescale.builders.stepper import Clock, Row
+from porescale.builders.stepper import Row
 from porescale.builders.system import System
 from porescale.common.core.types import Floats
 from porescale.common.record.part import Part
 from porescale.dem.bodies.rigid import areas
-from porescale.dem.grains import Grains
 
 
 class CellPart(Part):
     """Follows the strain of a cell; shear: the integral of its rate, since the tilt starts anew at half a width."""
 
-    def __init__(self, clock: Clock, grains: Grains) -> None:
-        self.clock, self.grains = clock, grains
-        self.shear = 0.0
-
-    @classmethod
-    def build(cls, system: System) -> "CellPart":
-        """The part of a scene with [cell]."""
+    def __init__(self, system: System) -> None:
         assert system.grains
-        return cls(system.clock, system.grains)
+        self.clock, self.grains = system.clock, system.grains
+        self.shear = 0.0
 
     def after(self) -> None:
         """Add the shear of the step: its rates stay till the next."""

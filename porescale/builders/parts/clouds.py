@@ -1,33 +1,28 @@
 """Grains and bodies of segments in snapshots: points with their arrays."""
 
-from collections.abc import Callable, Sequence
-
 import numpy as np
 
-from porescale.builders.initial.frames import Placed, disc_count
+from porescale.builders.initial.frames import disc_count
 from porescale.builders.system import System
 from porescale.common.core.types import AnyArray
 from porescale.common.record.model import Cloud, Snapshot
 from porescale.common.record.part import Part
-from porescale.dem.grains import Grains
 from porescale.output.frame_clouds import FRAMES, frame_cloud
-
-Motion = Callable[[], tuple[AnyArray, AnyArray]]
-"""Positions (n, 2) m and velocities (n, 2) m/s of all discs, as they are shown."""
 
 
 class GrainCloud(Part):
-    """The discs.  hydraulic_radius : (n,) m, None without fluid;  motion : of a strained cell, None of a box."""
+    """The discs.  hydraulic_radius : (n,) m, None without fluid;  motion : positions (n, 2) m and velocities (n, 2) m/s
+    of all discs as they are shown."""
 
-    def __init__(self, grains: Grains, hydraulic_radius: AnyArray | None, motion: Motion | None) -> None:
-        self.grains, self.hydraulic_radius, self.motion = grains, hydraulic_radius, motion or self._own
-        self.period = np.array([0.0, 0.0] if motion else grains.box.period)
-
-    @classmethod
-    def build(cls, system: System, motion: Motion | None = None) -> "GrainCloud":
-        """The part of a system with grains; ``motion`` : of a strained cell."""
+    def __init__(self, system: System) -> None:
         assert system.grains
-        return cls(system.grains, system.coupled.hydraulic_radius if system.coupled else None, motion)
+        self.grains = system.grains
+        self.hydraulic_radius = system.coupled.hydraulic_radius if system.coupled else None
+        self.motion, self.period = self._own, np.array(system.grains.box.period)
+        if system.scene.cell:
+            from porescale.builders.parts.cell import CellPart
+
+            self.motion, self.period = system.part(CellPart).seen, np.zeros(2)
 
     def _own(self) -> tuple[AnyArray, AnyArray]:
         return self.grains.discs.position, self.grains.discs.velocity
@@ -50,14 +45,9 @@ class GrainCloud(Part):
 class FrameCloud(Part):
     """Rigid bodies of segments, as a cloud of points in snapshots."""
 
-    def __init__(self, grains: Grains, frames: Sequence[Placed]) -> None:
-        self.grains, self.frames = grains, frames
-
-    @classmethod
-    def build(cls, system: System) -> "FrameCloud":
-        """The part of a system with frames."""
+    def __init__(self, system: System) -> None:
         assert system.grains
-        return cls(system.grains, system.frames)
+        self.grains, self.frames = system.grains, system.frames
 
     def show(self, snapshot: Snapshot) -> None:
         """The cloud of frames."""

@@ -1,25 +1,18 @@
 """Bodies whose motion is recorded: control.csv."""
 
-from collections.abc import Sequence
-
 from porescale.builders.initial.rock import has_plates
-from porescale.builders.stepper import Clock, Row
+from porescale.builders.stepper import Row
 from porescale.builders.system import System
 from porescale.common.record.part import Part
-from porescale.dem.grains import Grains
 
 
 class ControlPart(Part):
-    """recorded : names of the first bodies that are watched."""
+    """recorded : names of the first bodies that are watched, the plates of a rock not counted."""
 
-    def __init__(self, clock: Clock, grains: Grains, recorded: Sequence[str]) -> None:
-        self.clock, self.grains, self.recorded = clock, grains, recorded
-
-    @classmethod
-    def build(cls, system: System) -> "ControlPart":
-        """The part of a system in which bodies are recorded, the plates of a rock not counted."""
+    def __init__(self, system: System) -> None:
         assert system.grains
-        return cls(system.clock, system.grains, system.recorded[: -2 if has_plates(system.scene) else None])
+        self.clock, self.grains = system.clock, system.grains
+        self.recorded = system.recorded[: -2 if has_plates(system.scene.rock) else None]
 
     def tables(self) -> dict[str, Row]:
         """control.csv: displacement since the start, forces of contacts and of the control.

@@ -5,21 +5,17 @@ from typing import Any
 import numpy as np
 
 from porescale.builders.parts.fluid import FluidPart
-from porescale.builders.stepper import Clock, Fields
+from porescale.builders.stepper import Fields
 from porescale.builders.system import System
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import AnyArray
-from porescale.coupling.divergence_check import DivergenceCheck
-from porescale.lbm.fluid import Fluid
-from porescale.lbm.scales import Scales
 
 
 class CoupledPart(FluidPart):
     """A step of the fluid, with as many contact steps of the grains as go into it."""
 
-    def __init__(self, clock: Clock, fluid: Fluid, scales: Scales, sense: DivergenceCheck, system: System) -> None:
-        """``system`` : with fluid and grains."""
-        super().__init__(clock, fluid, scales, sense, system)
+    def __init__(self, system: System) -> None:
+        super().__init__(system)
         assert system.coupled
         self.coupled = system.coupled
 

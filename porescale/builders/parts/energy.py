@@ -3,8 +3,7 @@
 from porescale.builders.stepper import Row
 from porescale.builders.system import System
 from porescale.common.record.part import Part
-from porescale.dem.grains import Grains
-from porescale.dem.measures.energy import energy_book
+from porescale.dem.measures.energy import energy_budget
 
 RESIDUAL = "residual (J/m)"
 
@@ -12,16 +11,11 @@ RESIDUAL = "residual (J/m)"
 class EnergyPart(Part):
     """The budget since the first step.  acceleration : of free fall, m/s², whose work is the potential energy."""
 
-    def __init__(self, grains: Grains, acceleration: tuple[float, float]) -> None:
-        self.grains, self.acceleration = grains, acceleration
-
-    @classmethod
-    def build(cls, system: System) -> "EnergyPart":
-        """The part of a system with grains."""
+    def __init__(self, system: System) -> None:
         assert system.grains
-        return cls(system.grains, system.scene.gravity)
+        self.grains, self.acceleration = system.grains, system.scene.gravity
 
     def row(self) -> Row:
         """Columns of the series, J/m, the residual last."""
-        book = energy_book(self.grains, self.acceleration)
-        return {**{name: value for name, value in book.items() if name != RESIDUAL}, RESIDUAL: book[RESIDUAL]}
+        budget = energy_budget(self.grains, self.acceleration)
+        return {**{name: value for name, value in budget.items() if name != RESIDUAL}, RESIDUAL: budget[RESIDUAL]}

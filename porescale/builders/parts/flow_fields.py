@@ -9,9 +9,15 @@ from porescale.common.core.types import Reals
 from porescale.lbm.fields import stream_function
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
+from porescale.scene.grains import Grains
 
 LAMBDA = "hydraulic radius ratio ()"
 """Column of lambda: every record of grains in fluid carries it."""
+
+
+def ratio_column(grains: Grains | None) -> dict[str, float]:
+    """That column, of a scene whose grains have a hydraulic radius ratio; else none."""
+    return {LAMBDA: grains.hydraulic_radius_ratio} if grains and grains.hydraulic_radius_ratio else {}
 
 
 def total_pressure(gravity: tuple[float, float], scales: Scales, excess: Reals) -> Reals:

@@ -4,9 +4,9 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from porescale.builders.parts.flow_fields import LAMBDA, total_pressure
+from porescale.builders.parts.flow_fields import ratio_column, total_pressure
 from porescale.builders.parts.fluid import FluidPart
-from porescale.builders.stepper import Clock, Fields, Row
+from porescale.builders.stepper import Fields, Row
 from porescale.builders.system import System
 from porescale.common.core.types import AnyArray
 from porescale.common.record.part import Part
@@ -19,24 +19,18 @@ from porescale.scene.measures.loads import Loads
 class FlowInstruments(Part):
     """The measuring sections of a scene with fluid."""
 
-    def __init__(self, clock: Clock, fluid: FluidPart, system: System) -> None:
+    def __init__(self, system: System) -> None:
         """``system`` : with fluid, and [[probe]], [[flux]] or [loads]."""
-        scene, derived = system.scene, system.derived
+        scene, derived, fluid = system.scene, system.derived, system.part(FluidPart)
         assert derived.cells
-        self.clock, self.fluid, self.gravity = clock, fluid, scene.gravity
+        self.clock, self.fluid, self.gravity = system.clock, fluid, scene.gravity
         grid = derived.cells, fluid.scales.spacing, scene.domain.periodic
         self.probes = Sampler([(it.x, it.y) for it in scene.probe], *grid) if scene.probe else None
         self.probe_names = [it.name or f"probe {k}" for k, it in enumerate(scene.probe)]
         self.fluxes = [_Section(it, k, fluid.scales.spacing, grid) for k, it in enumerate(scene.flux)]
         self.solid = bool(scene.grains or scene.disc or scene.rectangle)
         self.loads = Loading(scene.loads, system.coupled, system.held) if scene.loads and system.coupled else None
-        ratio = scene.grains.hydraulic_radius_ratio if scene.grains else None
-        self.first: Row = {LAMBDA: ratio} if ratio else {}
-
-    @classmethod
-    def build(cls, system: System, fluid: FluidPart) -> "FlowInstruments":
-        """The part of a system with fluid that is measured."""
-        return cls(system.clock, fluid, system)
+        self.first = ratio_column(scene.grains)
 
     def tables(self) -> dict[str, Row]:
         """A row of every table that the scene has a section for."""

@@ -1,6 +1,6 @@
 """The fluid in series.csv."""
 
-from porescale.builders.parts.flow_fields import LAMBDA, fluid_row
+from porescale.builders.parts.flow_fields import fluid_row, ratio_column
 from porescale.builders.parts.fluid import FluidPart
 from porescale.builders.stepper import Row
 from porescale.builders.system import System
@@ -10,16 +10,8 @@ from porescale.common.record.part import Part
 class FlowSeries(Part):
     """Energy, speeds and densities of the fluid, and the change of its mass."""
 
-    def __init__(self, fluid: FluidPart, ratio: float | None) -> None:
-        """``ratio`` : hydraulic radius ratio of the grains, which every record of them carries; None: none."""
-        self.fluid = fluid
-        self.first: Row = {LAMBDA: ratio} if ratio else {}
-
-    @classmethod
-    def build(cls, system: System, fluid: FluidPart) -> "FlowSeries":
-        """The part of a system with fluid."""
-        grains = system.scene.grains
-        return cls(fluid, grains.hydraulic_radius_ratio if grains else None)
+    def __init__(self, system: System) -> None:
+        self.fluid, self.first = system.part(FluidPart), ratio_column(system.scene.grains)
 
     def row(self) -> Row:
         """Columns of the fluid in series.csv."""

@@ -6,37 +6,29 @@ import numpy as np
 
 from porescale.builders.initial.fluid_options import weight_of
 from porescale.builders.parts.flow_fields import UNITS, derived_fields, total_pressure
-from porescale.builders.stepper import Clock, Fields, Stepper
+from porescale.builders.stepper import Fields, Stepper
 from porescale.builders.system import System
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import AnyArray
 from porescale.common.record.model import Grid, Snapshot
 from porescale.coupling.divergence_check import DivergenceCheck
-from porescale.lbm.fluid import Fluid
-from porescale.lbm.scales import Scales
 
 
 class FluidPart(Stepper):
     """Fluid alone.  mass : excess of the lattice's mass at the start, lattice units."""
 
-    def __init__(self, clock: Clock, fluid: Fluid, scales: Scales, sense: DivergenceCheck, system: System) -> None:
-        """``system`` : gravity and the fields that snapshots have."""
-        self.clock, self.fluid, self.scales, self.sense = clock, fluid, scales, sense
-        self.gravity, self.names = system.scene.gravity, system.scene.output.fields
-        self.mass = fluid.mass_excess()
-
-    @classmethod
-    def build(cls, system: System) -> "FluidPart":
-        """The part of a system with fluid."""
+    def __init__(self, system: System) -> None:
         fluid, scales, section = system.fluid, system.derived.scales, system.scene.fluid
         assert fluid
         assert scales
         assert section
-        sense = DivergenceCheck(
+        self.clock, self.fluid, self.scales = system.clock, fluid, scales
+        self.sense = DivergenceCheck(
             fluid, scales, system.coupled, operator=section.operator, eddies=bool(section.smagorinsky),
             solid_operator=section.solid_operator, weighting=weight_of(section),
         )  # fmt: skip
-        return cls(system.clock, fluid, scales, sense, system)
+        self.gravity, self.names = system.scene.gravity, system.scene.output.fields
+        self.mass = fluid.mass_excess()
 
     def advance(self) -> None:
         """Advance the fluid by one lattice step."""

@@ -3,34 +3,22 @@
 from typing import Any
 
 from porescale.builders.initial.grains import GATE
-from porescale.builders.stepper import Clock
 from porescale.builders.system import System
 from porescale.common.record.part import Part
-from porescale.dem.grains import Grains
-from porescale.lbm.boundary.thin_plate import Plate
-from porescale.lbm.fluid import Fluid
-from porescale.scene.bodies.gate import Gate
 
 
 class GatePart(Part):
     """Opens the gate.  plate : as the fluid has it;  spacing : of the lattice, m;  open : whether it has opened."""
 
-    def __init__(
-        self, clock: Clock, section: Gate, fluid: Fluid | None, plate: Plate | None, spacing: float,
-        grains: Grains | None,
-    ) -> None:  # fmt: skip
-        self.clock, self.opens_at, self.lift_speed = clock, section.opens_at, section.lift_speed
-        self.fluid, self.plate, self.spacing, self.grains = fluid, plate, spacing, grains
+    def __init__(self, system: System) -> None:
+        """Adds its plate to the fluid, as the grains have theirs."""
+        derived, section = system.derived, system.scene.gate
+        assert section
+        self.clock, self.opens_at, self.lift_speed = system.clock, section.opens_at, section.lift_speed
+        self.fluid, self.grains = system.fluid, system.grains
+        self.plate = self.fluid.add_plate(derived.gate_column or 0) if self.fluid else None
+        self.spacing = derived.scales.spacing if derived.scales else 1.0
         self.open = False
-
-    @classmethod
-    def build(cls, system: System) -> "GatePart":
-        """The part of a scene with [gate]; adds its plate to the fluid, as the grains have theirs."""
-        derived, fluid = system.derived, system.fluid
-        assert system.scene.gate
-        plate = fluid.add_plate(derived.gate_column or 0) if fluid else None
-        spacing = derived.scales.spacing if derived.scales else 1.0
-        return cls(system.clock, system.scene.gate, fluid, plate, spacing, system.grains)
 
     @property
     def idle(self) -> bool:

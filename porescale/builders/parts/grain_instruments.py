@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from porescale.builders.initial.frames import Placed, disc_count, free_rows
 from porescale.builders.initial.walls import WallPlaces, middles
 from porescale.builders.parts.frame_measures import solid_in
-from porescale.builders.stepper import Clock, Row
+from porescale.builders.stepper import Row
 from porescale.builders.system import System
 from porescale.common.core.types import AnyArray
 from porescale.common.record.model import Cloud, Grid, Snapshot
@@ -35,12 +35,9 @@ from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress, kinetic_stress, principal
 from porescale.dem.motion.periodic_cell import Straining
 from porescale.scene.measures.coarse_graining import CoarseGraining
-from porescale.scene.scene import Scene
 
 KERNEL_WIDTH = 2.5
 """Width of the kernel in mean diameters where a scene gives none: some twenty grains are felt at a point."""
-
-
 FIELDS, CONTACTS = "grain_fields", "contacts"
 """Names of the grid and of the cloud in snapshots."""
 
@@ -48,23 +45,18 @@ FIELDS, CONTACTS = "grain_fields", "contacts"
 class GrainInstruments(Part):
     """The regions, the wall forces, the contacts and the coarse graining of a scene."""
 
-    def __init__(self, clock: Clock, grains: Grains, placed: Sequence[Placed], scene: Scene) -> None:
-        """``placed`` : bodies of segments."""
-        self.clock, self.grains, self.placed = clock, grains, placed
+    def __init__(self, system: System) -> None:
+        assert system.grains
+        scene, grains, placed = system.scene, system.grains, system.frames
+        self.clock, self.grains, self.placed = system.clock, grains, placed
         self.walls = WallPlaces(scene.domain, scene.wall) if scene.output.forces else None
         self.contacts, self.coarse_graining = scene.output.contacts, scene.coarse_graining
         self.regions = [(it.name or f"region {k}", Region(it.lower, it.upper)) for k, it in enumerate(scene.region)]
-        self.held = np.arange(grains.discs.count) >= grains.discs.count - len(scene.disc)
+        self.held = np.arange(grains.discs.count) >= grains.discs.count - system.held
         if grains.segments is not None:
-            self.held = ~np.isin(np.arange(grains.discs.count), free_rows(grains, placed, len(scene.disc)))
+            self.held = ~np.isin(np.arange(grains.discs.count), free_rows(grains, placed, system.held))
         friction = max(law.friction for law in grains.laws)
         self.least = LEAST_WITH_FRICTION if friction > 0.0 else LEAST_WITHOUT
-
-    @classmethod
-    def build(cls, system: System) -> "GrainInstruments":
-        """The part of a system with grains that are measured."""
-        assert system.grains
-        return cls(system.clock, system.grains, system.frames, system.scene)
 
     def tables(self) -> dict[str, Row]:
         """A row of regions.csv and of forces.csv, where the scene requests them."""
@@ -126,17 +118,17 @@ class GrainInstruments(Part):
         if self.coarse_graining:
             snapshot.grids[FIELDS] = self._fields(found, self.coarse_graining)
 
-    def _fields(self, found: Contacts, asked: CoarseGraining) -> Grid:
+    def _fields(self, found: Contacts, section: CoarseGraining) -> Grid:
         """The coarse-grained fields of a snapshot."""
         grains = self.grains
-        width = asked.width or max(2.0 * KERNEL_WIDTH * float(grains.discs.radius.mean()), asked.spacing)
+        width = section.width or max(2.0 * KERNEL_WIDTH * float(grains.discs.radius.mean()), section.spacing)
         cell = grains.cell if isinstance(grains.cell, Straining) else None
         periodic = grains.box.periodic if cell is None else (False, False)
-        raster = Raster.over(grains.box.lower, grains.box.upper, asked.spacing, width, periodic)
+        raster = Raster.over(grains.box.lower, grains.box.upper, section.spacing, width, periodic)
         fields = CoarseGrained(raster, grains.discs, found, conserve=cell is None, cell=cell, area=areas(grains))
         cells: dict[str, AnyArray] = {}
         units: dict[str, str] = {}
-        for name in asked.fields:
+        for name in section.fields:
             value = getattr(fields, "contact_stress" if name == "stress" else name)
             if value.ndim == 2:
                 cells[name] = value.astype(np.float32)

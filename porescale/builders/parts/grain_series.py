@@ -1,18 +1,16 @@
 """What a collapse is measured by: front, run-out, centre of mass, energies."""
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.builders.initial.frames import Placed, free_rows
+from porescale.builders.initial.frames import free_rows
 from porescale.builders.parts.frame_measures import coordination_of_bodies
 from porescale.builders.stepper import Row
 from porescale.builders.system import System
 from porescale.common.record.part import Part
 from porescale.dem.discs import FIELDS, Discs
-from porescale.dem.grains import Grains
 from porescale.dem.measures.survey import centre_of_mass, coordination, kinetic_energy, max_overlap
 
 
@@ -24,21 +22,15 @@ class GrainSeries(Part):
     come after the grains and are none of them, nor are frames whose motion is prescribed (``placed``).
     """
 
-    def __init__(self, grains: Grains, placed: Sequence[Placed], held: int, width: float) -> None:
-        """``held`` : discs that are held;  ``width`` : of the box, m."""
-        self.grains, self.held, self.placed = grains, held, placed
-        self.rows: slice | NDArray[np.int64] = slice(grains.discs.count - held)
-        if placed:
-            self.rows = free_rows(grains, placed, held)
-        middle = 0.5 * width
+    def __init__(self, system: System) -> None:
+        assert system.grains
+        self.grains, self.held, self.placed = system.grains, system.held, system.frames
+        self.rows: slice | NDArray[np.int64] = slice(self.grains.discs.count - self.held)
+        if self.placed:
+            self.rows = free_rows(self.grains, self.placed, self.held)
+        middle = 0.5 * system.scene.domain.width
         self.leftward = bool(centre_of_mass(self.free())[0] > middle)
         self.start = self.front()
-
-    @classmethod
-    def build(cls, system: System) -> "GrainSeries":
-        """The part of a system with grains that are free."""
-        assert system.grains
-        return cls(system.grains, system.frames, system.held, system.scene.domain.width)
 
     def free(self) -> Discs:
         """The grains without the discs that are held; views where there are no frames."""

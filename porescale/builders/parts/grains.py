@@ -2,24 +2,17 @@
 
 from typing import Any
 
-from porescale.builders.stepper import Clock, Stepper
+from porescale.builders.stepper import Stepper
 from porescale.builders.system import System
 from porescale.common.core.errors import Unstable
-from porescale.common.core.types import AnyArray
-from porescale.dem.grains import Grains
 
 
 class GrainsPart(Stepper):
     """Grains without fluid.  weight : (n, 2) N/m."""
 
-    def __init__(self, clock: Clock, grains: Grains, weight: AnyArray | None) -> None:
-        self.clock, self.grains, self.weight = clock, grains, weight
-
-    @classmethod
-    def build(cls, system: System) -> "GrainsPart":
-        """The part of a system of grains alone."""
+    def __init__(self, system: System) -> None:
         assert system.grains
-        return cls(system.clock, system.grains, system.weight)
+        self.clock, self.grains, self.weight = system.clock, system.grains, system.weight
 
     def advance(self) -> None:
         """Advance the grains by one contact step."""

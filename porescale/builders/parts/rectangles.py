@@ -1,44 +1,30 @@
 """Rectangles in motion, for fluid and grains alike."""
 
-from collections.abc import Sequence
 from typing import Any
 
-from porescale.builders.stepper import Clock, Row
+from porescale.builders.stepper import Row
 from porescale.builders.system import System
 from porescale.common.record.part import Part
-from porescale.coupling.coverage.rectangle import Rectangle as LatticeRectangle
-from porescale.coupling.step import Coupled
 from porescale.dem.forces.rectangle import LEFT, RIGHT, VELOCITY_X
-from porescale.dem.grains import Grains
-from porescale.scene.bodies.rectangle import Rectangle
 
 MAKE_GOOD = 64
 """Steps after which what left with rectangles is made good: even, and too few for a density to change that is seen."""
 
 
 class RectanglesPart(Part):
-    """Moves the rectangles.  made_good : fluid taken out again of what came in with them, cells."""
+    """Moves the rectangles.
 
-    def __init__(
-        self, clock: Clock, sections: Sequence[Rectangle], lattice: Sequence[LatticeRectangle], grains: Grains | None,
-        coupled: Coupled | None, *, make_good: bool,
-    ) -> None:  # fmt: skip
-        """``lattice`` : as the fluid has them, none without fluid;  ``make_good`` : whether the fluid's mass is."""
-        self.clock, self.sections, self.lattice, self.grains = clock, sections, list(lattice), grains
-        self.coupled, self.scales = coupled, coupled.scales if coupled else None
-        self.make_good = make_good
+    lattice : as the fluid has them, none without fluid;  make_good : whether the fluid's mass is;  made_good : fluid
+    taken out again of what came in with them, cells.
+    """
+
+    def __init__(self, system: System) -> None:
+        self.clock, self.sections, self.lattice = system.clock, system.scene.rectangle, list(system.rectangles)
+        self.grains, self.coupled = system.grains, system.coupled
+        self.scales = self.coupled.scales if self.coupled else None
+        closed = not any(side.open for side in system.scene.domain.sides.values())
+        self.make_good = next((it.make_good for it in self.sections if it.make_good is not None), closed)
         self.made_good = 0.0
-
-    @classmethod
-    def build(cls, system: System) -> "RectanglesPart":
-        """The part of a scene with [[rectangle]]."""
-        sections, domain = system.scene.rectangle, system.scene.domain
-        closed = not any(side.open for side in domain.sides.values())
-        wanted = [it.make_good for it in sections if it.make_good is not None]
-        return cls(
-            system.clock, sections, system.rectangles, system.grains, system.coupled,
-            make_good=wanted[0] if wanted else closed,
-        )  # fmt: skip
 
     def after(self) -> None:
         """Put all where they are now."""

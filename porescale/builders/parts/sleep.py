@@ -12,19 +12,14 @@ from porescale.dem.resting.sleep import Sleep as Sleepers
 class SleepPart(Part):
     """How many grains sleep, and what energy was taken."""
 
-    def __init__(self, sleepers: Sleepers) -> None:
-        self.sleepers = sleepers
-
-    @classmethod
-    def build(cls, system: System) -> "SleepPart":
-        """The part of a scene with [sleep]: lets the grains sleep, by their weight less lift."""
+    def __init__(self, system: System) -> None:
+        """Lets the grains sleep, by their weight less lift."""
         grains, section = system.grains, system.scene.sleep
         assert grains
         assert section
         weight = system.coupled.weight if system.coupled else buoyant_weight(grains, 0.0, system.scene.gravity)
         size = np.hypot(weight[:, 0], weight[:, 1]).astype(float)
-        grains.sleep = Sleepers(grains, size, section.share, section.after)
-        return cls(grains.sleep)
+        self.sleepers = grains.sleep = Sleepers(grains, size, section.share, section.after)
 
     def row(self) -> Row:
         """Columns of the sleeping grains in series.csv."""

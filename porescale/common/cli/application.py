@@ -31,18 +31,16 @@ def application(package: Package) -> App:
         print_error=False,
         exit_on_error=False,
     )
-    for part in (run, check, show, new, sweep, verify, bench):
+    for part in (run, check, show, new, sweep, verify, bench, study):
         app.command(part.command(package))
-    app.command(study.command(package))
     return app
 
 
 def _whole(kind: Any, tokens: Sequence[Token]) -> Any:
     """The value of an option's words; ValueError for 1.5 where a whole number is needed, which would be rounded."""
-    if int in (kind, *get_args(kind)):
-        for token in tokens:
-            if "." in token.value:
-                raise ValueError(f'"{token.value}" is no whole number')
+    for token in tokens if int in (kind, *get_args(kind)) else ():
+        if "." in token.value:
+            raise ValueError(f'"{token.value}" is no whole number')
     return convert(kind, tokens)
 
 
@@ -83,5 +81,4 @@ def main(app: App, tokens: Sequence[str] | None = None) -> int:
 
 
 def _say(text: str) -> None:
-    """Write one line to stderr."""
     print(" ".join(text.split()), file=sys.stderr)

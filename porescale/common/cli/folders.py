@@ -44,9 +44,4 @@ def require_writable(folder: Path, key: str) -> None:
 def unusable(folder: Path, key: str, error: OSError) -> InputError:
     """The system's error on ``folder``, as a fault of the input."""
     problem = f"cannot be written ({error.strerror or error})"
-    return InputError(Fault(key, _shortened(str(folder)), problem, repair="name another folder"))
-
-
-def _shortened(path: str, longest: int = 120) -> str:
-    """``path`` in one line of a terminal."""
-    return path if len(path) <= longest else f"{path[:60]}…{path[-40:]}"
+    return InputError(Fault(key, str(folder), problem, repair="name another folder"))

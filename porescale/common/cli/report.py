@@ -61,10 +61,8 @@ class Report:
         console.print(Text(self.title, style="bold"))
         for name, rows in self.groups.items():
             table = Table(title=name or None, title_justify="left", box=None, show_header=False, pad_edge=False)
-            table.add_column()
-            table.add_column(justify="right")
-            table.add_column()
-            table.add_column()
+            for justify in ("left", "right", "left", "left"):
+                table.add_column(justify=justify)
             for row in rows:
                 table.add_row(*map(Text, (row.name, shown(row.value), row.unit, row.note)))
             console.print(table)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import resource
 import sys
 import time
 from collections.abc import Callable, Mapping
@@ -17,13 +16,14 @@ from porescale.common.cli.folders import named_folder, require_writable, unusabl
 from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, use_threads
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.machine import peak_bytes
 from porescale.common.record.read_card import NAME as CARD
 from porescale.common.record.read_card import read_card
 
 if TYPE_CHECKING:
     from porescale.common.record.drive import Outcome
     from porescale.common.record.model import Model
-    from porescale.common.schema.sections import Opened
+    from porescale.common.schema.sections import Opened, Section
 
 
 def command(package: Package) -> Callable[..., int]:
@@ -95,7 +95,6 @@ def drive_scene(
     after, options : of `drive`;  formerly : of `Package`.
     """
     from porescale.common.record.drive import drive
-    from porescale.common.schema.migrations import completing
 
     return drive(
         model,
@@ -106,7 +105,7 @@ def drive_scene(
         checkpoint_seconds=scene.output.checkpoint_seconds,
         card=card,
         after=after,
-        today=completing(type(scene), card, formerly),
+        today=_completing(type(scene), card, formerly),
         **options,
     )
 
@@ -114,9 +113,32 @@ def drive_scene(
 def check_scene_resume(package: Package, folder: Path, card: dict[str, Any]) -> None:
     """InputError where the run in ``folder`` cannot be gone on with as ``card`` requests."""
     from porescale.common.record.drive import check_resume
-    from porescale.common.schema.migrations import completing
 
-    check_resume(folder, card, today=completing(package.scene(), card, package.formerly))
+    check_resume(folder, card, today=_completing(package.scene(), card, package.formerly))
+
+
+def _completing(
+    scene_type: type[Section], card: Mapping[str, Any], formerly: Mapping[str, Any] = MappingProxyType({})
+) -> Callable[[Mapping[str, Any]], Mapping[str, Any]]:
+    """What completes the full scene on an older run's card with the keys that came after it, at what they were before.
+
+    That is their default, or what ``formerly``, tables like those of a scene, says where the default does something
+    else.  Files that it names are looked for where the scene of ``card`` lies, with which the run is resumed.  A
+    scene that is none today stays as it is.
+    """
+
+    from porescale.common.schema import scene_file
+    from porescale.common.schema.sections import scene_as_dict, validate
+
+    def completed(scene: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The scene of a card with the keys that came later."""
+        folder = Path(card["scene_file"]).parent if "scene_file" in card else None
+        try:
+            return scene_as_dict(validate(scene_type, scene_file.merge(formerly, scene), folder=folder))
+        except InputError:
+            return scene
+
+    return completed
 
 
 def card_of(package: Package, opened: Opened[Any]) -> dict[str, Any]:
@@ -173,13 +195,12 @@ def _require_fitting_content(folder: Path, package: str, *, resume: bool, overwr
 
 def summary(command: str, name: str, folder: Path, outcome: Outcome) -> str:
     """Text with the cost of the run and the files to look at."""
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
     speed = f", {outcome.steps_per_second:.4g} steps/s" if outcome.steps_per_second else ""
     names = [path.name for path in folder.iterdir() if path.is_file()] if folder.is_dir() else []
     files = ", ".join(sorted(it for it in names if not it.startswith(".")))
     return (
         f"{name}: {outcome.outcome} at t = {outcome.time:.6g} s, step {outcome.step}; "
-        f"{outcome.seconds:.3g} s{speed}, {outcome.snapshots} snapshots, {peak / 2**20:.0f} MiB at most\n"
+        f"{outcome.seconds:.3g} s{speed}, {outcome.snapshots} snapshots, {peak_bytes() / 2**20:.0f} MiB at most\n"
         f"look at {folder}: {files}\n"
         f"more pictures: {command} show {folder}"
     )

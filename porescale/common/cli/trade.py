@@ -31,7 +31,7 @@ def command(package: Package) -> Callable[..., int]:
         scene: Scene,
         /,
         *,
-        plan: Annotated[Path | None, Parameter(help="what is asked and varied; trade.toml beside the scene")] = None,
+        plan: Annotated[Path | None, Parameter(help="what is measured and varied; trade.toml beside the scene")] = None,
         settings: Settings = None,
         out: Annotated[str | None, Parameter(help="folder; runs/ and the scene's name and _trade if not given")] = None,
         jobs: Jobs = 1,
@@ -50,16 +50,16 @@ def command(package: Package) -> Callable[..., int]:
         from porescale.common.studies.trade import Errors, front
         from porescale.common.studies.trade_plan import read_plan
 
-        asked = read_plan(find(scene), plan)
+        planned = read_plan(find(scene), plan)
         features = package.features() if package.features else {}
-        unknown = [quantity.feature for quantity in asked.quantity if quantity.feature not in ("", *features)]
+        unknown = [quantity.feature for quantity in planned.quantity if quantity.feature not in ("", *features)]
         if unknown:
             known = ", ".join(features) or "none"
             raise InputError(Fault("quantity.feature", unknown[0], "is not known", "", known))
-        reference = asked.reference_point()
-        variants = asked.variants()
-        truth = asked.repeats(reference) if reference else []
-        groups = [asked.repeats(point) for _, _, point in variants]
+        reference = planned.reference_point()
+        variants = planned.variants()
+        truth = planned.repeats(reference) if reference else []
+        groups = [planned.repeats(point) for _, _, point in variants]
         points = [*truth, *(point for group in groups for point in group)]
         file, name = check_points(package, scene, points, None, settings or ())
         folder = output_folder(out, f"{name}_trade")
@@ -70,7 +70,7 @@ def command(package: Package) -> Callable[..., int]:
             say("the reference did not finish: nothing to hold the others against")
             return code
         reference_ends = [ends[point.name] for point in truth]
-        errors = Errors(asked, package.table, features, reference_ends)
+        errors = Errors(planned, package.table, features, reference_ends)
         traded = front(
             [errors.trade(knob, label, point, [ends[one.name] for one in group])
              for (knob, label, point), group in zip(variants, groups, strict=True)]
@@ -78,13 +78,13 @@ def command(package: Package) -> Callable[..., int]:
         use_threads(threads)
         words = [package.name, "study", "trade", str(scene), *(["--plan", str(plan)] if plan else [])]
         about = circumstances(package, shlex.join([*words, *laid_over(None, settings)]), threads or 1)
-        about["quantities"] = [one.model_dump(mode="json", exclude_none=True) for one in asked.quantity]
+        about["quantities"] = [one.model_dump(mode="json", exclude_none=True) for one in planned.quantity]
         about["references"] = errors.answers()
         if reference:
             about["reference"] = trade_files.as_dict(errors.trade("", "reference", reference, reference_ends))
-        if asked.draft is not None:
-            about["draft"] = asked.draft
-        trade_files.write(folder, about, traded, errors.packings(), asked.caveats())
+        if planned.draft is not None:
+            about["draft"] = planned.draft
+        trade_files.write(folder, about, traded, errors.packings(), planned.caveats())
         print(f"{folder / trade_files.FRONT}, {trade_files.NAME}.csv, .md, .png")
         return conclude(list(ends.values()))
 

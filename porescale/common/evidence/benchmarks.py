@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import statistics
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 from porescale.common.cli.report import shown
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.evidence.register import Register
-from porescale.common.evidence.timing import Comparison, Timing, interleaved, rate, seconds_of
+from porescale.common.evidence.timing import interleaved, repeated, seconds_of
 
 if TYPE_CHECKING:
     from rich.table import Table
-
-__all__ = ["Benchmarks", "Comparison", "Row", "Timing", "Work", "copy_bandwidth", "interleaved", "rate", "table"]
 
 Dtype = Literal["float32", "float64"]
 LARGEST = 10_000_000
@@ -73,10 +71,6 @@ class Row:
     bytes: float
     share_of_bandwidth: float | None
 
-    def as_dict(self) -> dict[str, Any]:
-        """The fields as JSON takes them."""
-        return asdict(self)
-
 
 class Benchmarks(Register[Benchmark]):
     """A register of benchmarks.
@@ -97,7 +91,6 @@ class Benchmarks(Register[Benchmark]):
         """
 
         def register(prepare: Prepare) -> Prepare:
-            """Keep ``prepare`` under the name; returns it."""
             self.add(Benchmark(name, prepare))
             return prepare
 
@@ -129,52 +122,41 @@ class Benchmarks(Register[Benchmark]):
         self, chosen: Sequence[Benchmark], size: int | None, count: int, dtype: Dtype, min_seconds: float
     ) -> Iterator[Row]:
         """Prepare and time each benchmark."""
-        for name, prepare in ((it.name, it.prepare) for it in chosen):
-            made = prepare(size, count, dtype)
+        for it in chosen:
+            made = it.prepare(size, count, dtype)
             works = [made] if isinstance(made, Work) else list(made)
-            titles = [f"{name}.{work.variant}" if work.variant else name for work in works]
+            titles = [f"{it.name}.{work.variant}" if work.variant else it.name for work in works]
             for title, work in zip(titles, works, strict=True):
                 yield _measured(title, work, count, dtype, min_seconds)
                 if work.remark is not None:
                     self.remarks.append(f"{title}: {work.remark()}")
             for title, work in zip(titles[:-1], works, strict=False) if works[-1].variant == PLAIN else ():
-                self.remarks.append(f"{title}: {_part_of(works[-1], work):.2f} of the rate of {name}.{PLAIN}, in turns")
-
-
-def _part_of(plain: Work, work: Work) -> float:
-    """Rate of ``work`` over that of ``plain``, the median of rounds in which both are timed."""
-    return interleaved(work.call, plain.call).ratio * work.updates / plain.updates
+                plain = works[-1]
+                share = interleaved(work.call, plain.call) * work.updates / plain.updates
+                self.remarks.append(f"{title}: {share:.2f} of the rate of {it.name}.{PLAIN}, in turns")
 
 
 def _measured(name: str, work: Work, threads: int, dtype: Dtype, min_seconds: float) -> Row:
     """Time one piece of work; if it is bound by memory, in turns with the copy that gives the bandwidth."""
-    share = None
+    shares: list[float] = []
+    copy = None
+    work.call()
     if work.bytes:
         from porescale.common.evidence.bandwidth import Copy
 
         copy = Copy(threads, dtype)
-        work.call()
         copy()
-        spent: list[float] = []
-        shares: list[float] = []
-        total = 0.0
-        while len(spent) < 5 or total < min_seconds:
-            spent.append(seconds_of(work.call))
-            total += spent[-1]
-            ceiling = copy.bytes / seconds_of(copy)
-            shares.append(work.updates * work.bytes / spent[-1] / ceiling)
-        seconds, share = statistics.median(spent), statistics.median(shares)
-    else:
-        seconds = rate(work.call, work.updates, min_seconds).seconds
+
+    def once() -> float:
+        """Seconds of a call; notes its share of the bandwidth."""
+        seconds = seconds_of(work.call)
+        if copy is not None:
+            shares.append(work.updates * work.bytes / seconds * seconds_of(copy) / copy.bytes)
+        return seconds
+
+    seconds = statistics.median(repeated(once, min_seconds))
+    share = statistics.median(shares) if shares else None
     return Row(name, work.size, threads, dtype, work.updates / seconds, work.unit, seconds, work.bytes, share)
-
-
-def copy_bandwidth(threads: int | None = None, dtype: Dtype = "float64", bytes: int = 2**28) -> float:
-    """Bytes per second read and written by an in-place pass over an array of ``bytes`` bytes, median."""
-    from porescale.common.evidence.bandwidth import Copy
-
-    copy = Copy(threads, dtype, bytes)
-    return rate(copy, copy.bytes, min_seconds=0.5).rate
 
 
 def table(rows: Sequence[Row]) -> Table:
@@ -187,15 +169,7 @@ def table(rows: Sequence[Row]) -> Table:
         made.add_column(heading)
     for row in rows:
         share = None if row.share_of_bandwidth is None else f"{100 * row.share_of_bandwidth:.0f} %"
-        cells = (
-            row.name,
-            row.size,
-            row.threads,
-            row.dtype,
-            f"{row.rate:.4g}",
-            row.unit,
-            f"{row.seconds:.3g}",
-            row.bytes or None,
-        )
-        made.add_row(*(Text(shown(cell)) for cell in (*cells, share)))
+        numbers = f"{row.rate:.4g}", row.unit, f"{row.seconds:.3g}", row.bytes or None, share
+        cells = row.name, row.size, row.threads, row.dtype, *numbers
+        made.add_row(*(Text(shown(cell)) for cell in cells))
     return made

@@ -51,14 +51,14 @@ class Register(Generic[T]):
         return [self._rows[name] for name in choose(names, self._rows, self.what)]
 
 
-def choose(asked: Sequence[str], known: Iterable[str], what: str) -> list[str]:
-    """Names in ``known`` that ``asked`` selects, in the order of ``known``; all of them if ``asked`` is empty.
+def choose(requested: Sequence[str], known: Iterable[str], what: str) -> list[str]:
+    """Names in ``known`` that ``requested`` selects, in the order of ``known``; all of them if ``requested`` is empty.
 
     A name stands for itself and for all below it: ``lbm`` for ``lbm.poiseuille``.  Raises InputError with one
     fault for each name that stands for nothing.
     """
     names = list(known)
-    below = {name: [other for other in names if other == name or other.startswith(f"{name}.")] for name in asked}
+    below = {name: [other for other in names if other == name or other.startswith(f"{name}.")] for name in requested}
     topics = {name.partition(".")[0] for name in names}
     unknown = [name for name, found in below.items() if not found]
     if unknown:
@@ -67,7 +67,7 @@ def choose(asked: Sequence[str], known: Iterable[str], what: str) -> list[str]:
         repair = {name: nearest(name, [*names, *topics], "names") for name in unknown}
         raise InputError([Fault(name, None, f"no such {what}", repair=repair[name]) for name in unknown])
     wanted = {other for found in below.values() for other in found}
-    return [name for name in names if not asked or name in wanted]
+    return [name for name in names if not requested or name in wanted]
 
 
 def discovered(package: str, name: str) -> Callable[[], Any]:
@@ -77,7 +77,6 @@ def discovered(package: str, name: str) -> Callable[[], Any]:
     """
 
     def joined() -> Any:
-        """One register of the same class with the rows of all."""
         found = list(entries(package, name))
         return type(found[0])(row for register in found for row in register)
 

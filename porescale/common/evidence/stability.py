@@ -110,18 +110,18 @@ class Flow:
             middle = (low + high) // 2
             row = known[values[middle]] = self._tried(law, values[middle], y)
             low, high = (low, middle) if row.verdict == UNSTABLE else (middle, high)
-        return [known.get(x) or self._inferred(law, x, y, at <= low) for at, x in enumerate(values)]
-
-    def _inferred(self, law: str, x: float, y: float, stable: bool) -> Row:
-        return Row(self.name, law, x, y, STABLE if stable else UNSTABLE, None, {}, False, 0.0)
+        verdicts = [STABLE if at <= low else UNSTABLE for at in range(len(values))]
+        return [
+            known.get(x) or Row(self.name, law, x, y, verdict, None, {}, False, 0.0)
+            for x, verdict in zip(values, verdicts, strict=True)
+        ]
 
     def _tried(self, law: str, x: float, y: float) -> Row:
         start = time.perf_counter()
         found = self.measure(law, x, y)
         error = None if found.error is None else float(found.error)
-        verdict = UNSTABLE
-        if found.stable:
-            verdict = RIGHT if error is not None and error <= self.right else STABLE
+        right = error is not None and error <= self.right
+        verdict = UNSTABLE if not found.stable else RIGHT if right else STABLE
         seconds = time.perf_counter() - start
         return Row(self.name, law, float(x), float(y), verdict, error, dict(found.numbers or {}), True, seconds)
 
@@ -135,7 +135,6 @@ class Stability(Register[Flow]):
         """Register the decorated ``(law, x, y) -> Tried`` as a flow made of ``parts``, see :class:`Flow`."""
 
         def register(measure: Measure) -> Measure:
-            """Keep it; returns it as it is."""
             made = Flow(name=name, measure=measure, **parts)
             assert made.right >= 0
             assert made.because, "a tolerance has a reason"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from porescale.common.cli.report import shown
 from porescale.common.evidence import files
-from porescale.common.evidence.stability import RIGHT, STABLE, UNSTABLE, Axis, Flow, Row, holds_up_to
+from porescale.common.evidence.stability import RIGHT, STABLE, UNSTABLE, Flow, Row, holds_up_to
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,15 +36,11 @@ def write(folder: Path, command: str, version: str, flows: Sequence[Flow], rows:
 
 def as_dict(flow: Flow, quick: bool) -> dict[str, Any]:
     """Description of a flow for JSON."""
-    axes = {letter: {"name": axis.name, "values": axis.chosen(quick)} for letter, axis in _axes(flow)}
+    x, y = ({"name": axis.name, "values": axis.chosen(quick)} for axis in (flow.x, flow.y))
     return {
-        "name": flow.name, "title": flow.title, **axes, "laws": list(flow.laws(quick)), "right": flow.right,
+        "name": flow.name, "title": flow.title, "x": x, "y": y, "laws": list(flow.laws(quick)), "right": flow.right,
         "because": flow.because, "limit": flow.limit,
     }  # fmt: skip
-
-
-def _axes(flow: Flow) -> tuple[tuple[str, Axis], tuple[str, Axis]]:
-    return ("x", flow.x), ("y", flow.y)
 
 
 def csv_text(rows: Sequence[Row]) -> str:
@@ -68,7 +64,7 @@ def markdown(command: str, flows: Sequence[Flow], rows: Sequence[Row], quick: bo
     for flow in flows:
         xs, ys = flow.x.chosen(quick), flow.y.chosen(quick)
         parts.append(f"\n## {flow.name}\n\n{flow.title}. Right: {flow.because}.\n")
-        inside = f"in each place {flow.y.name} {_several(ys)} from left to right" if len(ys) > 1 else _single(flow, ys)
+        inside = f"in each place {_values(flow, ys)} from left to right" if len(ys) > 1 else _values(flow, ys)
         parts.append(f"Across {flow.x.name}; {inside}.\n")
         more = [f"{flow.limit}: holds up to", "fails from"] if flow.limit else []
         table = []
@@ -88,12 +84,8 @@ def _edge(value: float) -> str:
 _LEGEND = {RIGHT: "stable and right", STABLE: "stable", UNSTABLE: "unstable"}
 
 
-def _several(values: Sequence[float]) -> str:
-    return ", ".join(shown(value) for value in values)
-
-
-def _single(flow: Flow, values: Sequence[float]) -> str:
-    return f"{flow.y.name} {shown(values[0])}"
+def _values(flow: Flow, ys: Sequence[float]) -> str:
+    return f"{flow.y.name} {', '.join(map(shown, ys))}"
 
 
 def picture(flows: Sequence[Flow], rows: Sequence[Row], quick: bool) -> bytes:
@@ -141,7 +133,6 @@ def _panel(axes: Axes, flow: Flow, rows: Sequence[Row], quick: bool) -> None:
     axes.set_xlim(-0.6, len(xs) - 0.4)
     axes.invert_yaxis()
     axes.set_xlabel(flow.x.name)
-    down = f"{flow.y.name} {_several(ys)} downwards" if len(ys) > 1 else _single(flow, ys)
-    axes.set_title(f"{flow.title}\n{down}", loc="left", fontsize=9)
+    axes.set_title(f"{flow.title}\n{_values(flow, ys)}{' downwards' * (len(ys) > 1)}", loc="left", fontsize=9)
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)

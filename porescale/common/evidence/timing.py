@@ -3,25 +3,6 @@
 import statistics
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
-
-
-@dataclass(frozen=True)
-class Timing:
-    """rate : updates per second (median);  seconds : median of one call;  calls : repeats behind it."""
-
-    rate: float
-    seconds: float
-    calls: int
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """a, b : median seconds of a call;  ratio : median over the rounds of b's time over a's."""
-
-    a: float
-    b: float
-    ratio: float
 
 
 def seconds_of(call: Callable[[], object]) -> float:
@@ -38,36 +19,28 @@ def core_seconds_of(call: Callable[[], object]) -> float:
     return time.thread_time() - start
 
 
-def rate(call: Callable[[], object], updates_per_call: float, min_seconds: float = 1.0) -> Timing:
-    """Updates per second: median of the calls that fill ``min_seconds``, at least five, after one to warm up."""
-    call()
+def repeated(measure: Callable[[], float], min_seconds: float = 1.0) -> list[float]:
+    """Seconds of calls, as ``measure`` gives them, that fill ``min_seconds`` together; at least five."""
     spent: list[float] = []
     total = 0.0
     while len(spent) < 5 or total < min_seconds:
-        spent.append(seconds_of(call))
+        spent.append(measure())
         total += spent[-1]
-    median = statistics.median(spent)
-    return Timing(updates_per_call / median, median, len(spent))
+    return spent
 
 
-def interleaved(a: Callable[[], object], b: Callable[[], object], rounds: int = 7) -> Comparison:
-    """Time ``a`` and ``b`` in turns (each goes first every other round), after one call each to warm up.
+def interleaved(a: Callable[[], object], b: Callable[[], object], rounds: int = 7) -> float:
+    """The time of ``b`` over that of ``a``, both timed in turns (each goes first every other round) after one call each
+    to warm up: the median over the rounds.
 
     Drifts of the machine then touch both alike; the ratio is formed round by round.
     """
     assert rounds > 0
     a()
     b()
-    pairs: list[tuple[float, float]] = []
+    ratios: list[float] = []
     for turn in range(rounds):
-        if turn % 2:
-            second = seconds_of(b)
-            pairs.append((seconds_of(a), second))
-        else:
-            first = seconds_of(a)
-            pairs.append((first, seconds_of(b)))
-    return Comparison(
-        statistics.median(first for first, _ in pairs),
-        statistics.median(second for _, second in pairs),
-        statistics.median(second / first for first, second in pairs),
-    )
+        first, second = (b, a) if turn % 2 else (a, b)
+        one, two = seconds_of(first), seconds_of(second)
+        ratios.append(one / two if turn % 2 else two / one)
+    return statistics.median(ratios)

@@ -76,7 +76,7 @@ def lognormal_radii(count: int, diameter: float, spread: float) -> Floats:
     if not 0.0 <= spread <= np.log(WIDEST) / (2.0 * TAIL):
         allowed = f"0 to {np.log(WIDEST) / (2.0 * TAIL):.3g}"
         raise InputError(Fault("log_spread", spread, "sizes would span more than 1 to 10", "", allowed))
-    from scipy.special import ndtr, ndtri  # takes longer to import than a scene to be judged
+    from scipy.special import ndtr, ndtri  # takes longer to import than a scene takes to be checked
 
     low = float(ndtr(-TAIL))
     quantile = low + (1.0 - 2.0 * low) * (np.arange(count) + 0.5) / max(count, 1)

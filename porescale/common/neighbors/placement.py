@@ -62,23 +62,20 @@ def place(
     if radius.size and not (np.all(np.isfinite(radius)) and radius.min() > 0.0):
         raise InputError(Fault("radii", float(radius.min()), "every radius must be a length", "m", "> 0"))
     fraction = float(np.pi * np.sum(radius**2) / (size[0] * size[1]))
-    if fraction > DENSEST:
-        raise InputError(
-            Fault(
-                "packing_fraction",
-                round(fraction, 4),
-                "denser than random placement reaches",
-                "",
-                f"<= {DENSEST}",
-                "place loosely and compact by gravity or moving walls",
-            )
-        )
+    _check_fraction(round(fraction, 4), fraction)
     largest = 2.0 * float(radius.max(initial=0.0))
     if largest > min(size):
         raise InputError(Fault("diameter", largest, "a disc is larger than the box", "m", f"<= {min(size):.6g}"))
     start = rng.uniform((0.0, 0.0), size, (len(radius), 2))
     position, sweeps = slide_apart(start, radius, size, periodic, fraction)
     return Placement(position + np.array(lower), radius, fraction, sweeps)
+
+
+def _check_fraction(shown: float, fraction: float) -> None:
+    if fraction > DENSEST:
+        repair = "place loosely and compact by gravity or moving walls"
+        problem = "denser than random placement reaches"
+        raise InputError(Fault("packing_fraction", shown, problem, "", f"<= {DENSEST}", repair))
 
 
 def part(position: Floats, radius: Floats) -> Floats:
@@ -106,25 +103,15 @@ def draw_radii(
     """Radii (n,) m of discs of mean ``diameter`` (1 ± spread, uniform) in a box of ``area`` m²; two of three given."""
     given = {"diameter": diameter, "count": count, "packing_fraction": packing_fraction}
     if sum(value is not None for value in given.values()) != 2:
-        raise InputError(
-            Fault("placement", None, f"give exactly two of {', '.join(given)}", repair="the third follows")
-        )
+        problem = f"give exactly two of {', '.join(given)}"
+        raise InputError(Fault("placement", None, problem, repair="the third follows"))
     for name, value in given.items():
         if value is not None and not 0.0 < value < np.inf:
             raise InputError(Fault(name, value, "out of range", "m" if name == "diameter" else "", "> 0"))
     if not 0.0 <= spread < 1.0:
         raise InputError(Fault("spread", spread, "out of range", "", "0 <= spread < 1"))
-    if packing_fraction is not None and packing_fraction > DENSEST:
-        raise InputError(
-            Fault(
-                "packing_fraction",
-                packing_fraction,
-                "denser than random placement reaches",
-                "",
-                f"<= {DENSEST}",
-                "place loosely and compact by gravity or moving walls",
-            )
-        )
+    if packing_fraction is not None:
+        _check_fraction(packing_fraction, packing_fraction)
     if count is not None:
         relative = 1.0 + spread * rng.uniform(-1.0, 1.0, count)
         if diameter is None:
@@ -185,15 +172,9 @@ def slide_apart(
             velocity[:] = 0.0
             step, mixing, uphill = 0.5 * step, 0.1, 0
         glide(x, velocity, force, step, mixing)
-    raise InputError(
-        Fault(
-            "packing_fraction",
-            round(fraction, 4),
-            f"discs still overlap by {worst:.2g} mean diameters after {MOST_SWEEPS} sweeps",
-            "",
-            repair="lower the fraction, widen the spread of sizes or take another seed",
-        )
-    )
+    problem = f"discs still overlap by {worst:.2g} mean diameters after {MOST_SWEEPS} sweeps"
+    repair = "lower the fraction, widen the spread of sizes or take another seed"
+    raise InputError(Fault("packing_fraction", round(fraction, 4), problem, repair=repair))
 
 
 @kernel

@@ -4,13 +4,10 @@ import cv2
 import numpy as np
 
 from porescale.common.core.types import AnyArray
-from porescale.common.pictures.look import GRAIN, PAPER, PLATE, RIM, WALL, Survey, magnitude, rgb
+from porescale.common.pictures.look import GRAIN, ONE, PAPER, PLATE, RIM, SHIFT, WALL, Survey, magnitude, rgb
 from porescale.common.pictures.shapes import paint_marks, paint_shapes
 from porescale.common.record.model import Cloud, Grid, Snapshot
 
-SHIFT = 4
-"""OpenCV coordinates in sixteenths of a pixel."""
-ONE = 1 << SHIFT
 SPECK = 4.0
 """Arrows shorter than this many pixels are left out."""
 
@@ -52,9 +49,10 @@ class Canvas:
             self._arrows(image, grid)
         lines = self.look.lines(snapshot) if callable(self.look.lines) else self.look.lines
         for ends in lines:
-            at, thick = self.pixels(np.array(ends, float)), max(2, self.width // 250)
-            self._line(image, at, rgb(RIM), thick + 2)
-            self._line(image, at, rgb(PLATE), thick)
+            start, end = np.rint(self.pixels(np.array(ends, float)) * ONE).astype(int).tolist()
+            thick = max(2, self.width // 250)
+            cv2.line(image, start, end, rgb(RIM), thick + 2, cv2.LINE_AA, SHIFT)
+            cv2.line(image, start, end, rgb(PLATE), thick, cv2.LINE_AA, SHIFT)
         if self.look.marks and len(marks := self.look.marks(snapshot)):
             paint_marks(image, self.pixels(np.array(marks, float).reshape(-1, 2)).reshape(-1, 2, 2))
         return image
@@ -108,14 +106,12 @@ class Canvas:
         colours = self._colours(cloud)[seen].tolist()
         centres, radii = np.rint(at[seen] * ONE).astype(int).tolist(), size[seen]
         rim, rim_colour = np.clip(0.08 * radii, 0.7, 2.0), rgb(RIM)
-        whole, inner = (np.rint(radii * ONE).astype(int).tolist(), np.rint((radii - rim) * ONE).astype(int).tolist())
+        whole, inner = (np.rint(it * ONE).astype(int).tolist() for it in (radii, radii - rim))
         rimmed = discs & (radii >= 2.5)
         for centre, outer, core, edge, colour in zip(centres, whole, inner, rimmed.tolist(), colours, strict=True):
             if edge:
                 cv2.circle(image, centre, outer, rim_colour, -1, cv2.LINE_AA, SHIFT)
-                cv2.circle(image, centre, core, colour, -1, cv2.LINE_AA, SHIFT)
-            else:
-                cv2.circle(image, centre, outer, colour, -1, cv2.LINE_AA, SHIFT)
+            cv2.circle(image, centre, core if edge else outer, colour, -1, cv2.LINE_AA, SHIFT)
         if discs and "angle" in cloud.data:
             self._spokes(image, at[seen], radii, np.asarray(cloud.data["angle"], float)[seen])
 
@@ -159,11 +155,6 @@ class Canvas:
             outline = [np.rint(shape * ONE).astype(np.int32)]
             cv2.fillPoly(image, outline, rgb(PAPER), cv2.LINE_AA, SHIFT)
             cv2.polylines(image, outline, True, rgb(RIM), 1, cv2.LINE_AA, SHIFT)
-
-    def _line(self, image: AnyArray, ends: AnyArray, colour: tuple[int, int, int], thickness: int) -> None:
-        """A segment between two pixel positions, (2, 2)."""
-        start, end = np.rint(ends * ONE).astype(int).tolist()
-        cv2.line(image, start, end, colour, thickness, cv2.LINE_AA, SHIFT)
 
 
 def _arrow(middle: AnyArray, along: AnyArray, length: float) -> AnyArray:

@@ -20,6 +20,9 @@ View = tuple[float, float, float, float]
 
 SEQUENTIAL, DIVERGING = "viridis", "RdBu_r"
 GRAIN, RIM, WALL, PLATE, PAPER = "#ece3cf", "#3b352b", "#565a61", "#c3c8d0", "#ffffff"
+SHIFT = 4
+"""OpenCV coordinates in sixteenths of a pixel."""
+ONE = 1 << SHIFT
 SHARE = 99.5
 """Colours end at this percentile of all values: one outlier must not darken a film."""
 

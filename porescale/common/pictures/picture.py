@@ -61,17 +61,13 @@ class Painter:
         image = self.background.copy()
         inside = image[self.y : self.y + self.height, self.x : self.x + self.width]
         inside[:] = self.canvas.draw(snapshot, over_field)
-        self._frame(image)
+        corners = (self.x - 1, self.y - 1), (self.x + self.width, self.y + self.height)
+        cv2.rectangle(image, *corners, (40, 40, 40), 1)  # the axes' frame, over the edge of the inside
         label = _text(time_text(snapshot.time, self.survey.longest, self.survey.look.plain), 11 * self.unit)
         tall, wide = label.shape[:2]
         bottom, right = self.y - round(3 * self.unit), max(self.x + self.width, wide)
         image[bottom - tall : bottom, right - wide : right] = label
         return image
-
-    def _frame(self, image: AnyArray) -> None:
-        """The axes' frame, over the edge of the inside."""
-        corners = (self.x - 1, self.y - 1), (self.x + self.width, self.y + self.height)
-        cv2.rectangle(image, *corners, (40, 40, 40), 1)
 
     def _background(self) -> AnyArray:
         """Axes, title and bars without the inside."""

@@ -4,12 +4,9 @@ import cv2
 import numpy as np
 
 from porescale.common.core.types import AnyArray
-from porescale.common.pictures.look import PLATE, RIM, rgb
+from porescale.common.pictures.look import ONE, PLATE, RIM, SHIFT, rgb
 from porescale.common.record.model import Cloud
 
-SHIFT = 4
-"""OpenCV coordinates in sixteenths of a pixel."""
-ONE = 1 << SHIFT
 LEAST = 1.5
 """Pixels that a segment is wide at the least: a thin one is to be seen."""
 CRACK = "#c0182b"

@@ -40,31 +40,30 @@ def write_checkpoint(path: Path, content: dict[str, Any]) -> None:
         _store(file, "tree", np.frombuffer(json.dumps(tree).encode(), np.uint8))
 
 
-def read_checkpoint(path: Path) -> dict[str, Any]:
-    """What :func:`write_checkpoint` was given, arrays in C order.  InputError when absent or damaged."""
+def read_checkpoint(path: Path, skip: str = "") -> dict[str, Any]:
+    """What :func:`write_checkpoint` was given, arrays in C order, without the top-level entry ``skip``.
+
+    InputError when absent or damaged.
+    """
+    anew = "start the run anew, or take the checkpoint from a backup"
     try:
         with h5py.File(path, "r") as file:
-            content = _decode(_tree(file), file["arrays"])
+            tree = _tree(file)
+            if isinstance(tree, dict) and skip:
+                tree = {"dict": [item for item in tree["dict"] if item[0] != skip]}
+            content = _decode(tree, file["arrays"])
     except FileNotFoundError:
         raise _fault(path, "there is none", "start the run without resuming") from None
     except (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, IndexError, OverflowError) as error:
-        raise _damaged(path, error) from error
+        raise _fault(path, f"damaged ({' '.join(str(error).split())[:120]})", anew) from error
     if not isinstance(content, dict):
-        raise _fault(path, "holds no state", "start the run anew, or take the checkpoint from a backup")
+        raise _fault(path, "holds no state", anew)
     return content
 
 
-def read_header(path: Path, skip: str = "state") -> dict[str, Any]:
-    """The checkpoint's top-level entries without the entry ``skip``: quick, whatever the state's size."""
-    try:
-        with h5py.File(path, "r") as file:
-            items = [item for item in _tree(file)["dict"] if item[0] != skip]
-            header: dict[str, Any] = _decode({"dict": items}, file["arrays"])
-    except FileNotFoundError:
-        raise _fault(path, "there is none", "start the run without resuming") from None
-    except (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, IndexError, OverflowError) as error:
-        raise _damaged(path, error) from error
-    return header
+def read_header(path: Path) -> dict[str, Any]:
+    """The checkpoint's top-level entries without the state: quick, whatever its size."""
+    return read_checkpoint(path, skip="state")
 
 
 def _tree(file: h5py.File) -> Any:
@@ -149,9 +148,3 @@ def _decode(node: Any, arrays: h5py.Group) -> Any:
 
 def _fault(path: Path, problem: str, repair: str) -> InputError:
     return InputError(Fault("checkpoint", str(path), problem, repair=repair))
-
-
-def _damaged(path: Path, error: Exception) -> InputError:
-    """One line for a file that cannot be read."""
-    reason = " ".join(str(error).split())[:120]
-    return _fault(path, f"damaged ({reason})", "start the run anew, or take the checkpoint from a backup")

@@ -1,7 +1,7 @@
 """Drive a model through time and keep its record.  The loop handles steps, events and files, no physics."""
 
 import time as clock
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -54,7 +54,6 @@ def drive(
     quiet: bool = False,
     after: Callable[[Path], object] | None = None,
     meanwhile: Callable[[Path], object] | None = None,
-    free: Collection[str] = cards.FREE,
     today: Today | None = None,
 ) -> Outcome:
     """Advance ``model`` to ``duration`` (s) and write the run folder.
@@ -66,8 +65,8 @@ def drive(
     a snapshot is on disk.
 
     resume : go on from the checkpoint, bit for bit as the uninterrupted run; without a checkpoint it starts
-    from the beginning, and a finished run is left alone.  The scene must be the same but for keys named in
-    ``free``: the duration may grow, intervals may change (they count from time 0).  Keys that came after the run are
+    from the beginning, and a finished run is left alone.  The scene must be the same but for the keys
+    `card.FREE`: the duration may grow, intervals may change (they count from time 0).  Keys that came after the run are
     the same where they do nothing that it did not do, by ``today``.  Other sources or versions than the run had
     are warned of on stderr.
 
@@ -94,7 +93,7 @@ def drive(
         name = str(card.get("name") or folder.name)
         resume = resume and (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists()
         if resume:
-            check_changes(folder, card, free, today)
+            check_changes(folder, card, today)
             done = _already(folder, run)
             if done is not None:
                 text = f"{folder}: finished at t = {done.time:.6g} s, nothing to do"
@@ -107,16 +106,14 @@ def drive(
             return _watched(run, record, watch, after)
 
 
-def check_resume(
-    folder: Path, card: dict[str, Any], free: Collection[str] = cards.FREE, today: Today | None = None
-) -> None:
+def check_resume(folder: Path, card: dict[str, Any], today: Today | None = None) -> None:
     """InputError where the run in ``folder`` cannot be gone on with, with the ``card`` of this run (as of `drive`).
 
     What can be checked without a model, which may take long to build: whether it is this scene's, and whether its
     checkpoint is one and valid.  Nothing where there is no checkpoint yet.
     """
     if (folder / CHECKPOINT).exists() and (folder / cards.NAME).exists():
-        check_changes(folder, card, free, today)
+        check_changes(folder, card, today)
         check_state(folder)
 
 
@@ -256,8 +253,7 @@ def _already(folder: Path, run: _Run) -> Outcome | None:
         require_same_run(folder, reached, card)
         count = len(snapshots.catalogue(folder))
         return Outcome(folder, "already finished", step, time, reached.seconds, count, 0.0)
-    past = step > run.last_step if run.step_seconds is not None else False
-    if past:
+    if run.step_seconds is not None and step > run.last_step:
         problem = f"the run is already at t = {time:.6g} s"
         raise InputError(Fault("duration", run.duration, problem, unit="s", repair="name a later end"))
     return None

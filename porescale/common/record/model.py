@@ -8,8 +8,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, Protocol, runtime_checkable
 
-import numpy as np
-
 from porescale.common.core.types import AnyArray
 
 
@@ -137,10 +135,3 @@ def tables_of(model: Model) -> dict[str, dict[str, float]]:
     """Rows of the model's further time series by file name without suffix; none if it has no ``tables``."""
     rows: dict[str, dict[str, float]] = getattr(model, "tables", dict)()
     return rows
-
-
-def with_depth(points: AnyArray) -> AnyArray:
-    """(n, 2) -> (n, 3) with zeros, float64: what VTK calls points."""
-    flat = np.zeros((len(points), 3))
-    flat[:, :2] = points
-    return flat

@@ -44,10 +44,8 @@ def require_format(place: Path, what: str, found: object, reads: int) -> None:
         if operator.index(found) == reads:
             return
         if operator.index(found) > reads:
-            problem, repair = f"{what} was written by a newer version", "read it with that version"
-            raise InputError(
-                Fault("run folder", str(place), f"{problem} (format {found})", "", f"format {reads}", repair)
-            )
+            problem, repair = f"{what} was written by a newer version (format {found})", "read it with that version"
+            raise InputError(Fault("run folder", str(place), problem, "", f"format {reads}", repair))
     problem = f"{what} is damaged or of no known format ({str(found)[:40]!r})"
     raise InputError(Fault("run folder", str(place), problem, "", f"format {reads}", "take it from a backup"))
 

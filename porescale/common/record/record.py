@@ -8,7 +8,7 @@ start.
 
 import sys
 import time as clock
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -77,7 +77,7 @@ class Record:
         """
         if (folder / cards.NAME).exists():
             if not overwrite:
-                _refuse_to_lose(folder)
+                _require_replaceable(folder)
             snapshots.clear(folder)
             older = [f"{name}.csv" for name in _tables_of_run(folder)]
             for name in (SERIES, *older, CHECKPOINT, *MADE_LATER, cards.NAME):
@@ -216,17 +216,17 @@ class Record:
         cards.write_card(self.folder, self.card)
 
 
-def check_changes(folder: Path, given: dict[str, Any], free: Collection[str], today: Today | None = None) -> None:
+def check_changes(folder: Path, given: dict[str, Any], today: Today | None = None) -> None:
     """InputError naming every scene key that must not differ from the run in ``folder``; or whose run that is.
 
     Keys that came after that run are filled in by ``today`` with values that continue it unchanged.
     """
     old, new = cards.read_card(folder, given.get("package"))["scene"], cards.plain(given).get("scene")
     whole: Any = old
-    if today is not None and isinstance(old, Mapping) and cards.changed_keys(old, new, free):
+    if today is not None and isinstance(old, Mapping) and cards.changed_keys(old, new):
         whole = cards.plain(today(old))
     faults = []
-    for key, (was, now) in cards.changed_keys(whole, new, free).items():
+    for key, (was, now) in cards.changed_keys(whole, new).items():
         problem, way = f"was {was!r}", f"resume with {was!r}, or "
         if not cards.has_key(old, key):
             problem = "the run was begun by a version without it"
@@ -258,7 +258,7 @@ def _tables_of_run(folder: Path) -> list[str]:
         return []
 
 
-def _refuse_to_lose(folder: Path) -> None:
+def _require_replaceable(folder: Path) -> None:
     """InputError when ``folder`` holds an unfinished run worth keeping."""
     try:
         outcome = cards.read_card(folder).get("outcome")

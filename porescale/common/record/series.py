@@ -67,11 +67,7 @@ def require_length(path: Path, keep: int) -> None:
 
 def _plain(value: float) -> float | int:
     """A Python number: ``repr`` of a numpy scalar would carry its type."""
-    if isinstance(value, bool | np.bool_):
-        return int(value)
-    if isinstance(value, int | np.integer):
-        return int(value)
-    return float(value)
+    return int(value) if isinstance(value, int | np.bool_ | np.integer) else float(value)
 
 
 def _line(cells: list[str]) -> bytes:
@@ -108,7 +104,6 @@ def read_series(path: Path) -> dict[str, AnyArray]:
     except (ValueError, csv.Error) as error:
         reason = " ".join(str(error).split())
         repair = "run it again, or take the file from a backup"
-        raise InputError(
-            Fault(f"line {number + 1}", None, f"is damaged ({reason})", repair=repair, file=str(path))
-        ) from None
+        fault = Fault(f"line {number + 1}", None, f"is damaged ({reason})", repair=repair, file=str(path))
+        raise InputError(fault) from None
     return {name: table[:, column].copy() for column, name in enumerate(rows[0])}

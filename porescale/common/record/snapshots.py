@@ -31,7 +31,7 @@ def damaged(folder: Path, error: BaseException) -> InputError:
 
 
 @contextmanager
-def damage_told(folder: Path) -> Iterator[None]:
+def damage_as_input_error(folder: Path) -> Iterator[None]:
     """What reading a damaged file raises as InputError; what the system says of the disk as it is."""
     try:
         yield
@@ -76,7 +76,7 @@ def catalogue(folder: Path) -> dict[int, dict[str, Frame]]:
     damaged.
     """
     found: dict[int, dict[str, Frame]] = {}
-    with damage_told(folder):
+    with damage_as_input_error(folder):
         for step, part in parts(folder).items():
             found[step] = {name: frames[0] for name, frames in joined(part).items()}
         for name, frames in joined(folder).items():
@@ -111,7 +111,7 @@ def trim(folder: Path, last: int) -> None:
     for step, part in parts(folder).items():
         if step > last:
             shutil.rmtree(part)
-    with damage_told(folder):
+    with damage_as_input_error(folder):
         frames = joined(folder)
     if any(frame.step > last for many in frames.values() for frame in many):
         kept = {step: entry for step, entry in catalogue(folder).items() if step <= last}
@@ -125,7 +125,7 @@ def trim(folder: Path, last: int) -> None:
 def _rewrite(folder: Path, entries: dict[int, dict[str, Frame]]) -> None:
     """Write each joined file anew from the catalogue's ``entries``."""
     names = {name for entry in entries.values() for name in entry}
-    with damage_told(folder):
+    with damage_as_input_error(folder):
         for name in sorted(names):
             vtkhdf.join(Path(folder) / f"{name}.vtkhdf", [entry[name] for entry in entries.values() if name in entry])
 

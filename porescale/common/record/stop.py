@@ -19,10 +19,10 @@ class StopRequest:
     """Truthy once a stop of the run was requested."""
 
     def __init__(self) -> None:
-        self.asked = False
+        self.requested = False
 
     def __bool__(self) -> bool:
-        return self.asked
+        return self.requested
 
 
 @contextmanager
@@ -38,13 +38,12 @@ def polite_stop() -> Iterator[StopRequest]:
     before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
 
     def restore() -> None:
-        """Signals mean again what they did before."""
         for number, handler in before.items():
             signal.signal(number, handler if handler is not None else signal.SIG_DFL)
 
     def ask(number: int, frame: FrameType | None) -> None:
         """Note the first signal; a second one ends the process as it would have without this."""
-        request.asked = True
+        request.requested = True
         restore()
 
     for number in before:

@@ -21,7 +21,7 @@ import numpy as np
 
 from porescale.common.core.hdf5 import writing
 from porescale.common.core.types import AnyArray
-from porescale.common.record.model import Cloud, Grid, with_depth
+from porescale.common.record.model import Cloud, Grid
 from porescale.common.record.read_card import require_format
 from porescale.common.record.vtkhdf_cells import NO_CELLS, TOPOLOGIES, Cells, cells_of, read_cells, with_cells
 
@@ -70,7 +70,7 @@ def write_frame(path: Path, name: str, block: Grid | Cloud, step: int, time: flo
             count = len(block.position)
             columns = {key: _column(key, array, (count,), block.units) for key, array in arrays.items()}
             points, data = _points(file, name, columns, [count], [step], [time], [cells_of(block)])
-            _fill(points, slice(0, count), with_depth(block.position))
+            _fill(points, slice(0, count), np.pad(block.position, ((0, 0), (0, 1))))
             for key, array in arrays.items():
                 _fill(data[key], slice(0, count), array)
 
@@ -287,7 +287,8 @@ def _kind(file: h5py.File) -> str:
 def _geometry(file: h5py.File) -> tuple[tuple[float, float], tuple[float, float]]:
     """Origin and spacing of a grid in the plane, m."""
     at = file["VTKHDF"].attrs
-    return (float(at["Origin"][0]), float(at["Origin"][1])), (float(at["Spacing"][0]), float(at["Spacing"][1]))
+    (x, y, _), (dx, dy, _) = at["Origin"].tolist(), at["Spacing"].tolist()
+    return (x, y), (dx, dy)
 
 
 def _columns(file: h5py.File) -> dict[str, Column]:

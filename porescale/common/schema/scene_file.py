@@ -22,11 +22,10 @@ def find(path: Path) -> Path:
     except OSError as error:  # a name too long, a folder that may not be looked into
         raise InputError(Fault("SCENE", problem=f"cannot be read ({error.strerror})", repair="name another")) from None
     looked = f"looked for the file {file}" if folder else f"looked for a file or folder {path}"
-    meant = [str(it) for it in (path.parent / f"{name}.toml" for name in (path.name, path.stem)) if is_file(it)]
+    repair = f"{looked}; give a TOML file or a folder with {SCENE_FILE}"
+    meant = [it for it in (path.parent / f"{name}.toml" for name in (path.name, path.stem)) if is_file(it)]
     if not folder and meant:
         repair = f"did you mean {meant[0]}?"
-    else:
-        repair = f"{looked}; give a TOML file or a folder with {SCENE_FILE}"
     raise InputError(Fault(str(path), problem="no scene here", repair=repair))
 
 
@@ -60,14 +59,12 @@ def read(file: Path) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         text, _, place = str(error).partition(" (at ")
         place = place.replace("end of document", f"line {len(file.read_text().splitlines())}, end of file")
-        raise InputError(
-            Fault(place.rstrip(")"), problem=text, repair="correct the TOML there", file=str(file))
-        ) from None
+        fault = Fault(place.rstrip(")"), problem=text, repair="correct the TOML there", file=str(file))
+        raise InputError(fault) from None
     except UnicodeDecodeError as error:
         line = error.object[: error.start].count(b"\n") + 1
-        raise InputError(
-            Fault(f"line {line}", problem="is not UTF-8 text", repair="save it as UTF-8", file=str(file))
-        ) from None
+        fault = Fault(f"line {line}", problem="is not UTF-8 text", repair="save it as UTF-8", file=str(file))
+        raise InputError(fault) from None
     except ValueError as error:  # a number of thousands of digits
         raise InputError(Fault("TOML", problem=str(error).partition(";")[0], file=str(file))) from None
     except OSError as error:
@@ -110,15 +107,8 @@ def parse_setting(text: str) -> tuple[Key, Any]:
     """``section.key=value`` as key and value (a TOML value, else the text itself); else InputError."""
     name, equals, value = text.partition("=")
     if not equals or not re.fullmatch(r"[\w-]+(\[\d+\])*(\.[\w-]+(\[\d+\])*)*", name.strip()):
-        raise InputError(
-            Fault(
-                repr(text),
-                None,
-                "is not section.key=value",
-                file="--set",
-                repair="write it as --set fluid.spacing=0.001",
-            )
-        )
+        repair = "write it as --set fluid.spacing=0.001"
+        raise InputError(Fault(repr(text), None, "is not section.key=value", file="--set", repair=repair))
     key = parse_key(name.strip())
     try:
         parsed = tomllib.loads(f"value = {value}")
@@ -145,16 +135,9 @@ def _assigned(below: Any, key: Key, value: Any, above: Key) -> Any:
     if isinstance(below, list):
         if not isinstance(part, int) or part >= len(below):
             allowed = f"0 to {len(below) - 1}" if below else "none: the list is empty"
-            fault = Fault(
-                dotted((*above, part)),
-                None,
-                "no such entry of a list",
-                "",
-                allowed,
-                "name one, as in grains[0].radius=…",
-                "--set",
-            )
-            raise InputError(fault)
+            repair = "name one, as in grains[0].radius=…"
+            place = dotted((*above, part))
+            raise InputError(Fault(place, None, "no such entry of a list", "", allowed, repair, "--set"))
         return [*below[:part], _assigned(below[part], rest, value, (*above, part)), *below[part + 1 :]]
     tables = below if isinstance(below, Mapping) else {}
     name = str(part)

@@ -59,7 +59,7 @@ class Section(BaseModel):
             """``value`` validated, with the faults that a section raises."""
             try:
                 made = inner(cls._spell_booleans(value))
-                faults = [fault for check in cls.checks for fault in check(made)]
+                faults = made._faults() or [fault for check in cls.checks for fault in check(made)]
             except InputError as error:
                 raise Refused(*error.faults) from None
             if faults:
@@ -67,6 +67,10 @@ class Section(BaseModel):
             return made
 
         return core_schema.no_info_wrap_validator_function(collect, handler(source))
+
+    def _faults(self) -> list[Fault]:
+        """What is wrong with the section by itself, whose fields are valid; ``checks`` follow where nothing is."""
+        return []
 
     @classmethod
     def _spell_booleans(cls, table: Any) -> Any:
@@ -129,7 +133,7 @@ def open_scene(
     """`load`, with what a command needs besides.  Later wins: scene, quality level, overrides."""
     file = scene_file.find(Path(path))
     table = scene_file.read(file)
-    _refuse_another(scene_type, table, file)
+    _require_own_program(scene_type, table, file)
     levels, level, faults = _levels(table, quality)
     base = {name: value for name, value in table.items() if name not in ("quality", "quality_default")}
     written = scene_file.merge(base, levels[level]) if level else base
@@ -151,7 +155,7 @@ def open_scene(
     return Opened(scene, file, scene_file.name_of(file), level, tuple(levels), tuple(overrides))
 
 
-def _refuse_another(scene_type: type[Section], table: Mapping[str, Any], file: Path) -> None:
+def _require_own_program(scene_type: type[Section], table: Mapping[str, Any], file: Path) -> None:
     """InputError, one line in place of one for every section, where a scene is another program's."""
     own = {name for name, field in scene_type.model_fields.items() if field.is_required()}
     if not own <= table.keys():
@@ -197,25 +201,21 @@ def _try(
         return None, translate(error, scene_type, table)
 
 
-def _levels(table: Mapping[str, Any], asked: str | None) -> tuple[dict[str, dict[str, Any]], str | None, list[Fault]]:
+def _levels(table: Mapping[str, Any], chosen: str | None) -> tuple[dict[str, dict[str, Any]], str | None, list[Fault]]:
     """Quality levels of a scene file, the one to use (None: none), and what is wrong with them."""
     given, default = table.get("quality", {}), table.get("quality_default")
     if not isinstance(given, Mapping):
-        return (
-            {},
-            None,
-            [Fault("quality", problem="is not a table of levels", repair="write [quality.draft] and so on")],
-        )
+        fault = Fault("quality", problem="is not a table of levels", repair="write [quality.draft] and so on")
+        return {}, None, [fault]
     faults = []
     for name, entries in given.items():
         if name not in LEVELS:
-            faults.append(
-                Fault(f"quality.{name}", None, "unknown level", "", ", ".join(LEVELS), nearest(name, LEVELS, "levels"))
-            )
+            repair = nearest(name, LEVELS, "levels")
+            faults.append(Fault(f"quality.{name}", None, "unknown level", "", ", ".join(LEVELS), repair))
         elif not isinstance(entries, Mapping):
             faults.append(Fault(f"quality.{name}", entries, "is not a table", repair=f"write [quality.{name}.section]"))
     levels = {name: dict(given[name]) for name in LEVELS if isinstance(given.get(name), Mapping)}
-    level, key = (asked, "--quality") if asked is not None else (default, "quality_default")
+    level, key = (chosen, "--quality") if chosen is not None else (default, "quality_default")
     if level is not None and level not in levels:
         has = ", ".join(levels)
         repair = f"choose one of these or add [quality.{level}]" if has else f"add [quality.{level}] or leave it out"

@@ -73,12 +73,12 @@ class Promise:
 def repeat(package: Package, scene: Path, which: int = 1) -> Promise:
     """Predicted error and time of a point of the front beside ``scene``, 1 the cheapest, and a new run of it."""
     front = read_front(scene)
-    asked = replace(front, points=front.points[which - 1 :][:1])
-    if not asked.points:
-        raise InputError(Fault("--size", which, "is no point of the front", "", f"1 to {len(front.points)}"))
-    point = asked.points[0]
+    chosen = replace(front, points=front.points[which - 1 :][:1])
+    if not chosen.points:
+        raise InputError(Fault("--size", which, "is not a point of the front", "", f"1 to {len(front.points)}"))
+    point = chosen.points[0]
     opened = open_scene(scene, package.scene(), quality=point.quality, overrides=settings(point))
-    choice = choose(asked, point.error, None, lambda _: begun(lambda: package.build(opened.scene)))
+    choice = choose(chosen, point.error, None, lambda _: begun(lambda: package.build(opened.scene)))
     with tempfile.TemporaryDirectory() as made:
         folder, before = Path(made) / "run", time.perf_counter()
         model = package.build(opened.scene)
@@ -89,10 +89,8 @@ def repeat(package: Package, scene: Path, which: int = 1) -> Promise:
 
 def compare(choice: Choice, took: float, card: Mapping[str, Any], said: float, found: float | None) -> Promise:
     """A choice of a front beside its run: seconds, card, and the error expected and found in what can be compared."""
-    core_took = float(card["core_seconds"])
-    return Promise(
-        choice.point.label, choice.seconds, took, choice.core_seconds, core_took, said, choice.point.scatter, found
-    )
+    point, core_took = choice.point, float(card["core_seconds"])
+    return Promise(point.label, choice.seconds, took, choice.core_seconds, core_took, said, point.scatter, found)
 
 
 def settings(point: FrontPoint) -> tuple[str, ...]:
@@ -105,12 +103,12 @@ def error_of(package: Package, front: Front, point: FrontPoint, folder: Path) ->
     whose answers it keeps: numbers, not curves and fields.  The error in all quantities and None where there are none.
     """
     table = json.loads(front.file.read_text(encoding="utf-8"))
-    told = (table.get("references") or [{}])[0]
-    asked = [validate(Quantity, row) for row in table["quantities"] if row["name"] in told]
-    if not asked:
+    answers = (table.get("references") or [{}])[0]
+    known = [validate(Quantity, row) for row in table["quantities"] if row["name"] in answers]
+    if not known:
         return point.error, None
-    distances = [(measured(package.table(folder, it.file), it.row()) - told[it.name][0]) / it.scale for it in asked]
-    return rms([point.errors[it.name] for it in asked]), rms(distances)
+    distances = [(measured(package.table(folder, it.file), it.row()) - answers[it.name][0]) / it.scale for it in known]
+    return rms([point.errors[it.name] for it in known]), rms(distances)
 
 
 def benchmark(package: Package, case: Path) -> Benchmarks:

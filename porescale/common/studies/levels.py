@@ -59,7 +59,11 @@ def picked(front: Front) -> dict[str, FrontPoint]:
 def compared(package: Package, scene: Path) -> list[Picked]:
     """What the rule picks from the front beside the scene file, and where the levels of the scene differ from it."""
     return [
-        Picked(level, point, tuple(_differences(_opened(package, scene, level, ()), _point(package, scene, point))))
+        Picked(
+            level,
+            point,
+            _differences(_opened(package, scene, level, ()), _opened(package, scene, point.quality, point.settings)),
+        )
         for level, point in picked(read_front(scene)).items()
     ]
 
@@ -69,16 +73,12 @@ def apart(rows: list[Picked]) -> float:
     return rows[-1].point.core_seconds / rows[0].point.core_seconds
 
 
-def _point(package: Package, scene: Path, point: FrontPoint) -> dict[str, Any]:
-    return _opened(package, scene, point.quality, point.settings)
-
-
 def _opened(package: Package, scene: Path, quality: str | None, settings: tuple[str, ...]) -> dict[str, Any]:
     return scene_as_dict(open_scene(scene, package.scene(), quality=quality, overrides=settings).scene)
 
 
-def _differences(has: Mapping[str, Any], should: Mapping[str, Any]) -> list[str]:
+def _differences(has: Mapping[str, Any], should: Mapping[str, Any]) -> tuple[str, ...]:
     """Keys in which two scenes differ."""
     old, new = dict(flat(has)), dict(flat(should))
     keys = sorted(key for key in old.keys() | new.keys() if old.get(key) != new.get(key))
-    return [f"{key} = {old.get(key)}, the point {new.get(key)}" for key in keys]
+    return tuple(f"{key} = {old.get(key)}, the point {new.get(key)}" for key in keys)

@@ -12,6 +12,7 @@ options  ``--vary contact.friction=0.2,0.5``, repeatable: every combination.
 import csv
 import itertools
 import json
+import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -46,7 +47,7 @@ def read_points(path: Path) -> list[Point]:
     except InputError as error:
         raise error.in_file(str(path)) from None
     if not rows:
-        raise InputError(Fault("points", None, "are none", file=str(path), repair="give a row for each run"))
+        raise InputError(Fault("points", None, "there are none", file=str(path), repair="give a row for each run"))
     return named(rows)
 
 
@@ -63,8 +64,7 @@ def varied(options: Sequence[str]) -> list[Point]:
             repair = "write it as --vary contact.friction=0.2,0.5"
             raise InputError(Fault(repr(option), None, "is not key=a,b,c", file="--vary", repair=repair))
         lists.append([f"{key.strip()}={part}" for part in parts])
-    _refuse_too_many([len(part) for part in lists])
-    return named([Point("", settings) for settings in itertools.product(*lists)])
+    return named(_combinations(lists))
 
 
 def crossed(points: Sequence[Point], others: Sequence[Point]) -> list[Point]:
@@ -114,7 +114,7 @@ def _of_csv(path: Path) -> Iterator[Point]:
         at = error.object[: error.start].count(b"\n") + 1
         raise InputError(Fault(f"line {at}", None, "is not UTF-8 text", repair="save it as UTF-8")) from None
     except csv.Error as error:
-        raise InputError(Fault("table", None, f"is no CSV ({error})")) from None
+        raise InputError(Fault("table", None, f"is not valid CSV ({error})")) from None
     head = [name.strip() for name in lines[0]] if lines else []
     if len(set(head)) < len(head) or not all(head):
         raise InputError(Fault("line 1", ", ".join(head), "is not a name for every column, each once"))
@@ -147,17 +147,15 @@ def _of_toml(path: Path) -> Iterator[Point]:
             if not isinstance(values, list) or not values:
                 raise InputError(Fault(f"vary.{key}", str(values), "is not a list of values"))
             choices.append([f"{key}={literal(value, key)}" for value in values])
-        _refuse_too_many([len(part) for part in choices])
-        for settings in itertools.product(*choices):
-            yield Point("", settings)
+        yield from _combinations(choices)
 
 
-def _refuse_too_many(counts: Sequence[int]) -> None:
-    product = 1
-    for count in counts:
-        product *= count
-    if product > MOST:
-        raise InputError(Fault("points", product, "are too many combinations", "", f"<= {MOST}"))
+def _combinations(lists: Sequence[Sequence[str]]) -> list[Point]:
+    """A point for every choice of one setting out of each list; InputError where they are too many."""
+    count = math.prod(map(len, lists))
+    if count > MOST:
+        raise InputError(Fault("points", count, "are too many combinations", "", f"<= {MOST}"))
+    return [Point("", settings) for settings in itertools.product(*lists)]
 
 
 def _split(text: str) -> list[str]:

@@ -66,37 +66,37 @@ class Errors:
     references: Sequence[Ended] = ()
     _kept: dict[tuple[Path, str], Answer] = field(default_factory=dict)
 
-    def answer(self, ended: Ended, asked: Quantity) -> Answer:
+    def answer(self, ended: Ended, quantity: Quantity) -> Answer:
         """The value of a quantity in a run; KeyError where it has no such column or feature."""
-        key = (ended.folder, asked.name)
+        key = (ended.folder, quantity.name)
         if key not in self._kept:
-            self._kept[key] = self._answer(ended, asked)
+            self._kept[key] = self._answer(ended, quantity)
         return self._kept[key]
 
-    def _answer(self, ended: Ended, asked: Quantity) -> Answer:
-        if asked.feature:
-            at = None if asked.at == "end" else float(str(asked.at))
-            return None, np.asarray(self.features[asked.feature](ended.folder, at), float).ravel()
-        columns = self.tables(ended.folder, asked.file)
-        if asked.is_curve:
-            return curve(columns, asked.row())
-        return None, np.array([measured(columns, asked.row())])
+    def _answer(self, ended: Ended, quantity: Quantity) -> Answer:
+        if quantity.feature:
+            at = None if quantity.at == "end" else float(str(quantity.at))
+            return None, np.asarray(self.features[quantity.feature](ended.folder, at), float).ravel()
+        columns = self.tables(ended.folder, quantity.file)
+        if quantity.is_curve:
+            return curve(columns, quantity.row())
+        return None, np.array([measured(columns, quantity.row())])
 
-    def error(self, ended: Ended, repeat: int, asked: Quantity) -> float:
+    def error(self, ended: Ended, repeat: int, quantity: Quantity) -> float:
         """How far a run is off in one quantity; infinite where it has no answer."""
-        places, values = self.answer(ended, asked)
-        if asked.exact is not None:
-            return distance(values, np.array([asked.exact]), asked.scale)
-        at, truth = self.answer(self.references[repeat], asked)
+        places, values = self.answer(ended, quantity)
+        if quantity.exact is not None:
+            return distance(values, np.array([quantity.exact]), quantity.scale)
+        at, truth = self.answer(self.references[repeat], quantity)
         if places is not None and at is not None:
             values = np.interp(at, places, values)
-        return distance(values, truth, asked.scale)
+        return distance(values, truth, quantity.scale)
 
     def answers(self) -> list[dict[str, list[float]]]:
         """Values in the references of each quantity that is a number, so that a run can be held against them later."""
-        numbers = [asked for asked in self.plan.quantity if not (asked.is_curve or asked.feature)]
+        numbers = [quantity for quantity in self.plan.quantity if not (quantity.is_curve or quantity.feature)]
         return [
-            {asked.name: self.answer(ended, asked)[1].tolist() for asked in numbers if asked.exact is None}
+            {quantity.name: self.answer(ended, quantity)[1].tolist() for quantity in numbers if quantity.exact is None}
             for ended in self.references
         ]
 
@@ -105,24 +105,22 @@ class Errors:
         if len(self.references) < 2:
             return {}
         made = {}
-        for asked in self.plan.quantity:
-            answers = [self.answer(ended, asked)[1] for ended in self.references]
-            if asked.exact is None and len({len(values) for values in answers}) == 1:
+        for quantity in self.plan.quantity:
+            answers = [self.answer(ended, quantity)[1] for ended in self.references]
+            if quantity.exact is None and len({len(values) for values in answers}) == 1:
                 mean = np.mean(answers, axis=0)
                 share = len(answers) / (len(answers) - 1)  # the mean is the sample's own
-                made[asked.name] = math.sqrt(share) * rms([distance(v, mean, asked.scale) for v in answers])
+                made[quantity.name] = math.sqrt(share) * rms([distance(v, mean, quantity.scale) for v in answers])
         return made
 
     def trade(self, knob: str, label: str, point: Point, ends: Sequence[Ended]) -> Traded:
         """What a point came to over its repeats."""
         bad = next((ended for ended in ends if ended.outcome != FINISHED), None)
         if bad is not None:
-            nothing = dict.fromkeys((asked.name for asked in self.plan.quantity), math.inf)
+            nothing = dict.fromkeys((quantity.name for quantity in self.plan.quantity), math.inf)
             return Traded(knob, label, point, bad.outcome, nothing, math.inf, 0.0, *costs(ends), problem=bad.problem)
-        table = np.array(
-            [[self.error(ended, repeat, asked) for asked in self.plan.quantity] for repeat, ended in enumerate(ends)]
-        )
-        errors = {asked.name: rms(table[:, k]) for k, asked in enumerate(self.plan.quantity)}
+        table = np.array([[self.error(ended, k, it) for it in self.plan.quantity] for k, ended in enumerate(ends)])
+        errors = {quantity.name: rms(table[:, k]) for k, quantity in enumerate(self.plan.quantity)}
         each = [rms(row) for row in table]
         scatter = float(np.std(each, ddof=1)) if len(each) > 1 and np.isfinite(each).all() else 0.0
         return Traded(knob, label, point, FINISHED, errors, rms(each), scatter, *costs(ends))

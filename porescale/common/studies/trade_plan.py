@@ -122,10 +122,10 @@ class Plan(Section):
 
     @pydantic.model_validator(mode="after")
     def _has_reference(self) -> "Plan":
-        if self.reference is None and any(asked.exact is None for asked in self.quantity):
+        if self.reference is None and any(it.exact is None for it in self.quantity):
             repair = "add [reference], a run finer than all, or exact values"
             raise Refused(Fault("reference", None, "is absent, and not every quantity is exact", repair=repair))
-        names = [asked.name for asked in self.quantity]
+        names = [it.name for it in self.quantity]
         if len(set(names)) < len(names):
             raise Refused(Fault("quantity", ", ".join(names), "have one name twice"))
         return self

@@ -76,8 +76,8 @@ class Clumps:
     mass, inertia (b,) kg/m, kg m^2/m;  position (b, 2) m, angle (b,) rad at whole steps, velocity (b, 2) m/s, spin (b,)
     rad/s at half steps: of the centroid;  offset (k, 2) m from it to the members at angle 0, arm (k, 2) now;
     turn (k,) rad: a member's angle less the body's;  force (b, 2) N/m and torque (b,) N m/m of the last step;
-    held, withheld (b, 3) as of discs;  group (n,) int32: clump of every disc, -1 for none;  crowd (k,): number
-    of contacts assumed at a corner and its segments (stable step), 0 for members that are discs.
+    held, withheld (b, 3) as of discs;  group (n,) int32: clump of every disc, -1 for none;  corner_contacts (k,):
+    number assumed at a corner and its segments (stable step), 0 for members that are discs.
     """
 
     def __init__(
@@ -109,7 +109,7 @@ class Clumps:
         for c in range(count):
             self._weigh(c, discs, float(heavy[c]), bodies[c] if len(bodies) else None)
         self.arm, self.turn = self.offset.copy(), discs.angle[self.member]
-        self.crowd = np.zeros(len(self.member))
+        self.corner_contacts = np.zeros(len(self.member))
         self.place(discs)
 
     def place(self, discs: Discs) -> None:
@@ -275,14 +275,15 @@ def fastest(clumps: Clumps, radius: Floats, normal: float, tangential: float, ro
     (N s/m), on the damping rate 1/s;  radius (n,) m of all discs.
 
     As in integrate.packing_factor each contact counts twice at each end, and a disc of radius r has at most
-    N = max(neighbours, pi (1 + r/r_min)) of them (``crowd`` at a corner), spread so that the sum of n n^T is at most
-    N/2.  With o the way from the centroid to a member, the translation block of the body is at most N (k_n + k_t)/M
-    summed over members, the rotation block N (k_n |o|^2 + 2 k_t (|o|/sqrt 2 + r)^2 + 2 k_r r^2)/I, and the largest
+    N = max(neighbours, pi (1 + r/r_min)) of them (``corner_contacts`` at a corner), spread so that the sum of n n^T is
+    at most N/2.  With o the way from the centroid to a member, the translation block is at most N (k_n + k_t)/M summed
+    over members, the rotation block N (k_n |o|^2 + 2 k_t (|o|/sqrt 2 + r)^2 + 2 k_r r^2)/I, and the largest
     eigenvalue of both together at most their sum.
     """
     own, sizes = radius[clumps.member], radius[radius > 0.0]
     smallest = float(sizes.min()) if len(sizes) else 1.0
-    touch = np.where(clumps.crowd > 0.0, clumps.crowd, np.maximum(float(neighbours), np.pi * (1.0 + own / smallest)))
+    touch, around = clumps.corner_contacts, np.maximum(float(neighbours), np.pi * (1.0 + own / smallest))
+    touch = np.where(touch > 0.0, touch, around)
     far = np.hypot(*clumps.offset.T)
     turning = normal * far**2 + 2.0 * tangential * (np.sqrt(0.5) * far + own) ** 2 + 2.0 * rolling * own**2
     body = clumps.group[clumps.member]

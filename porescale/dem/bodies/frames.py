@@ -20,7 +20,8 @@ from numpy.typing import ArrayLike, NDArray
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.dem.bodies.clumps import Body
-from porescale.dem.contact.materials import Law, Materials
+from porescale.dem.contact.law import ContactLaw
+from porescale.dem.contact.materials import Materials
 from porescale.dem.discs import Discs, make_discs
 from porescale.dem.forces.segment_list import SegmentList
 from porescale.dem.forces.walls import Box
@@ -188,7 +189,7 @@ def _crossing(at: Floats) -> tuple[int, int] | None:
 def framed(
     discs: Discs | None,
     frames: Sequence[Frame],
-    law: Law | Materials,
+    law: ContactLaw | Materials,
     box: Box,
     *,
     clumps: Sequence[ArrayLike] = (),
@@ -210,7 +211,7 @@ def framed(
     own = np.concatenate([np.full(len(frame.corners), frame.material) for frame in frames])
     given = np.broadcast_to(np.asarray(0 if material is None else material), (first,))
     if more.get("plates"):
-        raise InputError(Fault("plates", len(more["plates"]), "do not meet segments", repair="make them frames"))
+        raise InputError(Fault("plates", len(more["plates"]), "do not touch segments", repair="make them frames"))
     radii = np.zeros(0) if discs is None else discs.radius
     grains = Grains(
         every, law, box, skin=skin_of(radii, frames) if skin is None else skin,
@@ -249,7 +250,7 @@ def add_frames(
     table.place(discs)
     ends = np.concatenate([np.array(frame.ends) + starts[k] for k, frame in enumerate(frames)])
     long = np.concatenate([np.full(len(frame.ends), frame.long) for frame in frames])
-    table.crowd[len(table.member) - sum(sizes) :] = _crowd(discs, ends, first)
+    table.corner_contacts[len(table.member) - sum(sizes) :] = _corner_contacts(discs, ends, first)
     grains.segments = SegmentList(discs, table.group, grains.box, grains.pairs.skin, ends, long, rule)
     corner = grains.segments.is_corner
     grains.pairs.group = np.where(corner, NOT_PAIRED, table.group).astype(np.int32)
@@ -288,11 +289,11 @@ def _halves(frames: Sequence[Frame]) -> list[float]:
     return [0.5 * math.dist(frame.corners[a], frame.corners[b]) for frame in short for a, b in frame.ends]
 
 
-def _crowd(discs: Discs, ends: Index, first: int) -> Floats:
+def _corner_contacts(discs: Discs, ends: Index, first: int) -> Floats:
     """Number of contacts assumed at each corner for the stable step: its own, and at each end of a segment one and
     half of the discs that fit along it.
     """
     length = np.hypot(*(discs.position[ends[:, 1]] - discs.position[ends[:, 0]]).T)
     along = 1.0 + (0.25 * length / float(discs.radius[:first].min()) if first else 0.0 * length)
-    crowd = 1.0 + np.bincount(ends[:, 0], along, discs.count) + np.bincount(ends[:, 1], along, discs.count)
-    return np.asarray(crowd[first:])
+    touch = 1.0 + np.bincount(ends[:, 0], along, discs.count) + np.bincount(ends[:, 1], along, discs.count)
+    return np.asarray(touch[first:])

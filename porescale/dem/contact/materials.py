@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from porescale.common.core.errors import Fault, InputError
 from porescale.dem.contact.law import ContactLaw
 
-Law = ContactLaw
 MOST = 255  # materials: discs name theirs in a byte
 
 
@@ -30,8 +29,8 @@ class Materials:
     plates and rectangles (default: the first).  Raises InputError on unknown names and on laws that do not mix.
     """
 
-    laws: Mapping[str, Law]
-    between: Mapping[tuple[str, str], Law] = field(default_factory=dict)
+    laws: Mapping[str, ContactLaw]
+    between: Mapping[tuple[str, str], ContactLaw] = field(default_factory=dict)
     walls: str | None = None
 
     def __post_init__(self) -> None:
@@ -57,7 +56,7 @@ class Materials:
         """Name of the material of the walls."""
         return self.names[0] if self.walls is None else self.walls
 
-    def law(self, one: str, other: str) -> Law:
+    def law(self, one: str, other: str) -> ContactLaw:
         """The law between two materials."""
         for pair in ((one, other), (other, one)):
             if pair in self.between:
@@ -67,7 +66,7 @@ class Materials:
         first, second = self.laws[one], self.laws[other]
         return first.mixed(second)
 
-    def all(self) -> list[Law]:
+    def all(self) -> list[ContactLaw]:
         """Every law in use, pairs and walls."""
         return [self.law(one, other) for one in self.laws for other in self.laws]
 
@@ -75,6 +74,6 @@ class Materials:
         """Rows of all pairs, (m, m, COLUMNS)."""
         return np.array([[self.law(one, other).row() for other in self.laws] for one in self.laws])
 
-    def against(self, material: str) -> list[Law]:
+    def against(self, material: str) -> list[ContactLaw]:
         """The laws of a surface of ``material`` with discs of each material."""
         return [self.law(material, other) for other in self.laws]

@@ -248,7 +248,7 @@ class ThreadChoice:
 
     def __init__(self, count: int) -> None:
         self.count = count
-        self._room_for(0)
+        self.one = serial(count, 0)
         self.far_start, self.incoming_start = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
         self.incoming, self.far = np.zeros(0, np.int64), np.zeros((0, 4))
         self._builds = -1
@@ -258,17 +258,13 @@ class ThreadChoice:
 
         budget : an energy budget is kept;  alone : something in the step allows one thread only.
         """
-        if self.partial.shape[1] != surfaces:
-            self._room_for(surfaces)
+        if self.one.partial.shape[1] != surfaces:
+            self.one = serial(self.count, surfaces)
         if alone or self.count < SERIAL_BELOW or (threads() == 1 and not budget):
-            return Serial(self.partial, self.near)
+            return self.one
         if self._builds != pairs.builds:
             self._renew(pairs)
-        return Threads(self.partial, self.near, self.far_start, self.incoming_start, self.incoming, self.far)
-
-    def _room_for(self, surfaces: int) -> None:
-        """Allocate the arrays for that many surfaces."""
-        self.partial, self.near = serial(self.count, surfaces)
+        return Threads(*self.one, self.far_start, self.incoming_start, self.incoming, self.far)
 
     def _renew(self, pairs: PairList) -> None:
         """Number the far pairs of the list as it is now."""

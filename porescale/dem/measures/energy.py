@@ -128,15 +128,15 @@ def elastic(grains: State, dt: float = 0.0) -> tuple[float, float, float]:
     return normal, tangential, rolling
 
 
-def kinetic(grains: State, book: Floats) -> tuple[float, float]:
+def kinetic(grains: State, budget: Floats) -> tuple[float, float]:
     """Kinetic energy of the last force evaluation, J/m: (translation, rotation), without held components.
 
     Members of a clump translate with its centroid; what they move besides is its rotation.  In a strained cell
     velocities are those relative to it, and members move besides as the cell does at their places, which is no energy.
     """
     d = grains.discs
-    along = d.velocity * book[:, BEFORE_X : BEFORE_X + 2]
-    around = d.spin * book[:, BEFORE_SPIN]
+    along = d.velocity * budget[:, BEFORE_X : BEFORE_X + 2]
+    around = d.spin * budget[:, BEFORE_SPIN]
     if len(grains.held):
         along, around = np.where(grains.held[:, :2], 0.0, along), np.where(grains.held[:, 2], 0.0, around)
     moving, turning = 0.5 * float(d.mass @ along.sum(axis=1)), 0.5 * float(d.inertia @ around)
@@ -145,25 +145,25 @@ def kinetic(grains: State, book: Floats) -> tuple[float, float]:
         body, share = clumps.group[clumps.member], d.mass[clumps.member]
         now, then = (
             np.array([np.bincount(body, share * speed[clumps.member, axis], clumps.count) for axis in range(2)])
-            for speed in (d.velocity, book[:, BEFORE_X : BEFORE_X + 2])
+            for speed in (d.velocity, budget[:, BEFORE_X : BEFORE_X + 2])
         )
         rest = 0.5 * float(share @ along[clumps.member].sum(axis=1)) - 0.5 * float(np.sum(now * then / clumps.mass))
         moving, turning = moving - rest, turning + rest
         if grains.drivers.cell is not None:
             own, first = clumps.inertia.copy(), clumps.member[clumps.start[:-1]]
             own -= np.bincount(body, d.inertia[clumps.member], clumps.count)
-            turning += 0.5 * float(own @ (d.spin[first] * book[first, BEFORE_SPIN])) - rest
+            turning += 0.5 * float(own @ (d.spin[first] * budget[first, BEFORE_SPIN])) - rest
     return moving, turning
 
 
-def open_book(grains: State, book: Floats, dt: float) -> Floats:
+def open_budget(grains: State, budget: Floats, dt: float) -> Floats:
     """Start of the budget before a first step of ``dt`` (s): (kinetic and elastic energy J/m, sum m x, sum m y kg m/m).
 
-    Overwrites the velocities before the last force in ``book``: those of now.
+    Overwrites the velocities before the last force in ``budget``: those of now.
     """
     d = grains.discs
-    book[:, BEFORE_X : BEFORE_X + 2], book[:, BEFORE_SPIN] = d.velocity, d.spin
-    return np.array([sum(kinetic(grains, book)) + sum(elastic(grains, dt)), *moment(grains, dt)])
+    budget[:, BEFORE_X : BEFORE_X + 2], budget[:, BEFORE_SPIN] = d.velocity, d.spin
+    return np.array([sum(kinetic(grains, budget)) + sum(elastic(grains, dt)), *moment(grains, dt)])
 
 
 def moment(grains: State, dt: float) -> Floats:
@@ -173,7 +173,7 @@ def moment(grains: State, dt: float) -> Floats:
     return total
 
 
-def energy_book(grains: State, acceleration: tuple[float, float] = (0.0, 0.0)) -> dict[str, float]:
+def energy_budget(grains: State, acceleration: tuple[float, float] = (0.0, 0.0)) -> dict[str, float]:
     """The budget of ``grains`` by the names of its entries, J/m, since its first step; zeros before that.
 
     acceleration : of free fall, m/s^2; its work is the potential energy, and what the external forces did besides is
@@ -181,16 +181,16 @@ def energy_book(grains: State, acceleration: tuple[float, float] = (0.0, 0.0)) -
     A strained cell does work, and all is said relative to it: there must be no ``acceleration`` then.  Raises
     InputError where no budget is kept.
     """
-    book, start, dt = grains.book, grains.book_start, grains.last_dt
-    if book is None:
-        raise InputError(Fault("energy", False, "no energy book is kept", repair="make Grains with energy=True"))
+    budget, start, dt = grains.budget, grains.budget_start, grains.last_dt
+    if budget is None:
+        raise InputError(Fault("energy", False, "no energy budget is kept", repair="make Grains with energy=True"))
     if start is None:
-        start, dt = open_book(grains, book, 0.0), 0.0
-    moving, turning = kinetic(grains, book)
+        start, dt = open_budget(grains, budget, 0.0), 0.0
+    moving, turning = kinetic(grains, budget)
     normal, tangential, rolling = elastic(grains, dt)
     g = np.asarray(acceleration, float)
     height, height_before = -float(g @ moment(grains, dt)), -float(g @ start[1:])
-    total = book.sum(axis=0)
+    total = budget.sum(axis=0)
     losses = {name: float(total[column]) for name, column in LOSSES.items()}
     works = {
         "work of external forces (J/m)": float(total[EXTERNAL]) + height - height_before,

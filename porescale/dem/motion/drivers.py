@@ -110,9 +110,9 @@ class Drivers:
         """Overwrite the arrays of controls and time functions that kernels read."""
         kinds = [KINDS[type(row[3])] for row in self._controls]
         control = [(*row[:3], kind) for row, kind in zip(self._controls, kinds, strict=True)]
-        told = [*self._rates, *(schedule_of(row[3]) for row in self._controls), *(row[4] for row in self._drives)]
+        given = [*self._rates, *(schedule_of(row[3]) for row in self._controls), *(row[4] for row in self._drives)]
         assert len(self._rates) == FIRST_CONTROL
-        schedules, points = schedule_rows(told)
+        schedules, points = schedule_rows(given)
         watched = [self._locate(body) for body in self._watched]
         self.arrays = DriverArrays(
             self._clock, schedules, points, self.clumps.arrays(), np.array(control, np.int64).reshape(-1, 4),

@@ -102,12 +102,12 @@ def add_load(gx, gy, dx, dy, cell):
 
 
 @add_load.of(Still)
-def note_still(gx, gy, dx, dy, cell):
+def add_load_still(gx, gy, dx, dy, cell):
     """Does nothing: a cell that does not deform has no sums."""
 
 
 @add_load.of(Straining)
-def note_straining(gx, gy, dx, dy, cell):
+def add_load_straining(gx, gy, dx, dy, cell):
     """Add to ``cell.load`` of one contact the products of force and branch (N) and the squared branch (m²)."""
     cell.load[XX] += gx * dx
     cell.load[XY] += gx * dy

@@ -26,8 +26,8 @@ from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import Fault, InputError, PorescaleError
 from porescale.common.core.types import Floats
 from porescale.common.neighbors import place
+from porescale.dem.contact.law import ContactLaw
 from porescale.dem.contact.linear import Linear
-from porescale.dem.contact.materials import Law
 from porescale.dem.discs import Discs, make_discs
 from porescale.dem.forces.walls import HIGH, LOW, VELOCITY, Box, Plate
 from porescale.dem.grains import Grains
@@ -186,7 +186,9 @@ def scale_springs(grains: Grains, factor: float) -> None:
     grains.plate_spring *= factor
 
 
-def relax(grains: Grains, law: Law, weights: Floats, gravity: float, *, wall_law: Law | None = None) -> None:
+def relax(
+    grains: Grains, law: ContactLaw, weights: Floats, gravity: float, *, wall_law: ContactLaw | None = None
+) -> None:
     """From rest under one law and weight to rest under ``law`` and ``weights`` (n, 2) N/m.
 
     The friction forces are carried over in proportion to the weights, so that the packing does not lose
@@ -196,7 +198,7 @@ def relax(grains: Grains, law: Law, weights: Floats, gravity: float, *, wall_law
     before = np.hypot(grains.external_force[:, 0], grains.external_force[:, 1]).sum()
     share = np.hypot(weights[:, 0], weights[:, 1]).sum() / before if before > 0.0 else 1.0
     smallest = float(grains.discs.mass.min()), float(grains.discs.radius.min())
-    stiff = [each.stiffest(*smallest).tangential_stiffness for each in (grains.laws[0], law)]
+    stiff = [each.stiffest(*smallest).stiffness[1] for each in (grains.laws[0], law)]
     if stiff[1] > 0.0:
         scale_springs(grains, float(share) * stiff[0] / stiff[1])
     grains.set_law(law, wall_law)
@@ -209,9 +211,9 @@ def relax(grains: Grains, law: Law, weights: Floats, gravity: float, *, wall_law
 def prepare(
     pile: Pile,
     box: Box,
-    law: Law,
+    law: ContactLaw,
     *,
-    wall_law: Law | None = None,
+    wall_law: ContactLaw | None = None,
     plates: Sequence[Plate] = (),
     weight_density: float | None = None,
     folder: Path | None = None,

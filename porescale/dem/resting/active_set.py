@@ -54,7 +54,7 @@ class ActiveSet:
             g.rectangles[all_or_none], g.rectangle_laws, self.rectangle_spring, self.rectangle_load[all_or_none],
         )  # fmt: skip
         done, moved = contact_steps(
-            count, dt, drag, True, self.discs, self.pairs._replace(limit_square=limit), self.law, around,
+            count, dt, drag, True, self.discs[:], self.pairs._replace(limit_square=limit)[:], self.law, around[:],
             self.sweep if surfaces else serial(len(self.index), 0), None, g.cell, None,
         )  # fmt: skip
         return int(done), bool(moved)
@@ -67,8 +67,8 @@ class ActiveSet:
         ):  # fmt: skip
             if len(own):
                 return_springs(self.index, kept, own)
-        if grains.book is not None:
-            grains.book[self.index] = self.discs.budget
+        if grains.budget is not None:
+            grains.budget[self.index] = self.discs.budget
 
 
 def active_set(
@@ -96,7 +96,7 @@ def active_set(
     own = grains.some_discs(index)._replace(
         angle=d.angle[index], mass=d.mass[index], inertia=d.inertia[index], external_force=np.zeros((m, 2)),
         external_torque=np.zeros(m), held=held, withheld=np.zeros((m, 3)),
-        budget=None if grains.book is None else grains.book[index],
+        budget=None if grains.budget is None else grains.budget[index],
     )  # fmt: skip
     return ActiveSet(
         index, own, Pairs(start, partner, listed.carried[origin], listed.checked_position[index], 0.0), origin,

@@ -14,7 +14,7 @@ def law_of_steps(grains: State) -> KernelLaw | None:
     own = *grains.wall_frictions, *grains.plate_frictions, *grains.rectangle_frictions
     frictions = *(each.friction for each in grains.laws), *(each or 0.0 for each in own)
     springs = grains.pairs.carried, grains.wall_spring, grains.plate_spring, grains.rectangle_spring
-    if not isinstance(law, LinearKernel) or law.rolling is not None or grains.book is not None or any(frictions):
+    if not isinstance(law, LinearKernel) or law.rolling is not None or grains.budget is not None or any(frictions):
         return law
     return None if any(spring.any() for spring in springs) else law._replace(friction=None)
 

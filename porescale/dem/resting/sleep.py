@@ -56,7 +56,7 @@ class Sleep:
 
     def __init__(self, grains: State, weight: Floats, share: float = 0.01, after: float | None = None) -> None:
         if grains.steered or grains.segments is not None or grains.bonds is not None or grains.reach is not None:
-            raise InputError(Fault("sleep", None, "knows free discs only", repair="leave it out"))
+            raise InputError(Fault("sleep", None, "is for free discs only", repair="leave it out"))
         count, stiffness = grains.discs.count, grains.stiffest_contact()[0]
         self.allowed = share * np.abs(weight)
         self.speed = share * np.sqrt(np.abs(weight) * grains.discs.radius / grains.discs.mass)
@@ -125,9 +125,9 @@ class Sleep:
             return
         before = self.removed.copy()
         fall_asleep(self.asleep, self.quiet, self.after, d.velocity, d.spin, d.mass, d.inertia, self.removed)
-        if grains.book is not None:
-            grains.book[:, DRAG] += self.removed - before
-            grains.book[self.asleep == ASLEEP, BEFORE_X : BEFORE_SPIN + 1] = 0.0
+        if grains.budget is not None:
+            grains.budget[:, DRAG] += self.removed - before
+            grains.budget[self.asleep == ASLEEP, BEFORE_X : BEFORE_SPIN + 1] = 0.0
         self._some, self._part = True, None
 
     def _moving(self, grains: State) -> bool:

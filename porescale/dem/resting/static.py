@@ -76,7 +76,7 @@ def bear(count, d, walls, last):
 
 def others_are_about(grains: State) -> bool:
     """Whether a step does more than discs and walls: plates, rectangles, bodies, bonds, sleep or an energy budget."""
-    others = grains.drivers, grains.segments, grains.bonds, grains.sleep, grains.book
+    others = grains.drivers, grains.segments, grains.bonds, grains.sleep, grains.budget
     return bool(len(grains.plates) or len(grains.rectangles) or any(other is not None for other in others))
 
 

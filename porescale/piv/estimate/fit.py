@@ -39,7 +39,7 @@ ROUND = 0.01
 determined.
 """
 LEAST_FREE = np.float32(0.25)
-"""Share of the spots' freedom that is left at least, when variances are judged."""
+"""Share of the spots' freedom that is left at least, when variances are estimated."""
 ROUNDS, CLOSE = 30, 0.02
 """Conjugate gradients: most rounds, and the residual over the right side that ends them; updates follow anyway."""
 

@@ -117,13 +117,15 @@ def measure(
     """
     settings = settings or Settings()
     masks = solid if isinstance(solid, tuple) else (solid, solid)
-    refuse(first, second, masks, settings)
+    check_pictures(first, second, masks, settings)
     reach = 2 * max(16, settings.window)
     pair = ready(first, masks[0], reach), ready(second, masks[1], reach)
     return measure_ready([pair], (first.shape[0], first.shape[1]), masks, settings)
 
 
-def refuse(first: NDArray[Any], second: NDArray[Any], masks: Sequence[Flags | None], settings: Settings) -> None:
+def check_pictures(
+    first: NDArray[Any], second: NDArray[Any], masks: Sequence[Flags | None], settings: Settings
+) -> None:
     """Raise InputError for sizes that differ, masks that do not fit, and pictures that show nothing (``unseen``)."""
     if first.shape != second.shape or first.ndim != 2:
         sizes = " and ".join("x".join(str(side) for side in it.shape[1::-1]) for it in (first, second))

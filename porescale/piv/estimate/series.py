@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,15 @@ from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.record.model import Grid
-from porescale.piv.estimate.measure import Settings, Vectors, measure, measure_ready, nothing, refuse, unseen
+from porescale.piv.estimate.measure import (
+    Settings,
+    Vectors,
+    check_pictures,
+    measure,
+    measure_ready,
+    nothing,
+    unseen,
+)
 from porescale.piv.images.film import Film, background
 from porescale.piv.images.masks import Mask, masks
 from porescale.piv.images.prepare import Ready, ready
@@ -43,11 +52,7 @@ class Shots:
 
     def pairs(self) -> Iterator[tuple[tuple[NDArray[Any], Mask | None], tuple[NDArray[Any], Mask | None]]]:
         """Pairs of each frame with the next, with their masks."""
-        last = None
-        for shot in self.frames():
-            if last is not None:
-                yield last, shot
-            last = shot
+        return pairwise(self.frames())
 
 
 def measured(shots: Shots, settings: Settings, warn: Callable[[str], object] | None = None) -> Iterator[Vectors]:
@@ -80,7 +85,7 @@ def averaged(shots: Shots, settings: Settings, passed: Callable[[], object] | No
     pairs = _Prepared(shots, settings, passed or (lambda: None))
     size, solid = None, None
     for (first, mask_a), (second, mask_b) in shots.pairs():
-        refuse(first, second, (mask_a, mask_b), settings)
+        check_pictures(first, second, (mask_a, mask_b), settings)
         size = (first.shape[0], first.shape[1])
         both = _or(mask_a, np.zeros(size, bool)) & _or(mask_b, np.zeros(size, bool))
         solid = both if solid is None else solid & both
@@ -98,13 +103,10 @@ class _Prepared:
     passed: Callable[[], object]
 
     def __iter__(self) -> Iterator[tuple[Ready, Ready]]:
-        last = None
-        for picture, mask in self.shots.frames():
-            new = ready(picture, mask, 2 * max(16, self.settings.window))
-            if last is not None:
-                self.passed()
-                yield last, new
-            last = new
+        reach = 2 * max(16, self.settings.window)
+        for pair in pairwise(ready(picture, mask, reach) for picture, mask in self.shots.frames()):
+            self.passed()
+            yield pair
 
 
 def _or(mask: Mask | None, empty: Mask) -> Mask:

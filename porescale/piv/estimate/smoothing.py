@@ -45,7 +45,7 @@ class Smoothed(NamedTuple):
 def smoothed(u: Floats, v: Floats, step: int, stiffness: float, alike: float = 1.0, *, choose: bool = True) -> Smoothed:
     """A field as a fit with the stiffness of the least cross-validation score would have made it.
 
-    u, v : at the knots, ``step`` px apart, of a fit with ``stiffness``, which is undone to judge the data of the
+    u, v : at the knots, ``step`` px apart, of a fit with ``stiffness``, which is undone to evaluate the data of the
     pictures; less is not tried, nor more unless ``choose``;  alike : knots that share the tracers of one, >= 1.
     """
     (down, rows), (across, columns) = _modes(u.shape[0]), _modes(u.shape[1])

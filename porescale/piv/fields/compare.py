@@ -51,9 +51,9 @@ class Comparison:
         """JSON-able: the numbers, and each vortex with its partner."""
         names = ("points", "speed", "rms", "largest", "bias_u", "bias_v", "direction", "aligned", "correlation")
         partners = {id(a): b for a, b in self.pairs}
-        taken = {id(b) for _, b in self.pairs}
+        matched_others = {id(b) for _, b in self.pairs}
         rows = [_row(a, partners.get(id(a))) for a in self.reference_vortices]
-        rows += [{"reference": None, "other": b.as_dict()} for b in self.other_vortices if id(b) not in taken]
+        rows += [{"reference": None, "other": b.as_dict()} for b in self.other_vortices if id(b) not in matched_others]
         surface = None if self.surface is None else self.surface._asdict()
         return {**{name: getattr(self, name) for name in names}, "vortices": rows, "surface": surface}
 

@@ -50,17 +50,11 @@ class Field:
 
 def in_pixels(vectors: Vectors, corner: tuple[int, int] = (0, 0)) -> Field:
     """Vectors as they were measured.  corner : column and row of the region's first pixel in the whole picture."""
+    u, v, uncertainty = (np.where(vectors.solid, np.nan, it) for it in (vectors.u, vectors.v, vectors.uncertainty))
     return Field(
-        vectors.x + corner[0],
-        vectors.y + corner[1],
-        np.where(vectors.solid, np.nan, vectors.u),
-        np.where(vectors.solid, np.nan, vectors.v),
-        vectors.valid,
-        vectors.replaced,
-        vectors.solid,
-        vectors.correlation,
-        np.where(vectors.solid, np.nan, vectors.uncertainty),
-    )
+        vectors.x + corner[0], vectors.y + corner[1], u, v, vectors.valid, vectors.replaced, vectors.solid,
+        vectors.correlation, uncertainty,
+    )  # fmt: skip
 
 
 def in_metres(field: Field, rows: int, scale: float, interval: float) -> Field:
@@ -69,18 +63,10 @@ def in_metres(field: Field, rows: int, scale: float, interval: float) -> Field:
     rows : of the whole picture;  scale : m a pixel;  interval : s between the pictures of a pair.
     """
     speed = scale / interval
-    return Field(
-        (field.x + 0.5) * scale,
-        (rows - 0.5 - field.y) * scale,
-        field.u * speed,
-        -field.v * speed,
-        field.valid,
-        field.replaced,
-        field.solid,
-        field.correlation,
-        field.uncertainty * speed,
-        upwards=True,
-    )
+    return replace(
+        field, x=(field.x + 0.5) * scale, y=(rows - 0.5 - field.y) * scale, u=field.u * speed, v=-field.v * speed,
+        uncertainty=field.uncertainty * speed, upwards=True,
+    )  # fmt: skip
 
 
 def write_csv(field: Field, path: Path) -> None:

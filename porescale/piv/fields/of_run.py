@@ -8,11 +8,11 @@ import numpy as np
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.record import snapshots
-from porescale.common.record.model import Grid, Snapshot
+from porescale.common.record.model import Grid
 from porescale.common.record.open_run import open_run
 from porescale.piv.fields.field import Field
 from porescale.piv.fields.surface import Surface, of_grains
-from porescale.piv.images.moving import grains_of
+from porescale.piv.images.moving import grains_of, velocity_grid
 
 MEASURED = "piv"
 """Name of the grid that a measured film keeps its fields in."""
@@ -36,7 +36,7 @@ def field_of_run(folder: Path, time: float | None = None) -> Field:
         if not len(run):
             raise InputError(Fault("run folder", str(folder), "holds no snapshot yet"))
         snapshot = run.snapshot(-1) if time is None else run.nearest(time)
-    return _field(_grid(snapshot, folder))
+    return _field(velocity_grid(snapshot, str(folder)))
 
 
 def surface_of_run(folder: Path, x: Floats, time: float | None = None) -> Surface | None:
@@ -52,15 +52,7 @@ def surface_of_run(folder: Path, x: Floats, time: float | None = None) -> Surfac
 def fields_of_film(folder: Path) -> Iterator[Field]:
     """The fields of a measured film, in time, one in memory at a time."""
     for step, frames in snapshots.catalogue(folder).items():
-        yield _field(_grid(snapshots.load(frames, step), folder))
-
-
-def _grid(snapshot: Snapshot, folder: Path) -> Grid:
-    """The grid that carries a velocity."""
-    for grid in snapshot.grids.values():
-        if "velocity" in grid.cells:
-            return grid
-    raise InputError(Fault("run folder", str(folder), "has no velocity of a fluid"))
+        yield _field(velocity_grid(snapshots.load(frames, step), str(folder)))
 
 
 def _field(grid: Grid) -> Field:

@@ -135,12 +135,8 @@ def matched(
             ratio = abs(float(np.log(b.circulation / a.circulation))) / float(np.log(factor))
             if apart <= 1 and ratio <= 1:
                 candidates.append((apart + ratio, i, j))
-    taken_a: set[int] = set()
-    taken_b: set[int] = set()
-    pairs = []
+    best: dict[int, int] = {}
     for _, i, j in sorted(candidates):
-        if i not in taken_a and j not in taken_b:
-            taken_a.add(i)
-            taken_b.add(j)
-            pairs.append((reference[i], other[j]))
-    return pairs
+        if i not in best and j not in best.values():
+            best[i] = j
+    return [(reference[i], other[j]) for i, j in best.items()]

@@ -68,14 +68,6 @@ class Film:
             size = frame.shape
             yield frame if self.region is None else _cut(frame, self.region)
 
-    def pairs(self) -> Iterator[tuple[Picture, Picture]]:
-        """Each chosen frame with the next."""
-        last = None
-        for frame in self:
-            if last is not None:
-                yield last, frame
-            last = frame
-
     def count(self) -> int:
         """Number of chosen frames; a film whose file does not hold it is decoded."""
         if not self.moving:

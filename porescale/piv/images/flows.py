@@ -27,11 +27,11 @@ class Discs(NamedTuple):
     y: Floats
     radius: Floats
 
-    def inside(self, x: Floats, y: Floats, margin: float = 0.0) -> NDArray[np.bool_]:
-        """Whether points lie in a disc whose radius is ``margin`` px larger."""
+    def inside(self, x: Floats, y: Floats) -> NDArray[np.bool_]:
+        """Whether points lie in a disc."""
         found = np.zeros(np.broadcast(x, y).shape, bool)
         for a, b, r in zip(self.x, self.y, self.radius, strict=True):
-            found |= np.hypot(x - a, y - b) < r + margin
+            found |= np.hypot(x - a, y - b) < r
         return found
 
     def distance(self, x: Floats, y: Floats) -> Floats:

@@ -107,9 +107,7 @@ class Between:
 
 def instant(snapshot: Snapshot, folder: str) -> Instant:
     """A snapshot made ready; InputError for a run without a fluid."""
-    grid = next((it for it in snapshot.grids.values() if "velocity" in it.cells), None)
-    if grid is None:
-        raise InputError(Fault("run folder", folder, "has no velocity of a fluid: there is no flow to film"))
+    grid = velocity_grid(snapshot, folder)
     velocity = np.asarray(grid.cells["velocity"], float)
     filtered = np.stack([spline_filter(velocity[..., k], 3, mode="nearest") for k in (0, 1)])
     solid = np.array(grid.cells.get("solid_fraction", np.zeros(grid.shape)), float)
@@ -164,7 +162,12 @@ def grid_of(run: Run) -> Grid:
     """The grid of a run's first snapshot that carries a velocity.  InputError if there is none."""
     if not len(run):
         raise InputError(Fault("run folder", str(run.folder), "holds no snapshot yet"))
-    for grid in run.snapshot(0, ("velocity",)).grids.values():
+    return velocity_grid(run.snapshot(0, ("velocity",)), str(run.folder))
+
+
+def velocity_grid(snapshot: Snapshot, folder: str) -> Grid:
+    """The grid of a snapshot that carries a velocity.  InputError if there is none."""
+    for grid in snapshot.grids.values():
         if "velocity" in grid.cells:
             return grid
-    raise InputError(Fault("run folder", str(run.folder), "has no velocity of a fluid: there is no flow to film"))
+    raise InputError(Fault("run folder", folder, "has no velocity of a fluid: there is no flow"))

@@ -8,12 +8,11 @@ import math
 import pydantic
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.common.schema.sections import Section, quantity
 from porescale.scene.ranges import LENGTH, PLACE, SPEED
 from porescale.scene.time_function import Component, Turning
 
 Points = tuple[tuple[float, float], ...]
-
 
 Lines = tuple[tuple[float, float, float, float], ...]
 
@@ -27,7 +26,7 @@ class Framed(Section):
     velocity: tuple[float, float] = quantity("m/s", (0.0, 0.0), **SPEED, help="velocity of the centre at the start")
     spin: float = quantity("rad/s", 0.0, ge=-1e7, le=1e7, help="angular velocity at the start, counter-clockwise")
     held: bool = pydantic.Field(False, description="stands still whatever pushes it; [[control]] moves it otherwise")
-    at: Points = quantity("m", (), **PLACE, help="a copy at each of these points (default: one, as it is told)")
+    at: Points = quantity("m", (), **PLACE, help="a copy at each of these points (default: one, as it is given)")
     angle: tuple[float, ...] = quantity("rad", (), ge=-1e3, le=1e3, help="by how much each is turned about its point")
 
     def _faults(self) -> list[Fault]:
@@ -56,12 +55,8 @@ class SegmentBody(Framed):
     width: float | None = quantity("m", None, **LENGTH, help="width of the rods (default: twice the thickness)")
     long: bool = pydantic.Field(False, description="much longer than grains: kept out of the cells, as a container")
 
-    @pydantic.model_validator(mode="after")
-    def _whole(self) -> "SegmentBody":
-        faults = [*self._faults(), *_one_line(self.chain, self.ends)]
-        if faults:
-            raise Refused(*faults)
-        return self
+    def _faults(self) -> list[Fault]:
+        return [*super()._faults(), *_one_line(self.chain, self.ends)]
 
 
 class PolygonBody(Framed):
@@ -81,9 +76,8 @@ class PolygonBody(Framed):
     size_spread: float = quantity("", 0.0, ge=0, lt=1, help="half width of the sizes over their mean, of random ones")
     seed: int = pydantic.Field(1, ge=0, description="seed of the random placement")
 
-    @pydantic.model_validator(mode="after")
-    def _whole(self) -> "PolygonBody":
-        faults = self._faults()
+    def _faults(self) -> list[Fault]:
+        faults = super()._faults()
         if bool(self.corners) == (self.sides is not None):
             faults.append(Fault("corners, sides", None, "exactly one of the two is needed", repair="give one of them"))
         if self.corners and len(self.corners) < 3:
@@ -95,14 +89,12 @@ class PolygonBody(Framed):
             missing = "number" if self.number is None else "within"
             faults.append(Fault(missing, None, "is needed with the other", repair="give both, or neither"))
         if self.number is not None and self.at:
-            faults.append(Fault("at", None, "and number cannot both be told", repair="give one of them"))
+            faults.append(Fault("at", None, "and number cannot both be given", repair="give one of them"))
         if self.size_spread and self.number is None:
             faults.append(Fault("size_spread", self.size_spread, "is of polygons placed at random", repair="leave out"))
         if self.within and not (self.within[0] < self.within[2] and self.within[1] < self.within[3]):
             faults.append(Fault("within", None, "must be [left, bottom, right, top]", "m", repair="order them"))
-        if faults:
-            raise Refused(*faults)
-        return self
+        return faults
 
     @property
     def points(self) -> Points:
@@ -133,12 +125,8 @@ class Container(Section):
     rotation: Turning = Turning()
     record: bool = pydantic.Field(False, description="force and displacement over time in control.csv")
 
-    @pydantic.model_validator(mode="after")
-    def _whole(self) -> "Container":
-        faults = _one_line(self.chain, self.ends)
-        if faults:
-            raise Refused(*faults)
-        return self
+    def _faults(self) -> list[Fault]:
+        return _one_line(self.chain, self.ends)
 
 
 def _one_line(chain: Points, ends: Lines) -> list[Fault]:

@@ -1,21 +1,39 @@
-"""The command line, with a toy package: what it does, what it says, how it ends."""
+"""The command line, with a toy package: what it does and says, how it ends; what people, disks and bugs do to it."""
 
 import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from porescale.common.cli.application import application, main
+from porescale.common.cli.report import Report
 from porescale.common.schema.sections import load
-from tests.reference.toy_package import ToyScene
+from tests.reference.toy_package import TEMPLATE, TOY, ToyModel, ToyScene
 from tests.reference.waiting import done, running, talked
 
 
 def card(folder: str = "runs/decay") -> dict[str, Any]:
     return json.loads((Path(folder) / "card.json").read_text())
+
+
+@pytest.fixture
+def decay(toy):
+    """Runs a command line in a folder that holds the new scene "decay"."""
+    assert toy("new", "decay")[0] == 0
+    return toy
+
+
+def refused(toy, *tokens: str) -> str:
+    """The one line that a command line of wrong use or input is answered with."""
+    code, out, err = toy(*tokens)
+    assert (code, out, len(err)) == (2, "", 1)
+    assert "Traceback" not in err[0]
+    return err[0]
 
 
 def test_a_new_scene_checks_and_runs_as_it_is(toy) -> None:
@@ -34,23 +52,17 @@ def test_a_new_scene_checks_and_runs_as_it_is(toy) -> None:
     assert (code, out) == (0, "runs/decay/end.png\n")
 
 
-def test_new_never_overwrites(toy) -> None:
-    toy("new", "decay")
+def test_new_never_overwrites(decay) -> None:
     Path("decay/scene.toml").write_text("mine")
-    code, _, err = toy("new", "decay")
-    assert code == 2
-    assert "exists already" in err[0]
+    assert "exists already" in refused(decay, "new", "decay")
     assert Path("decay/scene.toml").read_text() == "mine"
 
 
-def test_options_reach_the_run(toy) -> None:
-    toy("new", "decay")
+def test_options_reach_the_run(decay) -> None:
     tokens = "run decay --out elsewhere --quality fine --set decay.rate=7 --set duration='5 s' --threads 1 --quiet"
-    code, out, err = toy(*tokens.replace("'", "").replace("5 s", "5_s").split())
-    assert code == 2  # 5_s is no quantity
-    assert err == ["--set: duration = '5_s': unknown unit '_s' (allowed: > 0 s); give it in s, as 1.5 or \"1.5 s\""]
-    code, out, err = toy(*tokens.replace("'5 s'", "5").split())
-    assert (code, out, err) == (0, "", [])
+    said = refused(decay, *tokens.replace("'", "").replace("5 s", "5_s").split())  # 5_s is no quantity
+    assert said == "--set: duration = '5_s': unknown unit '_s' (allowed: > 0 s); give it in s, as 1.5 or \"1.5 s\""
+    assert decay(*tokens.replace("'5 s'", "5").split()) == (0, "", [])
     made = card("elsewhere")
     assert made["scene"]["decay"] == {"rate": 7.0, "start": 2.0}
     assert made["scene"]["duration"] == 5.0
@@ -58,29 +70,25 @@ def test_options_reach_the_run(toy) -> None:
     assert made["settings"] == ["decay.rate=7", "duration=5"]
 
 
-def test_options_may_stand_anywhere_and_values_may_be_negative(toy) -> None:
-    toy("new", "decay")
-    assert toy("run", "--set", "decay.rate=1", "decay", "--set=decay.start=-1", "--quiet")[0] == 0
+def test_options_may_stand_anywhere_and_values_may_be_negative(decay) -> None:
+    assert decay("run", "--set", "decay.rate=1", "decay", "--set=decay.start=-1", "--quiet")[0] == 0
     assert card()["scene"]["decay"] == {"rate": 1.0, "start": -1.0}
 
 
-def test_an_existing_run_is_refused_resumed_or_overwritten(toy) -> None:
-    toy("new", "decay")
-    assert "holds no run to resume" in toy("run", "decay", "--resume")[2][0]
-    toy("run", "decay")
-    code, _, err = toy("run", "decay")
-    assert code == 2
-    assert len(err) == 1
-    assert "already holds a run; choose another --out, --resume the run, or --overwrite it" in err[0]
-    assert toy("run", "decay", "--resume")[0] == 0
+def test_an_existing_run_is_refused_resumed_or_overwritten(decay) -> None:
+    assert "holds no run to resume" in refused(decay, "run", "decay", "--resume")
+    decay("run", "decay")
+    said = refused(decay, "run", "decay")
+    assert "already holds a run; choose another --out, --resume the run, or --overwrite it" in said
+    assert decay("run", "decay", "--resume")[0] == 0
     assert card()["resumed"] is True
     assert card()["overwrite"] is False
-    assert toy("run", "decay", "--overwrite")[0] == 0
+    assert decay("run", "decay", "--overwrite")[0] == 0
     assert card()["resumed"] is False
     assert card()["overwrite"] is True
-    assert "contradicts" in toy("run", "decay", "--overwrite", "--resume")[2][0]
-    assert "is not empty" in toy("run", "decay", "--out", "decay")[2][0]
-    assert "is a file" in toy("run", "decay", "--out", "decay/scene.toml")[2][0]
+    assert "contradicts" in decay("run", "decay", "--overwrite", "--resume")[2][0]
+    assert "is not empty" in decay("run", "decay", "--out", "decay")[2][0]
+    assert "is a file" in decay("run", "decay", "--out", "decay/scene.toml")[2][0]
 
 
 @pytest.mark.parametrize(
@@ -106,13 +114,8 @@ def test_an_existing_run_is_refused_resumed_or_overwritten(toy) -> None:
         ("bench --dtype float16", "float"),
     ],
 )
-def test_wrong_use_is_one_line_and_code_2(toy, tokens: str, words: str) -> None:
-    toy("new", "decay")
-    code, _, err = toy(*tokens.split())
-    assert code == 2
-    assert len(err) == 1
-    assert words in err[0]
-    assert "Traceback" not in err[0]
+def test_wrong_use_is_one_line_and_code_2(decay, tokens: str, words: str) -> None:
+    assert words in refused(decay, *tokens.split())
 
 
 def test_all_faults_of_a_scene_are_lines_of_their_own(toy) -> None:
@@ -123,9 +126,8 @@ def test_all_faults_of_a_scene_are_lines_of_their_own(toy) -> None:
     assert all(line.startswith("bad.toml: decay.") for line in err)
 
 
-def test_check_as_json(toy) -> None:
-    toy("new", "decay")
-    assert json.loads(toy("check", "decay", "--json")[1])["groups"]["time"][0]["value"] == 10
+def test_check_as_json(decay) -> None:
+    assert json.loads(decay("check", "decay", "--json")[1])["groups"]["time"][0]["value"] == 10
 
 
 def test_verify_fails_when_a_row_fails(toy) -> None:
@@ -188,3 +190,122 @@ def test_a_reader_that_leaves_is_no_traceback(tmp_path: Path) -> None:
         os.close(write)
         _, said = talked(process)
     assert (process.returncode, said) == (1, "")
+
+
+LONG = "a" * 300
+
+
+@pytest.mark.parametrize(
+    ("folder", "words"),
+    [
+        ("/proc/foo", "'/proc/foo': cannot be written (No such file or directory)"),
+        ("/proc/foo/deep", "'/proc/foo/deep': cannot be written"),
+        ("decay/scene.toml/sub", "Not a directory"),
+        (LONG, "File name too long"),
+        (f"{LONG}/sub", "File name too long"),
+        ("", "is empty"),
+    ],
+)
+def test_a_folder_that_cannot_be_written_is_refused_before_the_model_is_built(decay, monkeypatch, folder, words):
+    monkeypatch.setattr(ToyModel, "__init__", None)
+    for command in (("run", "decay", "--out", folder), ("new", folder)):
+        said = refused(decay, *command)
+        assert words in said
+        assert len(said) < 250
+    assert [path.name for path in Path().iterdir()] == ["decay"]
+    Path("odd/card.json").mkdir(parents=True)
+    for option in ("--overwrite", "--resume"):
+        assert "card.json there is a folder" in refused(decay, "run", "decay", "--out", "odd", option)
+    assert refused(decay, "check", LONG) == "SCENE: cannot be read (File name too long); name another"
+
+
+def test_a_folder_that_the_system_withholds_is_wrong_input_and_nothing_is_left(decay, monkeypatch) -> None:
+    def withheld(path: Path, **_: Any) -> None:
+        raise PermissionError(1, "Operation not permitted", str(path))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "touch", withheld)
+        said = refused(decay, "run", "decay", "--out", "deep/er")
+    assert said == "--out = 'deep/er': cannot be written (Operation not permitted); name another folder"
+    assert not Path("deep").exists()
+    assert decay("run", "decay", "--out", "deep/er")[0] == 0  # the twin
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("{", "card.json is damaged"),
+        ("\xff", "card.json is damaged"),
+        ("[" * 100000, "card.json is damaged"),
+        ("[]", "it holds no scene"),
+        ("{}", "it holds no scene"),
+        ('{"scene": 3}', "it holds no scene"),
+        ('{"package": "game", "scene": {"decay": {}}}', "holds a run of game, not of toy; use game"),
+    ],
+)
+def test_a_damaged_or_foreign_card_is_one_line(decay, content: str, words: str) -> None:
+    decay("run", "decay")
+    assert decay("show", "runs/decay")[0] == 0  # the twin
+    Path("runs/decay/card.json").write_text(content, encoding="latin-1")
+    for command in (("show", "runs/decay"), ("run", "decay", "--resume")):
+        assert words in refused(decay, *command)
+    assert decay("run", "decay", "--overwrite")[0] == 0
+
+
+def test_a_card_whose_scene_lacks_what_every_scene_has_is_not_shown(toy) -> None:
+    Path("card.json").write_text('{"package": "toy", "scene": {"duration": 1}}')
+    assert "its scene has no decay" in refused(toy, "show", ".")
+
+
+@pytest.mark.parametrize(
+    ("trouble", "code", "words"),
+    [
+        ("unstable", 3, "unstable at step 7"),
+        ("failed", 1, "the film could not be made"),
+        ("stopped", 130, "interrupted"),
+        ("memory", 1, "not enough memory (12 GiB)"),
+        ("disk", 1, "fields.vtkhdf: No space left"),
+        ("lost", 1, "fields.vtkhdf: No such file"),
+    ],
+)
+def test_every_end_has_its_code_and_one_line(decay, trouble: str, code: int, words: str) -> None:
+    given, _, (line,) = decay("run", "decay", "--set", f"trouble={trouble}")
+    assert given == code
+    assert words in line
+
+
+@pytest.mark.parametrize(("trouble", "kind"), [("bug", ZeroDivisionError), ("nameless", OSError)])
+def test_our_own_bugs_keep_their_traceback(decay, trouble: str, kind: type[Exception]) -> None:
+    with pytest.raises(kind):
+        decay("run", "decay", "--set", f"trouble={trouble}")
+
+
+def run_warned(*words: str) -> tuple[int, list[str]]:
+    """Exit code of a run of a toy package that warns, and what it was called for, in order."""
+    Path("scene.toml").write_text(TEMPLATE)
+    calls: list[str] = []
+
+    def report(scene: Any) -> Report:
+        calls.append("report")
+        made = TOY.report(scene)
+        made.warn("mind the step")
+        return made
+
+    def build(scene: Any) -> Any:
+        calls.append("build")
+        return TOY.build(scene)
+
+    app = application(replace(TOY, report=report, build=build))
+    return main(app, ["run", "scene.toml", "--quiet", *words]), calls
+
+
+@pytest.mark.usefixtures("toy")
+def test_a_scene_is_checked_once_and_its_warnings_are_said_once(capsys):
+    assert run_warned() == (0, ["report", "build"])
+    assert capsys.readouterr().err == "warning: mind the step\n"
+
+
+@pytest.mark.usefixtures("toy")
+def test_what_the_report_refuses_is_not_built(capsys):
+    assert run_warned("--set", "decay.rate=1000") == (2, ["report"])
+    assert "beyond the stable limit" in capsys.readouterr().err

@@ -52,17 +52,13 @@ def test_halving_finds_what_trying_everything_finds(law):
     assert sorted(row.x for row in rows if row.ran) == sorted(tried)
 
 
-def test_a_monotone_flow_tries_all_that_can_be_judged():
+def test_a_monotone_flow_tries_all_with_a_known_error_and_no_further_where_one_of_them_fails():
     tried: list[float] = []
-    rows = register(tried, monotone=True, judged=4.0).chosen()[0].run("steel", 0.1, False)
+    (flow,) = register(tried, monotone=True, judged=4.0).chosen()
+    assert verdicts(flow.run("steel", 0.1, False)) == "rrsssuu"
     assert {1.0, 2.0, 4.0} <= set(tried)
-    assert verdicts(rows) == "rrsssuu"
-
-
-def test_a_monotone_flow_that_fails_where_it_is_judged_goes_no_further():
-    tried: list[float] = []
-    rows = register(tried, monotone=True, judged=4.0).chosen()[0].run("glass", 0.1, False)
-    assert verdicts(rows) == "rruuuuu"
+    tried.clear()
+    assert verdicts(flow.run("glass", 0.1, False)) == "rruuuuu"
     assert max(tried) == 4.0
 
 

@@ -23,6 +23,20 @@ def cloud(n, seed=0, ratio=1.0, outside=0.0):
     return x, 0.1 * ratio ** rng.uniform(0.0, 1.0, n)
 
 
+def listing(n, skin, *options, seed=0, **named):
+    """Points (n, 2), their reaches, and their list, just made."""
+    x, reach = cloud(n, seed)
+    listed = PairList(n, skin, LOWER, UPPER, *options, **named)
+    assert listed.update(x, reach)
+    return x, reach, listed
+
+
+def assert_none_missing(listed, x, reach, periodic=(False, False)):
+    """Every pair within reach is in a full list."""
+    for row, must in zip(rows_of(listed), neighbours(x, reach, 0.0, LOWER, UPPER, periodic, True), strict=True):
+        assert set(must) <= set(row)
+
+
 @pytest.mark.parametrize("full", [False, True])
 @pytest.mark.parametrize("periodic", [(False, False), (True, False), (True, True)])
 @pytest.mark.parametrize("ratio", [1.0, 10.0])
@@ -67,10 +81,9 @@ def test_few_points(n):
 
 
 def test_rebuilds_when_two_points_may_have_come_nearer_by_the_skin_and_not_before():
-    x, reach = cloud(50)
+    x, reach, listed = listing(50, 0.2)
     x[7], x[8] = [5.0, 3.0], [5.0, 3.3]
-    listed = PairList(50, 0.2, LOWER, UPPER)
-    assert listed.update(x, reach)
+    listed.build(x, reach)
     x[7] += [0.0, 0.09]
     x[8] -= [0.0, 0.105]
     assert not listed.update(x, reach)
@@ -80,10 +93,9 @@ def test_rebuilds_when_two_points_may_have_come_nearer_by_the_skin_and_not_befor
 
 
 def test_growing_reach_uses_up_the_skin_too():
-    x, reach = cloud(50)
+    x, reach, listed = listing(50, 0.2)
     x[3], x[4] = [5.2, 3.3], [5.2, 3.35]  # in one block: the growth of both counts
-    listed = PairList(50, 0.2, LOWER, UPPER)
-    listed.update(x, reach)
+    listed.build(x, reach)
     reach[3] += 0.06
     x[3] += [0.0, 0.07]
     assert not listed.update(x, reach)
@@ -94,9 +106,7 @@ def test_growing_reach_uses_up_the_skin_too():
 
 
 def test_points_that_move_together_keep_their_list():
-    x, reach = cloud(400, seed=7)
-    listed = PairList(400, 0.2, LOWER, UPPER, (True, False), full=True)
-    listed.update(x, reach)
+    x, reach, listed = listing(400, 0.2, (True, False), full=True, seed=7)
     x += [3.0, 0.2]
     assert not listed.update(x, reach)
     x += 1e-3 * (x - x.mean(axis=0))  # and apart, a little: by 5 mm in 5 m, across blocks of 0.8 m by less than 2 mm
@@ -134,9 +144,7 @@ def test_the_skin_shrinks_where_a_list_lasts_and_grows_back_and_no_pair_is_missi
             twin.update(x, reach)
             assert twin.skin == listed.skin
             assert np.array_equal(twin.partner, listed.partner)
-        within = neighbours(x, reach, 0.0, LOWER, UPPER, (False, False), True)
-        for row, must in zip(rows_of(listed), within, strict=True):
-            assert set(must) <= set(row)
+        assert_none_missing(listed, x, reach)
         least = min(least, listed.skin)
         skins.append(listed.skin)
         x += rng.normal(0.0, 1e-4 if k < 150 else 0.02, x.shape)
@@ -153,9 +161,7 @@ def test_no_pair_is_missing_in_a_stream_that_shears(periodic):
     for _ in range(40):
         quiet += not listed.update(x, reach)
         strayed += bool(skins.needs_rebuild(x, listed.list_position, reach, reach, 0.075, *listed.period))
-        within = neighbours(x, reach, 0.0, LOWER, UPPER, periodic, True)
-        for row, must in zip(rows_of(listed), within, strict=True):
-            assert set(must) <= set(row)
+        assert_none_missing(listed, x, reach, periodic)
         x[:, 0] += 0.04 * np.cos(0.25 * np.pi * x[:, 1]) + rng.normal(0.0, 0.002, len(x))
     assert 10 < quiet < 39
     assert strayed > 10  # where the ways of single points say nothing any more
@@ -168,25 +174,19 @@ def test_no_pair_within_reach_is_ever_missing_between_builds():
     quiet = 0
     for _ in range(60):
         quiet += not listed.update(x, reach)
-        within = neighbours(x, reach, 0.0, LOWER, UPPER, (True, False), True)
-        for row, must in zip(rows_of(listed), within, strict=True):
-            assert set(must) <= set(row)
+        assert_none_missing(listed, x, reach, (True, False))
         x += rng.normal(0.0, 0.006, x.shape)
     assert 10 < quiet < 59  # the list did rest, and did rebuild
 
 
 def test_crossing_a_periodic_side_is_no_displacement():
-    x, reach = cloud(50)
-    listed = PairList(50, 0.2, LOWER, UPPER, (True, True))
-    listed.update(x, reach)
+    x, reach, listed = listing(50, 0.2, (True, True))
     x[4] += [10.0, -8.0]
     assert not listed.update(x, reach)
 
 
 def test_carried_data_survives_by_pair():
-    x, reach = cloud(120, seed=1)
-    listed = PairList(120, 0.3, LOWER, UPPER, carried=2)
-    listed.update(x, reach)
+    x, reach, listed = listing(120, 0.3, carried=2, seed=1)
     known: dict[tuple[int, int], tuple[float, float]] = {}
     rng = np.random.default_rng(2)
     kept = lost = 0
@@ -209,10 +209,8 @@ def test_carried_data_survives_by_pair():
 
 
 def test_buffers_are_reused():
-    x, reach = cloud(200)
-    listed = PairList(200, 0.1, LOWER, UPPER, carried=1)
-    for _ in range(2):
-        listed.build(x, reach)
+    x, reach, listed = listing(200, 0.1, carried=1)
+    listed.build(x, reach)
     held = {id(a) for a in (*listed._partners, *listed._carrieds, *listed._starts, listed._cell_start)}
     for _ in range(4):
         listed.build(x, reach)
@@ -221,9 +219,7 @@ def test_buffers_are_reused():
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
 def test_a_position_that_is_no_number_is_named(value):
-    x, reach = cloud(30)
-    listed = PairList(30, 0.1, LOWER, UPPER)
-    listed.update(x, reach)
+    x, reach, listed = listing(30, 0.1)
     x[17, 1] = value
     with pytest.raises(ValueError, match="point 17"):
         listed.update(x, reach)
@@ -234,10 +230,8 @@ def test_a_position_that_is_no_number_is_named(value):
 
 
 def test_restored_list_goes_on_exactly():
-    x, reach = cloud(100, seed=4)
+    x, reach, first = listing(100, 0.2, full=True, carried=1, seed=4)
     rng = np.random.default_rng(0)
-    first = PairList(100, 0.2, LOWER, UPPER, full=True, carried=1)
-    first.update(x, reach)
     first.carried[:] = rng.normal(size=first.carried.shape)
     x += 0.01  # between builds: the list is not the one a build here would give
     second = PairList(100, 0.2, LOWER, UPPER, full=True, carried=1)
@@ -251,9 +245,7 @@ def test_restored_list_goes_on_exactly():
 
 
 def test_a_state_that_does_not_say_its_skin_is_listed_anew_and_keeps_its_data():
-    x, reach = cloud(400, seed=4)
-    first = PairList(400, 0.02, LOWER, UPPER, carried=1)
-    first.update(x, reach)
+    x, reach, first = listing(400, 0.02, carried=1, seed=4)
     first.carried[:, 0] = np.arange(1.0, 1.0 + len(first.partner))
     older = {name: value for name, value in first.state().items() if name in OLDER}
     moved = x + np.array([0.05, 0.0]) * (np.arange(400) % 2)[:, None]  # less than half of 0.2
@@ -290,15 +282,8 @@ def test_kernels_as_plain_python():
     listed = PairList(25, 0.1, LOWER, UPPER, (True, False), full=True)
     listed.build(x, reach)
     grid = listed._sort(x, reach, 2.0 * reach.max() + 0.1)
-    where = (
-        x,
-        reach,
-        listed._sorted,
-        listed._order,
-        listed._cell_start,
-        grid,
-        search.Criterion(reach.max(), 0.1, True),
-    )
+    criterion = search.Criterion(reach.max(), 0.1, True)
+    where = (x, reach, listed._sorted, listed._order, listed._cell_start, grid, criterion)
     start, partner = np.zeros(26, np.int64), np.empty(len(listed.partner), np.int32)
     total, longest = search.fill_serial.py_func(start, partner, np.empty(100, np.int32), *where)
     assert total == listed.start[-1]

@@ -19,7 +19,7 @@ def listed_in(x, reach, skin, width, height, tilt):
     return listed
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.integers(0, 10_000), st.integers(2, 25), st.sampled_from([1.0, 1.05, 1.7, 4.0]),
     st.sampled_from([1.0, 1.3, 3.0]), st.floats(-2.5, 2.5),

@@ -86,7 +86,7 @@ def test_positions_do_not_depend_on_the_unit_of_length():
         ({"diameter": 0.1, "packing_fraction": 0.81}, "packing_fraction"),
         ({"count": 10, "packing_fraction": 0.9}, "packing_fraction"),
         ({"diameter": 0.5, "count": 5}, "packing_fraction"),
-        ({"diameter": 1.5, "packing_fraction": 0.1}, "placement|diameter"),
+        ({"diameter": 1.5, "count": 1, "upper": (1.0, 9.0)}, "diameter"),
         ({"diameter": 0.1}, "exactly two"),
         ({"diameter": 0.1, "count": 3, "packing_fraction": 0.1}, "exactly two"),
         ({"diameter": -0.1, "count": 3}, "diameter"),
@@ -96,12 +96,8 @@ def test_positions_do_not_depend_on_the_unit_of_length():
     ],
 )
 def test_impossible_wishes_are_refused_by_name(options, named):
-    upper = options.pop("upper", (1.0, 1.0))
-    if options.get("diameter") == 1.5:
-        options = {"diameter": 1.5, "count": 1}
-        upper = (1.0, 9.0)
     with pytest.raises(InputError, match=named):
-        place((0.0, 0.0), upper, **options)
+        place((0.0, 0.0), **{"upper": (1.0, 1.0), **options})
 
 
 def test_discs_that_cannot_fit_say_how_far_they_got():

@@ -21,9 +21,14 @@ def same(one, other):
     )
 
 
-def test_no_flipped_bit_goes_unnoticed(tmp_path):
-    path = tmp_path / "checkpoint.h5"
-    write_checkpoint(path, STATE)
+@pytest.fixture
+def path(tmp_path):
+    """A checkpoint of STATE."""
+    write_checkpoint(tmp_path / "checkpoint.h5", STATE)
+    return tmp_path / "checkpoint.h5"
+
+
+def test_no_flipped_bit_goes_unnoticed(path):
     whole = bytearray(path.read_bytes())
     dice, found = random.Random(3), 0
     for _ in range(150):
@@ -53,9 +58,7 @@ def test_without_checksums_flips_would_go_unnoticed(tmp_path):
 
 
 @pytest.mark.parametrize("size", [0, 1, 100, 5000])
-def test_a_cut_file_is_named_in_one_line(tmp_path, size):
-    path = tmp_path / "checkpoint.h5"
-    write_checkpoint(path, STATE)
+def test_a_cut_file_is_named_in_one_line(path, size):
     path.write_bytes(path.read_bytes()[:size])
     for read in (read_checkpoint, read_header):
         with pytest.raises(InputError, match=r"checkpoint\.h5.*damaged") as caught:
@@ -68,16 +71,12 @@ def test_a_missing_checkpoint_is_named(tmp_path):
         read_checkpoint(tmp_path / "checkpoint.h5")
 
 
-def test_the_header_comes_without_the_state(tmp_path):
-    path = tmp_path / "checkpoint.h5"
-    write_checkpoint(path, STATE)
+def test_the_header_comes_without_the_state(path):
     assert read_header(path) == {"step": 3}
 
 
 @pytest.mark.parametrize("bad", [object(), {1: 2}, np.array([None]), {"deep": {"er": print}}])
-def test_what_it_cannot_hold_is_refused_and_the_old_one_kept(tmp_path, bad):
-    path = tmp_path / "checkpoint.h5"
-    write_checkpoint(path, STATE)
+def test_what_it_cannot_hold_is_refused_and_the_old_one_kept(path, bad):
     with pytest.raises(TypeError, match=r"state\.odd"):
         write_checkpoint(path, {"odd": bad})
     assert same(read_checkpoint(path), STATE)
@@ -101,6 +100,5 @@ def test_records_and_foreign_byte_orders_keep_their_types(tmp_path):
     write_checkpoint(tmp_path / "c.h5", content)
     read = read_checkpoint(tmp_path / "c.h5")
     for key, array in content.items():
-        assert read[key].dtype == array.dtype
-        assert read[key].shape == array.shape
+        assert (read[key].dtype, read[key].shape) == (array.dtype, array.shape)
         assert read[key].tobytes() == array.tobytes()

@@ -18,13 +18,8 @@ def front_of(folder: Path, **more):
         return {"label": label, "quality": None, "settings": [], "on_front": True, "error": error, "scatter": 0.0,
                 "core_seconds": cost, "besides": 0.0, "time": 1.0, "pace": 1.0, "errors": {}, "but": but}  # fmt: skip
 
-    points = [
-        row("rough", 0.3, 1.0),
-        row("fair", 0.12, 2.0),
-        row("good", 0.05, 4.0),
-        row("dear", 0.05, 8.0),
-        row("partial", 0.01, 0.5, "until the wall only"),
-    ]
+    tried = ("rough", 0.3, 1.0), ("fair", 0.12, 2.0), ("good", 0.05, 4.0), ("dear", 0.05, 8.0)
+    points = [*(row(*it) for it in tried), row("partial", 0.01, 0.5, "until the wall only")]
     table = {"format": 2, "machine": {"processor": "x"}, "date": "d", "points": points,
              "reference": row("reference", 0.0, 50.0), "packings": {"a": 0.15, "b": 0.09}}  # fmt: skip
     (folder / "front.json").write_text(json.dumps(table | more))

@@ -53,9 +53,8 @@ def test_a_csv_gives_a_point_for_each_row(tmp_path):
 
 def test_toml_gives_points_as_they_are_and_every_combination(tmp_path):
     file = tmp_path / "table.toml"
-    file.write_text(
-        '[[point]]\nname = "a"\n"decay.rate" = "2 1/s"\n[vary]\ndecay.rate = [1, 2]\ndecay.start = [0.5, 1e-5]\n'
-    )
+    point, vary = '[[point]]\nname = "a"\n"decay.rate" = "2 1/s"\n', "decay.rate = [1, 2]\ndecay.start = [0.5, 1e-5]\n"
+    file.write_text(f"{point}[vary]\n{vary}")
     points = read_points(file)
     assert points[0] == Point("a", ('decay.rate="2 1/s"',))
     assert [point.settings for point in points[1:]] == [
@@ -74,13 +73,8 @@ def test_options_are_split_at_commas_outside_brackets_and_quotes():
 
 
 def test_names_are_folders_anywhere_and_differ():
-    names = [
-        p.name
-        for p in named(
-            [Point("", ('a.b="x/../y"',)), Point("../up", ()), Point("Same", ()), Point("same", ()), Point("..", ())]
-        )
-    ]
-    assert names == ["b=x_.._y", "up", "Same", "same-2", "point"]
+    given = [Point("", ('a.b="x/../y"',)), *(Point(name, ()) for name in ("../up", "Same", "same", ".."))]
+    assert [point.name for point in named(given)] == ["b=x_.._y", "up", "Same", "same-2", "point"]
 
 
 @pytest.mark.parametrize(
@@ -88,7 +82,7 @@ def test_names_are_folders_anywhere_and_differ():
     [
         ("t.csv", "a,a\n1,2\n", "line 1"),
         ("t.csv", "a,b\n1\n", "line 2: has 1 cells"),
-        ("t.csv", "a\n", "points: are none"),
+        ("t.csv", "a\n", "points: there are none"),
         ("t.csv", "a\n\xff", "is not UTF-8 text"),
         ("t.toml", "pont = 1", "pont: is unknown"),
         ("t.toml", "point = 1", "point: is not a list of tables"),
@@ -142,9 +136,8 @@ def test_finished_points_are_left_alone_and_begun_ones_resume(tmp_path):
     assert sorted(ended.outcome for ended in ends) == ["finished", "finished", "unstable"]
     assert [words[-1] for words in second.called] == ["--resume"]
     third = Machine()
-    assert all(
-        ended.outcome == "finished" for ended in campaign(tmp_path, third, again=True).all(points, 1, said.append)
-    )
+    ends = list(campaign(tmp_path, third, again=True).all(points, 1, said.append))
+    assert {ended.outcome for ended in ends} == {"finished"}
     assert [words[-1] for words in third.called] == ["--overwrite"]
 
 
@@ -222,7 +215,7 @@ def test_what_cannot_be_read_is_refused_before_anything_runs(tmp_path, at):
 
 def test_an_expectation_that_is_no_table_is_refused(tmp_path):
     assert expected(tmp_path / "scene.toml") == []
-    for text, said in (("expected = 3", "no list of tables"), ("[[expected", "line 1")):
+    for text, said in (("expected = 3", "not a list of tables"), ("[[expected", "line 1")):
         (tmp_path / "expected.toml").write_text(text)
         with pytest.raises(InputError, match=said):
             expected(tmp_path / "scene.toml")

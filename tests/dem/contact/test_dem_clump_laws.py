@@ -14,7 +14,7 @@ from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import TURN, Box
 from porescale.dem.grains import Grains
 from porescale.dem.measures.contacts import contacts
-from porescale.dem.measures.energy import energy_book
+from porescale.dem.measures.energy import energy_budget
 from porescale.dem.measures.loads import on_surface
 from porescale.dem.prepare.settle import come_to_rest, weights_of
 from porescale.validation.dem.bodies import clumped_cloud
@@ -235,7 +235,7 @@ def test_what_resists_rolling_turns_the_wall_back():
 
 
 @pytest.mark.slow  # compiles the contact loop for laws of its own
-def test_rolling_and_turning_walls_are_in_the_energy_book():
+def test_rolling_and_turning_walls_are_in_the_energy_budget():
     shares = []
     for steps in (50.0, 200.0):
         law = replace(rolling(), damping=0.0, tangential_damping=0.0, rolling_damping=0.0)
@@ -245,9 +245,9 @@ def test_rolling_and_turning_walls_are_in_the_energy_book():
         grains.walls[0, :2] = 0.0
         dt = math.pi * math.sqrt(MASS / STIFFNESS) / steps
         grains.step(dt, np.array([[0.0, -MASS * GRAVITY]]), count=int(20 * steps))
-        book = energy_book(grains, (0.0, -GRAVITY))
-        assert abs(book["work of moving surfaces (J/m)"]) > 0.01 * book["turned over (J/m)"]
-        shares.append(abs(book["residual (J/m)"]) / book["turned over (J/m)"])
+        budget = energy_budget(grains, (0.0, -GRAVITY))
+        assert abs(budget["work of moving surfaces (J/m)"]) > 0.01 * budget["turned over (J/m)"]
+        shares.append(abs(budget["residual (J/m)"]) / budget["turned over (J/m)"])
     # First order: moving surfaces and switching of sliders, see energy.py.
     assert shares[1] < 0.5 * shares[0]
     assert shares[1] < 1 / 200

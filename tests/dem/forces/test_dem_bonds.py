@@ -13,7 +13,7 @@ from porescale.dem.forces import bonds
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
 from porescale.dem.measures.contacts import contacts
-from porescale.dem.measures.energy import energy_book
+from porescale.dem.measures.energy import energy_budget
 from porescale.dem.motion.control import Moved
 from porescale.dem.motion.drivers import Clump
 from porescale.validation.dem.segments import OPEN, THICKNESS, mixed_cloud, regular
@@ -102,10 +102,10 @@ def test_energy_of_a_row_that_is_pulled_until_it_breaks_is_accounted_for(steps):
     grains.steering.control(0, REST, REST, REST)
     grains.steering.control(5, Moved(0.5), REST, REST)
     grains.step(seconds / steps, count=steps)
-    book = energy_book(grains)
+    budget = energy_budget(grains)
     assert len(grains.bonds.breaks(grains.segments)) >= 1
     # The break is met up to a step late, when it still bears b: b v dt of b d0, and dashpots lag by half a step.
-    assert abs(book["residual (J/m)"]) < 4.0 * 0.5 * seconds / steps / 1e-4 * book["turned over (J/m)"]
+    assert abs(budget["residual (J/m)"]) < 4.0 * 0.5 * seconds / steps / 1e-4 * budget["turned over (J/m)"]
 
 
 def test_squares_in_a_wall_of_bricks_stand_and_break_along_the_joint():

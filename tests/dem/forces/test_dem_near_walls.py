@@ -1,4 +1,4 @@
-"""Only discs that may touch a wall within a call are asked at every step: the same bits as asking all of them."""
+"""Only discs that may touch a wall within a call are checked at every step: the same bits as checking all of them."""
 
 import numpy as np
 import pytest
@@ -49,23 +49,23 @@ def test_one_call_of_many_steps_has_the_bits_of_calls_that_ask_all_discs(law, en
     pressed, left_out = 0, 0
     for _ in range(15):
         one.step(DT, count=40)
-        left_out += np.count_nonzero(one.sweeps.near == 0)  # none where the last list came in the last steps
+        left_out += np.count_nonzero(one.sweeps.one.near == 0)  # none where the last list came in the last steps
         for _ in range(40):
             many.step(DT, count=1)
-            assert many.sweeps.near.all()
+            assert many.sweeps.one.near.all()
         pressed += np.count_nonzero(one.wall_load)
         for name in ("wall_load", "wall_spring"):
             np.testing.assert_array_equal(getattr(one, name), getattr(many, name))
         for name in ("position", "velocity", "spin", "force", "torque"):
             np.testing.assert_array_equal(getattr(one.discs, name), getattr(many.discs, name))
         if energy:
-            np.testing.assert_array_equal(one.book, many.book)
+            np.testing.assert_array_equal(one.budget, many.budget)
     assert one.pairs.builds > 1
     assert pressed > 0
     assert left_out > 0
 
 
-def test_asked_without_the_way_discs_go_a_touching_one_is_left_out():  # the twin that must fail
+def test_marked_without_the_way_discs_go_a_touching_one_is_left_out():  # the twin that must fail
     grains = flying(SMOOTH, side=1, speed=0.0)
     grains.refresh()
     d, room = grains.discs, grains.pairs.skin_margin

@@ -1,4 +1,4 @@
-"""Discs meet rectangles as they meet walls, at faces and at corners, wherever those go."""
+"""Discs touch rectangles as they touch walls, at faces and at corners, wherever those go."""
 
 import numpy as np
 import pytest

@@ -13,7 +13,7 @@ from porescale.dem.motion.periodic_cell import Still
 LAW = Linear(1e6, 5.0, 3e5, 4.0, 0.4)
 
 
-def crowded(seed, count=30):
+def overlapping_discs(seed, count=30):
     """Arguments of the loop: discs pressed together, in no order, with contacts between most neighbours."""
     rng = np.random.default_rng(seed)
     position, radius = rng.uniform(0.0, 0.1, (count, 2)), 0.01 * rng.uniform(0.5, 1.0, count)
@@ -33,7 +33,7 @@ def listed(pairs, springs):
 @pytest.mark.parametrize("block", [1, 4, 7, 30, 64])
 def test_blocks_of_any_size_give_the_bits_of_the_loop(block, monkeypatch):
     monkeypatch.setattr(sweep, "BLOCK", block)
-    discs, pairs, law, given = crowded(block)
+    discs, pairs, law, given = overlapping_discs(block)
     count, cell = len(discs.radius), Still(0.0, 0.0)
     force, torque, springs = np.zeros((count, 2)), np.zeros(count), pairs.carried.copy()
     loop = discs._replace(force=force, torque=torque, external_force=given[0], external_torque=given[1])
@@ -58,7 +58,7 @@ def test_blocks_of_any_size_give_the_bits_of_the_loop(block, monkeypatch):
 
 
 def test_the_external_force_added_last_gives_other_bits():  # the twin that must fail
-    discs, pairs, law, given = crowded(4)
+    discs, pairs, law, given = overlapping_discs(4)
     count = len(discs.radius)
     force, torque, wrong = np.zeros((count, 2)), np.zeros(count), np.zeros((count, 2))
     loop = discs._replace(force=force, torque=torque, external_force=given[0], external_torque=given[1])
@@ -71,7 +71,7 @@ def test_the_external_force_added_last_gives_other_bits():  # the twin that must
 
 
 def test_small_systems_and_one_thread_go_through_one_loop():
-    pairs = crowded(0)[1]
+    pairs = overlapping_discs(0)[1]
     small = sweep.ThreadChoice(30).now(pairs, 4, budget=True)
     assert isinstance(small, sweep.Serial)
     assert small.partial.shape == (1, 4, 3)
@@ -80,7 +80,7 @@ def test_small_systems_and_one_thread_go_through_one_loop():
 def test_a_large_system_with_an_energy_budget_goes_block_by_block(monkeypatch):
     monkeypatch.setattr(sweep, "SERIAL_BELOW", 10)
     monkeypatch.setattr(sweep, "threads", lambda: 1)
-    _, pairs, _, _ = crowded(0)
+    _, pairs, _, _ = overlapping_discs(0)
     sweeps = sweep.ThreadChoice(30)
     assert isinstance(sweeps.now(pairs, 0, budget=False), sweep.Serial)
     assert isinstance(sweeps.now(pairs, 0, budget=True), sweep.Threads)

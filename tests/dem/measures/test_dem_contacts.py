@@ -16,7 +16,7 @@ LAW = Linear(1e6, 20.0, 2.5e5, 5.0, 0.4)
 DT = 2e-6
 
 
-def crowd(seed: int = 3, periodic: bool = False) -> Grains:
+def dense_discs(seed: int = 3, periodic: bool = False) -> Grains:
     """Discs thrown together in a box with a plate and a rectangle, after some steps: all kinds of contacts."""
     rng = np.random.default_rng(seed)
     size = 0.1
@@ -34,7 +34,7 @@ def crowd(seed: int = 3, periodic: bool = False) -> Grains:
 
 @pytest.mark.parametrize("periodic", [False, True])
 def test_forces_of_all_contacts_sum_to_what_the_step_uses(periodic):
-    grains = crowd(periodic=periodic)
+    grains = dense_discs(periodic=periodic)
     found = contacts(grains)
     count = grains.discs.count
     before = grains.state()
@@ -60,7 +60,7 @@ def test_forces_of_all_contacts_sum_to_what_the_step_uses(periodic):
 
 
 def test_a_list_leaves_the_system_as_it_is():
-    grains, other = crowd(), crowd()
+    grains, other = dense_discs(), dense_discs()
     contacts(grains)
     grains.step(DT, count=50)
     other.step(DT, count=50)
@@ -69,7 +69,7 @@ def test_a_list_leaves_the_system_as_it_is():
 
 
 def test_geometry_of_contacts():
-    grains = crowd()
+    grains = dense_discs()
     d, found = grains.discs, contacts(grains)
     np.testing.assert_allclose(np.hypot(*found.normal.T), 1.0, rtol=1e-15 * 4)
     pair = found.chosen(found.pairs)

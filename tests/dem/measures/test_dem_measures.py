@@ -16,7 +16,7 @@ from porescale.dem.measures.motion import motion
 from porescale.dem.measures.porosity import disc_areas, porosity, void_ratio
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import kinetic_stress, principal
-from tests.dem.measures.test_dem_contacts import crowd
+from tests.dem.measures.test_dem_contacts import dense_discs
 
 RNG = np.random.default_rng(0)
 
@@ -70,7 +70,7 @@ def test_shares_of_neighbouring_regions_add_up():
 
 
 def test_rattlers_fall_out_one_after_another():
-    found = contacts(crowd())
+    found = contacts(dense_discs())
     count = int(max(found.first.max(), found.second.max())) + 1
     loose = rattlers(found, count, 2)
     touching: dict[int, set[tuple[int, int]]] = {k: set() for k in range(count)}
@@ -89,24 +89,24 @@ def test_rattlers_fall_out_one_after_another():
     assert coordination(found, whole, np.zeros((count, 2)), (0.0, 0.0), loose) == pytest.approx(float(mean))
 
 
-def test_fabric_rose_and_forces_of_a_crowd():
-    found = contacts(crowd())
+def test_fabric_rose_and_forces_of_dense_discs():
+    found = contacts(dense_discs())
     whole = Region((-1.0, -1.0), (1.0, 1.0))
-    told = fabric(found, whole)
-    assert np.trace(told.tensor) == pytest.approx(1.0, rel=1e-14)
+    made = fabric(found, whole)
+    assert np.trace(made.tensor) == pytest.approx(1.0, rel=1e-14)
     loaded = found.chosen(found.normal_force > 0)
     edges, density = rose(loaded, 360)
     middle = 0.5 * (edges[1:] + edges[:-1])
     # The second harmonic of the density is half the anisotropy; bins of a degree blur it by (pi/180)²/6.
     second = np.sum(density * np.diff(edges) * np.exp(2j * middle))
-    assert abs(second) == pytest.approx(0.5 * told.anisotropy, abs=0.01)
+    assert abs(second) == pytest.approx(0.5 * made.anisotropy, abs=0.01)
     edges, density = force_distribution(found)
     assert np.sum(density * np.diff(edges)) == pytest.approx(1.0, rel=1e-14)
     assert fabric(found, Region((5.0, 5.0), (6.0, 6.0))).contacts == 0
 
 
 def test_forces_and_moments_on_surfaces_and_discs():
-    grains = crowd()
+    grains = dense_discs()
     found = contacts(grains)
     x, y, moment = on_surface(found, "bottom")
     assert y < 0
@@ -128,7 +128,7 @@ def test_the_motion_of_a_shear_and_of_too_few():
 
 
 def test_pressure_of_a_gas_of_discs():
-    grains = crowd()
+    grains = dense_discs()
     found = kinetic_stress(Region((-1.0, -1.0), (2.0, 2.0)), grains.discs)
     d = grains.discs
     off = d.velocity - np.average(d.velocity, axis=0, weights=d.mass)
@@ -138,7 +138,7 @@ def test_pressure_of_a_gas_of_discs():
 
 @pytest.mark.parametrize(("periodic", "conserve"), [(False, False), (False, True), (True, True)])
 def test_fields_are_those_of_a_slow_twin(periodic, conserve, monkeypatch):
-    grains = crowd()
+    grains = dense_discs()
     found, d = contacts(grains), grains.discs
     raster = Raster.over((0.0, 0.0), (0.1, 0.1), 0.0125, 0.02, (periodic, periodic))
     fields = CoarseGrained(raster, d, found, conserve=conserve)

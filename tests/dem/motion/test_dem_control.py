@@ -1,4 +1,4 @@
-"""Bodies go as told or are pushed as told, and what that takes is on record; walls likewise."""
+"""Bodies move or are pushed as prescribed, and what that takes is on record; walls likewise."""
 
 import math
 
@@ -25,7 +25,7 @@ DT = 1e-5
 
 
 def apart(count=3):
-    """Discs of 1 cm that do not meet, in free space."""
+    """Discs of 1 cm that do not touch, in free space."""
     return Grains(make_discs([[0.1 * k, 0.0] for k in range(count)], 0.01, 2000.0), LAW, FREE)
 
 
@@ -115,7 +115,7 @@ def test_without_the_push_the_work_is_not_there():  # the twin that must fail
     assert grains.steering.work() == (0.0, 0.0)
 
 
-def test_a_clump_goes_as_told_and_is_on_record():
+def test_a_clump_moves_as_prescribed_and_is_on_record():
     grains = Grains(make_discs([[0.0, 0.0], [0.015, 0.0], [0.1, 0.0]], 0.01, 2000.0), LAW, FREE)
     grains.steering.bind([[0, 1]], 2000.0)
     grains.steering.control(Clump(0), y=Moved(0.2), rotation=Placed(Table([DT, DT + 0.01], [0.0, 1.0])))
@@ -297,7 +297,7 @@ def test_a_servo_that_touches_nothing_comes_at_its_speed():
 
 
 @pytest.mark.parametrize(
-    ("told", "key"),
+    ("given", "key"),
     [
         ({"speed": 1.0}, "either force or stress"),
         ({"force": 1.0, "stress": 1.0, "speed": 1.0}, "either force or stress"),
@@ -307,9 +307,9 @@ def test_a_servo_that_touches_nothing_comes_at_its_speed():
         ({"stress": 1.0, "speed": 1.0, "between": ("left", "rigth")}, "no such wall"),
     ],
 )
-def test_a_servo_without_sense_is_refused(told, key):
+def test_a_servo_without_sense_is_refused(given, key):
     with pytest.raises(InputError, match=key):
-        pressed().steering.servo_wall("bottom", **told)
+        pressed().steering.servo_wall("bottom", **given)
 
 
 def test_rows_of_a_table_follow_each_other():

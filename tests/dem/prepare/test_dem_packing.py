@@ -1,4 +1,4 @@
-"""Packings reach the pressure or the density that was asked for, rest there, and come back from files as they were."""
+"""Packings reach the prescribed pressure or density, rest there, and come back from files as they were."""
 
 import numpy as np
 import pytest
@@ -43,8 +43,8 @@ def test_pressure_is_reached_at_rest_and_friction_makes_it_loose():
         # It goes on resting: at a mean net force of 3e-3 of contact forces springs of 1e6 N/m give by 3e-9 m and less.
         before = made.grains.discs.position.copy()
         made.grains.step(made.grains.stable_step(), count=400)
-        calm = ~rattlers(contacts(made.grains), len(before))
-        assert np.abs(made.grains.discs.position - before)[calm].max() < 1e-3 * 1e-3
+        bearing = ~rattlers(contacts(made.grains), len(before))
+        assert np.abs(made.grains.discs.position - before)[bearing].max() < 1e-3 * 1e-3
     # Random close packing in the plane is at 0.84; friction of 0.5 holds from 0.77 to 0.81 (150 discs: +- 0.01).
     assert 0.825 < dense.fraction < 0.855
     assert 0.76 < loose.fraction < 0.82

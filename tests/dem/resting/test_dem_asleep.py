@@ -10,7 +10,7 @@ from porescale.common.schema.sections import validate
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box, Plate
 from porescale.dem.grains import Grains
-from porescale.dem.measures.energy import energy_book
+from porescale.dem.measures.energy import energy_budget
 from porescale.dem.resting import sleep_kernels as kernels
 from porescale.dem.resting.sleep import Sleep
 from porescale.validation.dem import sleep as lab
@@ -23,7 +23,7 @@ def at_rest(energy: bool = False) -> tuple[Grains, np.ndarray]:
     if energy:
         state, box = grains.state(), grains.box
         grains = Grains(grains.discs, lab.LAW, box, energy=True)
-        grains.restore(state | {"book": np.zeros_like(grains.book), "book_start": np.zeros(0)})
+        grains.restore(state | {"book": np.zeros_like(grains.budget), "book_start": np.zeros(0)})
     lab.asleep(grains, weights)
     return grains, weights
 
@@ -56,8 +56,8 @@ def test_sleep_takes_no_more_than_it_says():
 
 
 @pytest.mark.slow
-def test_the_energy_book_closes_as_it_does_without_sleep():
-    # The heap comes to rest, sleeps, and is woken: what sleep takes is in the book as lost to drag.
+def test_the_energy_budget_closes_as_it_does_without_sleep():
+    # The heap comes to rest, sleeps, and is woken: what sleep takes is in the budget as lost to drag.
     residuals = []
     for sleeps in (True, False):
         grains, weights = at_rest(energy=True)
@@ -65,8 +65,8 @@ def test_the_energy_book_closes_as_it_does_without_sleep():
         if not sleeps:
             grains.sleep = None
         fall_asleep(grains, weights)
-        book = energy_book(grains, (0.0, -GRAVITY))
-        residuals.append(abs(book["residual (J/m)"]))
+        budget = energy_budget(grains, (0.0, -GRAVITY))
+        residuals.append(abs(budget["residual (J/m)"]))
         moved = 0.5 * float(grains.discs.mass.sum()) * 0.02**2
     assert residuals[0] <= residuals[1] + 1e-3 * moved
 

@@ -1,0 +1,74 @@
+"""The case from grains to the continuum: its material file is of its scene, and both columns do as it says."""
+
+import math
+import tomllib
+from types import ModuleType
+
+import pytest
+
+from porescale import load
+from porescale.analysis.homogenise import packing_of, pressure_of, section_of, stiffness_over_pressure
+from porescale.output.case import expected
+from tests.reference.folders import CASES, script
+
+CASE = CASES / "micro_to_macro"
+
+
+@pytest.fixture(scope="module")
+def case() -> ModuleType:
+    """The case's script as a module."""
+    return script("micro_to_macro")
+
+
+def row(name: str) -> tuple[float, float]:
+    """Value and tolerance of a row of expected.toml."""
+    (found,) = [it for it in expected(CASE) if it["name"] == name]
+    return found["value"], found["tolerance"]
+
+
+def test_the_material_file_is_of_the_scene_beside_it():
+    scene = load(CASE / "bed.toml")
+    made = tomllib.loads((CASE / "material.toml").read_text(encoding="utf-8"))["made"]
+    asked, packing = section_of(scene), packing_of(scene)
+    assert scene.grains
+    assert made["seeds"] == list(range(packing.seed, packing.seed + asked.packings))
+    assert (made["grains"], made["strain"], made["pressure"]) == (asked.grains, asked.strain, pressure_of(scene))
+    assert (made["diameter"], made["grain_density"]) == (packing.diameter, scene.grains.density)
+    assert made["lambda"] == scene.grains.hydraulic_radius_ratio
+    assert made["stiffness_over_pressure"] == pytest.approx(stiffness_over_pressure(scene))
+    assert made["cells"] == pytest.approx(asked.cells, rel=0.01)
+
+
+def test_both_columns_and_the_bed_are_of_the_same_grains():
+    bed, column = load(CASE / "bed.toml"), load(CASE / "column.toml")
+    for name in ("diameter", "size_spread", "settling_friction"):
+        assert getattr(packing_of(bed), name) == getattr(packing_of(column), name)
+    assert bed.contact == column.contact
+    assert bed.grains
+    assert column.grains
+    assert bed.grains.density == column.grains.density
+
+
+def test_an_element_is_as_strong_as_its_grains(case):
+    soil = case.soil_section(case.ground())
+    stress = case.biaxial(case.material_of(soil), soil.reference, 0.05, 500)[1][-1]
+    strong = math.asin((stress[2] - stress[3]) / (stress[2] + stress[3]))
+    angle, error = soil.origin.measured["critical_friction_angle"]
+    value, tolerance = row("critical angle of an element over that of grains")
+    assert strong / angle == pytest.approx(value, abs=tolerance)
+    peak = case.soil_section(case.ground(("soil.strength=peak",)))  # the twin that must fail
+    assert peak.friction_angle - angle > 3 * error
+
+
+@pytest.mark.slow
+def test_a_column_of_soil_ends_where_the_case_says_and_one_of_another_strength_does_not(case):
+    value, tolerance = row("centre of fallen soil")
+    angle = case.soil_section(case.ground()).friction_angle
+    assert abs(case.soil_falls(angle).centre[-1] - value) < tolerance
+    assert abs(case.soil_falls(2.0 * angle).centre[-1] - value) > 3 * tolerance
+
+
+@pytest.mark.slow
+def test_a_column_of_grains_ends_where_the_case_says(case):
+    value, tolerance = row("centre of fallen grains")
+    assert abs(case.grains_fall(1).centre[-1] - value) < tolerance

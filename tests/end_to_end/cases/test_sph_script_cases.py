@@ -1,0 +1,170 @@
+"""Cases of the continuum that are scripts: each measures what its expected.toml says, and would say so if it did not.
+
+Scripts run as they are, some with fewer of their methods: those that the rows speak of, and those that are twins.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from continuum_sph.validation.seepage import permeameter as verify_seepage
+from continuum_sph.validation.water import fluids as trials_fluids
+from porescale.output import case as cases
+from porescale.output.case import expected, missed
+from tests.reference.folders import CASES, script
+
+pytestmark = pytest.mark.slow
+PLACES = ("height at 0.25 L", "height at 0.5 L", "height at 0.75 L")
+
+
+@pytest.fixture
+def concluded(tmp_path, monkeypatch) -> Callable[..., dict[str, float]]:
+    """Runs the script of a case with ``words``, changed by ``change``; what it measured.  It has drawn a picture."""
+
+    def run(name: str, *words: object, change: Callable[[Any], object] = lambda module: None) -> dict[str, float]:
+        made, module = {}, script(name)
+        change(module)
+
+        def conclude(folder, numbers, figure, out):
+            made.update(numbers)
+            cases.draw(figure, out / "picture.png")
+            return 0
+
+        monkeypatch.setattr(module, "conclude", conclude)
+        monkeypatch.setattr("sys.argv", [name, "--out", str(tmp_path), *map(str, words)])
+        assert module.main() == 0
+        assert (tmp_path / "picture.png").stat().st_size > 5_000
+        return made
+
+    return run
+
+
+def only(**chosen: Any) -> Callable[[Any], None]:
+    """Sets names of a script's module; of a table, only the entries in a list are left."""
+
+    def change(module: Any) -> None:
+        for name, value in chosen.items():
+            own = getattr(module, name)
+            setattr(module, name, {key: own[key] for key in value} if isinstance(own, dict) else value)
+
+    return change
+
+
+def test_a_bar_of_clay_bears_its_own_turning_with_repulsion_and_not_without(concluded):
+    case = "clay_bar"
+    numbers = concluded(case, change=only(PULLS=(0.0045,)))
+    assert missed(CASES / case, numbers) == []
+    # The twin that must fail: without repulsion the bar flies to pieces.
+    (name,) = (row["name"] for row in expected(CASES / case))
+    without = numbers[name.replace("with repulsion", "without")]
+    assert missed(CASES / case, {name: without}) == [name]
+    assert without > 10.0
+
+
+def test_both_corrections_buy_what_their_case_says(concluded):
+    case = "sph_corrections"
+    plain, corrected, both = "Wendland, h 1.3", "corrected gradients", "both"
+    numbers = concluded(case, change=only(METHODS=[plain, corrected, both]))
+    assert missed(CASES / case, numbers) == []
+
+
+def test_corrections_that_are_none_buy_nothing_and_those_that_are_change_what_is_plain(concluded):
+    # The twin that must fail: plain gradients in place of corrected ones, and both corrections in place of none.
+    def change(module: Any) -> None:
+        plain, corrected, both = (module.METHODS[name] for name in ("Wendland, h 1.3", "corrected gradients", "both"))
+        assert corrected != plain
+        module.METHODS = {"Wendland, h 1.3": both, "corrected gradients": plain, "both": plain}
+        module.rest = lambda *_: (0.0, 0.0)  # no row speaks of it
+
+    case = "sph_corrections"
+    assert missed(CASES / case, concluded(case, change=change)) == [row["name"] for row in expected(CASES / case)]
+
+
+def test_shear_keeps_stress_smooth_and_ground_at_rest_and_parting_keeps_particles_apart(concluded):
+    case = "soil_stress_noise"
+    sound, shear, parting = "diffusion by sound", "diffusion by shear", "and parting"
+    numbers = concluded(case, change=only(METHODS=[sound, shear, parting]))
+    assert missed(CASES / case, numbers) == []
+    # The twins that must fail: diffusion at the pace of sound makes ground creep, and leaves more noise than friction
+    # can bear; without parting particles come nearer than kernels see.
+    off = {
+        "noise, and parting": numbers[f"noise, {sound}"], "noise, diffusion by shear": numbers[f"noise, {sound}"],
+        "creep, and parting": numbers[f"creep, {sound}"], "nearest, and parting": numbers[f"nearest, {shear}"],
+    }  # fmt: skip
+    assert missed(CASES / case, off) == [row["name"] for row in expected(CASES / case)]
+
+
+def test_a_drop_swings_in_the_time_that_its_viscosity_leaves_it(concluded):
+    case = "oscillating_drop"
+    numbers = concluded(case)
+    assert missed(CASES / case, numbers) == []
+    # The twins that must fail: the period without viscosity, and the jump of a sphere, 2σ/R.
+    exact = trials_fluids.exact_period
+    lamb = numbers["period"] * exact(0.2) / exact(0.2, viscous=False)
+    assert missed(CASES / case, {"period": lamb, "pressure jump": 2.0}) == ["period", "pressure jump"]
+
+
+def test_a_thick_column_is_slower_than_one_of_water_which_ends_level(concluded):
+    case = "liquid_columns"
+    assert missed(CASES / case, concluded(case)) == []
+
+
+def test_two_columns_of_water_do_not_differ_and_are_not_level_at_once(concluded):  # the twin that must fail
+    def change(module: Any) -> None:
+        module.VISCOSITIES = dict.fromkeys(module.VISCOSITIES, 1.002e-3)
+        module.SETTLED = 0.2
+
+    numbers = concluded("liquid_columns", change=change)
+    assert missed(CASES / "liquid_columns", numbers) == [row["name"] for row in expected(CASES / "liquid_columns")]
+
+
+def test_water_goes_up_through_soil_as_darcy_says_until_it_boils(concluded):
+    case = "upward_flow"
+    assert missed(CASES / case, concluded(case)) == []
+
+
+def test_water_that_has_not_come_to_speed_and_a_gradient_that_soon_rises_are_not_darcys(concluded, monkeypatch):
+    # The twin that must fail: a sixteenth of the steps, a gradient that rises ten times as fast, and looser soil.
+    low, high, seconds = verify_seepage.RAMP
+    monkeypatch.setattr(verify_seepage, "RAMP", (low, high, 0.1 * seconds))
+    monkeypatch.setattr(verify_seepage, "ramp", verify_seepage.ramp.__wrapped__)
+
+    def change(module: Any) -> None:
+        module.ramp = verify_seepage.ramp
+        module.darcy = lambda k: verify_seepage.darcy(k, steps=100)
+        module.BOILING = replace(module.BOILING, porosity=0.45)
+
+    case = "upward_flow"
+    assert missed(CASES / case, concluded(case, change=change)) == [row["name"] for row in expected(CASES / case)]
+
+
+def test_the_foot_of_the_wet_part_of_a_levee_lags_as_it_comes_into_the_middle(concluded):
+    case = "dry_levee"
+    numbers = concluded(case)
+    assert missed(CASES / case, numbers) == []
+    # The twin that must fail: a line that begins straight and ends as the wave of a dam that breaks, and a foot that
+    # goes on at the speed that it began with.
+    steady = {
+        "sag at 1.2 s": -0.01, "sag at 6 s": 1.0 / 6.0, "speed of the foot at 6 s over that at 1.2 s": 1.0,
+        "pace of the foot from 2.4 to 6 s": numbers["pace of the foot from 2.4 to 6 s"] / 0.4**0.5,
+    }  # fmt: skip
+    assert missed(CASES / case, steady) == [row["name"] for row in expected(CASES / case)]
+
+
+def test_a_dam_lets_through_what_its_levels_say_and_its_surface_runs_where_it_must(concluded):
+    case = "rectangular_dam"
+    numbers = concluded(case)
+    assert missed(CASES / case, numbers) == []
+    # The twin that must fail: what the dam as long as its water is high does, over the exact values of the longer one.
+    dams = script(case).dams(20)
+    one, other = dams["L = H1"], dams["L = 2 H1"]
+    off = dict(numbers)
+    for name in numbers:
+        what, _, which = name.partition(" over its exact value, ")
+        if which == "L = 2 H1":
+            exact = [one.discharge / other.discharge, *one.surface / other.surface][["q", *PLACES].index(what)]
+            off[name] = numbers[name.replace("2 H1", "H1")] * exact
+    told = ("q", *PLACES[1:])  # at a quarter of their length both surfaces are as high, within 3 %
+    assert missed(CASES / case, off) == [f"{what} over its exact value, L = 2 H1" for what in told]
