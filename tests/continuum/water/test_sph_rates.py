@@ -9,6 +9,7 @@ from continuum_sph.builders.water import water_flow
 from continuum_sph.validation.water import channels as trials
 from continuum_sph.validation.water.fluids import drop
 from continuum_sph.validation.water.setups import column_scene, open_box
+from continuum_sph.water import surface_tension
 from continuum_sph.water.density import LINEAR, PLAIN
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
@@ -144,7 +145,7 @@ def test_sums_are_those_of_the_equations(name):
 
 @pytest.mark.parametrize("name", PLAIN_ONLY)
 def test_sums_in_plain_python_are_those_of_the_equations(name, monkeypatch):
-    uncompile(monkeypatch, *WATER)
+    uncompile(monkeypatch, *WATER, surface_tension)
     flow = FLOWS[name]()
     assert max(told_apart(found(flow), pair_sums(flow, HALF))) <= 1.0
 
