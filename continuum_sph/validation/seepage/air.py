@@ -1,6 +1,4 @@
-"""Validations of soil, water and air in one place; each measuring function takes what its failing twin changes.
-
-Water that stands on soil full of air: how fast it sinks in, by what the air does.  SI.
+"""Water that stands on soil full of air: how fast it sinks in, by what the air does.  SI.
 
 All pores below the front, L - z of soil, are full of air.  Water stands h = h0 - n z on the soil and fills z of it;
 u = dz/dt is its velocity in the pores, n u on the soil, so what drives it is
@@ -117,7 +115,7 @@ class TrappedAir:
         x = np.concatenate((wet, pores, walls))
         layer = Layer(n, x, np.zeros_like(x), mass, rho, material=material)
         box = (0.0, -3.0 * spacing), (width, whole + 3.0 * spacing), (True, False)
-        flow = pore_flow(layer, law, ground.skeleton, Resistance(self.porosity), box)
+        flow = pore_flow(layer, law, ground.skeleton, Resistance(self.porosity), *box)
         if self.filled:
             flow.specific_weight = specific_weights(material[:n], law, GRAVITY)
         flow.lower[1] = 0.0

@@ -75,7 +75,7 @@ def held_between(
     mass[present:most] = 0.0
     layer = Layer(most, x, np.zeros_like(x), mass, rho)
     box = (-margin, -margin), (width + margin, float(berth[-1, 1]) + BERTH * smoothing.support)
-    flow = pore_flow(layer, rules, frame.skeleton, Resistance(POROSITY), box)
+    flow = pore_flow(layer, rules, frame.skeleton, Resistance(POROSITY), *box)
     flow.lower[:] = 0.0
     flow.upper[:] = width, np.inf
     both = Seepage(flow, frame)

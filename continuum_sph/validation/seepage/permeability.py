@@ -35,7 +35,7 @@ def permeated(permeability: float, gradient: float, *, law: str = "constant", po
     n = len(x)
     rules = Law(smoothing, spacing, (Fluid(Tait(WATER, 10.0)),), (gradient * GRAVITY, 0.0), diffusion=0.0, cut=False)
     layer = Layer(n, x, np.zeros((n, 2)), np.full(n, porosity * WATER * spacing**2), np.full(n, WATER))
-    both = Seepage(pore_flow(layer, rules, frame.skeleton, Resistance(given, law), box), frame)
+    both = Seepage(pore_flow(layer, rules, frame.skeleton, Resistance(given, law), *box), frame)
     both.start()
     return both
 

@@ -47,7 +47,7 @@ def saturated_box(
     state = Tait(WATER, 40.0)
     rules = Law(smoothing, spacing, (Fluid(state),), (0.0, 0.0), diffusion=0.0, cut=False, courant=0.25 * share)
     layer = Layer(n, at, rng.normal(0.0, speed, x.shape), np.full(n, porosity * WATER * spacing**2), np.full(n, WATER))
-    flow = pore_flow(layer, rules, skeleton, Resistance(porosity), box)
+    flow = pore_flow(layer, rules, skeleton, Resistance(porosity), *box)
     whole = porosity * WATER + material.density
     both = Seepage(flow, ground, material.column_modulus, whole / share**2)
     both.start()

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -31,10 +30,11 @@ def sides(width: float, height: float, spacing: float, ratio: float = RATIO) -> 
 
 
 def pore_flow(
-    layer: Layer, rules: Law, skeleton: Skeleton, resistance: Resistance, box: tuple[Any, ...]
+    layer: Layer, rules: Law, skeleton: Skeleton, resistance: Resistance, lower: tuple[float, float],
+    upper: tuple[float, float], periodic: tuple[bool, bool] = (False, False),
 ) -> PoreFlow:  # fmt: skip
-    """The water of a ``layer`` in the pores of a ``skeleton``;  box : corners, and which ways are periodic."""
-    length = rules.smoothing.length
+    """The water of a ``layer`` in the pores of a ``skeleton``, in a box from ``lower`` to ``upper`` (m)."""
+    length, box = rules.smoothing.length, (lower, upper, periodic)
     return PoreFlow(
         layer, rules, PairList(layer.count, SKIN * length, *box, full=True), skeleton=skeleton,
         overlap=Overlap(layer.fluid, skeleton.count, length, SKIN * length, *box), resistance=resistance,
@@ -79,7 +79,7 @@ def water_in(
     layer = Layer(n, np.concatenate((x, walls)), np.zeros((n + len(walls), 2)), mass, rho)
     if v is not None:
         layer.v[:n] = v
-    flow = pore_flow(layer, rules, skeleton, resistance, box)
+    flow = pore_flow(layer, rules, skeleton, resistance, *box)
     for face, held in (drained or {}).items():
         below = face == "floor"
         rows = n + np.flatnonzero(walls[:, 1] < 0.0 if below else walls[:, 1] > height)
