@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 import pydantic
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.common.schema.sections import Section, quantity
 from porescale.scene.time_function import TimeFunction, with_time_functions
 
 RATES, STRESSES = ("rate_xx", "rate_yy", "rate_xy"), ("stress_xx", "stress_yy", "shear_stress")
@@ -35,8 +35,7 @@ class Cell(Section):
     def _time_functions(cls, table: Any) -> Any:
         return with_time_functions(table, cls.UNITS)
 
-    @pydantic.model_validator(mode="after")
-    def _sensible(self) -> "Cell":
+    def _faults(self) -> list[Fault]:
         faults = []
         given = [name for name in (*RATES, *STRESSES) if getattr(self, name) is not None]
         if not given:
@@ -50,6 +49,4 @@ class Cell(Section):
             faults.append(Fault("fastest", None, problem, "1/s", "> 0", repair))
         if self.fastest is not None and not stressed:
             faults.append(Fault("fastest", self.fastest, "belongs to a stress", "1/s", repair="leave it out"))
-        if faults:
-            raise Refused(*faults)
-        return self
+        return faults

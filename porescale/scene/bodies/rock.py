@@ -5,7 +5,7 @@ from typing import Any, Literal
 import pydantic
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.common.schema.sections import Section, quantity
 from porescale.scene.time_function import TimeFunction, with_time_functions
 
 
@@ -31,8 +31,7 @@ class Rock(Section):
     def _time_functions(cls, table: Any) -> Any:
         return with_time_functions(table, {"strain": ("", "strain of the sample")})
 
-    @pydantic.model_validator(mode="after")
-    def _whole(self) -> "Rock":
+    def _faults(self) -> list[Fault]:
         faults = []
         for name in ("gap", "pressed"):
             value = getattr(self, name)
@@ -42,9 +41,7 @@ class Rock(Section):
                 faults.append(Fault(name, None, "is missing", "m", "> 0", f"add it: {self.kind} need it"))
         if self.plates == "none" and self.strain is not None:
             faults.append(Fault("strain", None, "needs plates", repair='write plates = "x" or "y"'))
-        if faults:
-            raise Refused(*faults)
-        return self
+        return faults
 
     @property
     def polygons(self) -> bool:

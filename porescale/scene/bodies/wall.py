@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import pydantic
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.common.schema.sections import Section, quantity
 from porescale.scene.servo import SERVO, check_servo
 from porescale.scene.time_function import TimeFunction, with_time_functions
 
@@ -40,17 +40,14 @@ class Wall(Section):
     def _time_functions(cls, table: Any) -> Any:
         return with_time_functions(table, cls.UNITS)
 
-    @pydantic.model_validator(mode="after")
-    def _sensible(self) -> "Wall":
+    def _faults(self) -> list[Fault]:
         faults = check_servo(self, self.moves)
         if not math.hypot(*self.normal) > 0.0:
             faults.append(Fault("normal", "(0, 0)", "has no length", repair="point it towards the grains"))
         if (self.stress is None) != (self.length is None):
             problem = "is needed for a stress" if self.stress else "belongs to a wall with stress"
             faults.append(Fault("length", self.length, problem, "m", repair="give both, or neither"))
-        if faults:
-            raise Refused(*faults)
-        return self
+        return faults
 
     @property
     def moves(self) -> bool:

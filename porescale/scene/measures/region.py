@@ -3,7 +3,7 @@
 import pydantic
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.common.schema.sections import Section, quantity
 from porescale.scene.ranges import PLACE
 
 
@@ -17,10 +17,9 @@ class Region(Section):
     lower: tuple[float, float] = quantity("m", **PLACE, help="lower left corner")
     upper: tuple[float, float] = quantity("m", **PLACE, help="upper right corner")
 
-    @pydantic.model_validator(mode="after")
-    def _has_area(self) -> "Region":
+    def _faults(self) -> list[Fault]:
         if not (self.lower[0] < self.upper[0] and self.lower[1] < self.upper[1]):
             problem = "must lie right of and above the lower corner"
             given, allowed = f"({self.upper[0]:g}, {self.upper[1]:g})", f"> ({self.lower[0]:g}, {self.lower[1]:g})"
-            raise Refused(Fault("upper", given, problem, "m", allowed, "swap or move the corners"))
-        return self
+            return [Fault("upper", given, problem, "m", allowed, "swap or move the corners")]
+        return []
