@@ -1,17 +1,15 @@
 """[cell]: the periodic cell of a dry scene, strained at given rates or by stresses."""
 
-from typing import Any, ClassVar
-
-import pydantic
+from typing import ClassVar
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Section, quantity
-from porescale.scene.time_function import TimeFunction, with_time_functions
+from porescale.common.schema.sections import quantity
+from porescale.scene.time_function import Timed, TimeFunction
 
 RATES, STRESSES = ("rate_xx", "rate_yy", "rate_xy"), ("stress_xx", "stress_yy", "shear_stress")
 
 
-class Cell(Section):
+class Cell(Timed):
     """Strain of a box that is periodic both ways: each of xx, yy, xy at a rate or by a stress; left out, it stays.
 
     rate_xx, rate_yy : of stretching, < 0 shrinks;  rate_xy : of shear, dv_x/dy;  stress_xx, stress_yy : compression
@@ -29,11 +27,6 @@ class Cell(Section):
     UNITS: ClassVar[dict[str, tuple[str, str]]] = {
         **dict.fromkeys(RATES, ("1/s", "rate of strain")), **dict.fromkeys(STRESSES, ("Pa", "stress")),
     }  # fmt: skip
-
-    @pydantic.model_validator(mode="before")
-    @classmethod
-    def _time_functions(cls, table: Any) -> Any:
-        return with_time_functions(table, cls.UNITS)
 
     def _faults(self) -> list[Fault]:
         faults = []

@@ -90,6 +90,17 @@ def with_time_functions(table: Any, units: Mapping[str, tuple[str, str]]) -> Any
     return made
 
 
+class Timed(Section):
+    """A section with functions of time.  UNITS : of each, by key: unit and what it is."""
+
+    UNITS: ClassVar[dict[str, tuple[str, str]]] = {}
+
+    @pydantic.model_validator(mode="before")
+    @classmethod
+    def _time_functions(cls, table: Any) -> Any:
+        return with_time_functions(table, cls.UNITS)
+
+
 def _below(key: str, fault: Fault) -> Fault:
     return replace(fault, key=f"{key}{'' if fault.key.startswith('[') or not fault.key else '.'}{fault.key}")
 

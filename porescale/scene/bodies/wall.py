@@ -1,17 +1,17 @@
 """[[wall]]: free straight walls without end, for dry grains."""
 
 import math
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import pydantic
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Section, quantity
+from porescale.common.schema.sections import quantity
 from porescale.scene.servo import SERVO, check_servo
-from porescale.scene.time_function import TimeFunction, with_time_functions
+from porescale.scene.time_function import Timed, TimeFunction
 
 
-class Wall(Section):
+class Wall(Timed):
     """A straight wall without end, solid behind: it stands, moves and turns as prescribed, or the grains press on it.
 
     stress, force : it moves along its normal, no faster than ``fastest``, so that the grains press on it so, > 0 for
@@ -34,11 +34,6 @@ class Wall(Section):
     UNITS: ClassVar[dict[str, tuple[str, str]]] = {
         "velocity_x": ("m/s", "velocity"), "velocity_y": ("m/s", "velocity"), "turning": ("rad/s", "rotation"), **SERVO,
     }  # fmt: skip
-
-    @pydantic.model_validator(mode="before")
-    @classmethod
-    def _time_functions(cls, table: Any) -> Any:
-        return with_time_functions(table, cls.UNITS)
 
     def _faults(self) -> list[Fault]:
         faults = check_servo(self, self.moves)

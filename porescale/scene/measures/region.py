@@ -10,7 +10,7 @@ from porescale.scene.ranges import PLACE
 class Region(Section):
     """A rectangle in which porosity, stress, fabric and motion of the grains are recorded over time: regions.csv.
 
-    XX
+    Compression is positive.  In a periodic box it may reach over the sides.
     """
 
     name: str = pydantic.Field("", description="name in the columns (default: its number)")
