@@ -113,6 +113,7 @@ def _passes(pairs: int) -> Callable[[], None]:
     done, last = 0, time.perf_counter()
 
     def count() -> None:
+        """Count one more pair, and report progress at intervals."""
         nonlocal done, last
         done += 1
         if time.perf_counter() - last > PATIENCE:
