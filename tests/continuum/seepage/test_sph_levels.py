@@ -1,4 +1,4 @@
-"""Water kept at a level: measured by weight, booked to the last particle, resumed bit for bit."""
+"""Water kept at a level: measured by weight, accounted for to the last particle, resumed bit for bit."""
 
 import numpy as np
 import pytest
@@ -73,13 +73,13 @@ def test_air_in_a_strip_is_no_water():
     assert (layer.mass[air] > 0.0).all()
 
 
-def test_what_comes_and_goes_is_booked_to_round_off():
+def test_what_comes_and_goes_is_accounted_for_to_round_off():
     given = supply(pool([0.7, 0.2], times=(1.0, 2.0)), pool(0.0, left=1.7, right=2.0, walls=(False, True)))
     layer, before = given.layer, given.layer.mass.sum()
     for time in np.linspace(0.0, 3.0, 31):
         given.keep(time)
-        booked = sum(one.let_in - one.let_out for one in given.reservoirs)
-        assert abs(layer.mass.sum() - before - booked) < ROUND * layer.fluid * before
+        balance = sum(one.let_in - one.let_out for one in given.reservoirs)
+        assert abs(layer.mass.sum() - before - balance) < ROUND * layer.fluid * before
         first, drained = given.reservoirs
         # within half a particle of 1 m or, beside the ramp of 3 spacings, 0.85 m
         assert abs(first.level - first.wanted(time)) <= 0.5 * SPACING**2 / first.width + 1e-12
@@ -186,7 +186,7 @@ def test_kernels_too_short_for_pores_and_shifting_are_warned_of():
 
 
 @pytest.mark.slow
-def test_a_dam_between_levels_is_resumed_bit_for_bit_and_books_its_water():
+def test_a_dam_between_levels_is_resumed_bit_for_bit_and_accounts_for_its_water():
     whole, part, resumed = (Simulation(scene()) for _ in range(3))
     before = whole.series()["mass (kg/m)"]
     whole.advance(300)
@@ -197,26 +197,26 @@ def test_a_dam_between_levels_is_resumed_bit_for_bit_and_books_its_water():
     row = whole.series()
     assert row == resumed.series()
     assert row["upstream let in (kg/m)"] > 0.09 * 0.2 * 1000.0
-    booked = sum(row[f"{name} let in (kg/m)"] - row[f"{name} let out (kg/m)"] for name in ("upstream", "downstream"))
+    balance = sum(row[f"{name} let in (kg/m)"] - row[f"{name} let out (kg/m)"] for name in ("upstream", "downstream"))
     # sums of up to 600 particles' masses in two orders
-    assert abs(row["mass (kg/m)"] - before - booked) < ROUND * 600 * row["mass (kg/m)"]
+    assert abs(row["mass (kg/m)"] - before - balance) < ROUND * 600 * row["mass (kg/m)"]
     cloud = whole.snapshot().clouds["water"]
     layer = whole.flow.water.layer
     assert len(cloud.position) == (layer.mass[: layer.fluid] > 0.0).sum()
 
 
 @pytest.mark.slow
-def test_water_of_a_reservoir_beside_a_dam_full_of_air_is_booked_and_air_keeps_its_mass():
+def test_water_of_a_reservoir_beside_a_dam_full_of_air_is_accounted_for_and_air_keeps_its_mass():
     model = Simulation(scene(air={"density": 20.0}))
     before = model.series()
     model.advance(400)
     model.check()
     row = model.series()
     assert row["air: mass (kg/m)"] == before["air: mass (kg/m)"]
-    booked = sum(row[f"{name} let in (kg/m)"] - row[f"{name} let out (kg/m)"] for name in ("upstream", "downstream"))
+    balance = sum(row[f"{name} let in (kg/m)"] - row[f"{name} let out (kg/m)"] for name in ("upstream", "downstream"))
     gained = row["water: mass (kg/m)"] - before["water: mass (kg/m)"]
-    assert abs(gained - booked + before["upstream let in (kg/m)"]) < ROUND * 600 * row["water: mass (kg/m)"]
-    assert booked > 10.0  # half of 0.1 m of water in a strip of 0.2 m, and the basin beside it
+    assert abs(gained - balance + before["upstream let in (kg/m)"]) < ROUND * 600 * row["water: mass (kg/m)"]
+    assert balance > 10.0  # half of 0.1 m of water in a strip of 0.2 m, and the basin beside it
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""Shifting among grains: density stays that of the place, and the book of energies has what that takes."""
+"""Shifting among grains: density stays that of the place, and the budget of energies has what that takes."""
 
 from dataclasses import replace
 
@@ -44,7 +44,7 @@ def test_density_changes_by_what_drift_meets(soaked):
     assert np.abs((shifted - still) / flow.porosity - met).max() > 1e3 * allowed  # the twin that must fail
 
 
-def test_the_book_has_the_work_of_shifting(soaked):
+def test_the_budget_has_the_work_of_shifting(soaked):
     flow, shifted, still, power = soaked
     layer, n = flow.layer, flow.layer.fluid
     mass, drift = layer.mass[:n], layer.drift

@@ -333,10 +333,10 @@ def test_soil_without_cohesion_has_no_tension_to_hold():
     assert in_tank(np.array([[0.05, 0.05]]), np.zeros((1, 4)), (0.2, 0.2), 0.1, clay).pulling
 
 
-def test_damping_told_as_a_viscosity_is_the_same_at_any_stiffness_and_spacing():
-    told = {"damping_viscosity": 0.05}
+def test_damping_given_as_a_viscosity_is_the_same_at_any_stiffness_and_spacing():
+    given = {"damping_viscosity": 0.05}
     for stiffness in (1e6, 4e6):
-        law = soil_law(scene(stiffness=stiffness, numerics=told))
+        law = soil_law(scene(stiffness=stiffness, numerics=given))
         sound = math.sqrt(law.materials[0].column_modulus / law.materials[0].density)
         assert law.damping * sound * law.smoothing.length == pytest.approx(0.05, rel=1e-14)
     assert soil_law(scene()).damping == 0.2

@@ -102,7 +102,7 @@ def test_momentum_is_kept_with_and_without_corrected_gradients(choices):
 
 
 @pytest.mark.parametrize("choices", [{}, {"corrected": True}, {"noise": 2}, {"noise": 0}])
-def test_the_book_of_energies_closes(choices):
+def test_the_budget_of_energies_closes(choices):
     flow = stirred(**choices)
     before = budget(flow)
     for _ in range(100):
@@ -114,7 +114,7 @@ def test_the_book_of_energies_closes(choices):
     assert abs(after["energy balance"] - before["energy balance"]) < 0.03 * lost
 
 
-def test_a_book_without_heat_does_not_close():  # the twin that must fail
+def test_a_budget_without_heat_does_not_close():  # the twin that must fail
     flow = stirred()
     before = budget(flow)["total energy"]
     for _ in range(100):

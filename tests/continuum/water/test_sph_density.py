@@ -126,9 +126,9 @@ def test_water_flies_off_at_the_step_of_sound_alone(monkeypatch):  # the twin th
     assert not fastest_at_rest() < 0.1
 
 
-def share(approach, calm):
+def share(approach, noise_speed):
     """Pace of a pair over that of sound."""
-    return float(diffusion_share.py_func(approach, *noise_scale.py_func(calm, H)))
+    return float(diffusion_share.py_func(approach, *noise_scale.py_func(noise_speed, H)))
 
 
 def test_densities_diffuse_at_the_pace_at_which_pairs_close():

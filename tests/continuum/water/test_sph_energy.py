@@ -1,4 +1,4 @@
-"""The book of energies is kept where a scene asks for it, costs nothing elsewhere, and moves nobody."""
+"""The budget of energies is kept where a scene asks for it, costs nothing elsewhere, and moves nobody."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ ROWS = 2 * 6 * 8  # bytes of a particle's power and energy
 
 
 def made(energy, sections):
-    """A column that falls, with or without a book."""
+    """A column that falls, with or without a budget."""
     table = {
         "tank": {"width": 1.5, "height": 1.5}, "water": {"column": [{"width": 0.5, "height": 1.0}]},
         "numerics": {"spacing": 0.1}, "time": {"end": 1.0},
@@ -32,7 +32,7 @@ def made(energy, sections):
     return Simulation(validate(Scene, table | sections))
 
 
-def test_a_scene_that_does_not_ask_for_energies_has_no_book():
+def test_a_scene_that_does_not_ask_for_energies_has_no_budget():
     without, kept = made({}, {}), made({"energy": True}, {})
     assert without.scene.output.energy is False
     assert without.flow.layer.power.nbytes == without.flow.layer.energy.nbytes == 0
@@ -46,7 +46,7 @@ def test_a_scene_that_does_not_ask_for_energies_has_no_book():
 
 
 @pytest.mark.parametrize("sections", [{}, SHIFTED, PULLED], ids=["plain", "shifted", "two fluids"])
-def test_a_book_moves_nobody(sections):
+def test_a_budget_moves_nobody(sections):
     without, kept = made({}, sections), made({"energy": True}, sections)
     without.advance(150)
     kept.advance(150)
@@ -56,7 +56,7 @@ def test_a_book_moves_nobody(sections):
     assert np.abs(kept.flow.layer.energy).sum() > 0.0
 
 
-def test_a_run_with_a_book_is_taken_up_again_to_the_bit(tmp_path):
+def test_a_run_with_a_budget_is_taken_up_again_to_the_bit(tmp_path):
     straight = made({"energy": True}, {})
     straight.advance(60)
     write_checkpoint(tmp_path / "c.h5", straight.state())
@@ -68,7 +68,7 @@ def test_a_run_with_a_book_is_taken_up_again_to_the_bit(tmp_path):
     assert resumed.series() == straight.series()
 
 
-def test_a_book_of_no_water_is_refused():
+def test_a_budget_of_no_water_is_refused():
     soil = {"stiffness": 1e6, "permeability": 1e-3, "body": [{"outline": [[0, 0], [1, 0], [1, 1], [0, 1]]}]}
     with pytest.raises(InputError, match=r"output\.energy.*is of water"):
         made({"energy": True}, {"water": {}, "soil": soil})

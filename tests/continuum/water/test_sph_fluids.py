@@ -64,7 +64,7 @@ def test_tension_swaps_sides_with_the_numbers_of_the_fluids():
     np.testing.assert_allclose(found[0], found[1], rtol=1e-9, atol=1e-9 * np.abs(found[0]).max())
 
 
-def test_the_book_of_a_drop_at_rest_closes_with_the_work_of_its_tension():
+def test_the_budget_of_a_drop_at_rest_closes_with_the_work_of_its_tension():
     flow = trials_fluids.drop(20, 0.25, stretch=1.2)
     flow.layer.keep_budget()
     first = budget(flow)

@@ -98,7 +98,7 @@ FLOWS = {
     "walls, lengths of their own": lambda: evolved(walled("stick", steps=0, smoothing_length="evolved")),
     "channel": channel,
     "box": boxed,
-    "gravity sideways, beta, calm": lambda: boxed(gravity=(3.0, -9.81), beta=2.0, noise_speed=0.1),
+    "gravity sideways, beta, noise floor": lambda: boxed(gravity=(3.0, -9.81), beta=2.0, noise_speed=0.1),
     "cohesion": lambda: boxed(fluids=(Fluid(Tait(1000.0, 40.0), 1.0, 1e-2),)),
     "varied": lambda: boxed(varied=True, xsph=0.3),
     "two fluids": lambda: mixed(corrected=False, shifting=0.0),
@@ -111,19 +111,19 @@ FLOWS = {
 }
 
 
-def found(flow, *, booked=True):
+def found(flow, *, with_budget=True):
     """(acceleration, rate, smoothed, power) by the step's own call of the pass, from records as they are."""
     layer = flow.layer
-    if booked:
+    if with_budget:
         layer.keep_budget()
     for name in ("acceleration", "rate", "smoothed"):
         getattr(layer, name)[:] = 0.0
     flow.sum_pairs(HALF)
-    power = layer.power.copy() if booked else np.zeros((layer.fluid, 6))
+    power = layer.power.copy() if with_budget else np.zeros((layer.fluid, 6))
     return layer.acceleration.copy(), layer.rate.copy(), layer.smoothed.copy(), power
 
 
-def told_apart(quick, slow):
+def difference(quick, slow):
     """Largest difference of each, in units of what round-off may be: 30 terms of some ten operations each, none more
     than a hundred times the largest sum."""
     allowed = [100 * 30 * 10 * eps * np.abs(b).max() for b in slow]
@@ -132,7 +132,7 @@ def told_apart(quick, slow):
     ]
 
 
-PLAIN_ONLY = ("shifted", "corrected", "images, xsph", "gravity sideways, beta, calm", "varied", "two fluids")
+PLAIN_ONLY = ("shifted", "corrected", "images, xsph", "gravity sideways, beta, noise floor", "varied", "two fluids")
 """Flows of which every choice is compiled in some other of them: in plain Python, which compiles nothing, from the
 start."""
 
@@ -140,28 +140,28 @@ start."""
 @pytest.mark.parametrize("name", [name for name in FLOWS if name not in PLAIN_ONLY])
 def test_sums_are_those_of_the_equations(name):
     flow = FLOWS[name]()
-    assert max(told_apart(found(flow), pair_sums(flow, HALF))) <= 1.0
+    assert max(difference(found(flow), pair_sums(flow, HALF))) <= 1.0
 
 
 @pytest.mark.parametrize("name", PLAIN_ONLY)
 def test_sums_in_plain_python_are_those_of_the_equations(name, monkeypatch):
     uncompile(monkeypatch, *WATER, surface_tension)
     flow = FLOWS[name]()
-    assert max(told_apart(found(flow), pair_sums(flow, HALF))) <= 1.0
+    assert max(difference(found(flow), pair_sums(flow, HALF))) <= 1.0
 
 
 @pytest.mark.parametrize("name", ["stick", "all", "images that hold", "two fluids, all"])
 def test_compiled_sums_run_in_plain_python_too(name, monkeypatch):
     flow = FLOWS[name]()
     uncompile(monkeypatch, *WATER)
-    assert max(told_apart(found(flow), pair_sums(flow, HALF))) <= 1.0
+    assert max(difference(found(flow), pair_sums(flow, HALF))) <= 1.0
 
 
 @pytest.mark.parametrize("name", ["all", "two fluids, corrected"])
-def test_a_book_changes_no_bit_of_the_flow(name):
+def test_a_budget_changes_no_bit_of_the_flow(name):
     flow = FLOWS[name]()
     flow.layer.has_budget = False
-    without = found(flow, booked=False)
+    without = found(flow, with_budget=False)
     for a, b in zip(found(flow)[:3], without[:3], strict=True):
         np.testing.assert_array_equal(a, b)
 
@@ -170,9 +170,9 @@ def test_a_book_changes_no_bit_of_the_flow(name):
     ("name", "other"),
     [("slip", {"alpha": 1.01}), ("xsph", {"xsph": 1.01}), ("stick", {"diffusion": 1.01}), ("box", {"alpha": 1.01})],
 )
-def test_a_hundredth_more_is_told_apart(name, other):  # the twin that must fail
+def test_a_hundredth_more_is_noticed(name, other):  # the twin that must fail
     flow = FLOWS[name]()
     quick = found(flow)
     ((key, more),) = other.items()
     flow.law = replace(flow.law, **{key: more * getattr(flow.law, key)})
-    assert max(told_apart(quick, pair_sums(flow, HALF))) > 1e3
+    assert max(difference(quick, pair_sums(flow, HALF))) > 1e3
