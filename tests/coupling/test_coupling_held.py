@@ -1,4 +1,4 @@
-"""Discs held still or towed, beside free ones: they go as told, and what holds them bears what they do not follow."""
+"""Discs held still or towed beside free ones: they move as prescribed, and their holders bear what they do not follow."""
 
 import copy
 

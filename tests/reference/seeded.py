@@ -44,7 +44,7 @@ def times(place: str, index: Any, factor: float) -> Callable[[Any], None]:
     return fault
 
 
-def crowd(place: str, index: Any) -> Callable[[Any], None]:
+def coincide(place: str, index: Any) -> Callable[[Any], None]:
     """Puts the particles at ``index``, see `rows`, where the first of them is; ``place``: of their places."""
 
     def fault(simulation: Any) -> None:

@@ -11,7 +11,7 @@ from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import POROSITY
 from porescale.common.schema.sections import load
 from tests.reference.folders import CASES
-from tests.reference.seeded import INF, NAN, Running, crowd, named, put, running, step, times
+from tests.reference.seeded import INF, NAN, Running, coincide, named, put, running, step, times
 
 pytestmark = pytest.mark.slow
 COARSE = {
@@ -70,8 +70,8 @@ def faults_of(place: str) -> dict[str, Callable[[Simulation], None]]:
         "thrown up": at("x", (1,), 5.0),
         "thrown through the wall": at("x", (0,), -1.0),
         "thrown through the floor": at("x", (1,), -1.0),
-        "two in one place": crowd(f"{place}x", lambda simulation: own(simulation)[:2]),
-        "ten in one place": crowd(f"{place}x", lambda simulation: own(simulation)[:10]),
+        "two in one place": coincide(f"{place}x", lambda simulation: own(simulation)[:2]),
+        "ten in one place": coincide(f"{place}x", lambda simulation: own(simulation)[:10]),
         **{f"step times {factor:g}": step("flow", factor) for factor in (100.0, 1e4, NAN, -1.0, 0.0)},
     }  # fmt: skip
 

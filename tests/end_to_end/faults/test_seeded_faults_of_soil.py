@@ -8,7 +8,7 @@ import pytest
 from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from tests.reference.programs import SOIL
-from tests.reference.seeded import INF, NAN, Running, crowd, put, running, step, times
+from tests.reference.seeded import INF, NAN, Running, coincide, put, running, step, times
 
 AT = 50
 """The particle that most faults are put at: within the pile, on its way down."""
@@ -41,8 +41,8 @@ FAULTS: dict[str, Callable[[Simulation], None]] = {
     "mass times a hundred": times(f"{SAND}mass", AT, 100.0),
     **{f"thrown {where}": put(f"{SAND}x", (AT, axis), value) for where, axis, value in (
         ("up", 1, 3.0), ("through the wall", 0, -1.0), ("through the floor", 1, -1.0), ("aside", 0, 0.28))},
-    "two in one place": crowd(f"{SAND}x", slice(AT, AT + 2)),
-    "twenty in one place": crowd(f"{SAND}x", slice(AT, AT + 20)),
+    "two in one place": coincide(f"{SAND}x", slice(AT, AT + 2)),
+    "twenty in one place": coincide(f"{SAND}x", slice(AT, AT + 20)),
     "twenty drawn together": near,
     **{f"step times {factor:g}": step("flow", factor) for factor in (100.0, 1e4, NAN, -1.0, 0.0)},
 }  # fmt: skip
