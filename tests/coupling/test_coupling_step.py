@@ -114,7 +114,7 @@ def test_a_correction_that_is_forgotten_is_missed():
             if step == 5:
                 again = SaturatedCells(fluid, wet.radius)
                 if not forget:
-                    again.restore(_copied(wet.state()))
+                    again.restore(copy.deepcopy(wet.state()))
                 wet = again
             wet.advance(fluid, *arrays(touching_discs()))
         return fluid.populations[:, 1:-1, 1:-1].copy(), wet.force.copy()
@@ -177,7 +177,7 @@ def final(count, steps=60, restart=None):
     coupled = lab.handful(sides=("wall", "wall"), acceleration=(1e-5, -5e-5), gate=True)
     for step in range(steps):
         if step == restart:
-            kept = _copied(coupled.state())
+            kept = copy.deepcopy(coupled.state())
             coupled = lab.handful(sides=("wall", "wall"), acceleration=(1e-5, -5e-5), gate=True)
             coupled.restore(kept)
         if step == 30:
@@ -188,10 +188,6 @@ def final(count, steps=60, restart=None):
     d = coupled.grains.discs
     inside = coupled.fluid.populations[:, 1:-1, 1:-1]
     return [part.copy() for part in (inside, d.position, d.velocity, d.spin, coupled.force, coupled.torque)]
-
-
-def _copied(state):
-    return {key: _copied(value) if isinstance(value, dict) else copy.copy(value) for key, value in state.items()}
 
 
 def test_one_and_two_threads_give_the_same_bits():
