@@ -28,7 +28,7 @@ COLOURS = {0.25: "#5b8fd0", 0.5: "#c8553d", 0.75: "#3f7f4f"}
 
 def cases(rows: int) -> dict[float, Heave]:
     """The grounds by s/T: the shorter the pile the finer."""
-    given = Heave(rows=rows, modulus=5e5, cover=0.17, permeability=3e-2, first=2.5, rate=0.5, calm=0.4)
+    given = Heave(rows=rows, modulus=5e5, cover=0.17, permeability=3e-2, first=2.5, rate=0.5, settle=0.4)
     return {
         0.25: replace(given, share=0.25, rows=5 * rows // 3, reach=1.0, rate=0.8),
         0.5: given,

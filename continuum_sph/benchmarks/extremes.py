@@ -29,7 +29,7 @@ CLOSED = 0.01  # of the energy at the start: tolerance of the energy budget
 def driven(model: Simulation, end: float, judged: bool = False) -> str | Verdict:
     """Take ``model`` to ``end`` (s) and state the outcome; Unstable where its state is out of bounds.
 
-    judged : by how far water has run at JUDGED and by its book of energies."""
+    judged : by how far water has run at JUDGED and by its energy budget."""
     model.flow.layer.keep_budget()
     start = budget(model.flow)["energy balance"]
     fastest, way = 0.0, None

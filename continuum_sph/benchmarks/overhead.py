@@ -117,7 +117,7 @@ WET: Table = {"water": {"pressure": "hydrostatic", "column": [COLUMN]}}
 ABOVE: Table = {"pressure": "hydrostatic", "column": [{"bottom": 1.0, "width": 1.0, "height": 1.0}]}
 UNSATURATED: Table = {"water": ABOVE, "air": {"density": 20.0, "pressure": 5e4}}
 DISC: Table = {"density": 500.0, "law": "liquid", "disc": [{"x": 0.5, "y": 1.0, "radius": 0.2}]}
-BOOK: Table = {"snapshot_interval": 1.0, "series_interval": 1.0, "energy": True}
+ENERGY_BUDGET: Table = {"snapshot_interval": 1.0, "series_interval": 1.0, "energy": True}
 SHIFTED: Table = {"gradient": "corrected", "shifting": 2.0}
 
 KINDS = SceneKinds([
@@ -128,7 +128,7 @@ KINDS = SceneKinds([
          because="as of water only, and 3 % in the pass over pairs"),
     added("water only, twice", "a run beside its like: what the method of measuring makes of nothing"),
     added("energy book", "sums of pressure apart from the rest 8 %, the book's own lines 5 %, taken up 3 %",
-          output=BOOK),
+          output=ENERGY_BUDGET),
     added("walls that hold", tank={"walls": "stick"}),
     added("walls of images", "walls have densities of their own, by a sum of their own",
           tank={"wall_particles": "images"}),

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +9,8 @@ from porescale.analysis.permeability import Measured, gebart, kozeny_carman, mea
 from porescale.builders.derive import fluid_scales
 from porescale.builders.initial.fluid_options import collision_options, solid_options
 from porescale.builders.scene import Scene
-from porescale.common.core.atomic import write_bytes
+from porescale.common.core.atomic import write_text
+from porescale.common.evidence.files import csv_text
 from porescale.common.record.model import Cloud
 from porescale.common.schema.sections import validate
 
@@ -33,12 +32,8 @@ def write_permeability(run: Run, folder: Path) -> list[Path]:
     for k in sorted({0, len(run) - 1}):
         snapshot = run.snapshot(k, cells=("velocity",))
         rows.append(row(snapshot.time, ratio, measure_window(scene, snapshot.clouds["grains"])))
-    text = io.StringIO()
-    table = csv.writer(text, lineterminator="\n")
-    table.writerow(rows[0])
-    table.writerows([repr(value) for value in it.values()] for it in rows)
     path = folder / "permeability.csv"
-    write_bytes(path, text.getvalue().encode())
+    write_text(path, csv_text(rows[0], ([repr(value) for value in it.values()] for it in rows)))
     return [path]
 
 

@@ -35,9 +35,9 @@ HARD = 300.0
 def pressure_of(scene: Scene) -> float:
     """The stress (Pa) at which a scene's soil is measured: as given, as its packing is pressed, else as the weight of
     half the packing's height has it, buoyant where there is fluid."""
-    asked, packing = asked_of(scene), packing_of(scene)
-    if asked.pressure is not None:
-        return asked.pressure
+    section, packing = section_of(scene), packing_of(scene)
+    if section.pressure is not None:
+        return section.pressure
     if packing.pressure is not None:
         return packing.pressure
     lighter = scene.fluid.density if scene.fluid else 0.0
@@ -45,7 +45,7 @@ def pressure_of(scene: Scene) -> float:
     return 0.5 * packing.packing_fraction * weight * packing.height
 
 
-def asked_of(scene: Scene) -> Homogenise:
+def section_of(scene: Scene) -> Homogenise:
     """[homogenise] of a scene, or its defaults."""
     return scene.homogenise or Homogenise.model_validate({})
 
@@ -63,7 +63,7 @@ def mean_mass(scene: Scene) -> float:
     return math.pi / 4.0 * packing.diameter**2 * MaterialPlan.of(scene).density(packing.material)
 
 
-def judge(scene: Scene) -> None:
+def require_measurable(scene: Scene) -> None:
     """InputError with what keeps a scene's grains from being homogenised."""
     faults = []
     if scene.grains is None or scene.grains.packing is None:
@@ -90,23 +90,23 @@ def judge(scene: Scene) -> None:
 def stiffness_over_pressure(scene: Scene) -> float:
     """Contact stiffness k (N/m a metre) over the pressure: E follows it, angles do not where it is large."""
     law = MaterialPlan.of(scene).law_and_others(packing_of(scene).material, mean_mass(scene))[0]
-    assert isinstance(law, Linear)  # as judged
+    assert isinstance(law, Linear)  # as `require_measurable` holds
     return law.stiffness / pressure_of(scene)
 
 
-def ramp_of(asked: Homogenise, packing: Packing) -> float:
+def ramp_of(section: Homogenise, packing: Packing) -> float:
     """Rate times the time in which a test comes to it: slowly enough for the stiffness of its first loading.
 
     A wave takes L √(ρ/k) through a cell of side L; a rate that grows evenly over T has strained it by p/k after
     √(2 T p/(rate k)), which WAVES of them make  rate T = WAVES² I² ρ L²/2m,  whatever k and p are.
     """
-    grains = side_of(asked, packing) ** 2 / (math.pi / 4.0 * packing.diameter**2)
-    return 0.5 * WAVES**2 * asked.inertial_number**2 * grains
+    grains = side_of(section, packing) ** 2 / (math.pi / 4.0 * packing.diameter**2)
+    return 0.5 * WAVES**2 * section.inertial_number**2 * grains
 
 
-def side_of(asked: Homogenise, packing: Packing) -> float:
+def side_of(section: Homogenise, packing: Packing) -> float:
     """Side (m) of the cell that holds the chosen number of grains."""
-    return packing.diameter * math.sqrt(asked.grains * math.pi / 4.0 * (1.0 + packing.size_spread**2 / 3.0) / SOLID)
+    return packing.diameter * math.sqrt(section.grains * math.pi / 4.0 * (1.0 + packing.size_spread**2 / 3.0) / SOLID)
 
 
 def specimen(scene: Scene) -> dict[str, Any]:
@@ -114,13 +114,13 @@ def specimen(scene: Scene) -> dict[str, Any]:
 
     Raises InputError for what cannot be tested.
     """
-    judge(scene)
-    asked, packing = asked_of(scene), packing_of(scene)
+    require_measurable(scene)
+    section, packing = section_of(scene), packing_of(scene)
     pressure = pressure_of(scene)
-    side = side_of(asked, packing)
-    rate = asked.inertial_number * math.sqrt(pressure / mean_mass(scene))
-    ramp = ramp_of(asked, packing) / rate
-    end = asked.strain / rate + 0.5 * ramp
+    side = side_of(section, packing)
+    rate = section.inertial_number * math.sqrt(pressure / mean_mass(scene))
+    ramp = ramp_of(section, packing) / rate
+    end = section.strain / rate + 0.5 * ramp
     grains = {
         "diameter": packing.diameter, "size_spread": packing.size_spread, "seed": packing.seed,
         "settling_friction": packing.settling_friction, "material": packing.material, "log_spread": packing.log_spread,

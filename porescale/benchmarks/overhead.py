@@ -116,7 +116,7 @@ def nothing_moves(made: Simulation) -> Callable[[int], object]:
 
 
 ROLLING: Table = {"rolling_friction": 0.1, "rolling_stiffness": 1e5}
-BOOK: Table = {"snapshot_interval": 1.0, "series_interval": 1.0, "energy": True}
+ENERGY_BUDGET: Table = {"snapshot_interval": 1.0, "series_interval": 1.0, "energy": True}
 WIDER: Table = {"width": 1.5 * GRAINS[0], "height": 3.0 * GRAINS[1]}
 LATER = 1e9  # s
 STEEL: Table = {"name": "steel", "stiffness": 8e5}
@@ -141,7 +141,7 @@ KINDS = SceneKinds([
     SceneKind("fixed grains in water", "cell", SMALLEST, lambda: built(fixed(), "cell", nothing_moves), steps=20,
          because="1.01 to 1.04 from run to run: contact steps of discs that nothing moves are left out"),
     added("rolling friction", "grain", "dry grains", dry, contact=CONTACT | ROLLING),
-    added("energy book", "grain", "dry grains", dry, output=BOOK),
+    added("energy book", "grain", "dry grains", dry, output=ENERGY_BUDGET),
     added("gate that stands", "grain", "dry grains", dry, domain=WIDER, gate={"x": GRAINS[0], "opens_at": LATER}),
     added("walls of a second material", "grain", "dry grains", dry, contact=CONTACT | {"wall_material": "steel"},
           material=[STEEL]),

@@ -36,8 +36,8 @@ def _free(system: System) -> bool:
 def _measures_grains(system: System) -> bool:
     """Whether a scene measures its grains beyond series.csv."""
     it = system.scene
-    asked = it.region or it.coarse_graining or it.output.forces or it.output.contacts
-    return bool(system.grains and it.grains and asked)
+    requested = it.region or it.coarse_graining or it.output.forces or it.output.contacts
+    return bool(system.grains and it.grains and requested)
 
 
 KINDS = (

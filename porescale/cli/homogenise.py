@@ -47,7 +47,7 @@ def homogenise(
     homogenise.csv and .png show what it stands on.  What was stopped goes on when called again.
     """
     require_scene(scene)
-    from porescale.analysis.homogenise import asked_of, specimen
+    from porescale.analysis.homogenise import section_of, specimen
     from porescale.builders.scene import Scene as SceneType
     from porescale.common.schema.sections import open_scene
     from porescale.common.studies.parameter_table import Point
@@ -56,7 +56,7 @@ def homogenise(
 
     opened = open_scene(scene, SceneType, quality=quality, overrides=settings or ())
     test = specimen(opened.scene)
-    request = asked_of(opened.scene)
+    request = section_of(opened.scene)
     if jobs < 1:
         raise InputError(Fault("--jobs", jobs, "is none", "", ">= 1"))
     folder = output_folder(out, f"{opened.name}_soil")
@@ -169,12 +169,12 @@ def about(
     scene: Tables, command: str, ends: Sequence[Ended], rows: Sequence[Mapping[str, float]], seeds: Sequence[int]
 ) -> dict[str, Any]:
     """Origin of the numbers: [made] of the material file."""
-    from porescale.analysis.homogenise import HARD, asked_of, packing_of, pressure_of, stiffness_over_pressure
+    from porescale.analysis.homogenise import HARD, packing_of, pressure_of, section_of, stiffness_over_pressure
     from porescale.builders.initial.contact_laws import MaterialPlan
     from porescale.common.core.machine import machine
 
     assert scene.grains
-    packing, request, fluid = packing_of(scene), asked_of(scene), scene.fluid
+    packing, request, fluid = packing_of(scene), section_of(scene), scene.fluid
     commit = ends[0].card.get("commit") or {}
     hard, ratio = stiffness_over_pressure(scene), scene.grains.hydraulic_radius_ratio
     doubts = []

@@ -9,7 +9,6 @@ from numpy.typing import ArrayLike
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
-from porescale.common.neighbors.pair_list import PairList
 from porescale.dem import checkpoint, laws, listing, sanity, steering
 from porescale.dem.bodies.bonding import framed_parts
 from porescale.dem.contact.law import ContactLaw
@@ -40,6 +39,15 @@ class Grains(State):
     The first step starts from velocities half a step back; for a start from rest that is the same.
     """
 
+    # Functions over a State, as methods.
+    set_law = laws.set_law
+    hold = steering.hold
+    list_up_to = listing.list_up_to
+    current_pairs = listing.current_pairs
+    refresh = listing.refresh
+    check = sanity.check
+    state = checkpoint.state_of
+
     def __init__(
         self,
         discs: Discs,
@@ -56,13 +64,6 @@ class Grains(State):
         numbers = laws.material_numbers(law, material, discs.count)
         super().__init__(discs, box, list(plates), numbers, SKIN * mean_radius if skin is None else skin, energy)
         self.set_law(law, wall_law)
-
-    def set_law(self, law: ContactLaw | Materials, wall_law: ContactLaw | None = None) -> None:
-        """Use ``law`` between discs and ``wall_law`` (default: the same) at sides and plates from now on.
-
-        Raises InputError as laws.set_law does.
-        """
-        laws.set_law(self, law, wall_law)
 
     @property
     def steering(self) -> steering.Steering:
@@ -161,22 +162,6 @@ class Grains(State):
             self.withheld /= count
             self.static = what_stands(self, drag)
 
-    def hold(self, disc: int | slice | Floats, x: bool = True, y: bool = True, rotation: bool = True) -> None:
-        """Hold these components of the velocity of discs from now on, and release the others: see steering.hold."""
-        steering.hold(self, disc, x, y, rotation)
-
-    def list_up_to(self, gap: float) -> None:
-        """List all pairs with a gap below ``gap`` (m) from now on; InputError where the box is too small for that."""
-        listing.list_up_to(self, gap)
-
-    def current_pairs(self) -> PairList:
-        """The pair list, rebuilt first if it is due, as the next step would; fetch its arrays anew after each step."""
-        return listing.current_pairs(self)
-
-    def refresh(self, anew: bool = False) -> None:
-        """Bring the pair list up to date; call it after moving or resizing discs by hand.  anew: build it always."""
-        listing.refresh(self, anew)
-
     def plate(self, name: str) -> int:
         """Index of the plate called ``name``; raises InputError when there is none."""
         if name not in self.plate_names:
@@ -197,15 +182,6 @@ class Grains(State):
         """(x, lower end, upper end) of the plate, m."""
         row = self.plates[self.plate(name)]
         return float(row[X]), float(row[LOW]), float(row[HIGH])
-
-    def check(self) -> None:
-        """Raise Unstable, naming grain, quantity and step, when the state is not finite or out of bounds; see
-        sanity.py."""
-        sanity.check(self)
-
-    def state(self) -> dict[str, Any]:
-        """Everything needed to go on bit for bit (law, box and the number of plates are the scene's)."""
-        return checkpoint.state_of(self)
 
     def restore(self, state: dict[str, Any]) -> None:
         """Overwrite all that ``state()`` holds, bit for bit; raises InputError when numbers of parts differ."""

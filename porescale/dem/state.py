@@ -198,4 +198,4 @@ class State:
         """Normal stiffness (N/m) and dashpot (N s/m) of the stiffest contact there can be."""
         d = self.discs
         found = [law.stiffest(float(d.mass.min()), float(d.radius.min())) for law in self.laws]
-        return max(law.stiffness for law in found), max(law.damping for law in found)
+        return max(it.stiffness[0] for it in found), max(it.damping[0] for it in found)

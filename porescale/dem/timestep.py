@@ -4,23 +4,13 @@ import math
 from collections.abc import Sequence
 
 from porescale.dem.bodies.clumps import Clumps, fastest
-from porescale.dem.contact.law import ContactLaw, Springs
+from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import Discs
 
 NEIGHBOURS = 6
 """Most discs that touch a disc and are no smaller than it: the kissing number of the plane."""
 HALVINGS = 60
 """Steps to a fixed point each of which halves the logarithm of the distance, at least."""
-
-
-def stiffnesses(hard: Springs) -> tuple[float, float, float]:
-    """Normal, tangential and rolling stiffness, N/m; the last is 0 without rolling resistance."""
-    return hard.stiffness, hard.tangential_stiffness, hard.rolling_stiffness * hard.rolls
-
-
-def dampings(hard: Springs) -> tuple[float, float, float]:
-    """Normal, tangential and rolling dashpot, N s/m; the last is 0 without rolling resistance."""
-    return hard.damping, hard.tangential_damping, hard.rolling_damping * hard.rolls
 
 
 def lightest(clumps: Clumps, discs: Discs, laws: Sequence[ContactLaw]) -> float:
@@ -31,14 +21,13 @@ def lightest(clumps: Clumps, discs: Discs, laws: Sequence[ContactLaw]) -> float:
     """
     found, size, largest = [], float(discs.radius.min()), float(clumps.radius.max())
     for law in laws:
-        for parts in (stiffnesses, dampings):
-            own = parts(law.stiffest(float(clumps.mass.max()), largest))
+        for kind, own in enumerate(law.stiffest(float(clumps.mass.max()), largest)):
             if max(own) > 0.0:
                 most, mass = fastest(clumps, discs.radius, *own, NEIGHBOURS), float(discs.mass.min())
                 if most == 0.0:  # all are with a prescribed velocity
                     continue
                 for _ in range(HALVINGS):  # dashpots of Hertz go with the root of the mass that is looked for
-                    mass = packing_factor(*parts(law.stiffest(mass, size))) / most
+                    mass = packing_factor(*law.stiffest(mass, size)[kind]) / most
                 found.append(mass)
     return min(found, default=math.inf)
 
@@ -66,17 +55,10 @@ def packing_limit(law: ContactLaw, mass: float, radius: float | None = None) -> 
     A mode z = -1 needs dt^2 K + 2 dt C = 4 M; with bounds K/M = a, C/M = b: dt = 2 / (b/2 + sqrt(b^2/4 +
     a)), which is 2 (sqrt(1 + h^2) - h)/w for one pair.
     """
-    hard = _tangents(law, mass, radius)
-    a = packing_factor(*stiffnesses(hard)) / mass
-    b = packing_factor(*dampings(hard)) / mass
-    return 2.0 / (0.5 * b + math.sqrt(0.25 * b * b + a))
-
-
-def _tangents(law: ContactLaw, mass: float, radius: float | None) -> Springs:
-    """The springs that are as stiff as ``law`` ever is for the lightest disc."""
     if radius is None and law.needs_radius:
         raise ValueError(f"the stable step of the law {law.name!r} depends on the radius")
-    return law.stiffest(mass, radius or 0.0)
+    a, b = (packing_factor(*part) / mass for part in law.stiffest(mass, radius or 0.0))
+    return 2.0 / (0.5 * b + math.sqrt(0.25 * b * b + a))
 
 
 def stable_step(

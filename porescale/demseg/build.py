@@ -173,12 +173,11 @@ def _steer(deck: Deck, built: Built) -> None:
         return
     steering = built.grains.steering
     for control in deck.controls:
-        told = _told(control, deck.nstep * deck.dt)
-        steering.control(built.names[control.body - 1], *told)
+        steering.control(built.names[control.body - 1], *_prescribed(control, deck.nstep * deck.dt))
     steering.watch(*(built.names[body - 1] for body in deck.recorded))
 
 
-def _told(control: Control, seconds: float) -> list[Moved | Pushed | None]:
+def _prescribed(control: Control, seconds: float) -> list[Moved | Pushed | None]:
     """What is prescribed for each component; without a force it is free."""
     return [
         Moved(value / seconds) if kind == MOVED else Pushed(value) if value else None

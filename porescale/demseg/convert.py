@@ -74,9 +74,9 @@ def scene_of(
     scene["polygon"] = [_polygon(deck, body, size, several) for body in loops]
     if bonds:
         scene["bonds"] = {"known": _renumbered(deck, order, bonds, stiff * size)}
-    recorded = {control.body for control in deck.controls} | set(deck.recorded)
-    told = {control.body: control for control in deck.controls}
-    scene["control"] = [_control(deck, body, order, told.get(body), size, stiff * size) for body in sorted(recorded)]
+    given = {it.body: it for it in deck.controls}
+    recorded = sorted({*given, *deck.recorded})
+    scene["control"] = [_control(deck, it, order, given.get(it), size, stiff * size) for it in recorded]
     return {key: part for key, part in scene.items() if part != []}
 
 
@@ -152,18 +152,19 @@ def _renumbered(deck: Deck, order: dict[str, list[Body]], bonds: list[Row], forc
 
 
 def _control(
-    deck: Deck, number: int, order: dict[str, list[Body]], told: Control | None, size: float, force: float
+    deck: Deck, number: int, order: dict[str, list[Body]], control: Control | None, size: float, force: float
 ) -> dict[str, Any]:
     body = deck.bodies[number - 1]
     key, index = next((kind, k) for kind, among in order.items() for k, other in enumerate(among) if other is body)
     row: dict[str, Any] = {key: index, "name": f"body {number}", "record": number in deck.recorded}
-    for axis, name in enumerate(KEYS if told else ()):
-        assert told is not None
-        value, scale = told.values[axis], size if axis < 2 else 1.0
-        if told.kinds[axis] == MOVED:
-            row[name] = {"displacement": [[0.0, 0.0], [deck.nstep * deck.dt, value * scale]]}
+    if control is None:
+        return row
+    for name, kind, value in zip(KEYS, control.kinds, control.values, strict=True):
+        turns = name == KEYS[2]
+        if kind == MOVED:
+            row[name] = {"displacement": [[0.0, 0.0], [deck.nstep * deck.dt, value * (1.0 if turns else size)]]}
         elif value:
-            row[name] = {"force": value * force * (1.0 if axis < 2 else size)}
+            row[name] = {"force": value * force * (size if turns else 1.0)}
     return row
 
 

@@ -187,9 +187,9 @@ def _boundary(file: Reader, deck: Deck) -> Deck:
     (npfd,) = file.record(("npfd", int))
     file.must(0 <= npfd <= most, "npfd", npfd, f"0 to {most}")
     file.must(npfd == 0 or deck.random is None, "npfd", npfd, "0 with mode 0, which numbers bodies as it makes them")
-    asked = [f"recorded body {k + 1}" for k in range(int(npfd) if npfd <= most else 0)]
-    recorded = [int(n) for n in file.record(*((name, int) for name in asked))] if asked else []
-    for name, n in zip(asked, recorded, strict=True):
+    watched = [f"recorded body {k + 1}" for k in range(int(npfd) if npfd <= most else 0)]
+    recorded = [int(n) for n in file.record(*((name, int) for name in watched))] if watched else []
+    for name, n in zip(watched, recorded, strict=True):
         file.must(1 <= n <= most, name, n, f"1 to {most}")
     (npbd,) = file.record(("npbd", int))
     file.must(0 <= npbd <= most, "npbd", npbd, f"0 to {most}")
@@ -232,8 +232,8 @@ def grains_text(deck: Deck) -> str:
 
 def boundary_text(deck: Deck) -> str:
     """in_bc.dat of a deck."""
-    told = [
+    controlled = [
         (c.body, *(part for pair in zip(c.kinds, c.values, strict=True) for part in pair)) for c in deck.controls
     ]  # fmt: skip
     head = (deck.jclid, deck.iloop, deck.nstep, deck.nprn1, deck.nprn2)
-    return table([head, (len(deck.recorded),), *((n,) for n in deck.recorded), (len(told),), *told])
+    return table([head, (len(deck.recorded),), *((n,) for n in deck.recorded), (len(controlled),), *controlled])

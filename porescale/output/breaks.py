@@ -1,18 +1,18 @@
 """Bonds that broke: breaks.csv."""
 
-import csv
-import io
 import math
 from pathlib import Path
 
 import numpy as np
 
-from porescale.common.core.atomic import write_bytes
+from porescale.common.core.atomic import write_text
+from porescale.common.evidence.files import csv_text
 from porescale.common.record.open_run import Run
 from porescale.output.frame_clouds import BONDS
 from porescale.scene.bodies.bonds import KINDS
 
 TABLE = "breaks.csv"
+COLUMNS = ("time (s)", "x (m)", "y (m)", "strength (N/m)", "body ()", "other body ()")
 
 
 def write_breaks(run: Run, folder: Path) -> list[Path]:
@@ -22,15 +22,13 @@ def write_breaks(run: Run, folder: Path) -> list[Path]:
     data = {name: np.asarray(values)[::2] for name, values in clouds[BONDS].data.items()}
     gone = np.flatnonzero(data["whole"] == 0)
     gone = gone[np.argsort(data["broken_time"][gone], kind="stable")]
-    text = io.StringIO()
-    table = csv.writer(text, lineterminator="\n")
-    table.writerow(["time (s)", "x (m)", "y (m)", "strength (N/m)", "body ()", "other body ()"])
+    rows = []
     for k in gone.tolist():
         x, y = (float(value) for value in data["broken_place"][k, :2])
         names = [f"{KINDS[int(data[f'{it}_kind'][k])]} {int(data[f'{it}_number'][k])}" for it in ("first", "second")]
         row = (float(data["broken_time"][k]), x, y, float(data["back_tension"][k]))
         assert not math.isnan(row[0])
-        table.writerow([*map(repr, row), *names])
+        rows.append([*map(repr, row), *names])
     path = folder / TABLE
-    write_bytes(path, text.getvalue().encode())
+    write_text(path, csv_text(COLUMNS, rows))
     return [path]

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from porescale.common.core.atomic import write_bytes
+from porescale.common.core.atomic import write_text
+from porescale.common.evidence.files import csv_text
 from porescale.lbm.boundary.choose import boundary
 from porescale.output.sample import Sampler, along
 
@@ -41,9 +40,7 @@ def write_lines(run: Run, folder: Path) -> list[Path]:
         Sampler(along(line["start"], line["end"], line["points"]), (nx, ny), grid.spacing[0], (periodic_x, periodic_y))
         for line in lines
     ]
-    text = io.StringIO()
-    table = csv.writer(text, lineterminator="\n")
-    table.writerow([*COLUMNS, LAMBDA] if ratio else COLUMNS)
+    rows: list[list[Any]] = []
     for snapshot in run.snapshots():
         cells = snapshot.grids["fields"].cells
         solid = cells.get("solid_fraction", np.zeros((ny, nx)))
@@ -54,7 +51,7 @@ def write_lines(run: Run, folder: Path) -> list[Path]:
                 at.in_fluid(cells["pressure"], solid), at.of(solid),
             )  # fmt: skip
             for row in np.stack(columns, axis=1).tolist():
-                table.writerow([repr(float(snapshot.time)), number, *map(repr, row), *([repr(ratio)] if ratio else [])])
+                rows.append([repr(float(snapshot.time)), number, *map(repr, row), *([repr(ratio)] if ratio else [])])
     path = folder / "lines.csv"
-    write_bytes(path, text.getvalue().encode())
+    write_text(path, csv_text([*COLUMNS, LAMBDA] if ratio else COLUMNS, rows))
     return [path]

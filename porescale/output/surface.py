@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from porescale.common.core.atomic import write_bytes
+from porescale.common.core.atomic import write_text
 from porescale.common.core.types import Reals
+from porescale.common.evidence.files import csv_text
 
 if TYPE_CHECKING:
     from porescale.common.record.open_run import Run
@@ -26,14 +25,12 @@ def write_surface(run: Run, folder: Path) -> Path:
     diameter = 2 * float(np.mean(first.data["radius"]))
     count = max(1, round(width / (BIN_WIDTH * diameter)))
     edges = np.linspace(0.0, width, count + 1)
-    text = io.StringIO()
-    table = csv.writer(text, lineterminator="\n")
-    table.writerow(["time (s)", *(f"height at x = {x:.5g} m (m)" for x in 0.5 * (edges[1:] + edges[:-1]))])
+    header, rows = ["time (s)", *(f"height at x = {x:.5g} m (m)" for x in 0.5 * (edges[1:] + edges[:-1]))], []
     for k, time in enumerate(run.times):
         cloud = run.snapshot(k, cells=()).clouds["grains"]
-        table.writerow([repr(float(time)), *map(repr, surface(cloud.position, cloud.data["radius"], edges).tolist())])
+        rows.append([repr(float(time)), *map(repr, surface(cloud.position, cloud.data["radius"], edges).tolist())])
     path = folder / "profile.csv"
-    write_bytes(path, text.getvalue().encode())
+    write_text(path, csv_text(header, rows))
     return path
 
 

@@ -60,13 +60,13 @@ def array_permeability(share: float = 1.0) -> float:
 
 def critical_angle(friction: float, seed: int, grains: int = 300) -> float:
     """Critical friction angle, degrees, of one specimen of discs with ``friction``."""
-    asked = validate(Scene, {
+    given = validate(Scene, {
         "title": "", "domain": {"width": 0.1, "height": 0.1}, "time": {"end": 1.0},
         "output": {"snapshot_interval": 1.0, "series_interval": 1.0}, "homogenise": {"grains": grains},
         "grains": {"density": 2500, "packing": {**DISCS, "seed": seed}},
         "contact": {"stiffness": 1e7, "tangential_stiffness": 5e6, "restitution": 0.3, "friction": friction},
     })  # fmt: skip
-    test = validate(Scene, specimen(asked))
+    test = validate(Scene, specimen(given))
     simulation = build(test)
     each = max(1, round(test.output.series_interval / simulation.step_seconds))
     rows: list[dict[str, float]] = []
@@ -87,7 +87,7 @@ def critical_angle(friction: float, seed: int, grains: int = 300) -> float:
 def known_soil() -> Measured:
     """Parameters found from a synthetic test of a given soil, over those of the soil."""
     found = known_numbers(known_test())
-    return Measured([1.0] * len(found), found, max(abs(value - 1.0) for value in found))
+    return Measured.absolute([1.0] * len(found), found)
 
 
 @VALIDATIONS.row(
@@ -98,8 +98,7 @@ def known_soil() -> Measured:
 )
 def square_array() -> Measured:
     """Flow through the periodic cell of one disc, as through a specimen."""
-    found = array_permeability()
-    return Measured(1.0, found, abs(found - 1.0))
+    return Measured.absolute(1.0, array_permeability())
 
 
 @VALIDATIONS.row(
@@ -113,5 +112,4 @@ def square_array() -> Measured:
 def critical_state() -> Measured:
     """Critical friction angle of four specimens, degrees."""
     found = float(np.mean([critical_angle(0.4, seed) for seed in (1, 2, 3, 4)]))
-    reference = math.degrees(math.asin(0.251))
-    return Measured(reference, found, abs(found - reference))
+    return Measured.absolute(math.degrees(math.asin(0.251)), found)

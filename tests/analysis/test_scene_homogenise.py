@@ -7,7 +7,7 @@ import pytest
 
 from porescale import Scene
 from porescale.analysis.biaxial import WINDOW, numbers, running
-from porescale.analysis.homogenise import WAVES, asked_of, pressure_of, ramp_of, specimen, stiffness_over_pressure
+from porescale.analysis.homogenise import WAVES, pressure_of, ramp_of, section_of, specimen, stiffness_over_pressure
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
 from porescale.validation import homogenise as verify
@@ -120,7 +120,7 @@ def test_the_first_loading_lasts_as_long_as_waves_take():
     wave = table["domain"]["width"] * math.sqrt(2500.0 / given.contact.stiffness)
     strain = 200.0 / given.contact.stiffness
     assert math.sqrt(2.0 * strain * times / -rate) == pytest.approx(WAVES * wave, rel=1e-12)
-    assert ramp_of(asked_of(given), packing) == pytest.approx(-rate * times, rel=1e-12)
+    assert ramp_of(section_of(given), packing) == pytest.approx(-rate * times, rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,11 @@
-"""Fingerprints of what lies under cases/: every scene, every script, decks by their scripts."""
+"""Fingerprints of what lies under cases/: every scene, every script, decks by their scripts.
 
-from tests.fingerprints.subjects import Scene, Script, Subject
+A scene.toml that is not named here is found by its place and taken with what most have.
+"""
+
+import tomllib
+
+from tests.fingerprints.subjects import CASES, Scene, Script, Subject
 
 GRAINS, CONTINUUM = "porescale", "continuum-sph"
 
@@ -76,10 +81,18 @@ NO_SUBJECT = {
 """Files of cases that have no fingerprint of their own."""
 
 
+def unnamed() -> dict[str, tuple[str, int, str | None, tuple[str, ...]]]:
+    """Scenes of cases that SCENES does not name: of the continuum where they have a tank or soil."""
+    files = sorted(it.relative_to(CASES).as_posix() for it in CASES.glob("*/scene.toml"))
+    new = [it for it in files if it not in SCENES and it not in NO_SUBJECT]
+    tables = {it: tomllib.loads((CASES / it).read_text(encoding="utf-8")) for it in new}
+    return {it: (CONTINUUM if {"tank", "soil"} & set(tables[it]) else GRAINS, 100, "draft", ()) for it in new}
+
+
 def subjects() -> dict[str, Subject]:
     """All of cases by name."""
     found: dict[str, Subject] = {}
-    for file, (package, steps, quality, settings) in SCENES.items():
+    for file, (package, steps, quality, settings) in (SCENES | unnamed()).items():
         found[f"scene/{file.removesuffix('.toml').removesuffix('/scene')}"] = Scene(
             package, steps, file, quality=quality, settings=settings
         )

@@ -96,10 +96,10 @@ class CylinderStart:
 
     def implicit(self, k, lead, spread, drift, right):
         """w with  lead w - spread e^(-2 xi) (w'' - n^2 k^2 w) - drift (w + eta w') = right  and the integral above."""
-        calm = np.exp(-2 * k * self.eta)[:, None]
+        per_area = np.exp(-2 * k * self.eta)[:, None]
         one = np.eye(self.points)
-        a = (lead - drift) * one - drift * self.eta[:, None] * self.d - spread * calm * self.d2
-        a = a + spread * (self.n * k)[:, None, None] ** 2 * (calm * one)
+        a = (lead - drift) * one - drift * self.eta[:, None] * self.d - spread * per_area * self.d2
+        a = a + spread * (self.n * k)[:, None, None] ** 2 * (per_area * one)
         b = right.copy()
         a[:, 0] = self.weight * np.exp(np.outer(2 - self.n, k * self.eta))
         b[:, 0] = np.where(self.n == 1, -2, 0)

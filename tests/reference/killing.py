@@ -326,11 +326,11 @@ class Campaign:
         child = self.child(folder)
         child.wait_for(PHASES.index("stepping"), self.dice.randint(1, self.often[PHASES.index("stepping")]))
         time.sleep(self.dice.uniform(0.0, 0.05))
-        asked, doing = time.time(), PHASES[self.marks.now()]
+        begun, doing = time.time(), PHASES[self.marks.now()]
         os.kill(child.number, getattr(signal, name))
         code = child.wait()
-        ended = time.time() - asked
-        saved = (folder / "checkpoint.h5").stat().st_mtime - asked
+        ended = time.time() - begun
+        saved = (folder / "checkpoint.h5").stat().st_mtime - begun
         outcome = json.loads((folder / "card.json").read_text())["outcome"]
         whole(folder)
         shutil.rmtree(folder)
@@ -349,31 +349,31 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, default=Path("runs/kills"))
     parser.add_argument("scenes", nargs="*", default=list(SCENES))
-    asked = parser.parse_args()
-    all_of = {name: Campaign(name, asked.out / name, asked.seed) for name in asked.scenes}
+    options = parser.parse_args()
+    all_of = {name: Campaign(name, options.out / name, options.seed) for name in options.scenes}
     count, number = 0, 0
-    while count < asked.kills:
-        it = all_of[asked.scenes[number % len(asked.scenes)]]
+    while count < options.kills:
+        it = all_of[options.scenes[number % len(options.scenes)]]
         cold = None
         if (
             sum(n for each in all_of.values() for k, n in each.kills.items() if k.startswith("cold"))
-            < asked.cold * (count + 1) / asked.kills
+            < options.cold * (count + 1) / options.kills
         ):
-            cold = (asked.out / "cold").resolve()
-        it.round(number, asked.kills - count, cold)
+            cold = (options.out / "cold").resolve()
+        it.round(number, options.kills - count, cold)
         number += 1
         count = sum(sum(each.kills.values()) for each in all_of.values())
         done = {name: {"kills": dict(each.kills), "resumed to the same bits": each.finals}
                 for name, each in all_of.items()}  # fmt: skip
-        (asked.out / "kills.json").write_text(
-            json.dumps({"seed": asked.seed, "kills": count, "scenes": done}, indent=1)
+        (options.out / "kills.json").write_text(
+            json.dumps({"seed": options.seed, "kills": count, "scenes": done}, indent=1)
         )
-        print(f"{count} of {asked.kills} kills", file=sys.stderr, flush=True)
+        print(f"{count} of {options.kills} kills", file=sys.stderr, flush=True)
     stops = []
-    while len(stops) < asked.stops:
-        found = all_of[asked.scenes[len(stops) % len(asked.scenes)]].stop(len(stops))
+    while len(stops) < options.stops:
+        found = all_of[options.scenes[len(stops) % len(options.scenes)]].stop(len(stops))
         stops += [found] if found else []
-        (asked.out / "stops.json").write_text(json.dumps(stops))
+        (options.out / "stops.json").write_text(json.dumps(stops))
     if stops:
         print(f"{len(stops)} stops: saved within {max(it[2] for it in stops):.2f} s, ended within "
               f"{max(it[3] for it in stops):.2f} s")  # fmt: skip

@@ -86,16 +86,16 @@ def main() -> int:
     parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--kills", type=int, default=100, help="at moments of the clock")
     parser.add_argument("--leave", action="store_true", help="kill one run and do not resume it")
-    asked = parser.parse_args()
-    untouched = asked.place / "untouched"
+    options = parser.parse_args()
+    untouched = options.place / "untouched"
     run_toy(untouched, **SHORT)
-    if asked.leave:
-        folder = asked.place / "run"
-        print(int(ended_by_kill(child(folder, Disk(folder, asked.first, kill="before")))))
-    elif asked.when:
-        print(at_calls(asked.place, untouched, asked.when, asked.first, asked.every))
+    if options.leave:
+        folder = options.place / "run"
+        print(int(ended_by_kill(child(folder, Disk(folder, options.first, kill="before")))))
+    elif options.when:
+        print(at_calls(options.place, untouched, options.when, options.first, options.every))
     else:
-        print(at_moments(asked.place, untouched, asked.kills))
+        print(at_moments(options.place, untouched, options.kills))
     return 0
 
 

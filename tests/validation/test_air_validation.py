@@ -4,33 +4,27 @@ from dataclasses import replace
 
 import pytest
 
-from continuum_sph.cli import PACKAGE
-from continuum_sph.validation.seepage import air as verify_air
+from continuum_sph.validation.seepage import air
 from continuum_sph.validation.seepage.air import CLOSED, OPEN
-
-VALIDATIONS = PACKAGE.validations()
-
-
-def tolerance(name):
-    return VALIDATIONS[name].tolerance
+from tests.validation.tolerances import tolerance
 
 
 @pytest.mark.slow
 def test_water_that_drives_air_out_does_not_sink_as_if_air_were_trapped():
-    exact, found = verify_air.late(OPEN, CLOSED)
+    exact, found = air.late(OPEN, CLOSED)
     assert abs(found / exact - 1.0) > 3.0 * tolerance("continuum.infiltration_into_trapped_air")
 
 
 @pytest.mark.slow
 def test_water_on_trapped_air_does_not_sink_as_if_air_could_leave():
-    exact, found = verify_air.late(CLOSED, OPEN)
+    exact, found = air.late(CLOSED, OPEN)
     assert abs(found / exact - 1.0) > 3.0 * tolerance("continuum.infiltration_that_drives_air_out")
 
 
 @pytest.mark.slow
 def test_trapped_air_does_not_keep_its_temperature():
     # γ = 1, of air that gives its heat to the grains, is another gas
-    assert abs(verify_air.squeezed(CLOSED, 1.0) - 1.0) > 3.0 * tolerance("continuum.trapped_air_is_compressed")
+    assert abs(air.squeezed(CLOSED, 1.0) - 1.0) > 3.0 * tolerance("continuum.trapped_air_is_compressed")
 
 
 @pytest.mark.slow

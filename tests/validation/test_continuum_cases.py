@@ -32,7 +32,7 @@ def test_a_column_on_the_moon_is_late():  # the twin that must fail
 
 
 def test_pushed_and_viscous_columns_run():
-    # Figures 6 and 7 of the paper as printed: the face starts at √(2g(H-y)); a viscosity that shows in 0.2 s.
+    # Figures 6 and 7 of Maeda & Sakai 2004: the face starts at √(2g(H-y)); a viscosity that shows in 0.2 s.
     short = ("time.end=0.2", "numerics.spacing=0.1", "water.push=face")
     thin, thick = (series("collapsing_water_column", *short, f"water.viscosity={mu}") for mu in (1e-3, 30.0))
     assert thick["front (m)"][-1] < thin["front (m)"][-1]

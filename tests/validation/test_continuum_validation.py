@@ -3,19 +3,11 @@
 import numpy as np
 import pytest
 
-from continuum_sph.cli import PACKAGE
-from continuum_sph.validation.water import channels, dam_break, hydrostatics, kernels, momentum, sound
-from continuum_sph.validation.water import flows as verify_flows
-from continuum_sph.validation.water import fluids as verify_fluids
+from continuum_sph.validation.water import channels, dam_break, flows, fluids, hydrostatics, kernels, momentum, sound
 from continuum_sph.water import step
 from continuum_sph.water.smoothing import WENDLAND, kernel_slope, kernel_value
 from continuum_sph.water.state import VISCOUS, P
-
-VALIDATIONS = PACKAGE.validations()
-
-
-def tolerance(name):
-    return VALIDATIONS[name].tolerance
+from tests.validation.tolerances import tolerance
 
 
 def test_a_kernel_of_one_dimension_does_not_integrate_to_one():
@@ -64,29 +56,29 @@ def test_channel_walls_are_of_second_order():
 
 
 def test_vortices_without_shifting_die_of_gaps():
-    assert verify_flows.vortex_error(30, shifting=0.0, end=0.2) > 4.0 * tolerance("continuum.taylor_green_decay")
+    assert flows.vortex_error(30, shifting=0.0, end=0.2) > 4.0 * tolerance("continuum.taylor_green_decay")
 
 
 def test_vortices_without_corrected_gradients_fade_too_fast():
-    assert verify_flows.vortex_error(30, corrected=False, end=0.2) > 2.0 * tolerance("continuum.taylor_green_decay")
+    assert flows.vortex_error(30, corrected=False, end=0.2) > 2.0 * tolerance("continuum.taylor_green_decay")
 
 
 @pytest.mark.slow
 def test_water_at_rest_that_is_shifted_all_the_same_sinks(monkeypatch):
     monkeypatch.setattr(step, "QUIET", 0.0)
-    assert verify_flows.sunk(4.0) > 2.0 * tolerance("continuum.shifted_water_keeps_its_volume")
+    assert flows.sunk(4.0) > 2.0 * tolerance("continuum.shifted_water_keeps_its_volume")
 
 
 @pytest.mark.slow
 def test_heat_counted_as_flow_is_energy_that_grows():
-    growth, _ = verify_flows.energy_growth(0.6, heat_kept=True)
+    growth, _ = flows.energy_growth(0.6, heat_kept=True)
     assert growth > 5.0 * tolerance("continuum.energy_never_grows")
 
 
 @pytest.mark.slow
 def test_a_book_without_its_heat_does_not_close(monkeypatch):
     monkeypatch.setattr(step, "kick", lambda *arguments: _kick_without_heat(*arguments))
-    _, drift = verify_flows.energy_growth(0.6)
+    _, drift = flows.energy_growth(0.6)
     assert drift > 5.0 * tolerance("continuum.energy_balance")
 
 
@@ -94,7 +86,7 @@ def test_a_book_without_its_heat_does_not_close(monkeypatch):
 def test_a_book_of_speeds_at_mid_step_does_not_close_over_an_impact(monkeypatch):
     rates = step.rates  # the last argument is half a step
     monkeypatch.setattr(step, "rates", lambda *arguments: rates(*arguments[:-1], 0.0))
-    _, drift = verify_flows.energy_growth(1.2)
+    _, drift = flows.energy_growth(1.2)
     assert drift > tolerance("continuum.energy_balance_over_an_impact")
 
 
@@ -105,24 +97,24 @@ def _kick_without_heat(v, acceleration, density, rate, material, length, lengths
 
 
 def test_a_tenth_more_tension_is_told_apart():
-    jump = verify_fluids.jump(20, seconds=0.3, tension=1.1 * verify_fluids.TENSION)
+    jump = fluids.jump(20, seconds=0.3, tension=1.1 * fluids.TENSION)
     assert abs(jump - 1.0) > 2.0 * tolerance("continuum.young_laplace")
 
 
 def test_a_tenth_less_tension_draws_a_stretched_drop_back_too_weakly():
-    found, exact = verify_fluids.restoring(50, tension=0.9 * verify_fluids.TENSION)
+    found, exact = fluids.restoring(50, tension=0.9 * fluids.TENSION)
     assert abs(found / exact - 1.0) > tolerance("continuum.drop_restoring_force")
 
 
 @pytest.mark.slow
 def test_a_fifth_less_tension_swings_a_drop_too_slowly():
-    assert verify_fluids.period(32, 0.8 * verify_fluids.TENSION) - 1.0 > tolerance("continuum.drop_period")
+    assert fluids.period(32, 0.8 * fluids.TENSION) - 1.0 > tolerance("continuum.drop_period")
 
 
 @pytest.mark.slow
 def test_a_bubble_of_five_particles_in_its_radius_rises_too_fast():
-    rise, *_ = verify_fluids.rising(0.05, 0.9)
-    assert rise / verify_fluids.RISE - 1.0 > tolerance("continuum.rising_bubble")
+    rise, *_ = fluids.rising(0.05, 0.9)
+    assert rise / fluids.RISE - 1.0 > tolerance("continuum.rising_bubble")
 
 
 def test_coarse_waves_are_slower_than_the_tolerance():

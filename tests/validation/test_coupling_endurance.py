@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from porescale.benchmarks import endurance
 from porescale.common.core.errors import Unstable
+from porescale.common.evidence import endurance as common
 from porescale.common.evidence.endurance import (
-    ASK_EVERY,
     FOUND,
     MARKS,
     Endurance,
@@ -16,7 +16,7 @@ from porescale.common.evidence.endurance import (
     picture,
     write,
 )
-from porescale.common.record.drive import CHECK_EVERY
+from porescale.common.record import drive
 from porescale.validation.coupling import endurance as verify_endurance
 from porescale.validation.coupling.setups import handful
 
@@ -81,5 +81,5 @@ def test_what_a_call_has_finished_is_read_back(tmp_path):
     assert finished(tmp_path) == {}
 
 
-def test_it_is_asked_as_often_as_a_run_asks():
-    assert ASK_EVERY == CHECK_EVERY
+def test_it_is_checked_as_often_as_a_run_is():
+    assert common.CHECK_EVERY == drive.CHECK_EVERY

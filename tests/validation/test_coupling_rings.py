@@ -3,11 +3,8 @@
 import pytest
 
 from porescale.validation.coupling import rings as verify_rings
-from porescale.validation.coupling.rings import RADII, VALIDATIONS, couette_error, piston_flux, torques
-
-
-def tolerance(name: str) -> float:
-    return VALIDATIONS[f"coupling.{name}"].tolerance
+from porescale.validation.coupling.rings import RADII, couette_error, piston_flux, torques
+from tests.validation.tolerances import tolerance
 
 
 def test_the_torque_falls_into_place_with_the_square_of_the_cells():
@@ -19,7 +16,7 @@ def test_the_torque_falls_into_place_with_the_square_of_the_cells():
 
 def test_the_operator_without_exact_walls_misses_the_torque():
     _, ring = torques(0.8, "disc", solid_operator="odd-SC1")
-    assert abs(ring - 1) > tolerance("taylor_couette_torque")
+    assert abs(ring - 1) > tolerance("coupling.taylor_couette_torque")
 
 
 def test_a_disc_that_is_a_tenth_of_a_cell_too_wide_misses_the_torque():
@@ -27,11 +24,13 @@ def test_a_disc_that_is_a_tenth_of_a_cell_too_wide_misses_the_torque():
     _, ring = torques(0.8, "disc", radii=(RADII[0] + 0.1, RADII[1]))
     wide = RADII[0] + 0.1
     exact = [a**2 * RADII[1] ** 2 / (RADII[1] ** 2 - a**2) for a in (RADII[0], wide)]
-    assert abs(ring * exact[1] / exact[0] - 1) > tolerance("taylor_couette_torque")
+    assert abs(ring * exact[1] / exact[0] - 1) > tolerance("coupling.taylor_couette_torque")
 
 
 def test_a_rectangle_of_the_older_operator_does_not_slide_exactly():
-    assert max(couette_error(6.25, 0.8, solid_operator="odd-SC1", weighting="B2")) > tolerance("sliding_rectangle")
+    assert max(couette_error(6.25, 0.8, solid_operator="odd-SC1", weighting="B2")) > tolerance(
+        "coupling.sliding_rectangle"
+    )
 
 
 def test_a_piston_whose_side_rests_pushes_out_less(monkeypatch):
@@ -44,5 +43,5 @@ def test_a_piston_whose_side_rests_pushes_out_less(monkeypatch):
         place(self, patches)
 
     monkeypatch.setattr(Bodies, "place", hold)
-    assert abs(piston_flux()[0] - 1) > tolerance("piston")
-    assert verify_rings.piston().error > tolerance("piston")
+    assert abs(piston_flux()[0] - 1) > tolerance("coupling.piston")
+    assert verify_rings.piston().error > tolerance("coupling.piston")

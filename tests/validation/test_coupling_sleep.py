@@ -3,8 +3,7 @@
 import pytest
 
 from porescale.validation.coupling import sleep as lab
-from porescale.validation.coupling import sleep as verify_sleep
-from porescale.validation.coupling.sleep import VALIDATIONS
+from tests.validation.tolerances import tolerance
 
 pytestmark = pytest.mark.slow
 
@@ -21,8 +20,8 @@ def test_the_water_and_a_grain_wake_sleepers_and_they_sleep_again(sinks):
 @pytest.mark.parametrize("sinks", [False, True])
 def test_sleepers_that_do_not_wake_are_out_of_balance(sinks):
     found = lab.disturbed(sinks, deaf=True)
-    assert found.imbalance > 2 * VALIDATIONS["coupling.sleepers_under_water_are_in_balance"].tolerance
+    assert found.imbalance > 2 * tolerance("coupling.sleepers_under_water_are_in_balance")
 
 
 def test_sleep_at_half_the_weight_stops_a_collapse_too_early():
-    assert verify_sleep.off(0.5).error > VALIDATIONS["coupling.sleep_leaves_a_collapse_under_water"].tolerance
+    assert lab.off(0.5).error > tolerance("coupling.sleep_leaves_a_collapse_under_water")

@@ -3,20 +3,10 @@
 import numpy as np
 import pytest
 
-from porescale.cli.main import PACKAGE
-from porescale.validation.coupling import moving as falls
-from porescale.validation.coupling import moving as moving
-from porescale.validation.coupling import moving as verify_moving
-from porescale.validation.coupling import towed
-from porescale.validation.coupling import towed as verify_towed
+from porescale.validation.coupling import moving, towed
 from porescale.validation.coupling.towed import faxen, weighing
 from tests.reference.stokes_box import Box, Enclosed, point_forces
-
-VALIDATIONS = PACKAGE.validations()
-
-
-def tolerance(name):
-    return VALIDATIONS[f"coupling.{name}"].tolerance
+from tests.validation.tolerances import tolerance
 
 
 def near(half_length, half_height, gap, aside, forces, wall_forces, inner, behind):
@@ -32,7 +22,7 @@ def near(half_length, half_height, gap, aside, forces, wall_forces, inner, behin
 
 def test_a_cylinder_near_the_wall_of_the_box_is_that_of_point_forces():
     found, slip = near(6.0, 3.0, 0.2, 0.03, 90, 500, 0.85, 0.1)
-    assert found == pytest.approx(list(verify_towed.NEAR_WALL.values()), rel=1e-4 + 100 * slip)  # five digits
+    assert found == pytest.approx(list(towed.NEAR_WALL.values()), rel=1e-4 + 100 * slip)  # five digits
 
 
 def free_spin(blockage, forces=100, wall_forces=600):
@@ -53,9 +43,9 @@ def free_spin(blockage, forces=100, wall_forces=600):
     return -torque[0] / (torque[0] - torque[1])
 
 
-@pytest.mark.parametrize("blockage", verify_moving.SHEAR)
+@pytest.mark.parametrize("blockage", moving.SHEAR)
 def test_the_spin_of_a_free_disc_in_shear_is_that_of_point_forces(blockage):
-    assert free_spin(blockage) == pytest.approx(verify_moving.SHEAR[blockage], abs=1e-5)
+    assert free_spin(blockage) == pytest.approx(moving.SHEAR[blockage], abs=1e-5)
 
 
 def test_images_in_a_square_box_are_an_alternating_lattice_sum():
@@ -75,67 +65,67 @@ def test_added_mass_and_damping_are_those_of_stokes(frequency, exact):
 def test_an_unbounded_or_wider_channel_is_told_apart():
     found, k = towed.channel_drag(0.3)
     for other in (0.9 * k, 1.1 * k):
-        assert abs(found / faxen(other) - 1) > tolerance("towed_in_a_channel")
+        assert abs(found / faxen(other) - 1) > tolerance("coupling.towed_in_a_channel")
 
 
 def test_a_disc_a_cell_higher_above_the_wall_is_told_apart():
     found = towed.near_wall("towards", 0.3, relaxation_time=0.6)
-    assert abs(found / verify_towed.NEAR_WALL["towards"] - 1) > 2 * tolerance("cylinder_near_a_wall")
+    assert abs(found / towed.NEAR_WALL["towards"] - 1) > 2 * tolerance("coupling.cylinder_near_a_wall")
 
 
-@pytest.mark.parametrize("gap", verify_towed.FILMS)
+@pytest.mark.parametrize("gap", towed.FILMS)
 def test_without_the_correction_a_film_is_too_weak(gap):
     found = towed.near_wall("towards", gap) / towed.jeffrey_onishi("towards", gap)
-    assert 1 - found > 2.5 * tolerance("films")
+    assert 1 - found > 2.5 * tolerance("coupling.films")
 
 
 @pytest.mark.slow
 def test_near_one_half_a_towed_disc_is_noisier():
     # 0.65 % at tau 0.55 where it is 0.18 % at 0.8, as an independent code of the method found
-    assert towed.towed_noise(relaxation_time=0.55) > 1.5 * tolerance("towed_noise")
+    assert towed.towed_noise(relaxation_time=0.55) > 1.5 * tolerance("coupling.towed_noise")
 
 
 def test_without_the_fluid_inside_the_added_mass_is_one_too_small():
-    frequency, radius, tau = verify_moving.OSCILLATIONS[0]
+    frequency, radius, tau = moving.OSCILLATIONS[0]
     exact = moving.oscillation_in_a_box(frequency)
     found = moving.oscillation(frequency, radius=radius, relaxation_time=tau, inner=False)
-    assert abs(found - exact) / abs(exact) > 5 * tolerance("oscillating_disc")
+    assert abs(found - exact) / abs(exact) > 5 * tolerance("coupling.oscillating_disc")
 
 
 def test_without_its_walls_the_disc_in_shear_spins_faster():
-    assert 0.5 / verify_moving.SHEAR[0.25] - 1 > 3 * tolerance("neutral_disc_in_shear")
+    assert 0.5 / moving.SHEAR[0.25] - 1 > 3 * tolerance("coupling.neutral_disc_in_shear")
 
 
 def test_a_stream_one_percent_faster_is_told_apart():
     slow, fast = (moving.stream_drag(0.0, speed=speed, steps=1500)[1000:].mean() for speed in (0.02, 0.0202))
-    assert fast / slow - 1 > 5 * tolerance("galilean_invariance")
+    assert fast / slow - 1 > 5 * tolerance("coupling.galilean_invariance")
 
 
 def test_a_channel_a_tenth_wider_gives_another_terminal_speed():
-    assert faxen(0.2) / faxen(0.2 / 1.1) - 1 > 3 * tolerance("terminal_speed")
+    assert faxen(0.2) / faxen(0.2 / 1.1) - 1 > 3 * tolerance("coupling.terminal_speed")
 
 
 def test_heavier_discs_kiss_earlier():
     # the pace goes as sqrt(s - 1): 14 % more, 12 % less time
-    found, _ = falls.kiss(10, relaxation_time=0.506, density_ratio=1.65)
-    assert 1 - found / verify_moving.KISS > 3 * tolerance("drafting_and_kissing")
+    found, _ = moving.kiss(10, relaxation_time=0.506, density_ratio=1.65)
+    assert 1 - found / moving.KISS > 3 * tolerance("coupling.drafting_and_kissing")
 
 
 def test_a_floor_half_a_cell_lower_is_told_apart():
     gap, cells = 0.3, 0.5
     ratio = towed.jeffrey_onishi("towards", gap) / towed.jeffrey_onishi("towards", gap + cells / 10)
-    assert ratio - 1 > 2 * tolerance("approach_to_the_bottom")
+    assert ratio - 1 > 2 * tolerance("coupling.approach_to_the_bottom")
 
 
 def test_what_the_cells_bear_is_no_buoyancy():
     # the area that they see: unless that is put right, a disc of density ratio 2.5 sinks 1.5 % too slowly
     load, _ = weighing(0.6, steps=3000)
-    assert (load / (np.pi * 5.0**2) - 1) / 1.5 > 4 * tolerance("gravity_in_the_fluid")
+    assert (load / (np.pi * 5.0**2) - 1) / 1.5 > 4 * tolerance("coupling.gravity_in_the_fluid")
 
 
 def test_at_one_place_in_a_cell_strain_turns_a_disc():
     # as much and the other way where along and across change places
     found = [moving.shear_spin(0.25, place=place) for place in ((0.3, 0.0), (0.0, 0.3))]
-    off = np.divide(found, verify_moving.SHEAR[0.25]) - 1
-    assert np.abs(off).min() > 3 * tolerance("neutral_disc_in_shear")
+    off = np.divide(found, moving.SHEAR[0.25]) - 1
+    assert np.abs(off).min() > 3 * tolerance("coupling.neutral_disc_in_shear")
     assert off[0] * off[1] < 0

@@ -2,15 +2,13 @@
 
 import numpy as np
 
-from porescale.cli.main import PACKAGE
 from porescale.common.core.constants import GRAVITY
 from porescale.dem.motion.control import Moved
 from porescale.dem.motion.drivers import Clump
 from porescale.validation.dem import bodies, setups
 from porescale.validation.dem import energy as boxed
 from porescale.validation.dem.momentum import momentum_drift
-
-VALIDATIONS = PACKAGE.validations()
+from tests.validation.tolerances import tolerance
 
 
 def test_a_dumbbell_does_not_bounce_like_a_disc():  # the twin that must fail
@@ -37,17 +35,17 @@ def test_with_free_rotation_the_shear_modulus_is_another():  # the twin that mus
 def test_the_budget_of_a_servo_without_its_work_does_not_close():  # the twin that must fail
     budget = boxed.budget_of(("servo",), 200.0, 0)
     without = abs(budget["residual (J/m)"] + budget["work of moving surfaces (J/m)"]) / budget["turned over (J/m)"]
-    assert without > 10 * VALIDATIONS["dem.energy_book_of_driven_bodies"].tolerance
+    assert without > 10 * tolerance("dem.energy_book_of_driven_bodies")
 
 
 def test_a_servo_that_does_not_know_its_load_is_noticed():  # the twins that must fail
     floor, lid = bodies.column_under_servo(50.0, gravity=0.0)
     exact = 50.0 + 10 * setups.MASS * GRAVITY
-    assert abs(floor / exact - 1.0) > 100 * VALIDATIONS["dem.servo_wall"].tolerance
-    assert abs(lid / 49.9 - 1.0) > 100 * VALIDATIONS["dem.servo_wall"].tolerance
+    assert abs(floor / exact - 1.0) > 100 * tolerance("dem.servo_wall")
+    assert abs(lid / 49.9 - 1.0) > 100 * tolerance("dem.servo_wall")
 
 
 def test_a_clump_that_is_held_takes_angular_momentum():  # the twin that must fail
     grains = bodies.clumped_cloud()
     grains.steering.control(Clump(0), rotation=Moved(0.0))
-    assert max(momentum_drift(grains, 5000)) > 1e6 * VALIDATIONS["dem.momentum_of_clumps"].tolerance
+    assert max(momentum_drift(grains, 5000)) > 1e6 * tolerance("dem.momentum_of_clumps")

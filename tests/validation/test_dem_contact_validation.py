@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from scipy.special import jv
 
-from porescale.cli.main import PACKAGE
 from porescale.common.core.constants import GRAVITY
 from porescale.dem.contact import hertz
 from porescale.dem.contact.hertz import Hertz
@@ -17,12 +16,7 @@ from porescale.validation.dem import hertz as impacts
 from porescale.validation.dem import rolling, setups, stacks, threads, waves
 from porescale.validation.dem.momentum import cloud, momentum_drift
 from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, TANGENTIAL, law_at
-
-VALIDATIONS = PACKAGE.validations()
-
-
-def tolerance(name):
-    return VALIDATIONS[name].tolerance
+from tests.validation.tolerances import tolerance
 
 
 def test_a_dashpot_that_does_not_know_the_overlap_depends_on_speed():

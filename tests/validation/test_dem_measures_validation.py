@@ -11,16 +11,12 @@ from porescale.dem.measures.stress import contact_stress
 from porescale.validation.dem import measures as measured
 from porescale.validation.dem import setups as lab
 from porescale.validation.dem.bodies import random_cell
-from porescale.validation.dem.measures import VALIDATIONS
+from tests.validation.tolerances import tolerance
 
 
 @pytest.fixture(scope="module")
 def heap():
     return measured.heap()
-
-
-def tolerance(name):
-    return VALIDATIONS[name].tolerance
 
 
 def test_a_region_half_a_diameter_wider_has_another_porosity():

@@ -6,7 +6,8 @@ from porescale.dem.contact.linear import Linear
 from porescale.dem.measures.network import stiffness
 from porescale.dem.prepare.rock import load
 from porescale.validation.dem import rock as lab
-from porescale.validation.dem.rock import FAST, SEEDS, VALIDATIONS
+from porescale.validation.dem.rock import FAST, SEEDS
+from tests.validation.tolerances import ROWS
 
 
 def test_without_bonds_nothing_bears_tension():  # the twin that must fail
@@ -23,7 +24,7 @@ def test_cells_are_no_weak_rock_as_discs_are():  # the twin that must fail
 
 
 def test_without_tangential_springs_a_packing_is_no_solid():  # the twin that must fail
-    row = VALIDATIONS["dem.rock_stiffness_of_its_springs"]
+    row = ROWS["dem.rock_stiffness_of_its_springs"]
     free = Linear(lab.STIFFNESS, lab.law().damping)
     made = lab.sample("discs", 0, 60)
     firm = stiffness(made)
@@ -34,5 +35,5 @@ def test_without_tangential_springs_a_packing_is_no_solid():  # the twin that mu
 
 @pytest.mark.slow
 def test_square_cells_do_not_break():  # the twin that must fail: every plane of shear ends on a plate
-    row = VALIDATIONS["dem.rock_of_slender_cells_breaks"]
+    row = ROWS["dem.rock_of_slender_cells_breaks"]
     assert lab.left_when_pressed(1.0, SEEDS, FAST) > row.tolerance + 0.3

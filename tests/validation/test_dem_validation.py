@@ -5,17 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from porescale.cli.main import PACKAGE
 from porescale.common.core.constants import GRAVITY
 from porescale.validation.dem import critical_step, restitution, rolling, stacks
 from porescale.validation.dem import setups as lab
 from tests.reference.dem import Body, World
-
-VALIDATIONS = PACKAGE.validations()
-
-
-def tolerance(name):
-    return VALIDATIONS[name].tolerance
+from tests.validation.tolerances import tolerance
 
 
 def test_the_other_end_of_contact_has_another_restitution():

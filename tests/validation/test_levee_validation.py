@@ -5,12 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.cli import PACKAGE
 from continuum_sph.soil import SoilFlow
 from continuum_sph.soil.state import GROWN
 from continuum_sph.validation.seepage.levee import FAR, GRAINS, PARTS, QUICK, STIFFER, Levee, gone
-
-VALIDATIONS = PACKAGE.validations()
+from tests.validation.tolerances import tolerance
 
 SLID = Levee(rows=8, end=3.2)
 """Until its soil has slid to the end of the land."""
@@ -34,10 +32,10 @@ def test_toe_middle_and_crest_go_one_after_the_other_however_stiff():
 
 @pytest.mark.slow
 def test_with_the_same_diffusion_of_stress_a_stiffer_levee_goes_otherwise():  # the twin that must fail
-    stiff = replace(QUICK, stiffness=STIFFER * QUICK.stiffness, calm=QUICK.calm / STIFFER)
+    stiff = replace(QUICK, stiffness=STIFFER * QUICK.stiffness, diffusion_share=QUICK.diffusion_share / STIFFER)
     assert stiff.diffusion == pytest.approx(QUICK.diffusion)
     late = [abs(one - other) for one, other in zip(gone(QUICK), gone(stiff), strict=True)]
-    assert max(late) > 2.0 * VALIDATIONS["continuum.levee_stiffness"].tolerance
+    assert max(late) > 2.0 * tolerance("continuum.levee_stiffness")
 
 
 @pytest.mark.slow
@@ -95,8 +93,8 @@ def test_damping_and_what_diffusion_leaves_do_not_change_with_stiffness():
     eps = float(np.finfo(float).eps)  # three roundings each
     assert stiff.damping * stiff.modulus**0.5 == pytest.approx(soft.damping * soft.modulus**0.5, rel=6 * eps)
     assert stiff.stiffness / stiff.diffusion == pytest.approx(soft.stiffness / soft.diffusion, rel=6 * eps)
-    told = stiff.table()["soil"]["numerics"]
-    assert (told["damping"], told["stress_diffusion"]) == (stiff.damping, stiff.diffusion)
+    numerics = stiff.table()["soil"]["numerics"]
+    assert (numerics["damping"], numerics["stress_diffusion"]) == (stiff.damping, stiff.diffusion)
 
 
 def test_what_never_moved_has_no_time():

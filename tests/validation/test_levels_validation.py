@@ -5,21 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.cli import PACKAGE
 from continuum_sph.seepage import Resistance, Supply
 from continuum_sph.validation.seepage import dam, infiltration
 from continuum_sph.validation.seepage.dam import DAM, STATIONS, SURFACE, Dam
 from continuum_sph.validation.seepage.infiltration import DRAWN
 from tests.reference.dam import surface
-
-VALIDATIONS = PACKAGE.validations()
+from tests.validation.tolerances import tolerance
 
 PRINTED = DRAWN.porosity / (1.0 - DRAWN.porosity)
 """Factor of the drag n ρ_f g/k of eq. 46 per volume of water: n² ρ_f g/k of the whole, and 1/n of that."""
-
-
-def tolerance(name):
-    return VALIDATIONS[name].tolerance
 
 
 @pytest.mark.parametrize("shape", sorted(SURFACE))

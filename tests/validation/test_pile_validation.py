@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from continuum_sph.cli import PACKAGE
 from continuum_sph.validation.seepage.heave import (
     APART,
     BOUNDS,
-    CALM,
+    HALF_HEAD,
     HEADS,
     HELD,
     NARROW,
@@ -20,10 +19,9 @@ from continuum_sph.validation.seepage.heave import (
 )
 from continuum_sph.validation.seepage.sheet_pile import AROUND, Around, SheetPile, one_side
 from tests.reference.sheet_pile import around, bounds, seen, weakest_prism
+from tests.validation.tolerances import ROWS, tolerance
 
-VALIDATIONS = PACKAGE.validations()
-
-ROW = VALIDATIONS["continuum.heave_behind_pile"]
+ROW = ROWS["continuum.heave_behind_pile"]
 MIDDLE = 0.5 * sum(BOUNDS[QUICK.share])
 
 
@@ -65,7 +63,7 @@ def test_finite_volumes_go_over_to_the_map_of_a_sheet():
 
 @pytest.mark.slow
 def test_the_flow_around_another_pile_is_refused():  # the twin that must fail
-    row = VALIDATIONS["continuum.pile_both_sides_50"]
+    row = ROWS["continuum.pile_both_sides_50"]
     given = Around(0.5, 12)
     discharge, _ = replace(given, share=0.5 + 2.0 / given.rows).run(100 * given.rows)
     assert abs(discharge / AROUND[Around(0.5, 24)][0] - 1.0) > row.tolerance
@@ -127,13 +125,13 @@ def test_exit_gradients_known_of_runs_are_those_of_finite_volumes():
 
 @pytest.mark.slow
 def test_the_exit_gradient_of_a_pile_two_rows_deeper_is_refused():  # the twin that must fail
-    row = VALIDATIONS["continuum.exit_gradient_in_a_run"]
-    deeper = replace(CALM, share=CALM.share + 2.0 / CALM.rows)
-    read = rising.__wrapped__(deeper, RISING[CALM])
+    row = ROWS["continuum.exit_gradient_in_a_run"]
+    deeper = replace(HALF_HEAD, share=HALF_HEAD.share + 2.0 / HALF_HEAD.rows)
+    read = rising.__wrapped__(deeper, RISING[HALF_HEAD])
     assert abs(read - 1.0) > row.tolerance
 
 
 @pytest.mark.slow
 def test_water_does_not_pass_a_pile_of_half_the_depth_as_easily():  # the twin that must fail
     found = one_side(0.25, 16)[0] * SheetPile(0.25).discharge
-    assert abs(found / SheetPile(0.5).discharge - 1.0) > VALIDATIONS["continuum.sheet_pile_50"].tolerance
+    assert abs(found / SheetPile(0.5).discharge - 1.0) > tolerance("continuum.sheet_pile_50")

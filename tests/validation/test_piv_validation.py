@@ -12,7 +12,7 @@ from porescale.piv.estimate.measure import Settings, measure
 from porescale.piv.images import flows, spots
 from porescale.piv.images.synth import pair
 from porescale.validation.piv import pairs as lab
-from porescale.validation.piv.pairs import VALIDATIONS
+from tests.validation.tolerances import tolerance
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 
@@ -27,20 +27,16 @@ def one_thread():
     set_threads(before)
 
 
-def tolerance(name: str) -> float:
-    return VALIDATIONS[f"piv.{name}"].tolerance
-
-
 def test_a_few_steps_cut_the_corner(monkeypatch):
     monkeypatch.setattr(flows, "STEPS", 4)
     found, exact = lab.turned(1.0, 100.0)
-    assert abs(found / exact - 1) > tolerance("paths_of_a_solid_rotation")
+    assert abs(found / exact - 1) > tolerance("piv.paths_of_a_solid_rotation")
 
 
 def test_spots_that_are_sampled_have_other_light():
     y, x = np.mgrid[:65, :65]
     total = np.exp(-((x - 32.0) ** 2 + (y - 32.0) ** 2) / (2 * 0.5**2)).sum() / (2 * np.pi * 0.5**2)
-    assert abs(total - 1) > 100 * tolerance("light_of_a_spot")
+    assert abs(total - 1) > 100 * tolerance("piv.light_of_a_spot")
     assert spots.REACH == 4.5  # what the tolerance was derived for
 
 
@@ -58,7 +54,7 @@ def test_a_cubic_spline_does_not_pass_for_a_quintic_one():
 
 def test_a_pair_a_hundredth_of_a_pixel_apart_is_not_still():
     made = pair(flows.uniform(0.01, 0.0), lab.Camera((256, 256), noise=0.0, lost=0.0), 1)
-    assert np.abs(measure(made.first, made.second).u).max() > tolerance("still_pair")
+    assert np.abs(measure(made.first, made.second).u).max() > tolerance("piv.still_pair")
 
 
 def linear(coefficients, dx, dy, pad, out):
@@ -70,41 +66,43 @@ def linear(coefficients, dx, dy, pad, out):
 
 def test_straight_lines_between_pixels_are_biased(monkeypatch):
     monkeypatch.setattr(fit, "sample", linear)
-    assert np.abs(lab.bias(2.8, [0.3, 0.7])).max() > tolerance("sub_pixel_bias")
-    assert np.abs(lab.bias(2.0, [0.3, 0.7])).max() > tolerance("sub_pixel_bias_of_small_tracers")
+    assert np.abs(lab.bias(2.8, [0.3, 0.7])).max() > tolerance("piv.sub_pixel_bias")
+    assert np.abs(lab.bias(2.0, [0.3, 0.7])).max() > tolerance("piv.sub_pixel_bias_of_small_tracers")
 
 
 def test_a_field_that_is_not_smoothed_misses_the_row_of_the_uniform_flow():
-    assert lab.row("uniform", range(1), Settings(smooth=False)).rms > tolerance("uniform")
+    assert lab.row("uniform", range(1), Settings(smooth=False)).rms > tolerance("piv.uniform")
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["shear", "stagnation"])
 def test_nor_does_it_hold_the_other_rows_of_smooth_flows(name):
-    assert lab.row(name, range(1), Settings(smooth=False)).rms > tolerance(name)
+    assert lab.row(name, range(1), Settings(smooth=False)).rms > tolerance(f"piv.{name}")
 
 
 @pytest.mark.slow
 def test_knots_as_far_apart_as_its_core_is_wide_do_not_see_a_vortex():
-    assert lab.row("lamb_oseen", range(1), Settings(window=128)).rms > tolerance("lamb_oseen")
+    assert lab.row("lamb_oseen", range(1), Settings(window=128)).rms > tolerance("piv.lamb_oseen")
 
 
 @pytest.mark.slow
 def test_two_knots_to_a_vortex_do_not_resolve_it():
     found = lab.row("taylor_green_128", range(1), Settings(window=64)).rms
-    assert found > tolerance("taylor_green_128")
-    assert found > tolerance("taylor_green_128_in_wide_windows")
+    assert found > tolerance("piv.taylor_green_128")
+    assert found > tolerance("piv.taylor_green_128_in_wide_windows")
 
 
 @pytest.mark.slow
 def test_stiff_splines_do_not_resolve_small_vortices():
-    assert lab.row("taylor_green_64", range(1), Settings(stiffness=0.3)).rms > tolerance("taylor_green_64")
+    assert lab.row("taylor_green_64", range(1), Settings(stiffness=0.3)).rms > tolerance("piv.taylor_green_64")
 
 
 @pytest.mark.slow
 def test_lost_pairs_are_what_the_row_without_them_is_about():
     flow, _ = lab.TABLE["clean"]
-    assert lab.trial(flow, lab.Camera(lab.SIZE, lost=0.1), range(1), Settings(smooth=False)).rms > tolerance("clean")
+    assert lab.trial(flow, lab.Camera(lab.SIZE, lost=0.1), range(1), Settings(smooth=False)).rms > tolerance(
+        "piv.clean"
+    )
 
 
 @pytest.mark.slow
@@ -123,7 +121,7 @@ def test_splines_too_stiff_for_boundary_layers_miss_the_row_of_the_discs():
 
 @pytest.mark.slow
 def test_rims_that_are_not_told_miss_the_row_of_those_that_are():
-    assert lab.trial(*lab.TABLE["discs"], range(1)).near > tolerance("past_discs_without_slip")
+    assert lab.trial(*lab.TABLE["discs"], range(1)).near > tolerance("piv.past_discs_without_slip")
 
 
 @pytest.mark.slow
@@ -144,9 +142,9 @@ def test_unvalidated_vectors_of_lost_pairs_are_far_off(monkeypatch):
     flow, _ = lab.TABLE["uniform"]
     monkeypatch.setattr("porescale.piv.estimate.measure._outliers", lambda *those: np.zeros(those[0].shape, bool))
     loose = Settings(smooth=False, least_correlation=-2.0)
-    assert lab.trial(flow, lab.Camera(lab.SIZE, lost=0.4), range(1), loose).largest > tolerance("ten_per_cent_lost")
+    assert lab.trial(flow, lab.Camera(lab.SIZE, lost=0.4), range(1), loose).largest > tolerance("piv.ten_per_cent_lost")
 
 
 def test_another_vortex_has_another_circulation():
     found, exact = lab.vortex()
-    assert abs(found[2] / (0.9 * exact[2]) - 1) > tolerance("vortex_in_a_measured_field")
+    assert abs(found[2] / (0.9 * exact[2]) - 1) > tolerance("piv.vortex_in_a_measured_field")

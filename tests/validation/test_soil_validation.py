@@ -5,25 +5,19 @@ from functools import partial
 import pytest
 
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.cli import PACKAGE
 from continuum_sph.soil import Material
 from continuum_sph.validation.soil import bodies, element, energy, setups, slopes
 from tests.reference import continuum_cases
 from tests.reference.continuum_cases import missed
 from tests.reference.folders import script
-
-VALIDATIONS = PACKAGE.validations()
+from tests.validation.tolerances import tolerance
 
 series = partial(continuum_cases.series, Simulation, 200)
 STEEP = "soil.body=[{outline=[[0,0],[3.6,0],[3.6,0.2],[2.04,0.2],[0.5,1.2],[0,1.2]]}]"  # 33 degrees
 
 
-def tolerance(name):
-    return VALIDATIONS[name].tolerance
-
-
 def test_friction_taken_for_the_angle_of_its_tangent_fails_at_another_ratio():
-    # tan 30° where the paper's tan φ is sin 30°
+    # tan 30° where tan φ of Maeda & Sakai 2004 is sin 30°
     assert abs(element.failure_ratio(3.0**-0.5) - 3.0) > 0.7
 
 

@@ -3,19 +3,13 @@
 import pytest
 
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.cli import PACKAGE
 from continuum_sph.validation.seepage import permeability, wet_slopes
 from continuum_sph.validation.seepage.wet_slopes import SEEPING, STILL, WetSlope
 from tests.reference import continuum_cases
 from tests.reference.continuum_cases import missed
-
-VALIDATIONS = PACKAGE.validations()
+from tests.validation.tolerances import ROWS, tolerance
 
 STEEP = "soil.body=[{outline=[[0,0],[2.2,0],[2.2,0.2],[1.224,0.2],[0.3,0.8],[0,0.8]]}]"  # 33 degrees
-
-
-def tolerance(name):
-    return VALIDATIONS[name].tolerance
 
 
 def test_limits_of_wet_slopes_are_those_of_the_textbook():
@@ -46,7 +40,7 @@ def test_a_slope_beyond_its_wet_limit_does_not_rest():
 
 @pytest.mark.slow
 def test_permeability_that_does_not_follow_porosity_is_told_apart():
-    exact = VALIDATIONS["continuum.permeability_follows_porosity"].run().reference
+    exact = ROWS["continuum.permeability_follows_porosity"].run().reference
     for porosity, wanted in zip(permeability.CHANGED, exact, strict=True):
         found = permeability.passed("constant", porosity)
         assert abs(found / wanted - 1.0) > 10.0 * tolerance("continuum.permeability_follows_porosity")

@@ -198,8 +198,7 @@ def late(given: TrappedAir, law: TrappedAir | None = None) -> tuple[float, float
 )
 def closed_row() -> Measured:
     """Depth of the front after 0.3 s where air cannot leave, m; error over the exact one."""
-    exact, found = late(CLOSED)
-    return Measured(exact, found, abs(found / exact - 1.0))
+    return Measured.relative(*late(CLOSED))
 
 
 @VALIDATIONS.row(
@@ -211,8 +210,7 @@ def closed_row() -> Measured:
 )
 def open_row() -> Measured:
     """Depth of the front after 0.3 s where air leaves below, m; error over the exact one."""
-    exact, found = late(OPEN)
-    return Measured(exact, found, abs(found / exact - 1.0))
+    return Measured.relative(*late(OPEN))
 
 
 def squeezed(given: TrappedAir, exponent: float | None = None) -> float:
@@ -231,8 +229,7 @@ def squeezed(given: TrappedAir, exponent: float | None = None) -> float:
 )
 def squeezed_row() -> Measured:
     """(p0 + p) V^γ over that at the start, after 0.3 s."""
-    found = squeezed(CLOSED)
-    return Measured(1.0, found, abs(found - 1.0))
+    return Measured.absolute(1.0, squeezed(CLOSED))
 
 
 @VALIDATIONS.row(
@@ -244,5 +241,4 @@ def squeezed_row() -> Measured:
 )
 def mass_row() -> Measured:
     """Change of the mass of water and of air in 0.3 s, the larger, over their own."""
-    found = max(sunk(CLOSED)[2], sunk(OPEN)[2])
-    return Measured(0.0, found, found)
+    return Measured.absolute(0.0, max(sunk(CLOSED)[2], sunk(OPEN)[2]))

@@ -175,8 +175,7 @@ def consolidation_row() -> Measured:
 )
 def modulus_row() -> Measured:
     """Load over mean settlement per height of a column that swings under it, over M."""
-    found = realised_modulus(LAYER) / LAYER.modulus
-    return Measured(1.0, found, abs(found - 1.0))
+    return Measured.absolute(1.0, realised_modulus(LAYER) / LAYER.modulus)
 
 
 SOFT = (1.0, 4.0)
@@ -199,5 +198,4 @@ def soft_decay(ratio: float) -> float:
 def soft_row() -> Measured:
     """u/u0 in the middle at T_v = 0.1 for K_w/(n M) = 1 and 4."""
     exact = [float(np.exp(-(np.pi**2) * 0.1 / (1.0 + 1.0 / ratio))) for ratio in SOFT]
-    found = [soft_decay(ratio) for ratio in SOFT]
-    return Measured(exact, found, max(abs(a - b) for a, b in zip(exact, found, strict=True)))
+    return Measured.absolute(exact, [soft_decay(ratio) for ratio in SOFT])

@@ -210,8 +210,7 @@ def dam(given: Dam = DAM, span: tuple[float, float] = SPAN) -> tuple[float, floa
 def dam_row() -> Measured:
     """Mean of the discharges in and out, and heights at L/4, L/2, 3L/4, over the exact ones; 20 particles over H1."""
     into, out, heights = dam()
-    found = [0.5 * (into + out), *heights]
-    return Measured([1.0] * (1 + len(STATIONS)), found, max(abs(value - 1.0) for value in found))
+    return Measured.absolute([1.0] * (1 + len(STATIONS)), [0.5 * (into + out), *heights])
 
 
 BOOKINGS = 1000  # particles in the tank, and those that come and go, at most
@@ -239,5 +238,4 @@ def unbooked(steps: int = 2400) -> float:
 )
 def mass_row() -> Measured:
     """Mass gained without a record over the mass of the water, let in on one side of a dam and out on the other."""
-    found = unbooked()
-    return Measured(0.0, found, found)
+    return Measured.absolute(0.0, unbooked())

@@ -35,7 +35,7 @@ def rests(rise: Floats, most: float) -> bool:
 class Heave:
     """Level ground of depth T on an impervious base under water, cut by a sheet pile to the depth s.
 
-    Upstream, on the left, the water rises to the head ``first``, stands there until ``calm`` (s), while motion is
+    Upstream, on the left, the water rises to the head ``first``, stands there until ``settle`` (s), while motion is
     braked, and then rises by ``rate`` a second; heads are over i_c s.
     share : s/T;  rows : particles over T;  depth : T, m;  reach : of each side over T;  cover : of the water at rest
     over T;  modulus : M of a column, Pa;  permeability m/s;  friction, dilatancy : angles, degrees;  rough : the pile's
@@ -55,7 +55,7 @@ class Heave:
     first: float = 2.0
     last: float = 4.5
     rate: float = 0.4
-    calm: float = 1.0
+    settle: float = 1.0
     porosity: float = 0.4
     poisson: float = 0.3
     grains: float = GRAINS
@@ -83,7 +83,7 @@ class Heave:
     @property
     def end(self) -> float:
         """When the head is the last, s."""
-        return self.calm + (self.last - self.first) / self.rate
+        return self.settle + (self.last - self.first) / self.rate
 
     def head(self, time: float) -> float:
         """Head over i_c s at a ``time`` (s)."""
@@ -92,7 +92,7 @@ class Heave:
     @property
     def steps(self) -> tuple[tuple[float, float], ...]:
         """Rows of time (s) and head over i_c s."""
-        return (0.0, 0.0), (0.5 * self.calm, self.first), (self.calm, self.first), (self.end, self.last)
+        return (0.0, 0.0), (0.5 * self.settle, self.first), (self.settle, self.first), (self.end, self.last)
 
     @property
     def scene(self) -> Scene:
@@ -119,7 +119,7 @@ class Heave:
                 "friction_angle": f"{self.friction} degree",
                 "dilatancy_angle": f"{self.dilatancy} degree",
                 "permeability": self.permeability,
-                "numerics": {"settle": self.calm},
+                "numerics": {"settle": self.settle},
                 "body": [{"outline": [[0, 0], [width, 0], [width, self.depth], [0, self.depth]]}],
             },
             "pile": {
@@ -152,9 +152,9 @@ class Heave:
         return chosen
 
     def course(self, every: float = 0.01) -> Iterator[tuple[float, float, float, Simulation]]:
-        """(time s, head over i_c s, mean rise of the prism's surface over s since the time ``calm``, the model), every
+        """(time s, head over i_c s, mean rise of the prism's surface over s since ``settle``, the model), every
         ``every`` seconds until the head is its last."""
-        model, due = Simulation(self.scene), self.calm
+        model, due = Simulation(self.scene), self.settle
         while model.time < self.end:
             model.advance(1)
             if model.part(SoilPart).counted and model.time >= due:
@@ -173,12 +173,12 @@ class Heave:
         surface, that of the prism, has risen by ``most`` s: see `rests`."""
         held = replace(self, first=head, last=head + BARELY, rate=BARELY / seconds)
         time, _, rise = np.array([row[:3] for row in held.course(seconds / 60.0)]).T
-        return rests(np.interp(self.calm + seconds * np.array([1.0, 2.0, 3.0]) / 3.0, time, rise), most)
+        return rests(np.interp(self.settle + seconds * np.array([1.0, 2.0, 3.0]) / 3.0, time, rise), most)
 
 
 BOUNDS = {0.25: (2.85, 3.18), 0.5: (2.93, 3.34), 0.75: (3.18, 3.76)}
 """h/(i_c s) of Terzaghi's prism, s/2 wide and without friction, and of the exit gradient at the pile, by s/T."""
-QUICK = Heave(rows=12, reach=1.0, cover=0.17, modulus=5e5, permeability=3e-2, first=2.7, rate=0.7, calm=0.4)
+QUICK = Heave(rows=12, reach=1.0, cover=0.17, modulus=5e5, permeability=3e-2, first=2.7, rate=0.7, settle=0.4)
 
 
 @functools.cache
@@ -198,8 +198,7 @@ def onset(given: Heave = QUICK) -> float:
 def heave_row() -> Measured:
     """Head over i_c s at which the ground behind a pile to half its depth begins to rise, 12 particles over T."""
     low, high = BOUNDS[QUICK.share]
-    found = onset()
-    return Measured(0.5 * (low + high), found, abs(found - 0.5 * (low + high)))
+    return Measured.absolute(0.5 * (low + high), onset())
 
 
 NARROW = {0.25: (2.83, 3.15), 0.5: (2.86, 3.19), 0.75: (3.05, 3.46)}
@@ -239,17 +238,16 @@ def held_row(share: float, name: str) -> None:
     )
     def row() -> Measured:
         """Head over i_c s, held, above which ground behind a pile goes on rising; 12 or 20 particles over T."""
-        found = held(HELD[share])
-        return Measured(0.5 * (low + high), found, abs(found - 0.5 * (low + high)))
+        return Measured.absolute(0.5 * (low + high), held(HELD[share]))
 
 
 for buried in HELD:
     held_row(buried, "continuum.heave_under_held_head" + (f"_{100 * buried:.0f}" if buried != QUICK.share else ""))
 
-CALM = Heave(rows=16, reach=1.0, cover=0.5, modulus=5e5, permeability=3e-2, first=1.5, last=1.51, rate=5e-3, calm=0.4)
+HALF_HEAD = replace(QUICK, rows=16, cover=0.5, first=1.5, last=1.51, rate=5e-3)
 """Ground under half the head that lifts it, below eight rows of water."""
 
-RISING = {CALM: 0.6493, replace(CALM, share=0.75): 0.3934}
+RISING = {HALF_HEAD: 0.6493, replace(HALF_HEAD, share=0.75): 0.3934}
 """i_E T/h as `Around` reads it, by finite volumes."""
 
 
@@ -271,5 +269,4 @@ def rising(given: Heave, known: float) -> float:
 )
 def rising_row() -> Measured:
     """Column of series.csv over what it should be, soil and water free to move, 16 particles over T."""
-    found = [rising(given, known) for given, known in RISING.items()]
-    return Measured([1.0, 1.0], found, max(abs(one - 1.0) for one in found))
+    return Measured.absolute([1.0, 1.0], [rising(given, known) for given, known in RISING.items()])

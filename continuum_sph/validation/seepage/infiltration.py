@@ -100,8 +100,7 @@ def way_of_the_front(given: Infiltration = SINKING) -> float:
 )
 def infiltration_row() -> Measured:
     """Way of the wetting front from 0.3 to 0.8 s in dry soil under sinking water, over the exact one."""
-    found = way_of_the_front()
-    return Measured(1.0, found, abs(found - 1.0))
+    return Measured.absolute(1.0, way_of_the_front())
 
 
 @dataclass(frozen=True)
@@ -181,5 +180,4 @@ def fronts(given: Imbibition = DRAWN, times: tuple[float, ...] = DRAWN_TIMES) ->
 )
 def imbibition_row() -> Measured:
     """Way of the front over the exact one at 0.3, 0.6 and 0.9 s, 30 particles over the height of the soil."""
-    found = fronts()
-    return Measured(1.0, found, max(abs(value - 1.0) for value in found))
+    return Measured.absolute(1.0, fronts())

@@ -22,7 +22,7 @@ WATER = 1000.0  # kg/m³
 STIFF = 10.0  # K_w/(n M) of the water
 GRAINS = 2650.0  # kg/m³
 GRAVITY = 9.8  # m/s², of Maeda & Sakai 2004
-CALM = 4.0
+DIFFUSION_SHARE = 4.0
 """χ γ'H/E of the diffusion of stress.  Of particles that slide past each other the strain is uneven, and stress by E
 times that; diffusion takes it away within a shear strain that goes as 1/χ, so what is left goes as E/χ.  It bears load,
 as soil keeps what is over its stress and cuts off what would pull: with χ alone given, a levee would stand the longer
@@ -47,7 +47,7 @@ class Levee:
     rows : particles over its height;  height, crest : m;  river, land : run of its slopes over the height;  pool,
     plain : breadth of river and land beside it, m;  stiffness : E, Pa;  ratio : K_w/(n M) of the water;  permeability
     m/s;  friction : degrees;  cohesion : Pa;  low, high : levels of the river over the height;  viscosity : artificial,
-    α of the water;  calm : see CALM;  braked : α of the soil, see BRAKED;  end : s.
+    α of the water;  diffusion_share : see DIFFUSION_SHARE;  braked : α of the soil, see BRAKED;  end : s.
     """
 
     rows: int = 12
@@ -65,7 +65,7 @@ class Levee:
     low: float = 0.6
     high: float = 0.95
     viscosity: float = 0.01
-    calm: float = CALM
+    diffusion_share: float = DIFFUSION_SHARE
     braked: float = BRAKED
     settle: float = 0.5
     rising: float = 0.5
@@ -102,7 +102,7 @@ class Levee:
     @property
     def diffusion(self) -> float:
         """χ of the diffusion of stress."""
-        return min(MOST, self.calm * self.stiffness / self.weight)
+        return min(MOST, self.diffusion_share * self.stiffness / self.weight)
 
     @property
     def damping(self) -> float:

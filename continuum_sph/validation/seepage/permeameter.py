@@ -105,8 +105,7 @@ def darcy(permeability: float, gradient: float = 0.5, steps: int = 1600) -> floa
 )
 def permeameter_row() -> Measured:
     """q/(k i) for k of 1e-2 to 1e-5 m/s, i 0.5."""
-    found = [darcy(k) for k in PERMEABILITIES]
-    return Measured(1.0, found, max(abs(value - 1.0) for value in found))
+    return Measured.absolute(1.0, [darcy(k) for k in PERMEABILITIES])
 
 
 BOILING = Permeameter(held=False)
@@ -155,4 +154,4 @@ def boiling(column: Permeameter = BOILING) -> tuple[float, float, float]:
 def boiling_row() -> Measured:
     """Gradient over i_c at which upward flow takes the soil's weight."""
     found, _, _ = boiling()
-    return Measured(1.0, found, abs(found - 1.0))
+    return Measured.absolute(1.0, found)

@@ -153,5 +153,4 @@ def seeping_row() -> Measured:
 )
 def resting_row() -> Measured:
     """Speed of two layers below their limits after 0.6 s, m/s."""
-    found = [abs(slides(given)[1]) for given in RESTING]
-    return Measured(0.0, found, max(found))
+    return Measured.absolute(0.0, [abs(slides(given)[1]) for given in RESTING])

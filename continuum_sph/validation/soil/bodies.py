@@ -64,8 +64,7 @@ def turned_error(steps: int = 90, **law: bool) -> float:
 )
 def turned_row() -> Measured:
     """Largest change of stress in the block's frame, turned by 90° in 4 steps and in 90, corners included."""
-    found = [turned_error(4), turned_error(90)]
-    return Measured(0.0, found, max(found))
+    return Measured.absolute(0.0, [turned_error(4), turned_error(90)])
 
 
 def kept(corrected: bool = True, seconds: float = 0.1, one_sided: bool = False) -> tuple[float, float]:
@@ -110,8 +109,7 @@ def kept(corrected: bool = True, seconds: float = 0.1, one_sided: bool = False) 
 )
 def momentum_row() -> Measured:
     """Change of linear and of angular momentum of a spinning stressed block, 0.1 s."""
-    found = list(kept())
-    return Measured(0.0, found, max(found))
+    return Measured.absolute(0.0, list(kept()))
 
 
 def bar_that_spins(pull: float, *, rows: int = 20, **law: Any) -> SoilFlow:
@@ -163,5 +161,4 @@ PULL = 0.0045  # of the stiffness: a strong clay
 )
 def spinning_row() -> Measured:
     """Elongation of a cohesive bar over a turn and a half, over the exact one; tension 0.45 % of the stiffness."""
-    found = spun(1.5, PULL, rows=30)
-    return Measured(1.0, found, abs(found - 1.0))
+    return Measured.absolute(1.0, spun(1.5, PULL, rows=30))

@@ -83,8 +83,7 @@ def failure_ratio(friction: float, dilatancy: float = 0.0) -> float:
 )
 def biaxial_row() -> Measured:
     """σ1/σ3 of a biaxial element at failure, without dilatancy and with ψ = φ."""
-    found = [failure_ratio(TAN_PHI), failure_ratio(TAN_PHI, TAN_PHI)]
-    return Measured(3.0, found, max(abs(value - 3.0) for value in found))
+    return Measured.absolute(3.0, [failure_ratio(TAN_PHI), failure_ratio(TAN_PHI, TAN_PHI)])
 
 
 def dilation(dilatancy: float) -> float:
@@ -104,8 +103,7 @@ def dilation(dilatancy: float) -> float:
 def dilation_row() -> Measured:
     """-dε_v/dγ at failure for sin ψ = 0, 0.2, 0.5."""
     wanted = [0.0, 0.2, 0.5]
-    found = [dilation(value) for value in wanted]
-    return Measured(wanted, found, max(abs(a - b) for a, b in zip(found, wanted, strict=True)))
+    return Measured.absolute(wanted, [dilation(value) for value in wanted])
 
 
 def confined(material: Material, strain: float = 0.01, steps: int = 100) -> Element:
@@ -133,7 +131,7 @@ def rest_row() -> Measured:
     """K0 with the plane-strain modulus, with eq. 43 of Maeda & Sakai 2004, and with the latter without yield."""
     wanted = [POISSON / (1.0 - POISSON), 1.0 / 3.0, POISSON]
     found = [rest_ratio("plane strain"), rest_ratio("printed"), rest_ratio("printed", yields=False)]
-    return Measured(wanted, found, max(abs(a - b) for a, b in zip(found, wanted, strict=True)))
+    return Measured.absolute(wanted, found)
 
 
 def squeezed(material: Material, pressure: float, strain: float, steps: int) -> float:
@@ -164,5 +162,4 @@ def stiffened(material: Material = GROWING) -> tuple[float, float]:
 )
 def stiffness_row() -> Measured:
     """Mean stress of an element squeezed from all sides, 0.1 MPa to 0.19 MPa in 100 steps."""
-    exact, found = stiffened()
-    return Measured(exact, found, abs(found / exact - 1.0))
+    return Measured.relative(*stiffened())

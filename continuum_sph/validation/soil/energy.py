@@ -27,7 +27,7 @@ ENTRIES = ("stress", "damping", "stopped", "parting", "walls")
 GIVEN = ("parting", "walls")  # what energy comes from; the others are what it goes into
 
 
-class Book:
+class EnergyBudget:
     """Moves a flow step by step and adds up its energies, J/m: ``turned`` over by name, and ``start`` of both kinds."""
 
     def __init__(self, flow: SoilFlow) -> None:
@@ -99,12 +99,12 @@ def run_out(stiffness: float, viscosity: float | None, rows: int = 10, seconds: 
     return float(flow.soil.x[: flow.soil.soil, 0].max()) + 0.5 * flow.law.spacing
 
 
-def collapse(seconds: float = 0.3) -> Book:
+def collapse(seconds: float = 0.3) -> EnergyBudget:
     """The energy budget of the column, collapsing for ``seconds``."""
-    book = Book(released_column())
-    while book.flow.time < seconds:
-        book.advance()
-    return book
+    budget = EnergyBudget(released_column())
+    while budget.flow.time < seconds:
+        budget.advance()
+    return budget
 
 
 @VALIDATIONS.row(
@@ -118,8 +118,7 @@ def collapse(seconds: float = 0.3) -> Book:
 )
 def energy_row() -> Measured:
     """Error of the energy budget of a collapse, 0.3 s, over what was lost."""
-    found = collapse().missing()
-    return Measured(0.0, found, abs(found))
+    return Measured.absolute(0.0, collapse().missing())
 
 
 SOFT, STIFF = 1e6, 5.84e6  # Pa
@@ -141,4 +140,4 @@ def run_outs(viscosity: float | None = THICK) -> tuple[float, float]:
 def run_out_row() -> Measured:
     """Front of a column of soil of 1 MPa against that of 5.84 MPa, m."""
     soft, stiff = run_outs()
-    return Measured(stiff, soft, abs(soft - stiff))
+    return Measured.absolute(stiff, soft)

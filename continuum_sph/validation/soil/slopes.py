@@ -51,8 +51,7 @@ def crossing(modulus: str, rows: int) -> float:
 )
 def modulus_row() -> Measured:
     """That time over the exact one, for both area moduli, 20 particles high."""
-    found = [crossing("plane strain", 20), crossing("printed", 20)]
-    return Measured(1.0, found, max(abs(value - 1.0) for value in found))
+    return Measured.absolute(1.0, [crossing("plane strain", 20), crossing("printed", 20)])
 
 
 @functools.cache
@@ -76,8 +75,7 @@ HALF_ROW = DENSITY * GRAVITY * 0.025 / COLUMN  # m: weight of half a row of 0.05
 )
 def rest_row_of_ten_seconds() -> Measured:
     """Largest displacement of a particle in 10 s, m."""
-    found = rest(10.0)[0]
-    return Measured(0.0, found, found)
+    return Measured.absolute(0.0, rest(10.0)[0])
 
 
 @functools.cache
@@ -111,8 +109,7 @@ def slope(degrees: float, seconds: float = 10.0, restless: float = 0.0) -> float
 )
 def slope_row() -> Measured:
     """Largest displacement of a particle in 10 s, m."""
-    found = slope(22.0)
-    return Measured(0.0, found, found)
+    return Measured.absolute(0.0, slope(22.0))
 
 
 def layer(degrees: float, rows: int = 20, friction: float = TAN_PHI) -> SoilFlow:
@@ -146,7 +143,7 @@ def sliding(degrees: float, rows: int = 20, friction: float = TAN_PHI) -> tuple[
 def sliding_row() -> Measured:
     """Acceleration of the layer over the exact one."""
     found, exact = sliding(28.0)
-    return Measured(exact, found, abs(found / exact - 1.0))
+    return Measured.relative(exact, found)
 
 
 STEEP = 35.0  # degrees
@@ -177,5 +174,4 @@ def departure(*, seconds: float = 2.0, exchanged: bool = True) -> float:
 )
 def density_row() -> Measured:
     """Largest departure of a particle's density over the run, over its density."""
-    found = departure()
-    return Measured(0.0, found, found)
+    return Measured.absolute(0.0, departure())

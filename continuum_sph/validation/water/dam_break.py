@@ -79,8 +79,7 @@ def front_against(front: Floats, series: Floats) -> tuple[float, float]:
 def front_row() -> Measured:
     """Front speed over that of three experiments: what a delay of release, unknown in all of them, does not change."""
     front = computed_front(40)
-    ratios = [front_against(front, series)[0] for series in published_fronts().values()]
-    return Measured(1.0, ratios, max(abs(ratio - 1.0) for ratio in ratios))
+    return Measured.absolute(1.0, [front_against(front, series)[0] for series in published_fronts().values()])
 
 
 def front_since(front: Floats, series: Floats) -> float:
@@ -104,5 +103,4 @@ def front_since(front: Floats, series: Floats) -> float:
 def place_row() -> Measured:
     """Largest relative distance of the front from that of each of three experiments, from 1.5 widths on."""
     front = computed_front(40)
-    errors = [front_since(front, series) for series in published_fronts().values()]
-    return Measured(0.0, errors, max(errors))
+    return Measured.absolute(0.0, [front_since(front, series) for series in published_fronts().values()])

@@ -200,8 +200,7 @@ def jump(across: int, seconds: float = 0.25, tension: float = TENSION) -> float:
 )
 def young_laplace_row() -> Measured:
     """Pressure jump over σ/R, ten times denser drop, 10 particles in its radius."""
-    found = jump(40)
-    return Measured(1.0, found, abs(found - 1.0))
+    return Measured.absolute(1.0, jump(40))
 
 
 STRETCHED = 1.15  # width of the drop over its diameter at rest
@@ -242,7 +241,7 @@ def restoring(across: int, tension: float = TENSION) -> tuple[float, float]:
 def restoring_row() -> Measured:
     """What draws a stretched drop back, over the exact one, 10 particles in the radius."""
     found, exact = restoring(50)
-    return Measured(exact, found, abs(found / exact - 1.0))
+    return Measured.relative(exact, found)
 
 
 SWING = 0.05  # of R, amplitude of the swing
@@ -264,8 +263,7 @@ def period(across: int, tension: float = TENSION) -> float:
 )
 def period_row() -> Measured:
     """Time until a kicked drop is round for the second time over the exact one, 12.8 particles in the radius."""
-    found = period(ACROSS)
-    return Measured(1.0, found, abs(found - 1.0))
+    return Measured.absolute(1.0, period(ACROSS))
 
 
 # Hysing et al. 2009, table of test case 1: m/s, largest, at 0.92 s;  least, at 1.90 s;  m, centre at 3 s
@@ -297,4 +295,4 @@ def rising_row() -> Measured:
     """Largest rise velocity, least circularity and height of the centre at 3 s over the published ones, 10 particles in
     the radius."""
     found = [value / exact for value, exact in zip(rising(0.025, 3.0), (RISE, ROUNDNESS, HEIGHT), strict=True)]
-    return Measured([1.0, 1.0, 1.0], found, max(abs(ratio - 1.0) for ratio in found))
+    return Measured.absolute([1.0, 1.0, 1.0], found)

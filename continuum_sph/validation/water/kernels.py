@@ -31,7 +31,7 @@ def kernel_integral() -> Measured:
         float(sum(2.0 * np.pi * v * kernel_value(kind, v, 1.0) * SUPPORT / 2000 for v in q))
         for kind in (CUBIC, WENDLAND)
     ]
-    return Measured(1.0, found, max(abs(value - 1.0) for value in found))
+    return Measured.absolute(1.0, found)
 
 
 def slope_error(slope: Callable[[int, float, float], float]) -> float:
@@ -53,5 +53,4 @@ def slope_error(slope: Callable[[int, float, float], float]) -> float:
 )
 def slope_row() -> Measured:
     """Largest difference of the slope of both kernels, h = 1 m."""
-    worst = slope_error(kernel_slope)
-    return Measured(0.0, worst, worst)
+    return Measured.absolute(0.0, slope_error(kernel_slope))

@@ -29,5 +29,4 @@ def momentum_drift(steps: int, force: float = 0.0) -> float:
 )
 def momentum_row() -> Measured:
     """Drift of momentum over 200 steps of a stirred periodic box."""
-    drift = momentum_drift(200)
-    return Measured(0.0, drift, drift)
+    return Measured.absolute(0.0, momentum_drift(200))

@@ -124,11 +124,11 @@ def check_frame_sections(scene: Scene) -> list[Fault]:
     faults += [Fault(name, None, f"does not go with [[{first}]]", repair=repair)
                for name, (section, repair) in beside.items() if section]  # fmt: skip
     names = [it.name for it in scene.material]
-    asked = [(f"segment[{k}]", it.material) for k, it in enumerate(scene.segment)]
-    asked += [(f"polygon[{k}]", it.material) for k, it in enumerate(scene.polygon)]
-    asked += [(f"container[{k}]", it.material) for k, it in enumerate(scene.container)]
-    for key, wanted in asked:
-        if wanted and wanted not in names:
+    named = [(f"segment[{k}]", it.material) for k, it in enumerate(scene.segment)]
+    named += [(f"polygon[{k}]", it.material) for k, it in enumerate(scene.polygon)]
+    named += [(f"container[{k}]", it.material) for k, it in enumerate(scene.container)]
+    for key, material in named:
+        if material and material not in names:
             allowed = ", ".join(names) or "none: there is no [[material]]"
-            faults.append(Fault(f"{key}.material", wanted, "no such material", "", allowed))
+            faults.append(Fault(f"{key}.material", material, "no such material", "", allowed))
     return faults

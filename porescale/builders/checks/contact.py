@@ -34,16 +34,16 @@ def check_contact(scene: Scene) -> list[Fault]:
 def _check_names(scene: Scene, contact: Contact) -> list[Fault]:
     """Materials that are named must be there."""
     known = [it.name for it in scene.material]
-    asked = [("contact.wall_material", contact.wall_material)]
-    asked += [(f"contact.pair[{k}].materials", name) for k, it in enumerate(contact.pair) for name in it.materials]
-    asked += [(f"disc[{k}].material", it.material) for k, it in enumerate(scene.disc)]
-    asked += [(f"clump[{k}].material", it.material) for k, it in enumerate(scene.clump)]
+    named = [("contact.wall_material", contact.wall_material)]
+    named += [(f"contact.pair[{k}].materials", name) for k, it in enumerate(contact.pair) for name in it.materials]
+    named += [(f"disc[{k}].material", it.material) for k, it in enumerate(scene.disc)]
+    named += [(f"clump[{k}].material", it.material) for k, it in enumerate(scene.clump)]
     if scene.grains:
-        asked += [(f"grains.grain[{k}].material", it.material) for k, it in enumerate(scene.grains.grain)]
+        named += [(f"grains.grain[{k}].material", it.material) for k, it in enumerate(scene.grains.grain)]
         if scene.grains.packing:
-            asked.append(("grains.packing.material", scene.grains.packing.material))
+            named.append(("grains.packing.material", scene.grains.packing.material))
     allowed = ", ".join(known) or "none: there is no [[material]]"
-    faults = [Fault(key, name, "no such material", "", allowed) for key, name in asked if name and name not in known]
+    faults = [Fault(key, name, "no such material", "", allowed) for key, name in named if name and name not in known]
     if known and contact.wall_friction is not None:
         problem = "friction at walls follows from their material"
         repair = "give wall_material, or a [[contact.pair]] with it"

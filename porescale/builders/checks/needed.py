@@ -40,11 +40,11 @@ def check_needed(scene: Scene) -> list[Fault]:
         faults += [Fault(name, None, "there is no fluid to measure", repair="add [fluid] or leave it out")
                    for name, section in given.items() if section]  # fmt: skip
     if scene.grains is None:
-        asked = {"region": scene.region, "coarse_graining": scene.coarse_graining,
+        measured = {"region": scene.region, "coarse_graining": scene.coarse_graining,
                  "output.contacts": scene.output.contacts, "output.forces": scene.output.forces,
                  "output.energy": scene.output.energy}  # fmt: skip
         faults += [Fault(name, None, "there are no grains to measure", repair="add [grains] or leave it out")
-                   for name, section in asked.items() if section]  # fmt: skip
+                   for name, section in measured.items() if section]  # fmt: skip
     if scene.grains and scene.grains.packing is None and not (by_hand(scene) or scene.segment or scene.polygon):
         faults.append(Fault("grains", None, "holds no grain", repair="add [grains.packing] or [[grains.grain]]"))
     of_grains = {"material": scene.material, "clump": scene.clump, "control": scene.control}

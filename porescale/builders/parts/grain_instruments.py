@@ -118,17 +118,17 @@ class GrainInstruments(Part):
         if self.coarse_graining:
             snapshot.grids[FIELDS] = self._fields(found, self.coarse_graining)
 
-    def _fields(self, found: Contacts, asked: CoarseGraining) -> Grid:
+    def _fields(self, found: Contacts, section: CoarseGraining) -> Grid:
         """The coarse-grained fields of a snapshot."""
         grains = self.grains
-        width = asked.width or max(2.0 * KERNEL_WIDTH * float(grains.discs.radius.mean()), asked.spacing)
+        width = section.width or max(2.0 * KERNEL_WIDTH * float(grains.discs.radius.mean()), section.spacing)
         cell = grains.cell if isinstance(grains.cell, Straining) else None
         periodic = grains.box.periodic if cell is None else (False, False)
-        raster = Raster.over(grains.box.lower, grains.box.upper, asked.spacing, width, periodic)
+        raster = Raster.over(grains.box.lower, grains.box.upper, section.spacing, width, periodic)
         fields = CoarseGrained(raster, grains.discs, found, conserve=cell is None, cell=cell, area=areas(grains))
         cells: dict[str, AnyArray] = {}
         units: dict[str, str] = {}
-        for name in asked.fields:
+        for name in section.fields:
             value = getattr(fields, "contact_stress" if name == "stress" else name)
             if value.ndim == 2:
                 cells[name] = value.astype(np.float32)

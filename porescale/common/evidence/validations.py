@@ -12,6 +12,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from porescale.common.cli.report import shown
 from porescale.common.evidence.files import finite
 from porescale.common.evidence.register import Register
@@ -33,6 +36,18 @@ class Measured:
     reference: Numbers
     measured: Numbers
     error: float
+
+    @classmethod
+    def absolute(cls, reference: ArrayLike, measured: ArrayLike) -> Measured:
+        """The error is the largest |measured - reference|."""
+        known, found = np.asarray(reference), np.asarray(measured)
+        return cls(known.tolist(), found.tolist(), float(np.abs(found - known).max()))
+
+    @classmethod
+    def relative(cls, reference: ArrayLike, measured: ArrayLike) -> Measured:
+        """The error is the largest |measured/reference - 1|."""
+        known, found = np.asarray(reference), np.asarray(measured)
+        return cls(known.tolist(), found.tolist(), float(np.abs(found / known - 1.0).max()))
 
 
 @dataclass(frozen=True)

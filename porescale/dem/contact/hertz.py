@@ -37,12 +37,13 @@ from porescale.dem.contact.law import (
     KT,
     RELEASES,
     KernelLaw,
+    Springs,
     history_scaling,
     stiffness,
     stiffness_scale,
     stored_normal,
 )
-from porescale.dem.contact.linear import Linear, series
+from porescale.dem.contact.linear import series
 from porescale.dem.contact.restitution import contact_phase, ratio_from_restitution, refuse, restitution_of
 
 RENAMED = {"rolling_stiffness_ratio": "rolling_stiffness"}
@@ -119,20 +120,7 @@ class Hertz:
     deepest: float = 0.02
 
     def __post_init__(self) -> None:
-        refuse(
-            {
-                "modulus": (self.modulus, "Pa", True),
-                "shear_modulus": (self.shear_modulus, "Pa", False),
-                "damping_ratio": (self.damping_ratio, "", False),
-                "tangential_damping_ratio": (self.tangential_damping_ratio, "", False),
-                "friction": (self.friction, "", False),
-                "rolling_friction": (self.rolling_friction, "", False),
-                "rolling_stiffness": (self.rolling_stiffness, "", False),
-                "rolling_damping_ratio": (self.rolling_damping_ratio, "", False),
-                "deepest": (self.deepest, "", True),
-            },
-            self.release,
-        )
+        refuse(self, {"modulus": "Pa"}, positive=["modulus", "deepest"])
 
     @classmethod
     def of(
@@ -198,21 +186,13 @@ class Hertz:
         """The law as kernels read it, (COLUMNS,) float64; see law.py and _stiffness."""
         normal, shear = 4.0 / 3.0 * self.modulus, 8.0 * self.shear_modulus
         turning = self.rolling_stiffness * shear
-        return np.array(
-            [
-                normal,
-                TANGENT * self.damping_ratio * math.sqrt(1.5 * normal),
-                shear,
-                TANGENT * self.tangential_damping_ratio * math.sqrt(shear),
-                self.friction,
-                float(RELEASES.index(self.release)),
-                1.0 / shear if shear > 0.0 else 0.0,
-                turning,
-                TANGENT * self.rolling_damping_ratio * math.sqrt(turning),
-                self.rolling_friction,
-                1.0 / turning if turning > 0.0 else 0.0,
-            ]
-        )
+        return np.array([
+            normal, TANGENT * self.damping_ratio * math.sqrt(1.5 * normal),
+            shear, TANGENT * self.tangential_damping_ratio * math.sqrt(shear),
+            self.friction, float(RELEASES.index(self.release)), 1.0 / shear if shear > 0.0 else 0.0,
+            turning, TANGENT * self.rolling_damping_ratio * math.sqrt(turning), self.rolling_friction,
+            1.0 / turning if turning > 0.0 else 0.0,
+        ])  # fmt: skip
 
     def mixed(self, other: Any) -> "Hertz":
         """Between unlike materials, each of which has its law with itself; see materials.py for the rule."""
@@ -288,18 +268,18 @@ class Hertz:
         """See overlap_at; it goes with the modulus to the power of 2/5."""
         return self.overlap_at(mass, radius, speed), 2.5
 
-    def stiffest(self, mass: float, radius: float) -> Linear:
-        """The linear law of its tangents at the overlap ``deepest`` times ``radius`` (m), for the stable step.
+    def stiffest(self, mass: float, radius: float) -> Springs:
+        """The springs of its tangents at the overlap ``deepest`` times ``radius`` (m), for the stable step.
 
         mass (kg/m) and radius are those of the smallest disc: its contacts are at most as stiff as with a wall, R = r,
         and damped as with one.
         """
         row, scale = self.row(), radius * math.sqrt(self.deepest)
         root = math.sqrt(mass * scale)
-        return Linear(
-            1.5 * row[KN] * scale, row[CN] * root, row[KT] * scale, row[CT] * root, self.friction, self.release,
-            self.rolling_friction, row[KR] * scale, row[CR] * root,
-        )  # fmt: skip
+        return Springs(
+            (1.5 * row[KN] * scale, row[KT] * scale, row[KR] * scale * self.rolls),
+            (row[CN] * root, row[CT] * root, row[CR] * root * self.rolls),
+        )
 
     def shortest_contact(self, mass: float, radius: float) -> float:
         """Seconds an impact lasts that reaches ``deepest`` of ``radius`` (m) at a wall; ``mass`` reduced, kg/m."""

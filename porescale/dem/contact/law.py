@@ -49,36 +49,12 @@ class KernelLaw(NamedTuple):
     rolling: float | None
 
 
-class Springs(Protocol):
-    """Stiffnesses (N/m) and dashpots (N s/m) per metre of depth: what the stable step takes of a law."""
+class Springs(NamedTuple):
+    """Normal, tangential and rolling stiffness (N/m) and dashpots (N s/m) per metre of depth, as the stable step takes
+    them of a law; the last of each is 0 without rolling resistance."""
 
-    @property
-    def stiffness(self) -> float:
-        """Stiffness of the normal spring, N/m per metre of depth."""
-
-    @property
-    def damping(self) -> float:
-        """Coefficient of the normal dashpot, N s/m per metre of depth."""
-
-    @property
-    def tangential_stiffness(self) -> float:
-        """Stiffness of the tangential spring, N/m per metre of depth."""
-
-    @property
-    def tangential_damping(self) -> float:
-        """Coefficient of the tangential dashpot, N s/m per metre of depth."""
-
-    @property
-    def rolling_stiffness(self) -> float:
-        """Stiffness of the rolling spring, N/m per metre of depth."""
-
-    @property
-    def rolling_damping(self) -> float:
-        """Coefficient of the rolling dashpot, N s/m per metre of depth."""
-
-    @property
-    def rolls(self) -> bool:
-        """Whether there is rolling resistance."""
+    stiffness: tuple[float, float, float]
+    damping: tuple[float, float, float]
 
 
 class ContactLaw(Protocol):

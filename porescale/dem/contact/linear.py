@@ -21,6 +21,7 @@ from porescale.dem.contact.law import (
     KN,
     RELEASES,
     KernelLaw,
+    Springs,
     history_scaling,
     stiffness,
     stiffness_scale,
@@ -92,19 +93,7 @@ class Linear:
     rolling_damping: float = 0.0
 
     def __post_init__(self) -> None:
-        refuse(
-            {
-                "stiffness": (self.stiffness, "N/m", True),
-                "damping": (self.damping, "N s/m", False),
-                "tangential_stiffness": (self.tangential_stiffness, "N/m", False),
-                "tangential_damping": (self.tangential_damping, "N s/m", False),
-                "friction": (self.friction, "", False),
-                "rolling_friction": (self.rolling_friction, "", False),
-                "rolling_stiffness": (self.rolling_stiffness, "N/m", False),
-                "rolling_damping": (self.rolling_damping, "N s/m", False),
-            },
-            self.release,
-        )
+        refuse(self, {"stiffness": "N/m", "damping": "N s/m"}, positive=["stiffness"])
 
     @classmethod
     def from_restitution(
@@ -165,21 +154,13 @@ class Linear:
 
     def row(self) -> NDArray[np.float64]:
         """The law as kernels read it, (COLUMNS,) float64, see law.py."""
-        return np.array(
-            [
-                self.stiffness,
-                self.damping,
-                self.tangential_stiffness,
-                self.tangential_damping,
-                self.friction,
-                float(RELEASES.index(self.release)),
-                1.0 / self.tangential_stiffness if self.tangential_stiffness > 0.0 else 0.0,
-                self.rolling_stiffness,
-                self.rolling_damping,
-                self.rolling_friction,
-                1.0 / self.rolling_stiffness if self.rolling_stiffness > 0.0 else 0.0,
-            ]
-        )
+        return np.array([
+            self.stiffness, self.damping, self.tangential_stiffness, self.tangential_damping,
+            self.friction, float(RELEASES.index(self.release)),
+            1.0 / self.tangential_stiffness if self.tangential_stiffness > 0.0 else 0.0,
+            self.rolling_stiffness, self.rolling_damping, self.rolling_friction,
+            1.0 / self.rolling_stiffness if self.rolling_stiffness > 0.0 else 0.0,
+        ])  # fmt: skip
 
     def mixed(self, other: Any) -> "Linear":
         """Between unlike materials, each of which has its law with itself; see materials.py for the rule."""
@@ -204,9 +185,12 @@ class Linear:
             turning, dashpot("rolling_stiffness", "rolling_damping", turning),
         )  # fmt: skip
 
-    def stiffest(self, mass: float, radius: float) -> "Linear":
-        """The linear law that bounds it for the stable step: itself."""
-        return self
+    def stiffest(self, mass: float, radius: float) -> Springs:
+        """Its springs, which are the same at every overlap."""
+        return Springs(
+            (self.stiffness, self.tangential_stiffness, self.rolling_stiffness * self.rolls),
+            (self.damping, self.tangential_damping, self.rolling_damping * self.rolls),
+        )
 
     def shortest_contact(self, mass: float, radius: float) -> float:
         """Seconds that the shortest contact lasts, at effective ``mass`` (kg/m): they all last as long."""

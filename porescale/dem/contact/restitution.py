@@ -7,6 +7,9 @@ Sources: release at zero force, Schwager & Poeschel 2007, Granular Matter 9, 465
 """
 
 import math
+from collections.abc import Collection, Mapping
+from dataclasses import fields
+from typing import Any
 
 from porescale.common.core.errors import Fault, InputError
 
@@ -56,13 +59,16 @@ def ratio_from_restitution(restitution: float, release: str) -> float:
     return float(brentq(excess, 0.0, highest, xtol=1e-15, rtol=1e-14))
 
 
-def refuse(values: dict[str, tuple[float, str, bool]], release: str) -> None:
-    """Raise InputError naming every wrong number: key -> (value, unit, whether it must be > 0 and not just >= 0)."""
+def refuse(law: Any, units: Mapping[str, str], positive: Collection[str]) -> None:
+    """Raise InputError naming every wrong number of ``law``, a dataclass: ``positive`` ones must be > 0, others >= 0.
+
+    units : by how names end, none else."""
     faults = []
-    for key, (value, unit, positive) in values.items():
-        if not ((value > 0.0 if positive else value >= 0.0) and math.isfinite(value)):
-            faults.append(Fault(f"contact.{key}", value, unit=unit, allowed="> 0" if positive else ">= 0"))
-    if release not in ("force", "overlap"):
-        faults.append(Fault("contact.release", release, allowed="force or overlap"))
+    for key in [it.name for it in fields(law) if it.name != "release"]:
+        value, above, unit = getattr(law, key), key in positive, [units[end] for end in units if key.endswith(end)]
+        if not ((value > 0.0 if above else value >= 0.0) and math.isfinite(value)):
+            faults.append(Fault(f"contact.{key}", value, unit="".join(unit), allowed="> 0" if above else ">= 0"))
+    if law.release not in ("force", "overlap"):
+        faults.append(Fault("contact.release", law.release, allowed="force or overlap"))
     if faults:
         raise InputError(faults)

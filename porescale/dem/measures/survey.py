@@ -98,12 +98,8 @@ def survey_rectangles(d, rectangles, laws, spring, law):
     position, radius, material = d.position, d.radius, d.material
     worst, worst_i, worst_w, energy = 0.0, -1, -1, 0.0
     for w in range(rectangles.shape[0]):
-        left, bottom, right, top = (
-            rectangles[w, LEFT],
-            rectangles[w, BOTTOM],
-            rectangles[w, RIGHT],
-            rectangles[w, TOP],
-        )
+        left, bottom = rectangles[w, LEFT], rectangles[w, BOTTOM]
+        right, top = rectangles[w, RIGHT], rectangles[w, TOP]
         for i in range(radius.shape[0]):
             dx = min(max(position[i, 0], left), right) - position[i, 0]
             dy = min(max(position[i, 1], bottom), top) - position[i, 1]
@@ -116,6 +112,10 @@ def survey_rectangles(d, rectangles, laws, spring, law):
                 if overlap / radius[i] > worst:
                     worst, worst_i, worst_w = overlap / radius[i], i, w
     return worst, worst_i, worst_w, energy
+
+
+Found = tuple[float, int, int, float]
+"""Deepest overlap over the (smaller) radius, its disc, the disc or surface that it touches, elastic energy J/m."""
 
 
 class Overlap(NamedTuple):
@@ -139,8 +139,8 @@ def potential_energy(discs: Discs, acceleration: tuple[float, float]) -> float:
 
 def elastic_energy(grains: State) -> float:
     """Stored in the normal and tangential springs of pairs, walls, plates, rectangles and segments, J/m."""
-    surfaces = (_survey_walls(grains), _survey_plates(grains), _survey_rectangles(grains))
-    return float(_survey(grains)[3] + sum(found[3] for found in surfaces) + sum(_survey_segments(grains)[3:]))
+    surfaces = sum(found[3] for found in _survey_surfaces(grains))
+    return float(_survey(grains)[3] + surfaces + sum(_survey_segments(grains)[3:]))
 
 
 def momentum(discs: Discs) -> Floats:
@@ -167,20 +167,15 @@ def max_overlap(grains: State) -> Overlap:
     segments and corners of the sum of radius and thickness, where a disc would go through.
     """
     share, i, j, _ = _survey(grains)
-    deepest = Overlap(float(share), int(i), f"grain {j}")
-    share, i, w, _ = _survey_walls(grains)
-    if share > deepest.share:
-        deepest = Overlap(float(share), int(i), f"the {grains.wall_names[w]} wall")
-    share, i, w, _ = _survey_plates(grains)
-    if share > deepest.share:
-        deepest = Overlap(float(share), int(i), f"the {grains.plate_names[w]}")
-    share, i, w, _ = _survey_rectangles(grains)
-    if share > deepest.share:
-        deepest = Overlap(float(share), int(i), f"rectangle {w}")
+    found = [(share, i, f"grain {j}")]
+    walls, plates = [f"the {name} wall" for name in grains.wall_names], [f"the {name}" for name in grains.plate_names]
+    names = walls, plates, [f"rectangle {k}" for k in range(len(grains.rectangles))]
+    for (share, i, w, _), own in zip(_survey_surfaces(grains), names, strict=True):
+        found.append((share, i, own[w] if own else ""))
     share, i, e, *_ = _survey_segments(grains)
-    if share > deepest.share:
-        deepest = Overlap(float(share), int(i), f"segment {e}" if e >= 0 else f"corner {e + grains.discs.count}")
-    return deepest
+    found.append((share, i, f"segment {e}" if e >= 0 else f"corner {e + grains.discs.count}"))
+    share, i, against = max(found, key=lambda each: each[0])  # the first of the deepest
+    return Overlap(float(share), int(i), against)
 
 
 def coordination(grains: State) -> float:
@@ -199,33 +194,29 @@ def unbalanced(grains: State) -> float:
     return float(net / load) if load > 0.0 else 0.0
 
 
-def _survey(grains: State) -> tuple[float, int, int, float]:
+def _survey(grains: State) -> Found:
     """Result of survey_pairs for ``grains``; overwrites ``grains.touching``."""
-    result: tuple[float, int, int, float] = survey_pairs(
+    result: Found = survey_pairs(
         grains.disc_arrays(), grains.pair_arrays(), grains.cell, grains.contact, grains.touching
     )
     return result
 
 
-def _survey_walls(grains: State) -> tuple[float, int, int, float]:
-    """survey_walls of ``grains``, corners of segments by their own measure."""
-    d = grains.discs
-    walls = grains.walls, grains.wall_laws, grains.wall_spring
-    result: tuple[float, int, int, float] = survey_walls(grains.disc_arrays(), *walls, grains.contact)
-    if grains.segments is None or not len(grains.walls):
-        return result
-    # Corners may be points: what they go into a wall is held against their segments.
-    away = np.einsum("nwk,wk->wn", d.position[:, None] - grains.walls[:, PX : PY + 1], grains.walls[:, NX : NY + 1])
-    share = (d.radius - away) / np.maximum(d.radius, grains.segments.beside_corner)
-    w, i = np.unravel_index(share.argmax(), share.shape)
-    return float(share[w, i]), int(i), int(w), result[3]
-
-
-def _survey_plates(grains: State) -> tuple[float, int, int, float]:
-    """Result of survey_plates for ``grains``."""
-    plates = grains.plates, grains.plate_laws, grains.plate_spring
-    result: tuple[float, int, int, float] = survey_plates(grains.disc_arrays(), *plates, grains.contact)
-    return result
+def _survey_surfaces(grains: State) -> list[Found]:
+    """What is found at walls, plates and rectangles, nothing where there is none; corners of segments at walls by their
+    own measure."""
+    d, found = grains.discs, list[Found]()
+    for kind, survey in (("wall", survey_walls), ("plate", survey_plates), ("rectangle", survey_rectangles)):
+        table, laws, spring, _ = grains.surface(kind)
+        none = 0.0, -1, -1, 0.0
+        found.append(survey(grains.disc_arrays(), table, laws, spring, grains.contact) if len(table) else none)
+    if grains.segments is not None and len(grains.walls):
+        # Corners may be points: what they go into a wall is held against their segments.
+        away = np.einsum("nwk,wk->wn", d.position[:, None] - grains.walls[:, PX : PY + 1], grains.walls[:, NX : NY + 1])
+        share = (d.radius - away) / np.maximum(d.radius, grains.segments.beside_corner)
+        w, i = np.unravel_index(share.argmax(), share.shape)
+        found[0] = float(share[w, i]), int(i), int(w), found[0][3]
+    return found
 
 
 def _survey_segments(grains: State) -> tuple[float, int, int, float, float, float]:
@@ -235,13 +226,4 @@ def _survey_segments(grains: State) -> tuple[float, int, int, float, float, floa
     result: tuple[float, int, int, float, float, float] = survey_segments(
         d.position, d.radius, grains.material, segments_now(grains), grains.contact, grains.cell
     )
-    return result
-
-
-def _survey_rectangles(grains: State) -> tuple[float, int, int, float]:
-    """survey_rectangles of ``grains``; nothing where there is none."""
-    if not len(grains.rectangles):
-        return 0.0, -1, -1, 0.0
-    rectangles = grains.rectangles, grains.rectangle_laws, grains.rectangle_spring
-    result: tuple[float, int, int, float] = survey_rectangles(grains.disc_arrays(), *rectangles, grains.contact)
     return result

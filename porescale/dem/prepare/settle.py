@@ -198,7 +198,7 @@ def relax(
     before = np.hypot(grains.external_force[:, 0], grains.external_force[:, 1]).sum()
     share = np.hypot(weights[:, 0], weights[:, 1]).sum() / before if before > 0.0 else 1.0
     smallest = float(grains.discs.mass.min()), float(grains.discs.radius.min())
-    stiff = [each.stiffest(*smallest).tangential_stiffness for each in (grains.laws[0], law)]
+    stiff = [each.stiffest(*smallest).stiffness[1] for each in (grains.laws[0], law)]
     if stiff[1] > 0.0:
         scale_springs(grains, float(share) * stiff[0] / stiff[1])
     grains.set_law(law, wall_law)

@@ -1,7 +1,4 @@
-"""Validations of clumps of discs in fluid: what a rigid body must do there, whatever its shape.
-
-Clumps of discs in fluid, lattice units: what ``verify_clumps`` measures and tests vary.
-"""
+"""Clumps of discs in fluid: what a rigid body must do there, whatever its shape.  Lattice units."""
 
 import math
 from collections.abc import Sequence
@@ -14,11 +11,9 @@ from porescale.coupling.step import Coupled
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
-from porescale.lbm.boundary.sides import Kind, Sides
-from porescale.lbm.fluid import Fluid
-from porescale.lbm.scales import Scales
-from porescale.validation.coupling.setups import LAW, TAU
-from porescale.validation.lbm.channels import one_thread
+from porescale.lbm.boundary.sides import Kind
+from porescale.validation.coupling.setups import LAW, in_box, lattice_units, momentum_error
+from porescale.validation.lbm.channels import run
 
 WIDE, HIGH, R = 48, 64, 6.0
 """Cells of the box, and of the radius of most discs."""
@@ -37,23 +32,22 @@ def immersed_clumps(
     """Clumps of discs in a box of fluid at rest; ratio: of densities;  g: downwards;  bound: or else discs are free."""
     discs = [disc for body in bodies for disc in body]
     radius = np.array([disc[2] for disc in discs])
-    kind = "periodic" if side == "periodic" else "solid"
     made = make_discs([disc[:2] for disc in discs], radius, ratio, velocity)
-    grains = Grains(made, LAW, Box((0.0, 0.0), (float(WIDE), float(HIGH)), kind, kind, kind, kind))
-    if bound:
-        ends = np.cumsum([0, *map(len, bodies)])
-        grains.steering.bind([np.arange(*ends[k : k + 2]) for k in range(len(bodies))], ratio)
-    fluid = Fluid(WIDE, HIGH, TAU, sides=Sides(side, side, side, side))
-    return Coupled(
-        fluid, grains, Scales(1.0, 1.0, TAU, 1.0), hydraulic_ratio=1.0, contact_steps=4, acceleration=(0.0, -g)
-    )  # fmt: skip
+
+    def grains(box: Box) -> Grains:
+        """The discs, bound or free."""
+        those = Grains(made, LAW, box)
+        if bound:
+            ends = np.cumsum([0, *map(len, bodies)])
+            those.steering.bind([np.arange(*ends[k : k + 2]) for k in range(len(bodies))], ratio)
+        return those
+
+    return in_box((WIDE, HIGH), grains, lattice_units(), (side, side), acceleration=(0.0, -g))
 
 
 def sunk(coupled: Coupled, steps: int) -> Coupled:
     """The coupled system after ``steps`` steps."""
-    with one_thread():
-        for _ in range(steps):
-            coupled.advance()
+    run(coupled.advance, steps)
     return coupled
 
 
@@ -61,13 +55,7 @@ def momentum_error_of_clumps(steps: int = 200) -> float:
     """Largest error of the momentum of clumps that collide in a periodic box and the fluid, over their own at first."""
     bodies = [[(12.0, 20.0, 5.0), (16.0, 23.0, 4.0)], [(30.0, 24.0, 5.0), (34.0, 22.0, 5.0)]]
     velocity = np.array([[0.02, 0.01]] * 2 + [[-0.03, 0.0]] * 2)
-    coupled = immersed_clumps(bodies, g=0.0, side="periodic", velocity=velocity)
-    discs, first, worst = coupled.grains.discs, coupled.momentum(), 0.0
-    size = float(np.sum(discs.mass[:, None] * np.abs(discs.velocity)))
-    for _ in range(steps):
-        sunk(coupled, 1)
-        worst = max(worst, float(np.abs(coupled.momentum() - first).max()))
-    return worst / size
+    return momentum_error(immersed_clumps(bodies, g=0.0, side="periodic", velocity=velocity), steps)
 
 
 def pair_beside_disc(apart: float, steps: int = 300, *, shared: bool = True) -> float:
@@ -104,8 +92,7 @@ EPS = 2.0**-52
 )
 def momentum() -> Measured:
     """Error of the momentum budget over sum m |v| at the start: two clumps that collide in a periodic box."""
-    error = momentum_error_of_clumps()
-    return Measured(0.0, error, error)
+    return Measured.absolute(0.0, momentum_error_of_clumps())
 
 
 @VALIDATIONS.row(
@@ -116,8 +103,7 @@ def momentum() -> Measured:
 )
 def round_limit() -> Measured:
     """Speed of the clump over that of the disc after 300 steps from rest."""
-    found = pair_beside_disc(APART)
-    return Measured(1.0, found, abs(found - 1.0))
+    return Measured.absolute(1.0, pair_beside_disc(APART))
 
 
 @VALIDATIONS.row(
@@ -129,4 +115,4 @@ def round_limit() -> Measured:
 def mirror() -> Measured:
     """Sideways speed and spin of two discs side by side, over the speed down."""
     aside, turning = level_pair()
-    return Measured((0.0, 0.0), (aside, turning), max(abs(aside), abs(turning)))
+    return Measured.absolute((0.0, 0.0), (aside, turning))

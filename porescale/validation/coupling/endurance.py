@@ -18,7 +18,7 @@ DOWN = 60_000
 def share(lines: list[Line]) -> Measured:
     """How much of what is allowed each quantity is off by; the largest is the error."""
     shares = [0.0 if line.off == 0.0 else line.off / max(line.allowed, TINY) for line in lines]
-    return Measured([0.0] * len(shares), shares, max(shares))
+    return Measured.absolute([0.0] * len(shares), shares)
 
 
 def settled(it: Endurance) -> Endurance:

@@ -13,8 +13,8 @@ from porescale.common.evidence.validations import Measured, Validations
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.lattice import viscosity
 from porescale.lbm.scales import Scales
-from porescale.validation.coupling.setups import DEFAULT, TAU, Method, immersed
-from porescale.validation.coupling.towed import PERIODIC, RADIUS, faxen, jeffrey_onishi, steady, towed
+from porescale.validation.coupling.setups import DEFAULT, PERIODIC, TAU, Method, immersed
+from porescale.validation.coupling.towed import RADIUS, faxen, jeffrey_onishi, steady, towed
 from porescale.validation.lbm.channels import one_thread
 
 
@@ -291,7 +291,7 @@ def shear() -> Measured:
     Mean over two places in the cell that change places when along and across do.
     """
     found = [float(np.mean([shear_spin(k, place=place) for place in ((0.3, 0.0), (0.0, 0.3))])) for k in SHEAR]
-    return Measured(list(SHEAR.values()), found, float(np.abs(np.divide(found, list(SHEAR.values())) - 1).max()))
+    return Measured.relative(list(SHEAR.values()), found)
 
 
 @VALIDATIONS.row(
@@ -303,7 +303,7 @@ def shear() -> Measured:
 def galilean() -> Measured:
     """Mean drag over 20 cells of way, seen from the disc, from halfway and from the fluid at rest."""
     means = [float(stream_drag(frame)[1000:].mean()) for frame in (0.0, 0.5, 1.0)]
-    return Measured(means[0], means, float(np.abs(np.divide(means, means[0]) - 1).max()))
+    return Measured.relative(means[0], means)
 
 
 @VALIDATIONS.row(
@@ -316,7 +316,7 @@ def galilean() -> Measured:
 def terminal() -> Measured:
     """Speed over the expected one of a free disc of density ratio 0.8, 2.5 and 10."""
     found = [settled_speed(ratio, relaxation_time=0.6) for ratio in SINKING]
-    return Measured([1.0] * len(found), found, float(np.abs(np.subtract(found, 1)).max()))
+    return Measured.absolute([1.0] * len(found), found)
 
 
 @VALIDATIONS.row(
@@ -328,8 +328,7 @@ def terminal() -> Measured:
 )
 def heavy() -> Measured:
     """Speed over the expected one of a free disc of density ratio 100."""
-    found = settled_speed(100.0, relaxation_time=0.6)
-    return Measured(1.0, found, abs(found - 1))
+    return Measured.absolute(1.0, settled_speed(100.0, relaxation_time=0.6))
 
 
 @VALIDATIONS.row(
@@ -343,7 +342,7 @@ def heavy() -> Measured:
 def gravity() -> Measured:
     """Terminal speed with gravity in the fluid, over that with the reduced pressure, density ratio 2.5."""
     pair = [settled_speed(2.5, relaxation_time=0.6, gravity_in_fluid=pulled) for pulled in (False, True)]
-    return Measured(pair[0], pair[1], abs(pair[1] / pair[0] - 1))
+    return Measured.relative(pair[0], pair[1])
 
 
 @VALIDATIONS.row(
@@ -359,7 +358,7 @@ def approach_row() -> Measured:
     """Speed over the law's at gaps of 0.6, 0.4 and 0.3 radii; radius 10 cells, density ratio 2, tau 0.6."""
     gaps = (0.6, 0.4, 0.3)
     found = [v * jeffrey_onishi("towards", gap) for v, gap in zip(approach(gaps), gaps, strict=True)]
-    return Measured([1.0] * len(found), found, float(np.abs(np.subtract(found, 1)).max()))
+    return Measured.absolute([1.0] * len(found), found)
 
 
 @VALIDATIONS.row(
@@ -371,5 +370,4 @@ def approach_row() -> Measured:
 )
 def kissing() -> Measured:
     """Time of the first touch, s, at 20 cells per diameter, tau 0.512."""
-    found, _ = kiss(20)
-    return Measured(KISS, found, abs(found / KISS - 1))
+    return Measured.relative(KISS, kiss(20)[0])

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.coupling.step import Coupled
 from porescale.dem.bodies.frames import framed, polygon
@@ -16,9 +15,10 @@ from porescale.lbm.boundary.sides import Kind, Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
 from porescale.lbm.scales import Scales
+from porescale.validation.coupling import setups
 from porescale.validation.coupling.polygons import ellipse, plate, regular
-from porescale.validation.coupling.setups import DEFAULT, LAW, TAU, Method
-from porescale.validation.lbm.channels import one_thread
+from porescale.validation.coupling.setups import DEFAULT, LAW, TAU, Method, in_box, lattice_units
+from porescale.validation.lbm.channels import one_thread, run
 
 EPS = float(np.finfo(float).eps)
 VALIDATIONS = Validations()
@@ -48,12 +48,7 @@ def immersed_polygons(
 
     sides: left and right, bottom and top;  thickness: cells.
     """
-    scales = scales or Scales(1.0, 1.0, relaxation_time, 1.0)
-    across, along = sides
-    fluid = Fluid(
-        *cells, scales.relaxation_time, operator=method.operator, magic=method.magic,
-        sides=Sides(across, across, along, along),
-    )  # fmt: skip
+    scales = scales or lattice_units(relaxation_time)
     h = scales.spacing
     frames = [
         polygon(
@@ -62,11 +57,9 @@ def immersed_polygons(
         )
         for n, each in enumerate(corners)
     ]  # fmt: skip
-    kinds = ["periodic" if kind == "periodic" else "solid" for kind in (across, across, along, along)]
-    grains = framed(discs, frames, LAW, Box((0.0, 0.0), (h * cells[0], h * cells[1]), *kinds))
-    return Coupled(
-        fluid, grains, scales, hydraulic_ratio=1.0, contact_steps=contact_steps, acceleration=acceleration,
-        solid_operator=method.solid_operator, weighting=method.weighting,
+    return in_box(
+        cells, lambda box: framed(discs, frames, LAW, box), scales, sides, method=method, contact_steps=contact_steps,
+        acceleration=acceleration,
     )  # fmt: skip
 
 
@@ -107,31 +100,19 @@ def loads_on_neutral(steps: int, extra: float = 0.0) -> list[float]:
 )
 def neutral() -> Measured:
     """Largest load, and torque over the size, on three polygons of density 1 that uniform flow carries, 300 steps."""
-    loads = loads_on_neutral(300)
-    return Measured(0.0, loads, max(loads))
+    return Measured.absolute(0.0, loads_on_neutral(300))
 
 
 def momentum_error(steps: int, ratio: float = 2.0, g: float = -1e-5, *, inside: bool = True) -> float:
-    """Largest error of the momentum budget over sum m |v| at the start: colliding polygons and discs in a periodic box.
+    """`setups.momentum_error` of colliding polygons and discs in a periodic box.
 
     inside: or else the fluid inside the polygons, and their virtual masses, are left out of the budget.
     """
     coupled = three(ratio, [(0.04, 0.01), (-0.04, 0.0), (0.0, -0.04)], [0.002, -0.004, 0.01], g)
     polygons = coupled.polygons
     assert polygons
-    discs = coupled.grains.discs
-    size = float(np.sum(discs.mass[:, None] * np.abs(discs.velocity)))
-
-    def book() -> Floats:
-        """Momentum of all (2,), lattice units; unless ``inside`` without what fills polygons and moves with them."""
-        return np.array(coupled.momentum() - (0.0 if inside else polygons.momentum(coupled.scales.step)))
-
-    first, per_step, worst = book(), coupled.weight.sum(axis=0), 0.0
-    with one_thread():
-        for step in range(1, steps + 1):
-            coupled.advance()
-            worst = max(worst, float(np.abs(book() - first - step * per_step).max()))
-    return worst / size
+    outside = lambda: np.array(coupled.momentum() - polygons.momentum(coupled.scales.step))  # noqa: E731
+    return setups.momentum_error(coupled, steps, None if inside else outside)
 
 
 @VALIDATIONS.row(
@@ -142,17 +123,14 @@ def momentum_error(steps: int, ratio: float = 2.0, g: float = -1e-5, *, inside: 
 )
 def momentum() -> Measured:
     """Error of the momentum budget over sum m |v| at the start: polygons and discs in a periodic box under gravity."""
-    errors = [momentum_error(400, ratio) for ratio in (2.0, 0.5)]
-    return Measured([0.0, 0.0], errors, max(errors))
+    return Measured.absolute([0.0, 0.0], [momentum_error(400, ratio) for ratio in (2.0, 0.5)])
 
 
 def level_plate(degrees: float, steps: int = 300) -> tuple[float, float]:
     """Sideways speed, and speed of the tips, over the speed down of a plate that sinks from rest in a closed box."""
     body = plate(16.0, 4.0, degrees) + np.array((24.0, 40.0))
     coupled = immersed_polygons((48, 64), [body], acceleration=(0.0, -1e-5))
-    with one_thread():
-        for _ in range(steps):
-            coupled.advance()
+    run(coupled.advance, steps)
     assert coupled.polygons
     (x, y), spin = coupled.polygons.velocity[0], float(coupled.polygons.spin[0])
     return float(x / y), float(8.0 * spin / y)
@@ -167,7 +145,7 @@ def level_plate(degrees: float, steps: int = 300) -> tuple[float, float]:
 def mirror() -> Measured:
     """Sideways speed and tip speed of a level plate that sinks, over the speed down."""
     aside, tip = level_plate(0.0)
-    return Measured([0.0, 0.0], [aside, tip], max(abs(aside), abs(tip)))
+    return Measured.absolute([0.0, 0.0], [aside, tip])
 
 
 def half_turn(
@@ -191,8 +169,8 @@ def half_turn(
     )  # fmt: skip
     box = Box((0.0, 0.0), (2.0 * cells, float(cells)), "periodic", "periodic", "solid", "solid")
     coupled = Coupled(
-        fluid, framed(None, [body], LAW, box), Scales(1.0, 1.0, relaxation_time, 1.0), hydraulic_ratio=1.0,
-        contact_steps=1, acceleration=(0.0, 0.0),
+        fluid, framed(None, [body], LAW, box), lattice_units(relaxation_time), hydraulic_ratio=1.0, contact_steps=1,
+        acceleration=(0.0, 0.0),
     )  # fmt: skip
     assert coupled.polygons
     begun = 0.0
@@ -221,5 +199,4 @@ def half_turn(
 )
 def jeffery() -> Measured:
     """Time of half a turn over Jeffery's: ellipse of 48 corners, axes 15 and 7.5 cells, between walls that slide."""
-    found = half_turn(64, 7.5, 3.75, 0.15) / (math.pi * 2.5)
-    return Measured(1.0, found, abs(found - 1))
+    return Measured.absolute(1.0, half_turn(64, 7.5, 3.75, 0.15) / (math.pi * 2.5))

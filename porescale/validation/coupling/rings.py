@@ -1,9 +1,4 @@
-"""Validations of rings and rectangles: what turns, slides and pushes.
-
-A disc in a ring, at several places in the cells: what ``verify`` measures and tests vary.  Lattice units.
-
-Rectangles and rings in fluid with known answers: what ``verify`` measures and tests vary.  Lattice units.
-"""
+"""Rings and rectangles in fluid that turn, slide and push, with known answers.  Lattice units."""
 
 import math
 from dataclasses import dataclass
@@ -17,7 +12,8 @@ from porescale.coupling.psm import SaturatedCells
 from porescale.lbm.boundary.sides import Kind, Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
-from porescale.validation.lbm.channels import one_thread
+from porescale.validation.coupling.setups import NO_DISCS
+from porescale.validation.lbm.channels import one_thread, run
 
 CENTRES = ((0.3, 0.1), (0.0, 0.0), (0.5, 0.25), (0.8, 0.6))
 """Places in a cell."""
@@ -40,7 +36,6 @@ def torques(
     return float(disc), float(ring)
 
 
-NO_DISCS = np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0)
 SPEED = 0.01
 
 
@@ -56,9 +51,7 @@ def couette_error(
     slab = Rectangle((0.0, gap), (4.0, gap + rows), (SPEED, 0.0))
     wet = SaturatedCells(fluid, np.zeros(0), solid_operator=solid_operator, weighting=weighting, rectangles=[slab])
     nu = viscosity(relaxation_time)
-    with one_thread():
-        for _ in range(math.ceil(36 * (gap**2 / (math.pi**2 * nu) + 30))):
-            wet.advance(fluid, *NO_DISCS)
+    run(lambda: wet.advance(fluid, *NO_DISCS), math.ceil(36 * (gap**2 / (math.pi**2 * nu) + 30)))
     free = int(gap)
     found = fluid.fields()[1][:free, 1] / SPEED
     drag = -float(wet.rectangle_force[0, 0]) / (4 * nu * SPEED / gap)
@@ -83,13 +76,9 @@ def couette_torque(
     fluid = Fluid(cells, cells, relaxation_time)
     at = np.array([centre]) + cells // 2
     ring = Ring(at[0], outer, spin=spin if turning == "ring" else 0.0)
-    wet = SaturatedCells(
-        fluid, np.array([inner]), solid_operator=solid_operator, weighting=weighting, rings=[ring]
-    )  # fmt: skip
+    wet = SaturatedCells(fluid, np.array([inner]), solid_operator=solid_operator, weighting=weighting, rings=[ring])
     rest, spins = np.zeros((1, 2)), np.array([spin if turning == "disc" else 0.0])
-    with one_thread():
-        for _ in range(500 + int(3 * (outer - inner) ** 2 / nu)):
-            wet.advance(fluid, at, rest, spins)
+    run(lambda: wet.advance(fluid, at, rest, spins), 500 + int(3 * (outer - inner) ** 2 / nu))
     unit = 4 * math.pi * nu * spin * inner**2 * outer**2 / (outer**2 - inner**2)
     return float(wet.torque[0]) / unit, float(wet.ring_torque[0]) / unit
 
@@ -177,8 +166,7 @@ GAPS = (6.0, 6.25, 6.9)
 def taylor_couette() -> Measured:
     """Torque over the exact one: on disc and ring as the disc turns, then as the ring does; tau 0.6 and 0.8."""
     found = [value for tau in TAUS for turning in ("disc", "ring") for value in torques(tau, turning)]
-    reference = [-1.0, 1.0, 1.0, -1.0] * len(TAUS)
-    return Measured(reference, found, float(np.abs(np.subtract(found, reference)).max()))
+    return Measured.absolute([-1.0, 1.0, 1.0, -1.0] * len(TAUS), found)
 
 
 @VALIDATIONS.row(
@@ -190,8 +178,7 @@ def taylor_couette() -> Measured:
 )
 def sliding() -> Measured:
     """Largest error of velocity over the rectangle's, and of drag, for gaps of 6, 6.25 and 6.9 cells at tau 0.8."""
-    found = [value for gap in GAPS for value in couette_error(gap, 0.8)]
-    return Measured(0.0, found, max(found))
+    return Measured.absolute(0.0, [value for gap in GAPS for value in couette_error(gap, 0.8)])
 
 
 @VALIDATIONS.row(
@@ -203,5 +190,4 @@ def sliding() -> Measured:
 )
 def piston() -> Measured:
     """Flux over the piston's, in the channel before it and in a narrow gap beyond."""
-    found = piston_flux()[:2]
-    return Measured([1.0, 1.0], found, float(np.abs(np.subtract(found, 1.0)).max()))
+    return Measured.absolute([1.0, 1.0], piston_flux()[:2])

@@ -3,11 +3,13 @@
 Unless SI is named, spacing, step and density of the fluid are 1, so that everything is in lattice units.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from porescale.common.core.types import Floats
 from porescale.coupling.step import Coupled
 from porescale.dem.contact.linear import Linear
 from porescale.dem.discs import make_discs
@@ -18,6 +20,7 @@ from porescale.lbm.boundary.sides import Kind, Sides
 from porescale.lbm.collision.entry import MAGIC_MIDWAY_WALL
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.scales import Scales
+from porescale.validation.lbm.channels import one_thread
 
 TAU = 0.8
 
@@ -37,6 +40,35 @@ class Method:
 
 
 DEFAULT = Method()
+PERIODIC = Sides("periodic", "periodic", "periodic", "periodic")
+NO_DISCS = np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0)
+"""Places, velocities and spins of none."""
+
+
+def in_box(
+    cells: tuple[int, int], grains: Callable[[Box], Grains], scales: Scales, sides: tuple[Kind, Kind], *,
+    method: Method = DEFAULT, force: tuple[float, float] = (0.0, 0.0), ratio: float = 1.0, contact_steps: int = 4,
+    acceleration: tuple[float, float] = (0.0, 0.0), gate: int | None = None,
+) -> Coupled:  # fmt: skip
+    """What ``grains`` makes of a box of so many cells, in fluid at rest there; the others as `immersed` has them."""
+    across, along = sides
+    fluid = Fluid(
+        *cells, scales.relaxation_time, operator=method.operator, magic=method.magic, force=force,
+        sides=Sides(across, across, along, along),
+    )  # fmt: skip
+    if gate is not None:
+        fluid.add_plate(gate)
+    kinds = ["periodic" if kind == "periodic" else "solid" for kind in (across, across, along, along)]
+    box = Box((0.0, 0.0), (scales.spacing * cells[0], scales.spacing * cells[1]), *kinds)
+    return Coupled(
+        fluid, grains(box), scales, hydraulic_ratio=ratio, contact_steps=contact_steps, acceleration=acceleration,
+        solid_operator=method.solid_operator, weighting=method.weighting,
+    )  # fmt: skip
+
+
+def lattice_units(relaxation_time: float = TAU) -> Scales:
+    """Spacing, step and density 1."""
+    return Scales(1.0, 1.0, relaxation_time, 1.0)
 
 
 def immersed(
@@ -61,23 +93,13 @@ def immersed(
     sides: left and right, bottom and top;  ratio: hydraulic over mechanical radius;  gate: column it stands left of;
     force: on the fluid, lattice units.
     """
-    scales = scales or Scales(1.0, 1.0, relaxation_time, 1.0)
-    across, along = sides
-    fluid = Fluid(
-        *cells, scales.relaxation_time, operator=method.operator, magic=method.magic, force=force,
-        sides=Sides(across, across, along, along),
-    )  # fmt: skip
-    plates = []
-    if gate is not None:
-        fluid.add_plate(gate)
-        plates = [GrainPlate(gate * scales.spacing, 0.0, cells[1] * scales.spacing, name=GATE)]
-    width, height = (n * scales.spacing for n in cells)
-    kinds = ["periodic" if kind == "periodic" else "solid" for kind in (across, across, along, along)]
-    box = Box((0.0, 0.0), (width, height), *kinds)
-    grains = Grains(make_discs(position, radius, density, velocity, spin), LAW, box, plates=plates)
-    return Coupled(
-        fluid, grains, scales, hydraulic_ratio=ratio, contact_steps=4, acceleration=acceleration,
-        solid_operator=method.solid_operator, weighting=method.weighting,
+    scales = scales or lattice_units(relaxation_time)
+    h = scales.spacing
+    plates = [] if gate is None else [GrainPlate(gate * h, 0.0, cells[1] * h, name=GATE)]
+    discs = make_discs(position, radius, density, velocity, spin)
+    return in_box(
+        cells, lambda box: Grains(discs, LAW, box, plates=plates), scales, sides, method=method, force=force,
+        ratio=ratio, acceleration=acceleration, gate=gate,
     )  # fmt: skip
 
 
@@ -117,3 +139,18 @@ def carried(coupled: Coupled, velocity: tuple[float, float]) -> Coupled:
     coupled.fluid.set_flow(*velocity)
     coupled.grains.discs.velocity[:] = coupled.inner_velocity[:] = velocity
     return coupled
+
+
+def momentum_error(coupled: Coupled, steps: int, momentum: Callable[[], Floats] | None = None) -> float:
+    """Largest error of the momentum budget, weights counted, over sum m |v| of discs at the start.
+
+    momentum : all of it (2,), lattice units, if it is not to be `Coupled.momentum`.
+    """
+    read, discs = momentum or coupled.momentum, coupled.grains.discs
+    size = float(np.sum(discs.mass[:, None] * np.abs(discs.velocity)))
+    first, per_step, worst = read(), coupled.weight.sum(axis=0), 0.0
+    with one_thread():
+        for step in range(1, steps + 1):
+            coupled.advance()
+            worst = max(worst, float(np.abs(read() - first - step * per_step).max()))
+    return worst / size

@@ -36,9 +36,8 @@ def settling_disc(
     step = (relaxation_time - 0.5) / 3 * spacing**2 / nu
     cells = round(0.02 / spacing), round(0.06 / spacing)
     coupled = immersed(
-        cells, [(0.01, 0.04)], diameter / 2, 1250.0,
-        acceleration=(0.0, -9.81), ratio=ratio, scales=Scales(spacing, step, relaxation_time),
-        method=method,
+        cells, [(0.01, 0.04)], diameter / 2, 1250.0, acceleration=(0.0, -9.81), ratio=ratio,
+        scales=Scales(spacing, step, relaxation_time), method=method,
     )  # fmt: skip
     discs, fastest = coupled.grains.discs, 0.0
     while discs.position[0, 1] > 1.5 * diameter:
@@ -57,8 +56,7 @@ def settling_disc(
 )
 def settling() -> Measured:
     """Terminal speed, m/s, at 16 cells per diameter."""
-    found = settling_disc()
-    return Measured(0.0555, found, abs(found - 0.0555))
+    return Measured.absolute(0.0555, settling_disc())
 
 
 TALBOT = 32
@@ -145,8 +143,7 @@ def release(
 def release_row() -> Measured:
     """v/((s - 1) g a²/nu) at nu t/a² 0.05, 0.1, 0.2, 0.5 for s 1.5, 2.5, 7.8; tau 0.56, 20 cells per diameter."""
     reference = [exact_release(ratio, time) for ratio in RATIOS for time in TIMES]
-    found = [value for ratio in RATIOS for value in release(ratio, TIMES)]
-    return Measured(reference, found, float(np.abs(np.divide(found, reference) - 1).max()))
+    return Measured.relative(reference, [value for ratio in RATIOS for value in release(ratio, TIMES)])
 
 
 def exact_spin_down(ratio: float, time: float) -> float:
@@ -199,5 +196,4 @@ def spin_down(
 def spin_down_row() -> Measured:
     """Spin over its first value at nu t/a² 0.05, 0.1, 0.2, 0.5 for s 0.5 and 2.5; tau 0.56, 20 cells per diameter."""
     reference = [exact_spin_down(ratio, time) for ratio in (0.5, 2.5) for time in TIMES]
-    found = [value for ratio in (0.5, 2.5) for value in spin_down(ratio, TIMES)]
-    return Measured(reference, found, float(np.abs(np.divide(found, reference) - 1).max()))
+    return Measured.relative(reference, [value for ratio in (0.5, 2.5) for value in spin_down(ratio, TIMES)])

@@ -1,6 +1,4 @@
-"""Validations of sleep under water: sleepers are in balance with the water too, and a collapse ends as without it.
-
-Heaps that sleep under water: what a current and a grain that sinks do to them, and what sleep makes of a collapse.
+"""Heaps that sleep under water: what a current and a grain that sinks do to them, and what sleep makes of a collapse.
 
 In lattice units.  A contact step is a fluid step, so that the forces which judge a sleeper can be taken from outside.
 """
@@ -136,14 +134,12 @@ VALIDATIONS = Validations()
 )
 def balance() -> Measured:
     """Largest force that a sleeper is out of balance by, over its weight: a current sets in; a grain sinks on them."""
-    found = [disturbed(sinks).imbalance for sinks in (False, True)]
-    return Measured([0.0, 0.0], found, max(found))
+    return Measured.absolute([0.0, 0.0], [disturbed(sinks).imbalance for sinks in (False, True)])
 
 
 def off(share: float) -> Measured:
     """Run-out and mean height, in radii, of a column that collapses under water, with sleep and without."""
-    reference, found = collapsed(), collapsed(share)
-    return Measured(reference.tolist(), found.tolist(), float(np.abs(found - reference).max()))
+    return Measured.absolute(collapsed(), collapsed(share))
 
 
 @VALIDATIONS.row(

@@ -1,16 +1,15 @@
-"""Validations of held, towed and turning discs in slow flow, beside those on arrays of verify_arrays.py.
-
-Discs that are held or towed in slow flow, with known drag and torque: arrays, channels, walls; lattice units.
+"""Discs that are held or towed in slow flow, with known drag and torque: arrays, channels, walls; lattice units.
 
 A disc towed so slowly that it stays in its place while the flow becomes steady gives the quasi-steady load.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.coupling.psm import SaturatedCells
 from porescale.coupling.step import Coupled
@@ -20,9 +19,8 @@ from porescale.dem.grains import Grains
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import viscosity
-from porescale.lbm.scales import Scales
-from porescale.validation.coupling.setups import DEFAULT, LAW, TAU, Method
-from porescale.validation.lbm.channels import one_thread
+from porescale.validation.coupling.setups import DEFAULT, LAW, PERIODIC, TAU, Method, lattice_units
+from porescale.validation.lbm.channels import one_thread, run
 
 VALIDATIONS = Validations()
 
@@ -40,9 +38,7 @@ def weighing(
     fluid = Fluid(cells, cells, relaxation_time, force=(0.0, -force))
     wet = SaturatedCells(fluid, np.array([radius]), solid_operator=method.solid_operator, weighting=method.weighting)
     place, rest, no_spin = np.array([[0.3, 0.1]]) + cells / 2, np.zeros((1, 2)), np.zeros(1)
-    with one_thread():
-        for _ in range(steps):
-            wet.advance(fluid, place, rest, no_spin)
+    run(lambda: wet.advance(fluid, place, rest, no_spin), steps)
     return float(wet.force[0, 1]) / force, math.pi * float(wet.covering_radius[0]) ** 2
 
 
@@ -67,7 +63,6 @@ def spinning_disc(
 
 SLOW = 1e-9
 """Speed of a disc that is towed in its place: less than a ten-thousandth of a cell until the flow is steady."""
-PERIODIC = Sides("periodic", "periodic", "periodic", "periodic")
 
 PLACES = ((0.0, 0.0), (0.3, 0.1), (0.5, 0.25), (0.4, 0.45))
 """Places of a centre within a cell, of which the mean is taken."""
@@ -96,9 +91,8 @@ def towed(
     box = Box((0.0, 0.0), (float(cells[0]), float(cells[1])), kind, kind, kind, kind)
     grains = Grains(make_discs(position, radius, density, velocity, spin), LAW, box)
     coupled = Coupled(
-        fluid, grains, Scales(1.0, 1.0, relaxation_time, 1.0), hydraulic_ratio=1.0, contact_steps=4,
-        acceleration=(0.0, 0.0), solid_operator=method.solid_operator, weighting=method.weighting,
-        lubrication=lubrication,
+        fluid, grains, lattice_units(relaxation_time), hydraulic_ratio=1.0, contact_steps=4, acceleration=(0.0, 0.0),
+        solid_operator=method.solid_operator, weighting=method.weighting, lubrication=lubrication,
     )  # fmt: skip
     grains.hold(slice(None))
     return coupled
@@ -215,6 +209,26 @@ def jeffrey_onishi(motion: str, gap: float) -> float:
     return 4 * math.pi / math.tanh(alpha)
 
 
+def under_way(
+    diameter: float, speed: float, degrees: float, drag: float, *, relaxation_time: float, method: Method
+) -> Iterator[tuple[Coupled, Floats, float]]:
+    """A disc towed through a periodic box of four diameters, at an angle to the grid, in each of ten cells' steps.
+
+    Once the flow is steady: (the box, direction (2,), body force against ``drag``, F/(mu U) expected).
+    """
+    cells, nu = round(4 * diameter), viscosity(relaxation_time)
+    along = np.array([math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])
+    against = -drag * nu * speed / cells**2
+    coupled = towed(
+        (cells, cells), [(cells / 2, cells / 2)], diameter / 2, speed * along, relaxation_time=relaxation_time,
+        sides=PERIODIC, force=(against * along[0], against * along[1]), method=method,
+    )  # fmt: skip
+    run(coupled.advance, math.ceil(cells**2 / nu))
+    for _ in range(round(10 / speed)):
+        run(coupled.advance, 1)
+        yield coupled, along, against
+
+
 def towed_noise(
     diameter: float = 10.0,
     *,
@@ -228,20 +242,9 @@ def towed_noise(
     A body force keeps the fluid from being carried along: the drag of the array, so that the mean flow is all but 0.
     Over ten cells, once the flow is steady; a slow trend (parabola) is taken out.
     """  # fmt: skip
-    cells, nu = round(4 * diameter), viscosity(relaxation_time)
-    along = np.array([math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])
-    against = -sangani_acrivos(math.pi / 4 * (diameter / cells) ** 2) * nu * speed / cells**2
-    coupled = towed(
-        (cells, cells), [(cells / 2, cells / 2)], diameter / 2, speed * along, relaxation_time=relaxation_time,
-        sides=PERIODIC, force=(against * along[0], against * along[1]), method=method,
-    )  # fmt: skip
-    drag = np.zeros(round(10 / speed))
-    with one_thread():
-        for _ in range(math.ceil(cells**2 / nu)):
-            coupled.advance()
-        for step in range(len(drag)):
-            coupled.advance()
-            drag[step] = -coupled.fluid_force[0] @ along
+    held_back = sangani_acrivos(math.pi / 4 * (diameter / round(4 * diameter)) ** 2)
+    way = under_way(diameter, speed, degrees, held_back, relaxation_time=relaxation_time, method=method)
+    drag = np.array([-coupled.fluid_force[0] @ along for coupled, along, _ in way])
     x = np.linspace(-1, 1, len(drag))
     smooth = np.polyval(np.polyfit(x, drag, 2), x)
     return float(np.sqrt(np.mean((drag - smooth) ** 2)) / abs(drag.mean()))
@@ -273,8 +276,7 @@ FILMS = (0.02, 0.03, 0.05)
 def channel() -> Measured:
     """Drag F/(mu U) at 10 cells per diameter."""
     drags = [channel_drag(k) for k in (0.2, 0.3)]
-    reference, found = [faxen(k) for _, k in drags], [drag for drag, _ in drags]
-    return Measured(reference, found, float(np.abs(np.divide(found, reference) - 1).max()))
+    return Measured.relative([faxen(k) for _, k in drags], [drag for drag, _ in drags])
 
 
 @VALIDATIONS.row(
@@ -287,7 +289,7 @@ def channel() -> Measured:
 def wide_channel() -> Measured:
     """Drag F/(mu U) at 10 cells per diameter."""
     drag, k = channel_drag(0.1)
-    return Measured(faxen(k), drag, abs(drag / faxen(k) - 1))
+    return Measured.relative(faxen(k), drag)
 
 
 @VALIDATIONS.row(
@@ -300,9 +302,7 @@ def wide_channel() -> Measured:
 )
 def near_wall_row() -> Measured:
     """F/(mu U) along and towards the wall, T/(mu a² w), radius 10 cells, tau 0.6."""
-    found = [near_wall(motion, relaxation_time=0.6) for motion in NEAR_WALL]
-    reference = list(NEAR_WALL.values())
-    return Measured(reference, found, float(np.abs(np.divide(found, reference) - 1).max()))
+    return Measured.relative(list(NEAR_WALL.values()), [near_wall(motion, relaxation_time=0.6) for motion in NEAR_WALL])
 
 
 @VALIDATIONS.row(
@@ -316,7 +316,7 @@ def near_wall_row() -> Measured:
 def films() -> Measured:
     """Force over the law's at gaps of 0.2, 0.3 and 0.5 cells with the correction below one cell, radius 10."""
     found = [near_wall("towards", gap, lubrication=True) / jeffrey_onishi("towards", gap) for gap in FILMS]
-    return Measured([1.0] * len(found), found, float(np.abs(np.subtract(found, 1)).max()))
+    return Measured.absolute([1.0] * len(found), found)
 
 
 @VALIDATIONS.row(
@@ -327,8 +327,7 @@ def films() -> Measured:
 )
 def noise() -> Measured:
     """Rms of the drag over its mean, at 0.01 and 11 degrees to the grid in a periodic box of 4 diameters."""
-    found = towed_noise()
-    return Measured(0.0, found, found)
+    return Measured.absolute(0.0, towed_noise())
 
 
 @VALIDATIONS.row(
@@ -342,7 +341,7 @@ def body_force() -> Measured:
     """Load over F of a disc (5 cells in a closed box of 40) in water under a body force, tau 0.8 and 1.5."""
     pairs = [weighing(tau) for tau in (0.8, 1.5)]
     found, expected = [pair[0] for pair in pairs], [pair[1] for pair in pairs]
-    return Measured(expected, found, float(np.abs(np.divide(found, expected) - 1).max()))
+    return Measured.relative(expected, found)
 
 
 @VALIDATIONS.row(

@@ -1,35 +1,25 @@
 """The longest stable step: of one contact, and of a lattice of discs from its dynamical matrix.  SI."""
 
 import math
+from functools import partial
 
 import numpy as np
 
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.dem.contact.linear import Linear
-from porescale.dem.discs import make_discs
-from porescale.dem.forces.walls import Box
-from porescale.dem.grains import Grains
 from porescale.dem.timestep import packing_limit
-from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS, grows, law_at, relative, row_on_floor
+from porescale.validation.dem.bodies import lattice
+from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, grows, law_at, row_on_floor, stability_limit
 
 VALIDATIONS = Validations()
 
 
 def critical_step(damping_ratio: float, tolerance: float = 2e-3, steps: int = 2000) -> float:
-    """Measured stability limit of a disc pressed on a floor, over sqrt(m/k), by bisection to
-    ``tolerance``.
-    """
+    """Measured stability limit of a disc pressed on a floor, over sqrt(m/k), by bisection to ``tolerance``."""
     unit = math.sqrt(MASS / STIFFNESS)
     load = np.array([[0.0, -1e-3 * RADIUS * STIFFNESS]])
-    low, high = 0.1, 3.0
-    while high - low > tolerance * low:
-        middle = 0.5 * (low + high)
-        grains = row_on_floor(1, -1e-3 * RADIUS, law_at(damping_ratio))
-        if grows(grains, load, middle * unit, steps):
-            high = middle
-        else:
-            low = middle
-    return 0.5 * (low + high)
+    pressed = partial(row_on_floor, 1, -1e-3 * RADIUS, law_at(damping_ratio))
+    return stability_limit(0.1, 3.0, tolerance, lambda step: grows(pressed(), load, step * unit, steps))
 
 
 @VALIDATIONS.row(
@@ -41,9 +31,7 @@ def critical_step(damping_ratio: float, tolerance: float = 2e-3, steps: int = 20
 def contact_row() -> Measured:
     """Longest stable step of a disc pressed on a floor, in sqrt(m/k), h = 0, 0.1, 0.5, 1."""
     ratios = (0.0, 0.1, 0.5, 1.0)
-    exact = [2.0 * (math.hypot(1.0, h) - h) for h in ratios]
-    found = [critical_step(h) for h in ratios]
-    return Measured(exact, found, relative(found, exact))
+    return Measured.relative([2.0 * (math.hypot(1.0, h) - h) for h in ratios], [critical_step(h) for h in ratios])
 
 
 def lattice_frequency(shear: float, waves: int = 48) -> float:
@@ -75,20 +63,8 @@ def lattice_critical_step(shear: float, cells: int = 6, tolerance: float = 3e-3)
     """Measured stability limit of a periodic triangular lattice (cells x cells, even), over sqrt(m/k_n)."""
     unit = math.sqrt(MASS / STIFFNESS)
     law = Linear(STIFFNESS, 0.0, shear * STIFFNESS, friction=1e6)
-    apart = 2.0 * RADIUS * (1.0 - 1e-4)
-    rise = math.sqrt(0.75) * apart
-    places = np.array([(apart * (i + 0.5 * (j % 2)), rise * j) for j in range(cells) for i in range(cells)])
-    box = Box((0.0, 0.0), (cells * apart, cells * rise), "periodic", "periodic", "periodic", "periodic")
-    loads = np.zeros((len(places), 2))
-    low, high = 0.1, 3.0
-    while high - low > tolerance * low:
-        middle = 0.5 * (low + high)
-        grains = Grains(make_discs(places, RADIUS, DENSITY), law, box, skin=0.05 * RADIUS)
-        if grows(grains, loads, middle * unit, 2000):
-            high = middle
-        else:
-            low = middle
-    return 0.5 * (low + high)
+    pressed, loads = partial(lattice, law, cells, skin=0.05 * RADIUS), np.zeros((cells**2, 2))
+    return stability_limit(0.1, 3.0, tolerance, lambda step: grows(pressed(), loads, step * unit, 2000))
 
 
 @VALIDATIONS.row(
@@ -98,13 +74,10 @@ def lattice_critical_step(shear: float, cells: int = 6, tolerance: float = 3e-3)
     tolerance=0.01,
 )
 def lattice_row() -> Measured:
-    """Longest stable step of a periodic lattice of discs in contact, in sqrt(m/k_n), k_t/k_n = 0.25 and
-    0.8.
-    """
+    """Longest stable step of a periodic lattice of discs in contact, in sqrt(m/k_n), k_t/k_n = 0.25 and 0.8."""
     shears = (0.25, 0.8)
     exact = [2.0 / math.sqrt(lattice_frequency(shear)) for shear in shears]
-    found = [lattice_critical_step(shear) for shear in shears]
-    return Measured(exact, found, relative(found, exact))
+    return Measured.relative(exact, [lattice_critical_step(shear) for shear in shears])
 
 
 def packing_step(shear: float) -> float:

@@ -17,7 +17,7 @@ from porescale.dem.motion.control import Moved, Placed, Pushed
 from porescale.dem.motion.drivers import Clump
 from porescale.dem.motion.time_function import Sine
 from porescale.dem.steering import Steering
-from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS, TANGENTIAL, law_at, on_floor
+from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS, TANGENTIAL, first_order, law_at, on_floor
 
 VALIDATIONS = Validations()
 
@@ -45,11 +45,8 @@ def impact_residual(law: Linear, steps_per_contact: float, phases: int = 20) -> 
 def energy_order() -> Measured:
     """Order at which the unaccounted energy of oblique, spinning impacts falls from T_c/50 to T_c/200, three laws."""
     damped = law_at(0.2, **TANGENTIAL, tangential_damping=300.0)
-    orders = []
-    for law in (law_at(0.0, **TANGENTIAL), damped, replace(damped, release="overlap")):
-        coarse, fine = impact_residual(law, 50.0), impact_residual(law, 200.0)
-        orders.append(math.log(coarse / fine, 4.0))
-    return Measured((1.0,) * 3, orders, max(0.0, 1.0 - min(orders)))
+    laws = (law_at(0.0, **TANGENTIAL), damped, replace(damped, release="overlap"))
+    return first_order(impact_residual, laws, 50.0, 200.0)
 
 
 def repose(settling: int = 12_000, running: int = 100_000, seed: int = 1) -> tuple[Grains, dict[str, float]]:
@@ -83,8 +80,7 @@ def repose(settling: int = 12_000, running: int = 100_000, seed: int = 1) -> tup
 def energy_repose() -> Measured:
     """Unaccounted energy over the energy turned over."""
     _, budget = repose()
-    share = budget["residual (J/m)"] / budget["turned over (J/m)"]
-    return Measured(0.0, share, abs(share))
+    return Measured.absolute(0.0, budget["residual (J/m)"] / budget["turned over (J/m)"])
 
 
 SIDE, PAIRS = 5, 8
@@ -151,8 +147,7 @@ def unaccounted(drives: tuple[str, ...], steps_per_contact: float, seeds: int = 
 def driven() -> Measured:
     """Unaccounted energy over the energy turned over, in boxes without drive, with each, and with all."""
     cases = [("free",), ("placed",), ("pushed",), ("wall turns",), ("servo",), tuple(DRIVES)]
-    found = [unaccounted(names, 200.0) for names in cases]
-    return Measured((0.0,) * len(cases), found, max(found))
+    return Measured.absolute((0.0,) * len(cases), [unaccounted(names, 200.0) for names in cases])
 
 
 @VALIDATIONS.row(
@@ -164,8 +159,4 @@ def driven() -> Measured:
 )
 def driven_order() -> Measured:
     """Order at which the unaccounted energy falls, clumps alone and with all drives."""
-    orders = []
-    for names in (("free",), tuple(DRIVES)):
-        coarse, fine = (unaccounted(names, steps) for steps in (50.0, 200.0))
-        orders.append(math.log(coarse / fine, 4.0))
-    return Measured((1.0, 1.0), orders, max(0.0, 1.0 - min(orders)))
+    return first_order(unaccounted, (("free",), tuple(DRIVES)), 50.0, 200.0)

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from porescale.dem.contact.hertz import Hertz
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
-from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, grows, on_floor, relative
+from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, grows, on_floor, stability_limit
 
 VALIDATIONS = Validations()
 
@@ -103,23 +104,15 @@ def hertz_impact(law: Hertz, speed: float, steps_per_contact: float = 1000.0) ->
 def impact_row() -> Measured:
     """Deepest overlap (m) and duration (s) of an undamped impact at 1 m/s."""
     deepest = HERTZ.overlap_at(MASS, RADIUS, 1.0)
-    exact = (deepest, 2.94327518432201 * deepest)
-    found = hertz_impact(HERTZ, 1.0)
-    return Measured(exact, found, relative(found, exact))
+    return Measured.relative((deepest, 2.94327518432201 * deepest), hertz_impact(HERTZ, 1.0))
 
 
 def hertz_critical_step(share: float, tolerance: float = 2e-3) -> float:
     """Measured stability limit (s) of a disc pressed on a floor to ``share`` of its radius, undamped, by bisection."""
     load = np.array([[0.0, -HERTZ.constant(RADIUS) * (share * RADIUS) ** 1.5]])
     unit = math.sqrt(MASS / (1.5 * HERTZ.constant(RADIUS) * math.sqrt(share * RADIUS)))
-    low, high = 0.5 * unit, 3.0 * unit
-    while high - low > tolerance * low:
-        middle = 0.5 * (low + high)
-        if grows(on_floor(HERTZ, -share * RADIUS), load, middle, 2000):
-            high = middle
-        else:
-            low = middle
-    return 0.5 * (low + high)
+    pressed = partial(on_floor, HERTZ, -share * RADIUS)
+    return stability_limit(0.5 * unit, 3.0 * unit, tolerance, lambda step: grows(pressed(), load, step, 2000))
 
 
 @VALIDATIONS.row(
@@ -132,8 +125,7 @@ def hertz_critical() -> Measured:
     """Longest stable step (s) of a disc pressed to 1e-4 and 1e-2 of its radius."""
     shares = (1e-4, 1e-2)
     exact = [2.0 * math.sqrt(MASS / (1.5 * HERTZ.constant(RADIUS) * math.sqrt(s * RADIUS))) for s in shares]
-    found = [hertz_critical_step(share) for share in shares]
-    return Measured(exact, found, relative(found, exact))
+    return Measured.relative(exact, [hertz_critical_step(share) for share in shares])
 
 
 def hertz_grazing_gain(law: Hertz, angles: Floats, speed: float = 1.0) -> Floats:

@@ -122,7 +122,7 @@ def areas() -> Measured:
         sum(area(part) for part in make(discs.position, (0.0, 0.0), size)) / math.prod(size)
         for make in (voronoi, delaunay)
     ]
-    return Measured((1.0, 1.0), found, max(abs(value - 1.0) for value in found))
+    return Measured.absolute((1.0, 1.0), found)
 
 
 @VALIDATIONS.row(
@@ -135,8 +135,7 @@ def areas() -> Measured:
 def springs() -> Measured:
     """Stiffness of discs and of Voronoi cells by motion over that by statics; error relative."""
     found = [stiffness_by_motion(kind, 0, 60) for kind in ("discs", "cells")]
-    ratios = [moved / still for moved, still in found]
-    return Measured((1.0, 1.0), ratios, max(abs(ratio - 1.0) for ratio in ratios))
+    return Measured.absolute((1.0, 1.0), [moved / still for moved, still in found])
 
 
 @VALIDATIONS.row(

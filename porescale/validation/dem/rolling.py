@@ -6,17 +6,44 @@ from dataclasses import replace
 import numpy as np
 
 from porescale.common.core.constants import GRAVITY
+from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.dem.contact.linear import Linear
-from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, law_at, on_floor, relative, row_on_floor
+from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, law_at, on_floor, row_on_floor
 
 VALIDATIONS = Validations()
 
 
+def rubbing(friction: float) -> Linear:
+    """A law with a quarter of the normal stiffness and damping along the contact."""
+    law = law_at(0.2, tangential_stiffness=0.25 * STIFFNESS, friction=friction)
+    return replace(law, tangential_damping=0.25 * law.damping)
+
+
+def leaning(slope: float, gravity: float) -> Floats:
+    """Weight of a disc on an incline of ``slope`` (rad), along it and across, (1, 2) N/m."""
+    return MASS * gravity * np.array([[math.sin(slope), -math.cos(slope)]])
+
+
+def released(law: Linear, weight: Floats, wait: float) -> tuple[float, float]:
+    """(acceleration, m/s^2; angular acceleration, rad/s^2) of a disc let go on a floor that bears its ``weight`` (1, 2)
+    N/m, from ``wait`` (s) on for four times as long."""
+    grains = on_floor(law, weight[0, 1] / STIFFNESS)
+    dt = grains.stable_step(steps_per_contact=20.0)
+    steps = int(wait / dt)
+    grains.step(dt, weight, count=steps)
+    first = float(grains.discs.velocity[0, 0]), float(grains.discs.spin[0])
+    grains.step(dt, weight, count=4 * steps)
+    span = 4 * steps * dt
+    return (
+        (float(grains.discs.velocity[0, 0]) - first[0]) / span,
+        -(float(grains.discs.spin[0]) - first[1]) / span,
+    )
+
+
 def slide_to_roll(friction: float, speed: float = 1.0, gravity: float = GRAVITY) -> tuple[float, float]:
     """A disc set sliding on a floor without spin: (time when it stops slipping, s; final speed, m/s)."""
-    law = law_at(0.2, tangential_stiffness=0.25 * STIFFNESS, friction=friction)
-    law = Linear(**{**vars(law), "tangential_damping": 0.25 * law.damping})
+    law = rubbing(friction)
     grains = row_on_floor(1, -MASS * gravity / STIFFNESS, law)
     weight = np.array([[0.0, -MASS * gravity]])
     expected = speed / (3.0 * friction * gravity)
@@ -40,31 +67,12 @@ def slide_to_roll(friction: float, speed: float = 1.0, gravity: float = GRAVITY)
 )
 def sliding_to_rolling() -> Measured:
     """A disc set sliding at 1 m/s without spin, mu = 0.2: when it rolls, and how fast."""
-    exact = (1.0 / (3.0 * 0.2 * GRAVITY), 2.0 / 3.0)
-    found = slide_to_roll(0.2)
-    return Measured(exact, found, relative(found, exact))
+    return Measured.relative((1.0 / (3.0 * 0.2 * GRAVITY), 2.0 / 3.0), slide_to_roll(0.2))
 
 
-def incline(
-    slope: float, friction: float, gravity: float = GRAVITY, wait: float = 0.02
-) -> tuple[float, float]:  # fmt: skip
-    """A disc released on an incline of ``slope`` (rad): (acceleration, m/s^2; angular acceleration, rad/s^2), from
-    ``wait`` (s) on.
-    """
-    law = law_at(0.2, tangential_stiffness=0.25 * STIFFNESS, friction=friction)
-    law = Linear(**{**vars(law), "tangential_damping": 0.25 * law.damping})
-    weight = MASS * gravity * np.array([[math.sin(slope), -math.cos(slope)]])
-    grains = row_on_floor(1, weight[0, 1] / STIFFNESS, law)
-    dt = grains.stable_step(steps_per_contact=20.0)
-    steps = int(wait / dt)
-    grains.step(dt, weight, count=steps)
-    first = float(grains.discs.velocity[0, 0]), float(grains.discs.spin[0])
-    grains.step(dt, weight, count=4 * steps)
-    span = 4 * steps * dt
-    return (
-        (float(grains.discs.velocity[0, 0]) - first[0]) / span,
-        -(float(grains.discs.spin[0]) - first[1]) / span,
-    )
+def incline(slope: float, friction: float, gravity: float = GRAVITY, wait: float = 0.02) -> tuple[float, float]:
+    """`released`: a disc on an incline of ``slope`` (rad)."""
+    return released(rubbing(friction), leaning(slope, gravity), wait)
 
 
 def incline_exact(slope: float, friction: float, gravity: float = GRAVITY) -> tuple[float, float]:
@@ -91,8 +99,7 @@ def incline_row() -> Measured:
         roll, roll / RADIUS,
         GRAVITY * (math.sin(0.8) - 0.1 * math.cos(0.8)), 0.2 * GRAVITY * math.cos(0.8) / RADIUS,
     )  # fmt: skip
-    found = (*incline(0.3, 0.5), *incline(0.8, 0.1))
-    return Measured(exact, found, relative(found, exact))
+    return Measured.relative(exact, (*incline(0.3, 0.5), *incline(0.8, 0.1)))
 
 
 @VALIDATIONS.row(
@@ -105,25 +112,14 @@ def incline_row() -> Measured:
 def incline_arm() -> Measured:
     """Acceleration and angular acceleration on the same inclines."""
     exact = (*incline_exact(0.3, 0.5), *incline_exact(0.8, 0.1))
-    found = (*incline(0.3, 0.5, wait=0.06), *incline(0.8, 0.1, wait=0.06))
-    return Measured(exact, found, relative(found, exact))
+    return Measured.relative(exact, (*incline(0.3, 0.5, wait=0.06), *incline(0.8, 0.1, wait=0.06)))
 
 
 def resisted_incline(slope: float, resistance: float, gravity: float = GRAVITY, wait: float = 0.05) -> float:
     """Acceleration (m/s^2) of a disc that resists rolling on an incline of ``slope`` (rad), from ``wait`` s on."""
-    law = replace(
-        law_at(0.2, tangential_stiffness=0.25 * STIFFNESS, friction=0.9), rolling_friction=resistance,
-        rolling_stiffness=0.25 * STIFFNESS,
-    )  # fmt: skip
-    law = replace(law, tangential_damping=0.25 * law.damping, rolling_damping=0.25 * law.damping)
-    weight = MASS * gravity * np.array([[math.sin(slope), -math.cos(slope)]])
-    grains = on_floor(law, weight[0, 1] / STIFFNESS)
-    dt = grains.stable_step(steps_per_contact=20.0)
-    steps = int(wait / dt)
-    grains.step(dt, weight, count=steps)
-    first = float(grains.discs.velocity[0, 0])
-    grains.step(dt, weight, count=4 * steps)
-    return (float(grains.discs.velocity[0, 0]) - first) / (4 * steps * dt)
+    law = replace(rubbing(0.9), rolling_friction=resistance, rolling_stiffness=0.25 * STIFFNESS)
+    law = replace(law, rolling_damping=0.25 * law.damping)
+    return released(law, leaning(slope, gravity), wait)[0]
 
 
 def resisted_acceleration(slope: float, resistance: float, gravity: float = GRAVITY) -> float:
@@ -143,5 +139,4 @@ def resisted_acceleration(slope: float, resistance: float, gravity: float = GRAV
 def rolling_incline() -> Measured:
     """Acceleration over g at tan = 0.09 and 0.31 with mu_r = 0.1."""
     exact = [resisted_acceleration(slope, 0.1) / GRAVITY for slope in (0.09, 0.3)]
-    found = [resisted_incline(slope, 0.1) / GRAVITY for slope in (0.09, 0.3)]
-    return Measured(exact, found, float(np.abs(np.subtract(found, exact)).max()))
+    return Measured.absolute(exact, [resisted_incline(slope, 0.1) / GRAVITY for slope in (0.09, 0.3)])

@@ -4,12 +4,15 @@ All discs of one experiment lie far apart and share a system, so that a sweep ov
 """
 
 import math
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from porescale.common.core.constants import GRAVITY
 from porescale.common.core.types import Floats
+from porescale.common.evidence.validations import Measured
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.contact.linear import Linear
 from porescale.dem.contact.materials import Materials
@@ -75,3 +78,31 @@ def grows(grains: Grains, loads: Floats, dt: float, steps: int) -> bool:
 def relative(measured: ArrayLike, reference: ArrayLike) -> float:
     """Largest |measured/reference - 1|."""
     return float(np.max(np.abs(np.asarray(measured) / np.asarray(reference) - 1.0)))
+
+
+def stability_limit(low: float, high: float, tolerance: float, unstable: Callable[[float], bool]) -> float:
+    """Step between ``low`` and ``high`` from which on it is ``unstable``, by bisection to a relative ``tolerance``."""
+    while high - low > tolerance * low:
+        middle = 0.5 * (low + high)
+        if unstable(middle):
+            high = middle
+        else:
+            low = middle
+    return 0.5 * (low + high)
+
+
+def first_order(residual: Callable[[Any, float], float], cases: Sequence[Any], coarse: float, fine: float) -> Measured:
+    """Orders at which the ``residual`` (case, steps in a contact) falls from ``coarse`` to ``fine`` steps; the error is
+    what the least lacks of one."""
+    orders = [math.log(residual(case, coarse) / residual(case, fine), fine / coarse) for case in cases]
+    return Measured((1.0,) * len(orders), orders, max(0.0, 1.0 - min(orders)))
+
+
+def weights(count: int, gravity: float = GRAVITY) -> Floats:
+    """Weights of so many discs, (count, 2) N/m."""
+    return np.column_stack((np.zeros(count), np.full(count, -MASS * gravity)))
+
+
+def slowest_wave(count: int) -> float:
+    """Frequency, rad/s, of the slowest wave of a column of discs on a floor; drag of twice that ends it soonest."""
+    return math.sqrt(STIFFNESS / MASS) * math.pi / (2.0 * count + 1.0)

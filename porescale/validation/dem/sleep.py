@@ -133,7 +133,7 @@ STUDENT = 4.4
 def balance() -> Measured:
     """Largest force that a sleeper is out of balance by, over its weight: a heap struck by a disc that falls on it."""
     found = struck()
-    return Measured(0.0, found.imbalance, found.imbalance)
+    return Measured.absolute(0.0, found.imbalance)
 
 
 def off(share: float) -> Measured:

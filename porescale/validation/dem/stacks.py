@@ -12,7 +12,7 @@ from porescale.dem.contact.materials import Materials
 from porescale.dem.discs import make_discs
 from porescale.dem.forces.walls import Box
 from porescale.dem.grains import Grains
-from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS, free, law_at, relative
+from porescale.validation.dem.setups import DENSITY, MASS, RADIUS, STIFFNESS, free, law_at, slowest_wave, weights
 
 VALIDATIONS = Validations()
 
@@ -23,11 +23,8 @@ def stack(count: int, gravity: float = GRAVITY, decays: float = 40.0) -> Floats:
     law = law_at(0.3)
     y = RADIUS * (2.0 * np.arange(count) + 1.0)
     grains = free(np.column_stack((np.zeros(count), y)), law, floor=True)
-    weights = np.column_stack((np.zeros(count), np.full(count, -MASS * gravity)))
-    # The slowest wave of the stack has w = sqrt(k/m) pi/(2 count + 1): drag at its critical damping.
-    slowest = math.sqrt(STIFFNESS / MASS) * math.pi / (2.0 * count + 1.0)
-    dt = grains.stable_step()
-    grains.step(dt, weights, None, int(decays / (slowest * dt)), 2.0 * slowest)
+    dt, slowest = grains.stable_step(), slowest_wave(count)
+    grains.step(dt, weights(count, gravity), None, int(decays / (slowest * dt)), 2.0 * slowest)
     height = np.concatenate(([-RADIUS], grains.discs.position[:, 1]))
     return (2.0 * RADIUS - np.diff(height))[::-1] * STIFFNESS / (MASS * gravity)
 
@@ -40,9 +37,7 @@ def stack(count: int, gravity: float = GRAVITY, decays: float = 40.0) -> Floats:
 )
 def static_stack() -> Measured:
     """Ten discs on a floor, overlaps in m g/k."""
-    exact = list(range(1, 11))
-    found = stack(10)
-    return Measured(exact, found.tolist(), relative(found, exact))
+    return Measured.relative(list(range(1, 11)), stack(10))
 
 
 def unlike_stack(gravity: float = GRAVITY) -> Floats:
@@ -52,9 +47,8 @@ def unlike_stack(gravity: float = GRAVITY) -> Floats:
     discs = make_discs([(0.0, RADIUS), (0.0, 3.0 * RADIUS)], RADIUS, DENSITY)
     box = Box((-1.0, 0.0), (1.0, 1.0), "open", "open", top="open")
     grains = Grains(discs, laws, box, material=[1, 0])
-    weights = np.tile([0.0, -MASS * gravity], (2, 1))
-    slowest = 0.6 * math.sqrt(0.18 * STIFFNESS / MASS)
-    grains.step(grains.stable_step(), weights, None, int(60.0 / (slowest * grains.stable_step())), 2.0 * slowest)
+    dt, slowest = grains.stable_step(), 0.6 * math.sqrt(0.18 * STIFFNESS / MASS)
+    grains.step(dt, weights(2, gravity), None, int(60.0 / (slowest * dt)), 2.0 * slowest)
     y = discs.position[:, 1]
     return np.array([RADIUS - y[0], 2.0 * RADIUS - (y[1] - y[0])]) / (MASS * gravity)
 
@@ -68,6 +62,4 @@ def unlike_stack(gravity: float = GRAVITY) -> Floats:
 def materials() -> Measured:
     """Overlap over load (m/N per metre): a disc ten times softer than the floor and the disc on it."""
     mixed = 2.0 * 0.1 / 1.1 * STIFFNESS
-    exact = (2.0 / mixed, 1.0 / mixed)
-    found = tuple(float(value) for value in unlike_stack())
-    return Measured(exact, found, relative(found, exact))
+    return Measured.relative((2.0 / mixed, 1.0 / mixed), unlike_stack())

@@ -55,4 +55,4 @@ def difference_of_sweeps(law: ContactLaw, steps: int = 60) -> int:
 def same_bits() -> Measured:
     """Numbers of a state of 2e4 discs, numbered at random, that differ between one loop and the sweep over blocks."""
     differ = difference_of_sweeps(Linear(STIFFNESS, 1e3, **TANGENTIAL, tangential_damping=300.0))
-    return Measured(0.0, float(differ), float(differ))
+    return Measured.absolute(0.0, float(differ))

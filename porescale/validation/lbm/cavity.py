@@ -1,7 +1,4 @@
-"""Validations of the lid-driven cavity.
-
-The lid-driven cavity, steady, and what others found for it.
-"""
+"""The lid-driven cavity, steady, and what others found for it."""
 
 from typing import NamedTuple
 
@@ -105,8 +102,7 @@ def against_ghia(reynolds: int) -> Measured:
     u, found_u = read(run.u, GHIA_U[reynolds])
     v, found_v = read(run.v, GHIA_V[reynolds])
     worst = max(np.abs(found_u - u).max(), np.abs(found_v - v).max())
-    ends = [[float(values.min()) for values in (u, v)], [float(values.min()) for values in (found_u, found_v)]]
-    return Measured(ends[0], ends[1], float(worst))
+    return Measured([float(u.min()), float(v.min())], [float(found_u.min()), float(found_v.min())], float(worst))
 
 
 @VALIDATIONS.row("lbm.cavity_100", source=GHIA, because=BECAUSE, tolerance=GHIA_OWN_ERROR)
@@ -131,5 +127,4 @@ def cavity_400() -> Measured:
 def cavity_1000() -> Measured:
     """Re 1000, 128 cells: largest deviation of the three extrema."""
     found = extrema(cavity(CELLS_1000, 1000, "trt"))
-    worst = max(abs(a - b) for a, b in zip(found, EXTREMA_1000, strict=True))
-    return Measured(EXTREMA_1000, found, worst)
+    return Measured.absolute(EXTREMA_1000, found)

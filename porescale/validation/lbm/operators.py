@@ -1,7 +1,4 @@
-"""Validations of collision operators beside one another.
-
-Flows in which collision operators differ: moving frames, thin shear layers, eddy viscosity.
-"""
+"""Flows in which collision operators differ: moving frames, thin shear layers, eddy viscosity.  Lattice units."""
 
 import math
 
@@ -13,8 +10,8 @@ from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.collision.choose import OPERATORS
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import relaxation_time, viscosity
-from porescale.validation.lbm import channels as channels
-from porescale.validation.lbm.channels import one_thread
+from porescale.validation.lbm import channels
+from porescale.validation.lbm.channels import run
 
 PERIODIC = Sides("periodic", "periodic", "periodic", "periodic")
 
@@ -29,12 +26,9 @@ def wave_viscosity(operator: str, frame: float, *, cells: int = 32, tau: float =
     fluid = Fluid(cells, 4, tau, operator=operator, sides=PERIODIC)
     fluid.set_flow(frame, size * np.sin(k * np.arange(cells))[None, :])
     half = round(0.5 / (viscosity(tau) * k**2))
-    with one_thread():
-        for _ in range(half // 2):
-            fluid.advance()
-        first = _amplitude(fluid)
-        for _ in range(half):
-            fluid.advance()
+    run(fluid.advance, half // 2)
+    first = _amplitude(fluid)
+    run(fluid.advance, half)
     return math.log(first / _amplitude(fluid)) / (viscosity(tau) * k**2 * half)
 
 
@@ -97,9 +91,7 @@ def eddy_channel(
         sides=Sides("periodic", "periodic"),
     )  # fmt: skip
     fluid.set_flow(exact[:, None], 0.0)
-    with one_thread():
-        for _ in range(round(10 * height**2 / (math.pi**2 * nu))):
-            fluid.advance()
+    run(fluid.advance, round(10 * height**2 / (math.pi**2 * nu)))
     return fluid.fields()[1][:, 1], exact
 
 
@@ -123,7 +115,7 @@ def taylor_green() -> Measured:
     orders = [
         channels.order([channels.taylor_green(cells, operator=name) for cells in (16, 32, 64)]) for name in OPERATORS
     ]
-    return Measured([2.0] * len(orders), orders, max(abs(found - 2.0) for found in orders))
+    return Measured.absolute([2.0] * len(orders), orders)
 
 
 @VALIDATIONS.row(
@@ -134,9 +126,13 @@ def taylor_green() -> Measured:
 )
 def frame_central() -> Measured:
     """Largest relative change of a shear wave's viscosity with the speed of the frame, central moments."""
-    rest = wave_viscosity("central", 0.0, cells=CELLS)
-    found = [wave_viscosity("central", frame, cells=CELLS) / rest for frame in FRAMES]
-    return Measured([1.0] * len(FRAMES), found, max(abs(value - 1) for value in found))
+    return Measured.absolute([1.0] * len(FRAMES), in_frames("central"))
+
+
+def in_frames(operator: str) -> list[float]:
+    """Viscosity in each of the `FRAMES` over that at rest."""
+    rest = wave_viscosity(operator, 0.0, cells=CELLS)
+    return [wave_viscosity(operator, frame, cells=CELLS) / rest for frame in FRAMES]
 
 
 @VALIDATIONS.row(
@@ -147,10 +143,7 @@ def frame_central() -> Measured:
 )
 def frame_trt() -> Measured:
     """Viscosity in a moving frame with two relaxation times, against the exact defect."""
-    rest = wave_viscosity("trt", 0.0, cells=CELLS)
-    found = [wave_viscosity("trt", frame, cells=CELLS) / rest for frame in FRAMES]
-    exact = [1 - 3 * frame**2 for frame in FRAMES]
-    return Measured(exact, found, max(abs(a - b) for a, b in zip(found, exact, strict=True)))
+    return Measured.absolute([1 - 3 * frame**2 for frame in FRAMES], in_frames("trt"))
 
 
 @VALIDATIONS.row(
@@ -162,12 +155,9 @@ def frame_trt() -> Measured:
 )
 def eddies() -> Measured:
     """Largest deviation of the profile over the peak, of every operator."""
-    worst, tops = 0.0, []
-    for name in OPERATORS:
-        found, exact = eddy_channel(name, HEIGHT)
-        worst = max(worst, float(np.abs(found - exact).max() / exact.max()))
-        tops.append(float(found.max() / exact.max()))
-    return Measured([1.0] * len(tops), tops, worst)
+    pairs = [eddy_channel(name, HEIGHT) for name in OPERATORS]
+    worst = max(float(np.abs(found - exact).max() / exact.max()) for found, exact in pairs)
+    return Measured([1.0] * len(pairs), [float(found.max() / exact.max()) for found, exact in pairs], worst)
 
 
 @VALIDATIONS.row(

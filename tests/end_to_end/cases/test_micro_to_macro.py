@@ -7,7 +7,7 @@ from types import ModuleType
 import pytest
 
 from porescale import load
-from porescale.analysis.homogenise import asked_of, packing_of, pressure_of, stiffness_over_pressure
+from porescale.analysis.homogenise import packing_of, pressure_of, section_of, stiffness_over_pressure
 from porescale.output.case import expected
 from tests.reference.folders import CASES, script
 
@@ -29,7 +29,7 @@ def row(name: str) -> tuple[float, float]:
 def test_the_material_file_is_of_the_scene_beside_it():
     scene = load(CASE / "bed.toml")
     made = tomllib.loads((CASE / "material.toml").read_text(encoding="utf-8"))["made"]
-    section, packing = asked_of(scene), packing_of(scene)
+    section, packing = section_of(scene), packing_of(scene)
     assert scene.grains
     assert made["seeds"] == list(range(packing.seed, packing.seed + section.packings))
     assert (made["grains"], made["strain"], made["pressure"]) == (section.grains, section.strain, pressure_of(scene))

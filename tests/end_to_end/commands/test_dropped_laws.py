@@ -1,4 +1,4 @@
-"""A law dropped as one file into its folder is offered by the command line, and runs."""
+"""A law or a case dropped as one file into its folder is offered by the command line, and runs."""
 
 import os
 import shutil
@@ -222,11 +222,14 @@ NAMES = {
 
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of the package with a file more for each law."""
+    """A copy of the package, its cases and their fingerprints, with a file more for each law and a case more."""
     root = tmp_path_factory.mktemp("tree")
     shutil.copytree(ROOT / "porescale", root / "porescale", ignore=shutil.ignore_patterns("__pycache__"))
     for place, text in LAWS.items():
         (root / "porescale" / place).write_text(text, encoding="utf-8")
+    for place in ("cases", "tests/fingerprints"):
+        shutil.copytree(ROOT / place, root / place, ignore=shutil.ignore_patterns("*.png", "__pycache__"))
+    scene(root / "cases" / "bounce", DRY, law="linear")
     return root
 
 
@@ -270,3 +273,12 @@ def test_a_contact_law_that_was_dropped_runs(tree: Path, tmp_path: Path) -> None
 def test_they_run(tree: Path, tmp_path: Path) -> None:
     ended = porescale(tree, "run", scene(tmp_path / "all"), "--quiet")
     assert ended.returncode == 0, ended.stdout + ended.stderr
+
+
+def test_a_case_is_a_scene_in_a_folder(tree: Path) -> None:
+    assert porescale(tree, "check", "cases/bounce").returncode == 0
+    ended = porescale(tree, "run", "cases/bounce", "--quiet")
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+    assert (tree / "runs" / "bounce" / "montage.png").exists()
+    words = [sys.executable, "-m", "tests.fingerprints", "list"]
+    assert "scene/bounce" in done(words, cwd=tree, env={**os.environ, "PYTHONPATH": str(tree)}).stdout
