@@ -12,17 +12,21 @@ k is given at the porosity n0 of each soil: its water takes R = Σ_s ψ_is/k_s f
 from dataclasses import dataclass
 
 from porescale.common.compiled.jit import inline
+from porescale.common.compiled.simd import maximum
 from porescale.common.core.constants import GRAVITY
 
 CONSTANT, KOZENY_CARMAN = 0, 1
 LAWS = ("constant", "kozeny-carman")
+LEAST_GRAINS = 1e-16
+"""Share of the volume, less than any 1 - n but 0: grains that only just reach water leave it an n that rounds to 1, and
+would else not resist at all, for which `exchange.apply_drag` has no time of relaxation."""
 
 
 @inline
 def drag(law, porosity, sum_of, weight, factor):
     """β, kg/(m³ s), at a ``porosity``;  sum_of R, s/m;  weight ρ_f g, N/m³;  factor: of `Resistance`."""
     if law == KOZENY_CARMAN:
-        return weight * sum_of * factor * (1.0 - porosity) / porosity
+        return weight * sum_of * factor * maximum(1.0 - porosity, LEAST_GRAINS) / porosity
     return weight * sum_of * factor * porosity * porosity
 
 

@@ -10,6 +10,8 @@ and may drop what is stored in it.  (It does not where a function that is called
 
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from porescale.common.compiled.jit import inline
 from porescale.common.compiled.simd import rint
 from porescale.common.neighbors.cells import minimum_image
@@ -91,6 +93,16 @@ class Gradients(NamedTuple):
     matrix: Any
     density: Any
     drift: Any
+
+
+@inline
+def row(number):
+    """The ``number`` of a loop over threads, of one type wherever it is read.
+
+    numba takes the loop's own number for signed first and for unsigned in the loop it makes of it, and compiles all
+    that is given it twice.
+    """
+    return int(np.uint64(number))
 
 
 @inline

@@ -9,7 +9,7 @@ singular: L goes over to the unit tensor as the smaller eigenvalue of M falls fr
 
 import numpy as np
 
-from continuum_sph.water.bundles import image, inverse_period, nearest_image
+from continuum_sph.water.bundles import image, inverse_period, nearest_image, row
 from continuum_sph.water.fluids import pair_fluid
 from continuum_sph.water.smoothing import kernel_kind, kernel_slope, kernel_value, slope_scale, slope_shape
 from continuum_sph.water.state import RHO, VOLUME, X, Y
@@ -53,7 +53,8 @@ def neighbourhood_moments(fluid, record, near, properties, matrix, concentration
     """
     kind, h = kernel_kind(near.kind), near.h
     whole = 1.0 / kernel_value(kind, spacing * (1.0 / h), h)
-    for i in prange(fluid):
+    for at in prange(fluid):
+        i = row(at)
         m, own, c, b = fluid_moments(i, record, near, properties, whole)
         store_density_gradient(density, i, chosen(properties, own, m), b)
         xx, xy, yy, cx, cy = wall_moments(i, record, near, m, c, whole)

@@ -6,6 +6,7 @@ compiled: of several fluids each takes a call, which leaves the particles of the
 
 from typing import Any, NamedTuple
 
+from continuum_sph.water.bundles import row
 from continuum_sph.water.eos.law import pressure_of
 from continuum_sph.water.fluids import LEAST_DENSITY
 from continuum_sph.water.state import COMPRESSIBILITY, RHO, STOPPED, VOLUME, VX, P, X
@@ -141,7 +142,8 @@ def kick_drift(x, v, motion, densities, predicted, to, energy, step, ratio, boun
     stopped = 0
     fastest = 0.0
     half = 0.5 * step
-    for i in prange(densities.density.shape[0]):
+    for number in prange(densities.density.shape[0]):
+        i = row(number)
         if is_other(to.material, to.number, i):
             continue
         for axis in range(2):
@@ -173,7 +175,8 @@ def pressurise(x, v, density, to, law):
     law: numbers of the fluid's, see `eos`.  Returns the largest (c/h)², 1/s²; a maximum is exact in any order.
     """
     fastest = 0.0
-    for i in prange(density.shape[0]):
+    for number in prange(density.shape[0]):
+        i = row(number)
         if is_other(to.material, to.number, i):
             continue
         for axis in range(2):

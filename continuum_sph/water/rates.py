@@ -18,7 +18,7 @@ disk, each kind by itself: it holds no branch, load or sum of anything else.  Su
 `rates_fluid`, over those in walls in `rates_walls`.
 """
 
-from continuum_sph.water.bundles import plus, plus_scaled
+from continuum_sph.water.bundles import plus, plus_scaled, row
 from continuum_sph.water.fluids import SOUND, fluid_number
 from continuum_sph.water.rates_fluid import fluid_sums
 from continuum_sph.water.rates_walls import wall_sums
@@ -56,7 +56,8 @@ def rates(fluid, record, near, fluids, walls, gradients, choices, acceleration, 
     record (n, 8): see `state.Layer`;  near, fluids, walls, gradients, choices: see `bundles`;  half: of the step that
     ends here, s.  Two fluids have friction along the line of centres, one as eq. 34 has it (`viscosity`).
     """
-    for i in prange(fluid):
+    for at in prange(fluid):
+        i = row(at)
         fluid_a, friction_a, xsph, compression, noise = fluid_sums(i, record, near, fluids, gradients, choices)
         push_x, push_y, held_x, held_y, wall_flux = wall_sums(i, record, near, fluids, walls, gradients)
         rho = record[i, RHO]

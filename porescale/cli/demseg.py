@@ -89,6 +89,7 @@ def drive_deck(
     deck = model.deck
 
     def after(finished: Path) -> None:
+        """Leave the pictures and the deck's own files."""
         show(finished)
         model.write(finished)
 

@@ -58,7 +58,7 @@ def homogenise(
     test = specimen(opened.scene)
     request = section_of(opened.scene)
     if jobs < 1:
-        raise InputError(Fault("--jobs", jobs, "is none", "", ">= 1"))
+        raise InputError(Fault("--jobs", jobs, "is out of range", "", ">= 1"))
     folder = output_folder(out, f"{opened.name}_soil")
     file = _specimen_file(folder, toml(test))
     first = test["grains"]["packing"]["seed"]

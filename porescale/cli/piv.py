@@ -119,7 +119,7 @@ def render(
     stop = last if end is None else quantity("--end", end, "s")
     if not first <= begin < stop <= last:
         text = f"{begin:g} to {stop:g}"
-        raise InputError(Fault("--start, --end", text, "is no part of the run", "s", f"{first:g} to {last:g}"))
+        raise InputError(Fault("--start, --end", text, "is not within the run", "s", f"{first:g} to {last:g}"))
     pixel, speed = fastest(opened, begin, stop)
     pixel = pixel if scale is None else quantity("--scale", scale, "m")
     pause = 4 * pixel / speed if interval is None else quantity("--interval", interval, "s")

@@ -90,8 +90,9 @@ def _box(text: str | None) -> tuple[int, int, int, int] | None:
         return None
     try:
         left, top, right, bottom = (int(part) for part in text.split(","))
-    except ValueError as error:
-        raise InputError(Fault("--region", text, "is no region", allowed="left,top,right,bottom, whole px")) from error
+    except ValueError:
+        allowed = "left,top,right,bottom, whole px"
+        raise InputError(Fault("--region", text, "is not a region", allowed=allowed)) from None
     return left, top, right, bottom
 
 
@@ -112,6 +113,7 @@ def _passes(pairs: int) -> Callable[[], None]:
     done, last = 0, time.perf_counter()
 
     def count() -> None:
+        """Count one more pair, and report progress at intervals."""
         nonlocal done, last
         done += 1
         if time.perf_counter() - last > PATIENCE:

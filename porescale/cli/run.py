@@ -60,6 +60,7 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
     from porescale.common.record.open_run import open_run
 
     def after(finished: Path) -> None:
+        """Leave the pictures, and the permeability of the bed if there is one."""
         show(finished)
         write_permeability(open_run(finished), finished)
 

@@ -63,6 +63,7 @@ def gate_lines(scene: dict[str, Any]) -> Callable[[Snapshot], list[Line]]:
     gate, height = scene.get("gate"), scene["domain"]["height"]
 
     def lines(snapshot: Snapshot) -> list[Line]:
+        """What is left of the gate."""
         if gate is None:
             return []
         since = snapshot.time - gate["opens_at"]
@@ -81,6 +82,7 @@ def solid_lines(scene: dict[str, Any]) -> Callable[[Snapshot], list[Line]]:
     gate, size = gate_lines(scene), (scene["domain"]["width"], scene["domain"]["height"])
 
     def lines(snapshot: Snapshot) -> list[Line]:
+        """The gate, and each rectangle where it is by then."""
         outlines = (outline(section, snapshot.time, size) for section in scene.get("rectangle") or ())
         return [*gate(snapshot), *chain.from_iterable(outlines)]
 

@@ -4,11 +4,15 @@ from typing import Any
 
 import numpy as np
 
-from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
+from porescale.dem.discs import overwrite
 from porescale.dem.forces.bonds import BondList
 from porescale.dem.state import State
 
+ARRAYS = (
+    "wall_spring", "wall_load", "plates", "plate_spring", "plate_force", "external_force", "external_torque",
+)  # fmt: skip
+"""Arrays of every state, by the names of State."""
 RECTANGLES = ("rectangles", "rectangle_spring", "rectangle_force")
 """What of the state belongs to rectangles, where there are any."""
 
@@ -18,16 +22,7 @@ def state_of(grains: State) -> dict[str, Any]:
     return {
         "discs": grains.discs.state(),
         "pairs": grains.pairs.state(),
-        "wall_spring": grains.wall_spring.copy(),
-        "wall_load": grains.wall_load.copy(),
-        "plates": grains.plates.copy(),
-        "plate_spring": grains.plate_spring.copy(),
-        "plate_force": grains.plate_force.copy(),
-        "external_force": grains.external_force.copy(),
-        "external_torque": grains.external_torque.copy(),
-        "held": grains.held.copy(),
-        "withheld": grains.withheld.copy(),
-        **({name: getattr(grains, name).copy() for name in RECTANGLES} if len(grains.rectangles) else {}),
+        **{name: getattr(grains, name).copy() for name in (*_names(grains), "held", "withheld")},
         **({} if grains.budget is None else {"book": grains.budget.copy(), "book_start": _start_of_budget(grains)}),
         **({} if grains.drivers is None else {"steering": grains.drivers.state(grains.walls)}),
         **({} if grains.segments is None else {"segments": grains.segments.state()}),
@@ -41,6 +36,11 @@ def state_of(grains: State) -> dict[str, Any]:
     }
 
 
+def _names(grains: State) -> tuple[str, ...]:
+    """Names of the arrays that a state of ``grains`` overwrites in place."""
+    return (*ARRAYS, *RECTANGLES) if len(grains.rectangles) else ARRAYS
+
+
 def _start_of_budget(grains: State) -> Floats:
     """Copy of the start of the energy budget, empty before the first step."""
     return np.zeros(0) if grains.budget_start is None else grains.budget_start.copy()
@@ -49,12 +49,7 @@ def _start_of_budget(grains: State) -> Floats:
 def restore(grains: State, state: dict[str, Any]) -> None:
     """Overwrite ``grains`` with the state of a system made alike; raises InputError when the numbers differ."""
     grains.discs.restore(state["discs"])
-    for name in ("wall_spring", "wall_load", "plates", "plate_spring", "plate_force", "external_force",
-                 "external_torque", *(RECTANGLES if len(grains.rectangles) else ())):  # fmt: skip
-        own, given = getattr(grains, name), np.asarray(state[name])
-        if own.shape != given.shape:
-            raise InputError(Fault(f"state.{name}", given.shape, "wrong shape", allowed=str(own.shape)))
-        own[...] = given
+    overwrite({name: getattr(grains, name) for name in _names(grains)}, state)
     if grains.budget is not None:
         grains.budget[:] = state["book"]
         start = np.array(state["book_start"])

@@ -4,10 +4,12 @@ Mass and moment of inertia are those of a homogeneous cylinder per metre of dept
 r^2/2. Velocity and spin are held at half steps (integrate.py); position and angle at whole steps.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
@@ -48,13 +50,19 @@ class Discs:
 
     def restore(self, state: dict[str, Floats]) -> None:
         """Overwrite all arrays in place, bit for bit; raises InputError when the number of discs differs."""
-        for name in FIELDS:
-            given = np.asarray(state[name])
-            if given.shape != getattr(self, name).shape:
-                raise InputError(
-                    Fault(f"state.{name}", given.shape, "wrong shape", allowed=str(getattr(self, name).shape))
-                )
-            getattr(self, name)[...] = given
+        overwrite({name: getattr(self, name) for name in FIELDS}, state)
+
+
+def overwrite(arrays: Mapping[str, NDArray[Any]], state: Mapping[str, Any], place: str = "state") -> None:
+    """Overwrite ``arrays`` in place with those of ``state`` by their names, bit for bit.
+
+    Raises InputError, naming the first of another shape after its ``place``.
+    """
+    for name, own in arrays.items():
+        given = np.asarray(state[name])
+        if given.shape != own.shape:
+            raise InputError(Fault(f"{place}.{name}", given.shape, "wrong shape", allowed=str(own.shape)))
+        own[...] = given
 
 
 def make_discs(

@@ -1,17 +1,15 @@
 """[cell]: the periodic cell of a dry scene, strained at given rates or by stresses."""
 
-from typing import Any, ClassVar
-
-import pydantic
+from typing import ClassVar
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section, quantity
-from porescale.scene.time_function import TimeFunction, with_time_functions
+from porescale.common.schema.sections import quantity
+from porescale.scene.time_function import Timed, TimeFunction
 
 RATES, STRESSES = ("rate_xx", "rate_yy", "rate_xy"), ("stress_xx", "stress_yy", "shear_stress")
 
 
-class Cell(Section):
+class Cell(Timed):
     """Strain of a box that is periodic both ways: each of xx, yy, xy at a rate or by a stress; left out, it stays.
 
     rate_xx, rate_yy : of stretching, < 0 shrinks;  rate_xy : of shear, dv_x/dy;  stress_xx, stress_yy : compression
@@ -30,13 +28,7 @@ class Cell(Section):
         **dict.fromkeys(RATES, ("1/s", "rate of strain")), **dict.fromkeys(STRESSES, ("Pa", "stress")),
     }  # fmt: skip
 
-    @pydantic.model_validator(mode="before")
-    @classmethod
-    def _time_functions(cls, table: Any) -> Any:
-        return with_time_functions(table, cls.UNITS)
-
-    @pydantic.model_validator(mode="after")
-    def _sensible(self) -> "Cell":
+    def _faults(self) -> list[Fault]:
         faults = []
         given = [name for name in (*RATES, *STRESSES) if getattr(self, name) is not None]
         if not given:
@@ -50,6 +42,4 @@ class Cell(Section):
             faults.append(Fault("fastest", None, problem, "1/s", "> 0", repair))
         if self.fastest is not None and not stressed:
             faults.append(Fault("fastest", self.fastest, "belongs to a stress", "1/s", repair="leave it out"))
-        if faults:
-            raise Refused(*faults)
-        return self
+        return faults

@@ -47,8 +47,7 @@ class Circles(Section):
     material: str = pydantic.Field("", description="name of their material (default: the first)")
     part: bool = pydantic.Field(False, description="slide circles apart that overlap, as measured ones do")
 
-    @pydantic.model_validator(mode="after")
-    def _of_a_picture(self) -> "Circles":
+    def _faults(self) -> list[Fault]:
         pictured, faults = Path(self.file).suffix.lower() in STILLS, []
         for key in ("pixel", "smallest", "largest"):
             value = getattr(self, key)
@@ -68,9 +67,7 @@ class Circles(Section):
             problem, repair = "is too few pixels to tell a disc from noise", "take a picture with more of them"
             faults.append(Fault("smallest", self.smallest, problem, "m", f">= {LEAST_PIXELS * (self.pixel or 0.0):g}",
                                 repair))  # fmt: skip
-        if faults:
-            raise Refused(*faults)
-        return self
+        return faults
 
 
 def with_circles(table: Any, folder: Path | None) -> Any:

@@ -51,8 +51,7 @@ class Side(Section):
             raise Refused(Fault("", value, "unknown choice", "", allowed, nearest(value, KINDS, "choices")))
         return {"kind": value}
 
-    @pydantic.model_validator(mode="after")
-    def _of_its_kind(self) -> "Side":
+    def _faults(self) -> list[Fault]:
         """Every number belongs to a kind of side."""
         faults = []
         for key, given in (
@@ -71,9 +70,7 @@ class Side(Section):
             faults.append(Fault("velocity", None, "is missing", "m/s", repair=repair))
         if self.boundary.movable:
             faults += check_servo(self, self.velocity is not None)
-        if faults:
-            raise Refused(*faults)
-        return self
+        return faults
 
     @property
     def open(self) -> bool:
@@ -119,14 +116,13 @@ class Domain(Section):
     bottom: Side = Side()
     top: Side = Side()
 
-    @pydantic.model_validator(mode="after")
-    def _joined(self) -> "Domain":
+    def _faults(self) -> list[Fault]:
         for name, other_name in (("left", "right"), ("bottom", "top")):
             one, other = self.side(name).boundary, self.side(other_name).boundary
             if one is not other and (one.periodic or other.periodic):
                 repair = f"make both sides {(one if one.periodic else other).name}, or none"
-                raise Refused(Fault(name, one.name, f"but {other_name} is {other.name}", repair=repair))
-        return self
+                return [Fault(name, one.name, f"but {other_name} is {other.name}", repair=repair)]
+        return []
 
     def side(self, name: str) -> Side:
         """The side called left, right, bottom or top."""

@@ -56,14 +56,13 @@ class Fluid(Section):
             raise Refused(Fault("", name, "unknown choice", "", ", ".join(known), repair))
         return name
 
-    @pydantic.model_validator(mode="after")
-    def _three_of_four(self) -> "Fluid":
+    def _faults(self) -> list[Fault]:
         given = {name: getattr(self, name) for name in NAMES if getattr(self, name) is not None}
         if len(given) < 3:
             missing = [name for name in NAMES if name not in given]
             have = ", ".join(given) or "none"
-            raise Refused(
+            return [
                 Fault(", ".join(missing), None, f"three of {', '.join(NAMES)} are needed, given: {have}",
                       repair=f"add {'one' if len(given) == 2 else str(3 - len(given))} of them")
-            )  # fmt: skip
-        return self
+            ]  # fmt: skip
+        return []

@@ -27,18 +27,17 @@ class TimeFunction(Section):
     times: tuple[float, ...] = quantity("s", (), ge=0, le=1e9, help="times of the table")
     values: tuple[float, ...] = ()
 
-    @pydantic.model_validator(mode="after")
-    def _one_kind(self) -> "TimeFunction":
+    def _faults(self) -> list[Fault]:
         if len(self.times) != len(self.values):
-            raise Refused(Fault("values", len(self.values), "are not as many as times", "", str(len(self.times))))
+            return [Fault("values", len(self.values), "are not as many as times", "", str(len(self.times)))]
         if any(not later > earlier for earlier, later in zip(self.times, self.times[1:], strict=False)):
-            raise Refused(Fault("times", None, "must ascend", "s", repair="sort the pairs by time"))
+            return [Fault("times", None, "must ascend", "s", repair="sort the pairs by time")]
         if self.times and (self.mean or self.amplitude or self.frequency):
-            raise Refused(Fault("times", None, "a course is a table or a sine", "s", repair="leave one of them out"))
+            return [Fault("times", None, "a course is a table or a sine", "s", repair="leave one of them out")]
         if (self.amplitude != 0.0) != (self.frequency != 0.0):
             key = "frequency" if self.amplitude else "amplitude"
-            raise Refused(Fault(key, 0, "is needed for a sine", repair="give amplitude and frequency"))
-        return self
+            return [Fault(key, 0, "is needed for a sine", repair="give amplitude and frequency")]
+        return []
 
     @property
     def largest(self) -> float:
@@ -91,6 +90,17 @@ def with_time_functions(table: Any, units: Mapping[str, tuple[str, str]]) -> Any
     return made
 
 
+class Timed(Section):
+    """A section with functions of time.  UNITS : of each, by key: unit and what it is."""
+
+    UNITS: ClassVar[dict[str, tuple[str, str]]] = {}
+
+    @pydantic.model_validator(mode="before")
+    @classmethod
+    def _time_functions(cls, table: Any) -> Any:
+        return with_time_functions(table, cls.UNITS)
+
+
 def _below(key: str, fault: Fault) -> Fault:
     return replace(fault, key=f"{key}{'' if fault.key.startswith('[') or not fault.key else '.'}{fault.key}")
 
@@ -119,12 +129,11 @@ class Component(Section):
             return {}
         return with_time_functions(value, cls.UNITS)
 
-    @pydantic.model_validator(mode="after")
-    def _one(self) -> "Component":
+    def _faults(self) -> list[Fault]:
         given = [key for key in self.UNITS if getattr(self, key) is not None]
         if len(given) > 1:
-            raise Refused(Fault(given[1], None, f"and {given[0]} cannot both be given", repair="give one of them"))
-        return self
+            return [Fault(given[1], None, f"and {given[0]} cannot both be given", repair="give one of them")]
+        return []
 
     @property
     def fastest(self) -> float:

@@ -3,7 +3,7 @@
 import json
 import random
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import h5py
@@ -15,19 +15,9 @@ NUMBERS = (
     "1979-05-27", "0.1.2", "", '"1 parsec"', '"5 kg"', "2**9", "\N{RIGHT-TO-LEFT OVERRIDE}7", "\x00",
 )  # fmt: skip
 WORDS = (
-    "",
-    "x",
-    "../../etc/passwd",
-    "/dev/zero",
-    "%s%n",
-    "a" * 5000,
-    "{0.__class__}",
-    "\x1b[2J",
-    "\N{SNOWMAN}",
-    '"',
-    "[",
+    "", "x", "../../etc/passwd", "/dev/zero", "%s%n", "a" * 5000, "{0.__class__}", "\x1b[2J", "\N{SNOWMAN}", '"', "[",
     "]]",
-)
+)  # fmt: skip
 
 Spoil = Callable[[bytes, random.Random], bytes]
 
@@ -55,26 +45,26 @@ def noise(content: bytes, dice: random.Random) -> bytes:
     return content[:at] + dice.randbytes(dice.choice((1, 16, 300))) + content[at + dice.randrange(40) :]
 
 
-def number(content: bytes, dice: random.Random) -> bytes:
-    """A number is another one, or none."""
+def _exchanged(
+    content: bytes, dice: random.Random, what: str, others: Callable[[list[re.Match[str]]], Sequence[str]]
+) -> bytes:  # fmt: skip
+    """One place that the pattern ``what`` finds is one of ``others``, of all places found."""
     text = content.decode("utf-8", "surrogateescape")
-    found = list(re.finditer(r"(?<![\w.])[-+]?\d[\d.]*(?:[edED][-+]?\d+)?", text))
+    found = list(re.finditer(what, text))
     if not found:
         return content
     one = dice.choice(found)
-    spoilt = text[: one.start()] + dice.choice(NUMBERS) + text[one.end() :]
-    return spoilt.encode("utf-8", "surrogateescape")
+    return (text[: one.start()] + dice.choice(others(found)) + text[one.end() :]).encode("utf-8", "surrogateescape")
+
+
+def number(content: bytes, dice: random.Random) -> bytes:
+    """A number is another one, or none."""
+    return _exchanged(content, dice, r"(?<![\w.])[-+]?\d[\d.]*(?:[edED][-+]?\d+)?", lambda _: NUMBERS)
 
 
 def word(content: bytes, dice: random.Random) -> bytes:
     """A word is another one."""
-    text = content.decode("utf-8", "surrogateescape")
-    found = list(re.finditer(r"[A-Za-z_]\w*", text))
-    if not found:
-        return content
-    one = dice.choice(found)
-    other = dice.choice((*WORDS, dice.choice(found).group()))
-    return (text[: one.start()] + other + text[one.end() :]).encode("utf-8", "surrogateescape")
+    return _exchanged(content, dice, r"[A-Za-z_]\w*", lambda found: (*WORDS, dice.choice(found).group()))
 
 
 def line(content: bytes, dice: random.Random) -> bytes:

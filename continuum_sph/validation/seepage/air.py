@@ -1,6 +1,4 @@
-"""Validations of soil, water and air in one place; each measuring function takes what its failing twin changes.
-
-Water that stands on soil full of air: how fast it sinks in, by what the air does.  SI.
+"""Water that stands on soil full of air: how fast it sinks in, by what the air does.  SI.
 
 All pores below the front, L - z of soil, are full of air.  Water stands h = h0 - n z on the soil and fills z of it;
 u = dz/dt is its velocity in the pores, n u on the soil, so what drives it is
@@ -23,9 +21,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from continuum_sph.builders.air import AIR, specific_weights
-from continuum_sph.seepage import Frame, PoreFlow, Resistance, Seepage
-from continuum_sph.seepage.overlap import Overlap
-from continuum_sph.validation.seepage.setups import COLUMNS, SKIN, WATER
+from continuum_sph.seepage import Frame, Resistance, Seepage
+from continuum_sph.validation.seepage.setups import COLUMNS, WATER, pore_flow
 from continuum_sph.validation.soil.setups import RATIO
 from continuum_sph.water.density import LINEAR
 from continuum_sph.water.eos.adiabatic import AdiabaticGas
@@ -38,7 +35,7 @@ from continuum_sph.water.state import Layer
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
-from porescale.common.neighbors import PairList, square_lattice
+from porescale.common.neighbors import square_lattice
 
 VISCOSITY = 1.002e-3  # Pa s, of water
 
@@ -118,12 +115,7 @@ class TrappedAir:
         x = np.concatenate((wet, pores, walls))
         layer = Layer(n, x, np.zeros_like(x), mass, rho, material=material)
         box = (0.0, -3.0 * spacing), (width, whole + 3.0 * spacing), (True, False)
-        skin = SKIN * smoothing.length
-        flow = PoreFlow(
-            layer, law, PairList(layer.count, skin, *box, full=True), skeleton=ground.skeleton,
-            overlap=Overlap(n, ground.skeleton.count, smoothing.length, skin, *box),
-            resistance=Resistance(self.porosity),
-        )  # fmt: skip
+        flow = pore_flow(layer, law, ground.skeleton, Resistance(self.porosity), *box)
         if self.filled:
             flow.specific_weight = specific_weights(material[:n], law, GRAVITY)
         flow.lower[1] = 0.0

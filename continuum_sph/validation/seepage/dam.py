@@ -8,11 +8,9 @@ import numpy as np
 
 from continuum_sph.builders.instruments import MeasuredWater, surface_height
 from continuum_sph.scene.instruments import LevelSection
-from continuum_sph.seepage import Frame, PoreFlow, Reservoir, Resistance, Seepage, Supply
-from continuum_sph.seepage.overlap import Overlap
+from continuum_sph.seepage import Frame, Reservoir, Resistance, Seepage, Supply
 from continuum_sph.seepage.reservoir import BERTH, berths
-from continuum_sph.validation.seepage.setups import WATER
-from continuum_sph.validation.soil.setups import SKIN
+from continuum_sph.validation.seepage.setups import WATER, pore_flow
 from continuum_sph.water.density import LINEAR
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
@@ -23,7 +21,7 @@ from continuum_sph.water.state import Layer
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations
-from porescale.common.neighbors import PairList, square_lattice
+from porescale.common.neighbors import square_lattice
 
 VALIDATIONS = Validations()
 
@@ -67,7 +65,7 @@ def held_between(
     frame = Frame(soil, spacing**2, POROSITY, given.permeability)
     law = {"alpha": 0.1, "diffusion": 0.02, "noise": LINEAR, "cut": True, "corrected": True, "shifting": 0.0} | options
     rules = Law(smoothing, spacing, (Fluid(state),), (0.0, -GRAVITY), **law)  # type: ignore[arg-type]
-    margin, skin, present = layers * spacing, SKIN * smoothing.length, len(water)
+    margin, present = layers * spacing, len(water)
     berth = berths(most, width, height + margin, BERTH * smoothing.support)
     x = np.concatenate((water, berth[present:], walls))
     rho = np.full(most, WATER)
@@ -77,10 +75,7 @@ def held_between(
     mass[present:most] = 0.0
     layer = Layer(most, x, np.zeros_like(x), mass, rho)
     box = (-margin, -margin), (width + margin, float(berth[-1, 1]) + BERTH * smoothing.support)
-    flow = PoreFlow(
-        layer, rules, PairList(layer.count, skin, *box, full=True), skeleton=frame.skeleton,
-        overlap=Overlap(most, len(soil), smoothing.length, skin, *box), resistance=Resistance(POROSITY),
-    )  # fmt: skip
+    flow = pore_flow(layer, rules, frame.skeleton, Resistance(POROSITY), *box)
     flow.lower[:] = 0.0
     flow.upper[:] = width, np.inf
     both = Seepage(flow, frame)

@@ -4,9 +4,8 @@ import functools
 
 import numpy as np
 
-from continuum_sph.seepage import Frame, PoreFlow, Resistance, Seepage
-from continuum_sph.seepage.overlap import Overlap
-from continuum_sph.validation.seepage.setups import SKIN, WATER
+from continuum_sph.seepage import Frame, Resistance, Seepage
+from continuum_sph.validation.seepage.setups import WATER, pore_flow
 from continuum_sph.validation.soil.setups import RATIO
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
@@ -15,7 +14,7 @@ from continuum_sph.water.smoothing import Smoothing
 from continuum_sph.water.state import Layer
 from porescale.common.core.constants import GRAVITY
 from porescale.common.evidence.validations import Measured, Validations
-from porescale.common.neighbors import PairList, square_lattice
+from porescale.common.neighbors import square_lattice
 
 VALIDATIONS = Validations()
 
@@ -33,14 +32,10 @@ def permeated(permeability: float, gradient: float, *, law: str = "constant", po
     x = (
         frame.skeleton.x + rng.uniform(0.0, 1.0, 2) * spacing + rng.uniform(-0.1, 0.1, frame.skeleton.x.shape) * spacing
     ) % side
-    n, skin = len(x), SKIN * smoothing.length
+    n = len(x)
     rules = Law(smoothing, spacing, (Fluid(Tait(WATER, 10.0)),), (gradient * GRAVITY, 0.0), diffusion=0.0, cut=False)
     layer = Layer(n, x, np.zeros((n, 2)), np.full(n, porosity * WATER * spacing**2), np.full(n, WATER))
-    flow = PoreFlow(
-        layer, rules, PairList(n, skin, *box, full=True), skeleton=frame.skeleton,
-        overlap=Overlap(n, n, smoothing.length, skin, *box), resistance=Resistance(given, law),
-    )  # fmt: skip
-    both = Seepage(flow, frame)
+    both = Seepage(pore_flow(layer, rules, frame.skeleton, Resistance(given, law), *box), frame)
     both.start()
     return both
 

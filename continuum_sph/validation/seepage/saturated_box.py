@@ -5,10 +5,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from continuum_sph.seepage import PoreFlow, Resistance, Seepage, skeleton_of
-from continuum_sph.seepage.overlap import Overlap
+from continuum_sph.seepage import Resistance, Seepage, skeleton_of
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
-from continuum_sph.validation.seepage.setups import GRAINS, SKIN, WATER
+from continuum_sph.validation.seepage.setups import GRAINS, SKIN, WATER, pore_flow
 from continuum_sph.validation.soil.setups import RATIO
 from continuum_sph.water.eos.liquid import Tait
 from continuum_sph.water.fluids import Fluid
@@ -45,12 +44,10 @@ def saturated_box(
     ground.start()
     skeleton = skeleton_of(ground, GRAINS, permeability)
     at = x + rng.uniform(-0.1, 0.1, x.shape) * spacing
-    overlap = Overlap(n, n, smoothing.length, skin, *box)
     state = Tait(WATER, 40.0)
     rules = Law(smoothing, spacing, (Fluid(state),), (0.0, 0.0), diffusion=0.0, cut=False, courant=0.25 * share)
     layer = Layer(n, at, rng.normal(0.0, speed, x.shape), np.full(n, porosity * WATER * spacing**2), np.full(n, WATER))
-    flow = PoreFlow(layer, rules, PairList(n, skin, *box, full=True), skeleton=skeleton, overlap=overlap,
-                    resistance=Resistance(porosity))  # fmt: skip
+    flow = pore_flow(layer, rules, skeleton, Resistance(porosity), *box)
     whole = porosity * WATER + material.density
     both = Seepage(flow, ground, material.column_modulus, whole / share**2)
     both.start()

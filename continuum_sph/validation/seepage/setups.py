@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from continuum_sph.seepage import Drain, Frame, PoreFlow, Resistance, Seepage, skeleton_of
+from continuum_sph.seepage import Drain, Frame, PoreFlow, Resistance, Seepage, Skeleton, skeleton_of
 from continuum_sph.seepage.overlap import Overlap
 from continuum_sph.soil import SoilFlow
 from continuum_sph.validation.soil.setups import RATIO
@@ -27,6 +27,18 @@ COLUMNS = 8  # particles across a periodic column: two cutoffs of 2h + skin and 
 def sides(width: float, height: float, spacing: float, ratio: float = RATIO) -> Floats:
     """Wall particles under and over a periodic column, (n, 2) m, as deep as kernels of ``ratio`` spacings reach."""
     return tank_walls(width, height, spacing, math.ceil(SUPPORT * ratio - 0.5 - 1e-9), sides=False, lid=True)
+
+
+def pore_flow(
+    layer: Layer, rules: Law, skeleton: Skeleton, resistance: Resistance, lower: tuple[float, float],
+    upper: tuple[float, float], periodic: tuple[bool, bool] = (False, False),
+) -> PoreFlow:  # fmt: skip
+    """The water of a ``layer`` in the pores of a ``skeleton``, in a box from ``lower`` to ``upper`` (m)."""
+    length, box = rules.smoothing.length, (lower, upper, periodic)
+    return PoreFlow(
+        layer, rules, PairList(layer.count, SKIN * length, *box, full=True), skeleton=skeleton,
+        overlap=Overlap(layer.fluid, skeleton.count, length, SKIN * length, *box), resistance=resistance,
+    )  # fmt: skip
 
 
 def water_in(
@@ -62,16 +74,12 @@ def water_in(
     skeleton = ground.skeleton if isinstance(ground, Frame) else skeleton_of(ground, grains, permeability)
     deep = math.ceil(-float(walls[:, 1].min()) / spacing) * spacing
     box = (0.0, -deep), (width, height + deep), (True, False)
-    skin = SKIN * smoothing.length
-    overlap = Overlap(n, skeleton.count, smoothing.length, skin, *box)
-    overlap.update(x, skeleton.x)
     rho = state.density_at(pressure)
     mass = np.concatenate((rho * spacing**2, np.full(len(walls), WATER * spacing**2)))
     layer = Layer(n, np.concatenate((x, walls)), np.zeros((n + len(walls), 2)), mass, rho)
     if v is not None:
         layer.v[:n] = v
-    pairs = PairList(layer.count, skin, *box, full=True)
-    flow = PoreFlow(layer, rules, pairs, skeleton=skeleton, overlap=overlap, resistance=resistance)
+    flow = pore_flow(layer, rules, skeleton, resistance, *box)
     for face, held in (drained or {}).items():
         below = face == "floor"
         rows = n + np.flatnonzero(walls[:, 1] < 0.0 if below else walls[:, 1] > height)

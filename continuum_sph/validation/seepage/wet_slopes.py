@@ -126,8 +126,7 @@ def off(given: WetSlope, seeping: bool | None = None) -> tuple[float, float, flo
 )
 def still_row() -> Measured:
     """Acceleration of an endless layer on a slope in still water, m/s²; error over what drives."""
-    exact, found, error = off(STILL)
-    return Measured(exact, found, error)
+    return Measured(*off(STILL))
 
 
 @VALIDATIONS.row(
@@ -140,8 +139,7 @@ def still_row() -> Measured:
 )
 def seeping_row() -> Measured:
     """Acceleration of an endless layer with water flowing along it, m/s²; error over what drives."""
-    exact, found, error = off(SEEPING)
-    return Measured(exact, found, error)
+    return Measured(*off(SEEPING))
 
 
 @VALIDATIONS.row(

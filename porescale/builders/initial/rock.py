@@ -14,7 +14,7 @@ from porescale.dem.bodies.frames import chain, polygon
 from porescale.dem.contact.law import ContactLaw
 from porescale.dem.discs import Discs, make_discs
 from porescale.dem.motion.control import Placed as PlacedControl
-from porescale.dem.motion.time_function import Constant, Schedule, Sine, Table
+from porescale.dem.motion.time_function import Schedule, Sine, Table
 from porescale.dem.prepare.tessellate import delaunay, shrunk, voronoi
 from porescale.scene.bodies.rock import Rock
 from porescale.scene.packing import Packing
@@ -88,7 +88,7 @@ def _times(schedule: Schedule, factor: float) -> Schedule:
         return Table(schedule.times, [factor * value for value in schedule.values])
     if isinstance(schedule, Sine):
         return Sine(factor * schedule.amplitude, schedule.frequency, schedule.phase, factor * schedule.mean)
-    return Constant(factor * (schedule.value if isinstance(schedule, Constant) else schedule))
+    return factor * schedule
 
 
 @lru_cache(maxsize=2)

@@ -1,7 +1,7 @@
 """Numbers that change with time, as the kernels take them."""
 
 from porescale.dem.motion.control import Control, Moved, Placed, Pushed
-from porescale.dem.motion.time_function import Constant, Schedule, Sine, Table
+from porescale.dem.motion.time_function import Schedule, Sine, Table
 from porescale.scene.time_function import Component, TimeFunction
 
 
@@ -11,7 +11,7 @@ def schedule_of(function: TimeFunction) -> Schedule:
         return Table(function.times, function.values)
     if function.amplitude:
         return Sine(function.amplitude, function.frequency, function.phase, function.mean)
-    return Constant(function.mean)
+    return function.mean
 
 
 def schedule_or_zero(function: TimeFunction | None) -> Schedule:

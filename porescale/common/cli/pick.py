@@ -52,7 +52,7 @@ def _share(text: str) -> float:
     except ValueError:
         found = math.nan
     if rest.strip() or not 0 < found < math.inf:
-        raise InputError(Fault("--error", text, "is no share", "", "> 0", "write it as 5% or 0.05"))
+        raise InputError(Fault("--error", text, "is not a positive share", "", "> 0", "write it as 5% or 0.05"))
     return found
 
 
@@ -65,5 +65,5 @@ def _seconds(text: str) -> float:
     except ValueError as error:
         raise InputError(Fault("--budget", text, str(error), "s", "> 0", "write it as 3min, 90s or 2h")) from None
     if not 0 < found < math.inf:
-        raise InputError(Fault("--budget", text, "is no time", "s", "> 0", "write it as 3min, 90s or 2h"))
+        raise InputError(Fault("--budget", text, "is not a positive time", "s", "> 0", "write it as 3min, 90s or 2h"))
     return found

@@ -152,7 +152,7 @@ def _endurance(package: Package) -> Callable[..., int]:
             print("\n".join(f"{it.name}: {it.title}" for it in chosen))
             return 0
         if steps < study.MARKS:
-            raise InputError(Fault("--steps", steps, "is too few to look at", "", f">= {study.MARKS}"))
+            raise InputError(Fault("--steps", steps, "is too few", "", f">= {study.MARKS}"))
         folder = output_folder(out)
         use_threads(threads)
         kept = study.finished(folder) if resume else {}

@@ -115,7 +115,7 @@ def laid_over(quality: str | None, settings: Sequence[str] | None) -> list[str]:
 def enlist(campaign: Campaign, jobs: int, scheduler: str | None) -> int:
     """How many points at a time; with a scheduler its workers take them."""
     if jobs < 1:
-        raise InputError(Fault("--jobs", jobs, "is none", "", ">= 1"))
+        raise InputError(Fault("--jobs", jobs, "is out of range", "", ">= 1"))
     if scheduler is None:
         return jobs
     from porescale.common.studies.cluster import connect
@@ -142,7 +142,8 @@ def expected(scene: Path) -> list[dict[str, Any]]:
         return []
     rows = read(file).get("expected", [])
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
-        raise InputError(Fault("expected", None, "is no list of tables", repair="write [[expected]]", file=str(file)))
+        repair = "write [[expected]]"
+        raise InputError(Fault("expected", None, "is not a list of tables", repair=repair, file=str(file)))
     readable = [row for row in rows if {"name", "column", "at"} <= row.keys()]
     faults = [Fault(f"expected {row['name']!r}", None, it, file=str(file)) for row in readable if (it := wrong(row))]
     if faults:

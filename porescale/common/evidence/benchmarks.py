@@ -91,6 +91,7 @@ class Benchmarks(Register[Benchmark]):
         """
 
         def register(prepare: Prepare) -> Prepare:
+            """Keep ``prepare`` under the name; returns it."""
             self.add(Benchmark(name, prepare))
             return prepare
 

@@ -152,8 +152,7 @@ def write(folder: Path, about: Mapping[str, Any], lines: Sequence[Line]) -> None
 def finished(folder: Path) -> dict[str, list[Line]]:
     """Lines of the flows that an earlier call finished in ``folder``, by flow; {} where there are none."""
     try:
-        rows = json.loads((folder / f"{NAME}.json").read_bytes())["lines"]
-        lines = [Line(**row) for row in rows]
+        lines = [Line(**row) for row in json.loads((folder / f"{NAME}.json").read_bytes())["lines"]]
     except (OSError, ValueError, KeyError, TypeError):
         return {}
     return {flow: [line for line in lines if line.flow == flow] for flow in dict.fromkeys(it.flow for it in lines)}
@@ -164,10 +163,10 @@ def markdown(command: str, lines: Sequence[Line]) -> str:
     header = ("flow", "steps", "quantity", "first, last", "largest change", "allowed", "because", "seconds")
     rows = []
     for line in lines:
-        verdict = f"{line.off:.3g}" if line.holds else f"**{line.off:.3g}**"
+        off = f"{line.off:.3g}" if line.holds else f"**{line.off:.3g}**"
         ends = f"{line.values[1]:.6g}, {line.values[-1]:.6g}"
-        allowed, seconds = f"{line.allowed:.3g}", f"{line.seconds:.0f}"
-        rows.append((line.flow, line.steps, line.quantity, ends, verdict, allowed, line.because, seconds))
+        because, seconds = line.because, f"{line.seconds:.0f}"
+        rows.append((line.flow, line.steps, line.quantity, ends, off, f"{line.allowed:.3g}", because, seconds))
     top = [f"Written by `{command}`.", "", f"![marks]({NAME}.png)", ""]
     return "\n".join([*top, *files.markdown_table(header, rows)]) + "\n"
 
@@ -184,8 +183,8 @@ def picture(lines: Sequence[Line]) -> bytes:
             axes.plot(line.at, line.values, "o-", markersize=2.5, linewidth=0.8, color="C0" if line.holds else "C3")
             axes.set_title(f"{flow}: {line.quantity}", fontsize=7)
             axes.tick_params(labelsize=6)
-            axes.xaxis.get_offset_text().set_fontsize(6)
-            axes.yaxis.get_offset_text().set_fontsize(6)
+            for axis in (axes.xaxis, axes.yaxis):
+                axis.get_offset_text().set_fontsize(6)
         for axes in row[len(mine) :]:
             axes.set_axis_off()
     return files.png(figure, 110)

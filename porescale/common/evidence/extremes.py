@@ -85,10 +85,9 @@ def write(folder: Path, command: str, rows: Sequence[Row]) -> None:
 
 def markdown(command: str, rows: Sequence[Row]) -> str:
     """The table of all tries, one a row."""
-    lines = [f"Written by `{command}`.  *Stable*: it came to its end in sense;  *right*: and a known number holds.", ""]
+    top = f"Written by `{command}`.  *Stable*: it came to its end in sense;  *right*: and a known number holds."
     cells = [(row.axis, row.value, f"**{row.end}**", row.said) for row in rows]
-    lines += files.markdown_table(("what", "how far", "end", "said"), cells)
-    return "\n".join(lines) + "\n"
+    return "\n".join([top, "", *files.markdown_table(("what", "how far", "end", "said"), cells)]) + "\n"
 
 
 def picture(rows: Sequence[Row]) -> bytes:

@@ -123,8 +123,7 @@ class SceneKinds(Register[SceneKind]):
 
 def write(folder: Path, about: Mapping[str, Any], rows: Sequence[Row]) -> None:
     """parts.json and parts.md into ``folder``, each whole or not at all.  about : command, machine, date."""
-    lines = files.json_text([asdict(row) for row in rows], about)
-    files.write_study(folder, NAME, json=lines, md=markdown(about, rows))
+    files.write_study(folder, NAME, json=files.json_text(map(asdict, rows), about), md=markdown(about, rows))
 
 
 def markdown(about: Mapping[str, Any], rows: Sequence[Row]) -> str:

@@ -77,6 +77,7 @@ def discovered(package: str, name: str) -> Callable[[], Any]:
     """
 
     def joined() -> Any:
+        """One register of the same class with the rows of all."""
         found = list(entries(package, name))
         return type(found[0])(row for register in found for row in register)
 

@@ -135,6 +135,7 @@ class Stability(Register[Flow]):
         """Register the decorated ``(law, x, y) -> Tried`` as a flow made of ``parts``, see :class:`Flow`."""
 
         def register(measure: Measure) -> Measure:
+            """Keep it; returns it as it is."""
             made = Flow(name=name, measure=measure, **parts)
             assert made.right >= 0
             assert made.because, "a tolerance has a reason"

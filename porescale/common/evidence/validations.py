@@ -119,6 +119,7 @@ class Validations(Register[Validation]):
         assert because, "a tolerance has a reason"
 
         def register(measure: Callable[[], Measured]) -> Callable[[], Measured]:
+            """Keep ``measure`` as the validation; returns it."""
             self.add(Validation(name, source, because, tolerance, slow, measure))
             return measure
 

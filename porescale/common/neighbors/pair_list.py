@@ -261,28 +261,20 @@ class PairList:
 
     def state(self) -> dict[str, NDArray[np.generic]]:
         """Copies of everything that the next update depends on."""
-        return {
-            "start": self.start.copy(),
-            "partner": self.partner.copy(),
-            "carried": self.carried.copy(),
-            "anchor": self.list_position.copy(),
-            "anchor_reach": self._list_reach.copy(),
-            "mark": self.checked_position.copy(),
-            "mark_reach": self._checked_reach.copy(),
-            "room": np.array(self.skin_margin),
-            "builds": np.array(self.builds, np.int64),
-            "lasted": np.array(self.lasted, np.int64),
-            "skin": np.array(self.skin),
-        }
+        kept = {
+            "start": self.start, "partner": self.partner, "carried": self.carried, "anchor": self.list_position,
+            "anchor_reach": self._list_reach, "mark": self.checked_position, "mark_reach": self._checked_reach,
+            "room": self.skin_margin, "builds": np.int64(self.builds), "lasted": np.int64(self.lasted),
+            "skin": self.skin,
+        }  # fmt: skip
+        return {name: np.array(value) for name, value in kept.items()}
 
     def restore(self, state: dict[str, NDArray[np.generic]]) -> None:
         """Go on exactly from ``state``, taken from a list of the same count, box and options."""
         total = int(state["partner"].shape[0])
         self._reserve(self._current, total)
         self._publish(total)
-        self.start[:] = state["start"]
-        self.partner[:] = state["partner"]
-        self.carried[:] = state["carried"]
+        self.start[:], self.partner[:], self.carried[:] = state["start"], state["partner"], state["carried"]
         self.list_position[:] = state["anchor"]
         self._list_reach[:] = state["anchor_reach"]
         # Older states do not hold their skin: it may have been less, so the next update makes the list anew.  Bits

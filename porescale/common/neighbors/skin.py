@@ -2,11 +2,10 @@
 
 A list made with a skin holds as long as no two points have come nearer to each other by more than the skin.  None have
 where no point was displaced by half the skin.  That is quick to compute, and too strict where many points move
-together,
-as in a jet: displacements of neighbouring points are then alike, however large.  So the box is cut into blocks, and the
-displacements of all points of a block are bounded by a rectangle: two points came nearer by at most the diagonal of the
-rectangle that bounds both blocks.  Blocks that do not touch are a whole block apart, so the rectangle of all may be
-larger.  The remaining skin is computed again only when some point has moved half of it further.
+together, as in a jet: displacements of neighbouring points are then alike, however large.  So the box is cut into
+blocks, and the displacements of all points of a block are bounded by a rectangle: two points came nearer by at most the
+diagonal of the rectangle that bounds both blocks.  Blocks that do not touch are a whole block apart, so the rectangle
+of all may be larger.  The remaining skin is computed again only when some point has moved half of it further.
 """
 
 import numpy as np

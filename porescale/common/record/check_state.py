@@ -43,7 +43,7 @@ def check_state(folder: Path) -> None:
             raise misfit(folder, "holds no state of a run", f"{name} is not there" if name not in content else name)
     found = senseless(content["state"])
     if found:
-        raise misfit(folder, "holds no sound state", found)
+        raise misfit(folder, "holds an invalid state", found)
 
 
 def misfit(folder: Path, problem: str, reason: object) -> InputError:

@@ -92,7 +92,7 @@ def take_up(folder: Path, model: Model, schedules: Mapping[str, Schedule]) -> Sa
     try:
         model.check()
     except Unstable as error:
-        raise misfit(folder, "holds no sound state", error) from error
+        raise misfit(folder, "holds an invalid state", error) from error
     return saved
 
 

@@ -1,5 +1,6 @@
 """A field of a section that measures something: its unit, its range, and the error message when it is wrong."""
 
+import operator
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from types import UnionType
@@ -57,12 +58,8 @@ class Quantity:
 
     def contains(self, value: float) -> bool:
         """Whether ``value`` (in ``unit``) lies in the range."""
-        return (
-            (self.gt is None or value > self.gt)
-            and (self.ge is None or value >= self.ge)
-            and (self.lt is None or value < self.lt)
-            and (self.le is None or value <= self.le)
-        )
+        bounds = (operator.gt, self.gt), (operator.ge, self.ge), (operator.lt, self.lt), (operator.le, self.le)
+        return all(bound is None or holds(value, bound) for holds, bound in bounds)
 
     def convert(self, value: Any, key: str = "", words: frozenset[str] = frozenset()) -> Any:
         """``value`` with every number and text in it as SI numbers; raises `Refused` with all faults."""

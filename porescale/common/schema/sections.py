@@ -59,7 +59,7 @@ class Section(BaseModel):
             """``value`` validated, with the faults that a section raises."""
             try:
                 made = inner(cls._spell_booleans(value))
-                faults = [fault for check in cls.checks for fault in check(made)]
+                faults = made._faults() or [fault for check in cls.checks for fault in check(made)]
             except InputError as error:
                 raise Refused(*error.faults) from None
             if faults:
@@ -67,6 +67,10 @@ class Section(BaseModel):
             return made
 
         return core_schema.no_info_wrap_validator_function(collect, handler(source))
+
+    def _faults(self) -> list[Fault]:
+        """What is wrong with the section by itself, whose fields are valid; ``checks`` follow where nothing is."""
+        return []
 
     @classmethod
     def _spell_booleans(cls, table: Any) -> Any:

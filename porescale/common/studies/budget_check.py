@@ -75,7 +75,7 @@ def repeat(package: Package, scene: Path, which: int = 1) -> Promise:
     front = read_front(scene)
     chosen = replace(front, points=front.points[which - 1 :][:1])
     if not chosen.points:
-        raise InputError(Fault("--size", which, "is no point of the front", "", f"1 to {len(front.points)}"))
+        raise InputError(Fault("--size", which, "is not a point of the front", "", f"1 to {len(front.points)}"))
     point = chosen.points[0]
     opened = open_scene(scene, package.scene(), quality=point.quality, overrides=settings(point))
     choice = choose(chosen, point.error, None, lambda _: begun(lambda: package.build(opened.scene)))
@@ -89,10 +89,8 @@ def repeat(package: Package, scene: Path, which: int = 1) -> Promise:
 
 def compare(choice: Choice, took: float, card: Mapping[str, Any], said: float, found: float | None) -> Promise:
     """A choice of a front beside its run: seconds, card, and the error expected and found in what can be compared."""
-    core_took = float(card["core_seconds"])
-    return Promise(
-        choice.point.label, choice.seconds, took, choice.core_seconds, core_took, said, choice.point.scatter, found
-    )
+    point, core_took = choice.point, float(card["core_seconds"])
+    return Promise(point.label, choice.seconds, took, choice.core_seconds, core_took, said, point.scatter, found)
 
 
 def settings(point: FrontPoint) -> tuple[str, ...]:

@@ -47,7 +47,7 @@ def read_points(path: Path) -> list[Point]:
     except InputError as error:
         raise error.in_file(str(path)) from None
     if not rows:
-        raise InputError(Fault("points", None, "are none", file=str(path), repair="give a row for each run"))
+        raise InputError(Fault("points", None, "there are none", file=str(path), repair="give a row for each run"))
     return named(rows)
 
 
@@ -114,7 +114,7 @@ def _of_csv(path: Path) -> Iterator[Point]:
         at = error.object[: error.start].count(b"\n") + 1
         raise InputError(Fault(f"line {at}", None, "is not UTF-8 text", repair="save it as UTF-8")) from None
     except csv.Error as error:
-        raise InputError(Fault("table", None, f"is no CSV ({error})")) from None
+        raise InputError(Fault("table", None, f"is not valid CSV ({error})")) from None
     head = [name.strip() for name in lines[0]] if lines else []
     if len(set(head)) < len(head) or not all(head):
         raise InputError(Fault("line 1", ", ".join(head), "is not a name for every column, each once"))

@@ -49,7 +49,7 @@ def measured(columns: Columns, row: Mapping[str, Any]) -> float:
     if at in ("max", "min"):
         return float(getattr(np, at)(values))
     if isinstance(at, str):
-        raise ValueError(f"at = {at!r} is none of end, max, min, a time or a table")
+        raise ValueError(f"at = {at!r} is not one of end, max, min, a time or a table")
     over = 0.5 * (time[-1] - time[-2]) if len(time) > 1 else 0.0
     return float(np.interp(at, time, values, right=values[-1] if at < time[-1] + over else np.nan))
 
@@ -73,7 +73,7 @@ def _found(time: NDArray[Any], values: NDArray[Any], at: Mapping[str, Any]) -> f
         return float(min(time[values <= at["first_below"]], default=np.inf))
     if "last_above" in at:
         return float(time[np.flatnonzero(values > at["last_above"])[-1]])
-    raise ValueError(f"at = {dict(at)!r} says nothing that is known")
+    raise ValueError(f"at = {dict(at)!r} holds no known key")
 
 
 def _period(time: NDArray[Any], values: NDArray[Any]) -> float:
@@ -97,14 +97,14 @@ def wrong(row: Mapping[str, Any]) -> str:
     """Fault in where a row says to read, "" if there is none; a table may still lack its columns."""
     for key in ("name", "column", "minus", "unit", "file"):
         if not isinstance(row.get(key, ""), str):
-            return f"{key} is no text"
+            return f"{key} is not text"
     if not isinstance(row.get("where", {}), Mapping):
-        return "where is no table"
+        return "where is not a table"
     at = row["at"]
     if isinstance(at, str):
-        return "" if at in WHERE else f"at is none of {', '.join(WHERE)}, a time or a table"
+        return "" if at in WHERE else f"at is not one of {', '.join(WHERE)}, a time or a table"
     if not isinstance(at, Mapping):
-        return "" if _is_number(at) else "at is no time"
+        return "" if _is_number(at) else "at is not a time"
     falls, known = ("first_below", "last_above"), (*LATE, "quantile", "first_below", "last_above")
     chosen = [key for key in at if key != "share_of"]
     if len(chosen) != 1 or chosen[0] not in known:
@@ -112,7 +112,7 @@ def wrong(row: Mapping[str, Any]) -> str:
     if not _is_number(at[chosen[0]]) or (chosen[0] == "quantile" and not 0 <= at["quantile"] <= 1):
         return f"at.{chosen[0]} is out of range"
     if "share_of" in at and (chosen[0] not in falls or at["share_of"] not in SHARES):
-        return f"at.share_of is none of {', '.join(SHARES)}, with {' or '.join(falls)}"
+        return f"at.share_of is not one of {', '.join(SHARES)}, with {' or '.join(falls)}"
     return ""
 
 

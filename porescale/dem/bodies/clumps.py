@@ -27,7 +27,7 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.dem.arrays import contact_arrays
 from porescale.dem.bodies.union import outline
-from porescale.dem.discs import Discs
+from porescale.dem.discs import Discs, overwrite
 
 NEWTON_STEPS = 100
 LEAST = 1e-3  # of the radius: outline with which a member that shows none is counted
@@ -201,11 +201,7 @@ class Clumps:
 
     def restore(self, state: dict[str, Any]) -> None:
         """Overwrite what moves, bit for bit; raises InputError when the clumps are others."""
-        for name in MOVING:
-            own, given = getattr(self, name), np.asarray(state[name])
-            if own.shape != given.shape:
-                raise InputError(Fault(f"state.clumps.{name}", given.shape, "wrong shape", allowed=str(own.shape)))
-            own[...] = given
+        overwrite({name: getattr(self, name) for name in MOVING}, state, "state.clumps")
 
 
 def shares(weight: Floats, offset: Floats, radius: float) -> Floats | None:

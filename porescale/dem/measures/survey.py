@@ -132,11 +132,6 @@ def kinetic_energy(discs: Discs) -> float:
     return 0.5 * (moving + float(np.sum(discs.inertia * discs.spin**2)))
 
 
-def potential_energy(discs: Discs, acceleration: tuple[float, float]) -> float:
-    """-sum m g.x, J/m, for an ``acceleration`` of free fall in m/s^2."""
-    return -float(np.sum(discs.mass * (discs.position @ np.asarray(acceleration))))
-
-
 def elastic_energy(grains: State) -> float:
     """Stored in the normal and tangential springs of pairs, walls, plates, rectangles and segments, J/m."""
     surfaces = sum(found[3] for found in _survey_surfaces(grains))

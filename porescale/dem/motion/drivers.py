@@ -8,7 +8,7 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.pair_list import PairList
 from porescale.dem.bodies.clumps import Clumps
-from porescale.dem.discs import Discs
+from porescale.dem.discs import Discs, overwrite
 from porescale.dem.motion import affine_strain as cells
 from porescale.dem.motion.control import KINDS, PUSH, WORK, Control, schedule_of
 from porescale.dem.motion.periodic_cell import LOAD, Still, Straining
@@ -166,10 +166,7 @@ class Drivers:
             raise InputError(Fault("state.steering.cell", "cell" in state, "strained in one, not in the other"))
         if self.cell is not None:
             own["cell"] = self.cell
-        for name, array in own.items():
-            if array.shape != np.asarray(state[name]).shape:
-                raise InputError(Fault(f"state.steering.{name}", np.asarray(state[name]).shape, "wrong shape"))
-            array[...] = state[name]
+        overwrite(own, state, "state.steering")
         if self.cell is not None:
             c = self.cell
             pairs.set_cell(*(float(c[k]) for k in range(cells.WIDTH_THEN, cells.TILT_THEN + 1)))

@@ -19,13 +19,6 @@ COLUMNS = 6
 
 
 @dataclass(frozen=True)
-class Constant:
-    """A time function with the same ``value`` at all times."""
-
-    value: float = 0.0
-
-
-@dataclass(frozen=True)
 class Sine:
     """mean + amplitude sin(2 pi frequency t + phase);  frequency in Hz, phase in rad."""
 
@@ -43,20 +36,19 @@ class Table:
     values: Sequence[float]
 
 
-Schedule = Constant | Sine | Table | float
-"""A time function; a plain number stands for a constant."""
+Schedule = Sine | Table | float
+"""A time function; a plain number is constant."""
 
 
 def schedule_rows(schedules: Sequence[Schedule]) -> tuple[Floats, Floats]:
     """Rows (q, COLUMNS) and points (p, 2) of ``schedules``; raises InputError at a number or table that is not finite
     or not ascending."""
     rows, points = [], np.zeros((0, 2))
-    for given in schedules:
-        one = given if isinstance(given, Constant | Sine | Table) else Constant(float(given))
-        if isinstance(one, Constant):
-            row = [one.value, 0.0, 0.0, 0.0, 0.0, 0.0]
-        elif isinstance(one, Sine):
+    for one in schedules:
+        if isinstance(one, Sine):
             row = [one.mean, one.amplitude, 2.0 * math.pi * one.frequency, one.phase, 0.0, 0.0]
+        elif not isinstance(one, Table):
+            row = [float(one), 0.0, 0.0, 0.0, 0.0, 0.0]
         else:
             times, values = np.asarray(one.times, float), np.asarray(one.values, float)
             if times.ndim != 1 or times.shape != values.shape or not len(times) or not np.all(np.diff(times) > 0.0):

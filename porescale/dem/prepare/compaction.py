@@ -11,9 +11,7 @@ circles is read with its own units and direction of y by ``read_circles``.
 import contextlib
 import csv
 import dataclasses
-import hashlib
 import io
-import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,7 +33,7 @@ from porescale.dem.measures.contacts import contacts
 from porescale.dem.measures.region import Region
 from porescale.dem.measures.stress import contact_stress, principal
 from porescale.dem.measures.survey import max_overlap
-from porescale.dem.prepare.settle import UNREADABLE, cache_folder, pack, sources, unpack
+from porescale.dem.prepare.settle import UNREADABLE, cached_at, pack, unpack
 
 START = 0.7  # packing fraction at which discs are placed: short of where friction can hold them
 DRAG = 0.02  # background damping per step: lets discs that are pushed travel, ends waves between two looks
@@ -196,9 +194,7 @@ def kept(press: Compactor, radius: Floats, pressure: float | None, folder: Path 
     folder : of the cache, default that of settled packings.  A damaged file is made anew, a folder that cannot be
     written is done without.
     """
-    of = [dataclasses.asdict(press), np.asarray(radius).tolist(), pressure, sources()]
-    name = hashlib.sha256(json.dumps(of).encode()).hexdigest()[:16]
-    path = (folder or cache_folder()) / f"{name}.npz"
+    path = cached_at([dataclasses.asdict(press), np.asarray(radius).tolist(), pressure], folder)
     with contextlib.suppress(*UNREADABLE):
         state = unpack(path)
         grains = press.grains(np.zeros((len(radius), 2)), radius)

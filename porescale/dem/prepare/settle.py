@@ -236,9 +236,7 @@ def prepare(
         )  # fmt: skip
     grains = Grains(pile.discs(), law, box, wall_law=wall_law, plates=plates)
     made_of: list[Any] = [pile, box, law, grains.wall_law, *plates]
-    described = json.dumps([dataclasses.asdict(part) for part in made_of] + [weighs, sources()])
-    name = hashlib.sha256(described.encode()).hexdigest()[:16]
-    path = (folder or cache_folder()) / f"{name}.npz"
+    path = cached_at([*(dataclasses.asdict(part) for part in made_of), weighs], folder)
     if cache:
         try:
             grains.restore(unpack(path))
@@ -265,9 +263,10 @@ def weights_of(discs: Discs, density: float, gravity: float = GRAVITY) -> Floats
     return weights
 
 
-def cache_folder() -> Path:
-    """Folder in which settled packings are cached."""
-    return cache_root() / "packings"
+def cached_at(made_of: list[Any], folder: Path | None) -> Path:
+    """File of the packing that is made of these numbers and the sources; ``folder`` None: that of all packings."""
+    name = hashlib.sha256(json.dumps([*made_of, sources()]).encode()).hexdigest()[:16]
+    return (folder or cache_root() / "packings") / f"{name}.npz"
 
 
 def sources() -> str:

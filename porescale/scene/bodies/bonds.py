@@ -3,7 +3,7 @@
 import pydantic
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.common.schema.sections import Section, quantity
 
 KINDS = ("grain", "clump", "segment", "polygon", "container", "rock", "plate")
 """Kinds of bodies, in the order of the numbers that the cloud of bonds has for them."""
@@ -29,8 +29,7 @@ class Bonds(Section):
         (), description="bonds by number, not of contacts: disc (or corner), disc or segment, 1 of a segment, N/m"
     )
 
-    @pydantic.model_validator(mode="after")
-    def _sense(self) -> "Bonds":
+    def _faults(self) -> list[Fault]:
         faults = []
         for k, word in enumerate(self.bodies):
             kind, _, number = word.partition(" ")
@@ -45,6 +44,4 @@ class Bonds(Section):
             faults.append(
                 Fault("tension", self.tension, "says nothing beside factor", "N/m", repair="give one of them")
             )
-        if faults:
-            raise Refused(*faults)
-        return self
+        return faults

@@ -5,7 +5,7 @@ import math
 import pydantic
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.common.schema.sections import Section, quantity
 from porescale.scene.ranges import PLACE, SPEED
 
 
@@ -31,8 +31,7 @@ class Clump(Section):
     spin: float = quantity("rad/s", 0.0, ge=-1e7, le=1e7, help="angular velocity at the start, counter-clockwise")
     material: str = pydantic.Field("", description="name of its material (default: the first)")
 
-    @pydantic.model_validator(mode="after")
-    def _whole(self) -> "Clump":
+    def _faults(self) -> list[Fault]:
         faults = []
         for key, values in (("discs", self.discs), ("at", self.at)):
             if not values:
@@ -49,9 +48,7 @@ class Clump(Section):
             faults.append(Fault("density", self.density, "says nothing beside mass", "kg/m^3", repair="leave one out"))
         if self.centroid is not None and self.mass is None:
             faults.append(Fault("centroid", None, "follows from the discs", "m", repair="give mass and inertia, too"))
-        if faults:
-            raise Refused(*faults)
-        return self
+        return faults
 
     def turned(self, copy: int, point: tuple[float, float]) -> tuple[float, float]:
         """Position in the box of a ``point`` of the body, in one of its copies; both m."""

@@ -3,7 +3,7 @@
 import pydantic
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section
+from porescale.common.schema.sections import Section
 from porescale.scene.time_function import Component, Turning
 
 BODIES = ("grain", "clump", "segment", "polygon")
@@ -26,12 +26,11 @@ class Controlled(Section):
     rotation: Turning = Turning()
     record: bool = pydantic.Field(False, description="force and displacement over time in control.csv")
 
-    @pydantic.model_validator(mode="after")
-    def _of_one(self) -> "Controlled":
+    def _faults(self) -> list[Fault]:
         if sum(getattr(self, kind) is not None for kind in BODIES) != 1:
             repair = "give one of them"
-            raise Refused(Fault(", ".join(BODIES), None, "exactly one of them is needed", repair=repair))
-        return self
+            return [Fault(", ".join(BODIES), None, "exactly one of them is needed", repair=repair)]
+        return []
 
     @property
     def of(self) -> tuple[str, int]:

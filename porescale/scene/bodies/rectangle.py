@@ -6,7 +6,7 @@ from typing import Any
 import pydantic
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.common.schema.sections import Section, quantity
 from porescale.scene.ranges import PLACE, SPEED
 
 
@@ -27,17 +27,14 @@ class Rectangle(Section):
         None, description="the fluid's mass is made good for what moves through sides (default: if no side is open)"
     )
 
-    @pydantic.model_validator(mode="after")
-    def _has_size(self) -> "Rectangle":
+    def _faults(self) -> list[Fault]:
         faults = []
         if not (self.lower[0] < self.upper[0] and self.lower[1] < self.upper[1]):
             faults.append(Fault("upper", str(self.upper), "does not lie right of and above lower", "m",
                                 f"> {self.lower}", "exchange them"))  # fmt: skip
         if self.stops_at is not None and self.stops_at < self.starts_at:
             faults.append(Fault("stops_at", self.stops_at, "is before starts_at", "s", f">= {self.starts_at:g}"))
-        if faults:
-            raise Refused(*faults)
-        return self
+        return faults
 
     @property
     def fastest(self) -> float:

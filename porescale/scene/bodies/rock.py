@@ -1,15 +1,15 @@
 """[rock]: a pressed packing made into bonded discs, triangles or Voronoi cells between two plates."""
 
-from typing import Any, Literal
+from typing import ClassVar, Literal
 
 import pydantic
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section, quantity
-from porescale.scene.time_function import TimeFunction, with_time_functions
+from porescale.common.schema.sections import quantity
+from porescale.scene.time_function import Timed, TimeFunction
 
 
-class Rock(Section):
+class Rock(Timed):
     """A bonded sample made of the packing, between plates: left and right of it, or below and above.
 
     Polygons are shrunk to stand ``gap`` apart and get so much thickness that their sides overlap by ``pressed``.  The
@@ -26,13 +26,9 @@ class Rock(Section):
         None, description="of the sample over time, > 0 pulled; left out, it stands"
     )
 
-    @pydantic.model_validator(mode="before")
-    @classmethod
-    def _time_functions(cls, table: Any) -> Any:
-        return with_time_functions(table, {"strain": ("", "strain of the sample")})
+    UNITS: ClassVar[dict[str, tuple[str, str]]] = {"strain": ("", "strain of the sample")}
 
-    @pydantic.model_validator(mode="after")
-    def _whole(self) -> "Rock":
+    def _faults(self) -> list[Fault]:
         faults = []
         for name in ("gap", "pressed"):
             value = getattr(self, name)
@@ -42,9 +38,7 @@ class Rock(Section):
                 faults.append(Fault(name, None, "is missing", "m", "> 0", f"add it: {self.kind} need it"))
         if self.plates == "none" and self.strain is not None:
             faults.append(Fault("strain", None, "needs plates", repair='write plates = "x" or "y"'))
-        if faults:
-            raise Refused(*faults)
-        return self
+        return faults
 
     @property
     def polygons(self) -> bool:

@@ -8,7 +8,7 @@ import math
 import pydantic
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.common.schema.sections import Section, quantity
 from porescale.scene.ranges import LENGTH, PLACE, SPEED
 from porescale.scene.time_function import Component, Turning
 
@@ -55,12 +55,8 @@ class SegmentBody(Framed):
     width: float | None = quantity("m", None, **LENGTH, help="width of the rods (default: twice the thickness)")
     long: bool = pydantic.Field(False, description="much longer than grains: kept out of the cells, as a container")
 
-    @pydantic.model_validator(mode="after")
-    def _whole(self) -> "SegmentBody":
-        faults = [*self._faults(), *_one_line(self.chain, self.ends)]
-        if faults:
-            raise Refused(*faults)
-        return self
+    def _faults(self) -> list[Fault]:
+        return [*super()._faults(), *_one_line(self.chain, self.ends)]
 
 
 class PolygonBody(Framed):
@@ -80,9 +76,8 @@ class PolygonBody(Framed):
     size_spread: float = quantity("", 0.0, ge=0, lt=1, help="half width of the sizes over their mean, of random ones")
     seed: int = pydantic.Field(1, ge=0, description="seed of the random placement")
 
-    @pydantic.model_validator(mode="after")
-    def _whole(self) -> "PolygonBody":
-        faults = self._faults()
+    def _faults(self) -> list[Fault]:
+        faults = super()._faults()
         if bool(self.corners) == (self.sides is not None):
             faults.append(Fault("corners, sides", None, "exactly one of the two is needed", repair="give one of them"))
         if self.corners and len(self.corners) < 3:
@@ -99,9 +94,7 @@ class PolygonBody(Framed):
             faults.append(Fault("size_spread", self.size_spread, "is of polygons placed at random", repair="leave out"))
         if self.within and not (self.within[0] < self.within[2] and self.within[1] < self.within[3]):
             faults.append(Fault("within", None, "must be [left, bottom, right, top]", "m", repair="order them"))
-        if faults:
-            raise Refused(*faults)
-        return self
+        return faults
 
     @property
     def points(self) -> Points:
@@ -132,12 +125,8 @@ class Container(Section):
     rotation: Turning = Turning()
     record: bool = pydantic.Field(False, description="force and displacement over time in control.csv")
 
-    @pydantic.model_validator(mode="after")
-    def _whole(self) -> "Container":
-        faults = _one_line(self.chain, self.ends)
-        if faults:
-            raise Refused(*faults)
-        return self
+    def _faults(self) -> list[Fault]:
+        return _one_line(self.chain, self.ends)
 
 
 def _one_line(chain: Points, ends: Lines) -> list[Fault]:

@@ -1,17 +1,17 @@
 """[[wall]]: free straight walls without end, for dry grains."""
 
 import math
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import pydantic
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.common.schema.sections import quantity
 from porescale.scene.servo import SERVO, check_servo
-from porescale.scene.time_function import TimeFunction, with_time_functions
+from porescale.scene.time_function import Timed, TimeFunction
 
 
-class Wall(Section):
+class Wall(Timed):
     """A straight wall without end, solid behind: it stands, moves and turns as prescribed, or the grains press on it.
 
     stress, force : it moves along its normal, no faster than ``fastest``, so that the grains press on it so, > 0 for
@@ -35,22 +35,14 @@ class Wall(Section):
         "velocity_x": ("m/s", "velocity"), "velocity_y": ("m/s", "velocity"), "turning": ("rad/s", "rotation"), **SERVO,
     }  # fmt: skip
 
-    @pydantic.model_validator(mode="before")
-    @classmethod
-    def _time_functions(cls, table: Any) -> Any:
-        return with_time_functions(table, cls.UNITS)
-
-    @pydantic.model_validator(mode="after")
-    def _sensible(self) -> "Wall":
+    def _faults(self) -> list[Fault]:
         faults = check_servo(self, self.moves)
         if not math.hypot(*self.normal) > 0.0:
             faults.append(Fault("normal", "(0, 0)", "has no length", repair="point it towards the grains"))
         if (self.stress is None) != (self.length is None):
             problem = "is needed for a stress" if self.stress else "belongs to a wall with stress"
             faults.append(Fault("length", self.length, problem, "m", repair="give both, or neither"))
-        if faults:
-            raise Refused(*faults)
-        return self
+        return faults
 
     @property
     def moves(self) -> bool:

@@ -5,7 +5,7 @@ from typing import Literal
 import pydantic
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.common.schema.sections import Section, quantity
 from porescale.scene.ranges import LENGTH
 
 GrainField = Literal["density", "solid_fraction", "velocity", "strain_rate", "stress", "kinetic_stress"]
@@ -25,10 +25,9 @@ class CoarseGraining(Section):
         ("solid_fraction", "velocity", "stress"), min_length=1, description="which fields"
     )
 
-    @pydantic.model_validator(mode="after")
-    def _resolved(self) -> "CoarseGraining":
+    def _faults(self) -> list[Fault]:
         if self.width is not None and self.width < self.spacing:
             repair = "widen it, to some grains, or take the points closer"
             problem = "is less than the spacing: grains would fall between the points"
-            raise Refused(Fault("width", self.width, problem, "m", f">= {self.spacing:g}", repair))
-        return self
+            return [Fault("width", self.width, problem, "m", f">= {self.spacing:g}", repair)]
+        return []

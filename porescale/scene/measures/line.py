@@ -3,7 +3,7 @@
 import pydantic
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.common.schema.sections import Section, quantity
 from porescale.scene.ranges import PLACE
 
 
@@ -14,11 +14,10 @@ class Segment(Section):
     start: tuple[float, float] = quantity("m", **PLACE, help="first point")
     end: tuple[float, float] = quantity("m", **PLACE, help="last point")
 
-    @pydantic.model_validator(mode="after")
-    def _has_length(self) -> "Segment":
+    def _faults(self) -> list[Fault]:
         if self.start == self.end:
-            raise Refused(Fault("end", None, "is the same as start", "m", repair="move one of them"))
-        return self
+            return [Fault("end", None, "is the same as start", "m", repair="move one of them")]
+        return []
 
 
 class Line(Segment):

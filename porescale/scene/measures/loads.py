@@ -3,7 +3,7 @@
 import pydantic
 
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.common.schema.sections import Section, quantity
 from porescale.scene.ranges import LENGTH
 
 
@@ -20,8 +20,7 @@ class Loads(Section):
     length: float | None = quantity("m", None, **LENGTH, help="reference length of the coefficients")
     direction: tuple[float, float] = quantity("", (1.0, 0.0), ge=-1, le=1, help="direction of drag")
 
-    @pydantic.model_validator(mode="after")
-    def _complete(self) -> "Loads":
+    def _faults(self) -> list[Fault]:
         faults = []
         if not self.discs and not self.grains and not self.rectangles:
             faults.append(Fault("discs, grains, rectangles", None, "name no body", repair="write discs = [0], say"))
@@ -29,6 +28,4 @@ class Loads(Section):
             faults.append(Fault("speed, length", None, "coefficients need both", repair="give both, or leave both out"))
         if self.direction == (0.0, 0.0):
             faults.append(Fault("direction", None, "has no length", repair="write [1, 0]"))
-        if faults:
-            raise Refused(*faults)
-        return self
+        return faults

@@ -1,7 +1,4 @@
-"""Validations of grains that the fluid passes fast, near tau = 1/2.
-
-A cylinder towed fast from rest, in lattice units: near tau = 1/2, where the viscous layer is thinner than a cell.
-"""
+"""A cylinder towed fast from rest near tau = 1/2, where the viscous layer is thinner than a cell.  Lattice units."""
 
 import math
 

@@ -261,7 +261,7 @@ NEAR_WALL = {"along": 31.593, "towards": 181.712, "turning": 24.006}
 
 RADIUS = 7.3e-3
 """How much of its radius a disc 10 cells wide may look too big or small in one place: 2 % of a drag that goes as its
-power 2.75, as on arrays of solid fraction 0.2 (verify_arrays.py)."""
+power 2.75, as on arrays of solid fraction 0.2 (arrays.py)."""
 
 FILMS = (0.02, 0.03, 0.05)
 """Gaps in radii of ten cells: a fifth to half a cell."""

@@ -1,10 +1,8 @@
-"""Validations of rock made of bonded discs, triangles and cells: what it bears, against samples of DEMseg.
+"""Rock made of bonded discs, triangles and cells: strength of the samples of DEMseg over the naive estimate.
 
-Rock with the parameters of the DEMseg tutorial (Matsushima): strength of its samples over the naive estimate.
-
-DEMseg tutorial, II-4: 304 discs, mean diameter 4 cm, k_n 1e7 N/m, k_s a quarter, mean back tension 0.774 kN; triangles
-and cells of the same packing, whose sides overlap by 0.08 mm.  Friction (tan 27 degrees, as in its part I), the packing
-and the sample's shape it does not give; the case cases/rock shows the effect of each.
+Matsushima's tutorial, II-4: 304 discs, mean diameter 4 cm, k_n 1e7 N/m, k_s a quarter, mean back tension 0.774 kN;
+triangles and cells of the same packing, whose sides overlap by 0.08 mm.  Friction (tan 27 degrees, as in its part I),
+the packing and the sample's shape it does not give; the case cases/rock shows the effect of each.
 
 Triangles stand 1 mm apart, as there; cells 4 mm, since at 1 mm a corner goes through the opposite side at an overlap of
 1.08 mm, 13.5 times what bonds bear, and cells bear more before they break.

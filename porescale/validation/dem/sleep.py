@@ -1,7 +1,4 @@
-"""Validations of sleep: what is left out is in balance, and heaps come to lie as they do without it.
-
-Heaps that sleep: how far sleepers are out of balance, what sleep takes, and what a blow makes of it, in SI.
-"""
+"""Heaps that sleep: how far sleepers are out of balance, what sleep takes, and what a blow makes of it.  SI."""
 
 import math
 from dataclasses import dataclass

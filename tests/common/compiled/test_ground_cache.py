@@ -8,7 +8,22 @@ from pathlib import Path
 
 from porescale.common.compiled import jit
 from porescale.common.compiled.cache import DAY, cache_root, hash_of, keep_only_used
+from tests.reference.folders import ROOT
 from tests.reference.waiting import done
+
+
+def aged(path: Path, days: float) -> Path:
+    """``path``, last used so many days ago."""
+    os.utime(path, (time.time() - days * DAY,) * 2)
+    return path
+
+
+def printed(command: str, home: Path, kernels: object = "") -> str:
+    """What a new Python process prints whose caches are below ``home``, its kernels in ``kernels``, if named."""
+    environment = {**os.environ, "XDG_CACHE_HOME": str(home), "NUMBA_CACHE_DIR": str(kernels)}
+    ended = done([sys.executable, "-c", command], env=environment, cwd=ROOT)
+    assert ended.returncode == 0, ended.stderr
+    return ended.stdout
 
 
 def test_the_cache_lies_where_the_desktop_standard_says_and_an_empty_variable_counts_as_unset(monkeypatch, tmp_path):
@@ -45,7 +60,7 @@ def test_kernel_folders_unused_for_a_month_go_but_never_the_current_one(tmp_path
     for name, days in {"kernels-old": 31, "kernels-young": 29, "kernels-current": 400, "packings": 400}.items():
         (tmp_path / name).mkdir()
         (tmp_path / name / "content").write_text("x")
-        os.utime(tmp_path / name, (now - days * DAY, now - days * DAY))
+        aged(tmp_path / name, days)
     current = tmp_path / "kernels-current"
     keep_only_used(current, "kernels-*")
     assert {path.name for path in tmp_path.iterdir()} == {"kernels-young", "kernels-current", "packings"}
@@ -54,55 +69,42 @@ def test_kernel_folders_unused_for_a_month_go_but_never_the_current_one(tmp_path
 
 
 def test_kernels_unused_for_a_month_go_when_another_is_kept_but_not_from_a_folder_of_the_users_own(tmp_path):
-    ask = "from porescale.common.neighbors.cells import minimum_image as k; k(0.9, 1.0)"
-    root = Path(jit.__file__).resolve().parents[3]
+    command = "from porescale.common.neighbors.cells import minimum_image as k; k(0.9, 1.0)"
     own, named = tmp_path / "porescale" / jit.cache_folder_name(), tmp_path / "named"
     now = time.time()
     for folder, given in ((own, ""), (named, str(named))):
         folder.mkdir(parents=True)
         for name, days in {"old.nbc": 31, "young.nbc": 29, "torn.nbc.tmp.1": 31, "other.txt": 400}.items():
             (folder / name).write_text("x")
-            os.utime(folder / name, (now - days * DAY, now - days * DAY))
-        environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path), "NUMBA_CACHE_DIR": given}
-        assert done([sys.executable, "-c", ask], env=environment, cwd=root).returncode == 0
+            aged(folder / name, days)
+        printed(command, tmp_path, given)
     (kernel,) = (path for path in own.iterdir() if "minimum_image" in path.name)
     assert {path.name for path in own.iterdir()} == {"young.nbc", "other.txt", kernel.name}
     assert len(list(named.iterdir())) == 5  # the twin
-    os.utime(kernel, (0, 0))
-    environment["NUMBA_CACHE_DIR"] = ""
-    assert done([sys.executable, "-c", ask], env=environment, cwd=root).returncode == 0
+    aged(kernel, 400)
+    printed(command, tmp_path)
     assert kernel.stat().st_mtime >= now - DAY  # read: it counts as used
 
 
 def test_kernels_are_kept_below_the_cache_unless_a_folder_is_named(tmp_path):
-    ask = "from porescale.common.compiled import jit; print(jit.compiler().numba.config.CACHE_DIR)"
+    command = "from porescale.common.compiled import jit; print(jit.compiler().numba.config.CACHE_DIR)"
     old = tmp_path / "porescale" / "kernels-old"
     old.mkdir(parents=True)
-    os.utime(old, (0, 0))
-    root = Path(jit.__file__).resolve().parents[3]
-    environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
-    for named in ("", str(tmp_path / "named")):
-        assert old.exists() or not named
-        it = done([sys.executable, "-c", ask], env=environment | {"NUMBA_CACHE_DIR": named}, cwd=root)
-        folder = Path(it.stdout.strip())
-        if named:
-            assert folder == Path(named)
-        else:
-            assert folder.parent == tmp_path / "porescale"
-            assert folder.name.startswith("kernels-")
-            assert not old.exists()
-            old.mkdir()
-            os.utime(old, (0, 0))
+    aged(old, 400)
+    assert Path(printed(command, tmp_path, tmp_path / "named").strip()) == tmp_path / "named"
     assert old.exists()  # the twin: who names a folder of their own looks after it
+    folder = Path(printed(command, tmp_path).strip())
+    assert folder.parent == tmp_path / "porescale"
+    assert folder.name.startswith("kernels-")
+    assert not old.exists()
 
 
 def test_kernels_work_where_no_cache_can_be_written(tmp_path):
     (tmp_path / "file").write_text("in the way")
-    ask = "from porescale.common.neighbors.cells import minimum_image as k; print(k(0.9, 1.0), type(k._cache).__name__)"
-    root = Path(jit.__file__).resolve().parents[3]
+    command = "from porescale.common.neighbors.cells import minimum_image as k; "
+    command += "print(k(0.9, 1.0), type(k._cache).__name__)"
     for place, cache in (("file", "NullCache"), ("folder", "KernelCache")):  # the second is the twin
-        environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / place), "NUMBA_CACHE_DIR": ""}
-        value, kind = done([sys.executable, "-c", ask], env=environment, cwd=root).stdout.split()
+        value, kind = printed(command, tmp_path / place).split()
         assert abs(float(value) + 0.1) < 1e-15  # one rounding of 0.9 - 1
         assert kind == cache
     assert (tmp_path / "file").read_text() == "in the way"

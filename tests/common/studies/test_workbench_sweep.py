@@ -82,7 +82,7 @@ def test_names_are_folders_anywhere_and_differ():
     [
         ("t.csv", "a,a\n1,2\n", "line 1"),
         ("t.csv", "a,b\n1\n", "line 2: has 1 cells"),
-        ("t.csv", "a\n", "points: are none"),
+        ("t.csv", "a\n", "points: there are none"),
         ("t.csv", "a\n\xff", "is not UTF-8 text"),
         ("t.toml", "pont = 1", "pont: is unknown"),
         ("t.toml", "point = 1", "point: is not a list of tables"),
@@ -215,7 +215,7 @@ def test_what_cannot_be_read_is_refused_before_anything_runs(tmp_path, at):
 
 def test_an_expectation_that_is_no_table_is_refused(tmp_path):
     assert expected(tmp_path / "scene.toml") == []
-    for text, said in (("expected = 3", "no list of tables"), ("[[expected", "line 1")):
+    for text, said in (("expected = 3", "not a list of tables"), ("[[expected", "line 1")):
         (tmp_path / "expected.toml").write_text(text)
         with pytest.raises(InputError, match=said):
             expected(tmp_path / "scene.toml")

@@ -8,11 +8,15 @@ from continuum_sph.seepage import Frame, Resistance, exchange, mixture
 from continuum_sph.seepage import overlap as overlaps
 from continuum_sph.seepage.exchange import apply_drag, apply_reaction, relative_to_soil, relaxation
 from continuum_sph.seepage.mixture import (
+    DENSITY,
     LINES,
+    MASSES,
     POROSITY,
     PULL_X,
+    RESISTING,
     SLIP_X,
     SLIP_Y,
+    WEIGHT,
     gather_soil,
     load_soil,
     mix_fluxes,
@@ -190,6 +194,17 @@ def test_resistance_is_that_of_the_permeability_at_hand(law):
     # Kozeny 1927: k as n³/(1 - n)²
     ratio = Resistance(POROUS, "kozeny-carman").permeability(1.0, 0.5)
     assert ratio == pytest.approx((0.5**3 / 0.25) / (0.4**3 / 0.36), rel=1e-14)
+
+
+@pytest.mark.parametrize("law", ["constant", "kozeny-carman"])
+def test_drag_is_finite_where_grains_only_just_reach_the_water(law):
+    """So little of them that n rounds to 1, as before a surface of the soil; by Kozeny & Carman that was 0/0."""
+    pores, given = np.ones((LINES, 1 + LANES)), Resistance(POROUS, law)
+    pores[DENSITY], pores[WEIGHT], pores[MASSES], pores[RESISTING] = 1000.0, 1000.0 * GRAVITY, 1e-14, 1e-15
+    v, push, heat = np.zeros((1, 2)), np.zeros((1, 2)), np.zeros(1)
+    apply_drag.py_func(1, pores, v, given.number, given.factor, 1e-3, np.zeros((4, 1 + LANES)), push, heat)
+    assert np.isfinite([*v[0], *push[0], heat[0]]).all()
+    assert np.abs(v).max() < 1e-9  # hardly any drag
 
 
 def test_a_drained_face_holds_a_linear_pressure():

@@ -16,7 +16,7 @@ from porescale.dem.motion import control, servo
 from porescale.dem.motion import time_function as schedule
 from porescale.dem.motion.control import Moved, Placed, Pushed
 from porescale.dem.motion.drivers import Clump
-from porescale.dem.motion.time_function import Constant, Sine, Table, schedule_rows, value_at
+from porescale.dem.motion.time_function import Sine, Table, schedule_rows, value_at
 
 LAW = Linear(1e6, 5.0, 3e5, 4.0, 0.4)
 FREE = Box((-1.0, -1.0), (1.0, 1.0), "open", "open", "open", "open")
@@ -31,9 +31,7 @@ def apart(count=3):
 
 @pytest.mark.parametrize("compiled", [True, False])
 def test_schedules_are_what_they_say(compiled):
-    rows, points = schedule_rows(
-        [3.0, Constant(-1.0), Sine(2.0, 5.0, 0.3, 1.0), Table([0.0, 1.0, 3.0], [1.0, 2.0, 0.0])]
-    )
+    rows, points = schedule_rows([3.0, -1.0, Sine(2.0, 5.0, 0.3, 1.0), Table([0.0, 1.0, 3.0], [1.0, 2.0, 0.0])])
     at = value_at if compiled else value_at.py_func
     assert at(rows, points, 0, 7.0) == 3.0
     assert at(rows, points, 1, 7.0) == -1.0
@@ -145,7 +143,7 @@ def test_letting_go_frees_and_holding_holds():
 
 def test_kernels_do_the_same_as_plain_python():
     made = []
-    rows, points = schedule_rows([Sine(1.0, 3.0), Constant(2.0), Table([0.0, 1.0], [0.0, 1.0])])
+    rows, points = schedule_rows([Sine(1.0, 3.0), 2.0, Table([0.0, 1.0], [0.0, 1.0])])
     table = np.array([[0, 0, 0, control.VELOCITY], [0, 1, 1, control.PUSH], [0, 1, 2, control.PLACE]], np.int64)
     for plain in (False, True):
         run = (lambda kernel: kernel.py_func) if plain else (lambda kernel: kernel)
