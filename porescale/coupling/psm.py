@@ -166,16 +166,6 @@ class SaturatedCells:
         return np.asarray(self.covered[0])
 
     @property
-    def solid_x(self) -> Reals:
-        """Sum of fraction times velocity along x right after ``cover``, (ny, nx)."""
-        return np.asarray(self.covered[1])
-
-    @property
-    def solid_y(self) -> Reals:
-        """Sum of fraction times velocity along y right after ``cover``, (ny, nx)."""
-        return np.asarray(self.covered[2])
-
-    @property
     def rectangle_force(self) -> Reals:
         """Force on the rectangles, (m, 2); (0, 2) without any."""
         return self.bodies.load[: self.bodies.rectangles, :2] if self.bodies else np.zeros((0, 2))

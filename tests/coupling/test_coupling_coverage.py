@@ -119,8 +119,8 @@ def test_the_solid_moves_like_the_disc_in_every_cell():
     u, v, w = 0.03, -0.02, 0.01
     wet = covered([(8.3, 9.1, 4.2)], motion=(u, v, w))
     e, rx, ry = twin.coverage(8.3, 9.1, 4.2, 20, 17)
-    np.testing.assert_allclose(wet.solid_x, e * (u - w * ry), rtol=0, atol=area_error(4.2))
-    np.testing.assert_allclose(wet.solid_y, e * (v + w * rx), rtol=0, atol=area_error(4.2))
+    np.testing.assert_allclose(wet.covered[1], e * (u - w * ry), rtol=0, atol=area_error(4.2))
+    np.testing.assert_allclose(wet.covered[2], e * (v + w * rx), rtol=0, atol=area_error(4.2))
 
 
 def test_a_disc_that_has_gone_leaves_nothing_behind():
@@ -201,8 +201,7 @@ def test_coverage_kernels_are_the_same_uncompiled(monkeypatch):
     for module, name in ((coverage, "cover"), (coverage_rows, "list_rows"), (coverage_rows, "rasterize")):
         monkeypatch.setattr(f"porescale.coupling.psm.{name}", getattr(module, name).py_func)
     plain = covered(discs, nx=6, ny=5, kinds=kinds, motion=(0.1, 0.2, 0.3))
-    for name in ("solid", "solid_x", "solid_y"):
-        np.testing.assert_allclose(getattr(plain, name), getattr(compiled, name), rtol=0, atol=area_error(1.3))
+    np.testing.assert_allclose(plain.covered, compiled.covered, rtol=0, atol=area_error(1.3))
 
 
 def test_loads_are_the_same_uncompiled(monkeypatch):

@@ -1,4 +1,4 @@
-"""Discs held still or towed, beside free ones: they go as told, and what holds them bears what they do not follow."""
+"""Discs held or towed beside free ones: they move as prescribed, and their holders bear what they do not follow."""
 
 import copy
 
@@ -22,10 +22,6 @@ def party(*, hold=True, sides=("periodic", "periodic")):
         grains.hold(2, x=True, y=False, rotation=False)
         grains.hold(np.arange(6) == 5)
     return coupled
-
-
-def copied(state):
-    return {key: copied(value) if isinstance(value, dict) else copy.copy(value) for key, value in state.items()}
 
 
 def picture(coupled):
@@ -104,7 +100,7 @@ def test_a_restored_run_with_held_discs_goes_on_bit_for_bit(restart):
     whole, again = party(), party()
     for step in range(60):
         if step == restart:
-            kept = copied(again.state())
+            kept = copy.deepcopy(again.state())
             again = party(hold=False)
             again.restore(kept)
         for coupled in (whole, again):

@@ -70,15 +70,15 @@ def test_a_ring_with_exact_walls_is_wider_by_its_shift_and_a_rectangle_is_not():
 def test_shapes_move_as_their_owner_says():
     gate, ring = Rectangle((3.0, 2.0), (6.0, 5.0), (0.01, 0.02)), Ring((9.5, 8.5), 6.0, spin=1e-3)
     wet = covered(rectangles=[gate])
-    np.testing.assert_array_equal(wet.solid_x, 0.01 * wet.solid)
+    np.testing.assert_array_equal(wet.covered[1], 0.01 * wet.solid)
     gate.lower += 1.25
     wet.cover(*lab.NO_DISCS)
     assert wet.solid[3, 4] == 0.75**2
     turning = covered(rings=[ring])
     y, x = np.mgrid[:17, :20] + 0.5
     # A few roundings of numbers up to 0.01.
-    np.testing.assert_allclose(turning.solid_x, -1e-3 * (y - 8.5) * turning.solid, rtol=0, atol=8 * 0.01 * EPS)
-    np.testing.assert_allclose(turning.solid_y, 1e-3 * (x - 9.5) * turning.solid, rtol=0, atol=8 * 0.01 * EPS)
+    np.testing.assert_allclose(turning.covered[1], -1e-3 * (y - 8.5) * turning.solid, rtol=0, atol=8 * 0.01 * EPS)
+    np.testing.assert_allclose(turning.covered[2], 1e-3 * (x - 9.5) * turning.solid, rtol=0, atol=8 * 0.01 * EPS)
 
 
 def test_shapes_that_cannot_be_are_refused():

@@ -69,7 +69,7 @@ def differences(kinds, discs, steps=6, **switches):
     return worst
 
 
-def crowd():
+def touching_discs():
     """Discs that touch, overlap, share cells, cross sides and spin; the last is smaller than a cell."""
     return [
         twin.Disc(6.3, 7.1, 3.4, 0.05, 0.02, 0.01), twin.Disc(13.05, 7.6, 3.36, -0.04, 0.03, -0.02),
@@ -88,7 +88,7 @@ SIDES = [
 @pytest.mark.parametrize("operator", ["exact-wall", "odd-SC1"])
 @pytest.mark.parametrize("kinds", SIDES)
 def test_saturated_cells_are_those_of_the_formulas(kinds, operator):
-    force, torque, flow = differences(kinds, crowd(), steps=6, operator=operator)
+    force, torque, flow = differences(kinds, touching_discs(), steps=6, operator=operator)
     # Loads sum some 40 cells with lever arms up to 3.4; errors of the flow pile up over the steps.
     assert flow < 6 * ROUND_OFF
     assert force < 40 * 6 * ROUND_OFF
@@ -104,24 +104,24 @@ def test_saturated_cells_are_those_of_the_formulas(kinds, operator):
     ],
 )  # fmt: skip
 def test_another_operator_is_told_apart(wrong):
-    assert differences(SIDES[0], crowd(), steps=2, **wrong).max() > 1e-7
+    assert differences(SIDES[0], touching_discs(), steps=2, **wrong).max() > 1e-7
 
 
 def test_a_correction_that_is_forgotten_is_missed():
     def go(forget):
-        fluid, wet, _ = wet_and_twin(SIDES[0], crowd())
+        fluid, wet, _ = wet_and_twin(SIDES[0], touching_discs())
         for step in range(8):
             if step == 5:
                 again = SaturatedCells(fluid, wet.radius)
                 if not forget:
-                    again.restore(_copied(wet.state()))
+                    again.restore(copy.deepcopy(wet.state()))
                 wet = again
-            wet.advance(fluid, *arrays(crowd()))
+            wet.advance(fluid, *arrays(touching_discs()))
         return fluid.populations[:, 1:-1, 1:-1].copy(), wet.force.copy()
 
-    fluid, wet, _ = wet_and_twin(SIDES[0], crowd())
+    fluid, wet, _ = wet_and_twin(SIDES[0], touching_discs())
     for _ in range(8):
-        wet.advance(fluid, *arrays(crowd()))
+        wet.advance(fluid, *arrays(touching_discs()))
     for whole, again in zip((fluid.populations[:, 1:-1, 1:-1], wet.force), go(False), strict=True):
         np.testing.assert_array_equal(whole, again)
     assert np.abs(go(True)[1] - wet.force).max() > 1e-7
@@ -177,7 +177,7 @@ def final(count, steps=60, restart=None):
     coupled = lab.handful(sides=("wall", "wall"), acceleration=(1e-5, -5e-5), gate=True)
     for step in range(steps):
         if step == restart:
-            kept = _copied(coupled.state())
+            kept = copy.deepcopy(coupled.state())
             coupled = lab.handful(sides=("wall", "wall"), acceleration=(1e-5, -5e-5), gate=True)
             coupled.restore(kept)
         if step == 30:
@@ -188,10 +188,6 @@ def final(count, steps=60, restart=None):
     d = coupled.grains.discs
     inside = coupled.fluid.populations[:, 1:-1, 1:-1]
     return [part.copy() for part in (inside, d.position, d.velocity, d.spin, coupled.force, coupled.torque)]
-
-
-def _copied(state):
-    return {key: _copied(value) if isinstance(value, dict) else copy.copy(value) for key, value in state.items()}
 
 
 def test_one_and_two_threads_give_the_same_bits():

@@ -7,16 +7,11 @@ import pytest
 
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
-from porescale.lbm.lattice import CX, CY
+from tests.lbm.beside_twin import ROUND_OFF, go, same, start
 from tests.reference import lbm as twin
 
 EPS = np.finfo(float).eps
-ORDER = [twin.C.index((int(cx), int(cy))) for cx, cy in zip(CX, CY, strict=True)]
 LIDS = [("wall", "wall"), ("slip", "slip"), ("wall", "slip"), ("slip", "wall"), ("periodic", "periodic")]
-
-# Both add the same some 60 terms of size 1 (the twin's populations are whole) per cell and step, in another order;
-# errors of different steps add up at worst: 60 eps a step.
-ROUND_OFF = 60 * EPS
 
 
 def pair(sides: dict[str, tuple[str, float]], *, nx=7, ny=6, tau=0.7, magic=3 / 16, force=(2e-4, -1e-4), seed=1):
@@ -25,11 +20,7 @@ def pair(sides: dict[str, tuple[str, float]], *, nx=7, ny=6, tau=0.7, magic=3 / 
     speeds = {f"{name}_speed": speed for name, (_, speed) in sides.items()}
     fluid = Fluid(nx, ny, tau, magic=magic, force=force, sides=Sides(**given, **speeds))
     other = twin.Lattice(nx, ny, tau, magic, force, sides)
-    random = np.random.default_rng(seed)
-    rho, ux, uy = 1 + 0.01 * random.uniform(-1, 1, (ny, nx)), *(0.05 * random.uniform(-1, 1, (2, ny, nx)))
-    fluid.set_flow(ux, uy, rho)
-    other.f = twin.equilibrium(rho, ux, uy)
-    return fluid, other
+    return start(fluid, other, seed)
 
 
 def box(left, right, bottom, top, speed=0.0):
@@ -38,24 +29,9 @@ def box(left, right, bottom, top, speed=0.0):
     return {name: (kind, (k + 1) * speed if kind == "wall" else 0.0) for k, (name, kind) in enumerate(kinds.items())}
 
 
-def same(fluid, other, steps):
-    fields = [np.asarray(values) for values in fluid.fields()]
-    rho, jx, jy = other.moments()
-    expected = rho, (jx + other.force[0] / 2) / rho, (jy + other.force[1] / 2) / rho
-    for ours, theirs in zip(fields, expected, strict=True):
-        np.testing.assert_allclose(ours, theirs, rtol=0, atol=ROUND_OFF * steps)
-    if fluid.step % 2 == 0:
-        whole = fluid.populations[:, 1:-1, 1:-1] + np.array(twin.W)[ORDER][:, None, None]
-        np.testing.assert_allclose(whole, other.f[ORDER], rtol=0, atol=ROUND_OFF * steps)
-
-
 @pytest.mark.parametrize(("columns", "rows"), list(itertools.product(LIDS, LIDS)))
 def test_in_place_streaming_is_streaming_between_two_arrays(columns, rows):
-    fluid, other = pair(box(*columns, *rows, speed=0.01))
-    for step in range(1, 10):
-        fluid.advance()
-        other.step()
-        same(fluid, other, step)
+    go(*pair(box(*columns, *rows, speed=0.01)), steps=9)
 
 
 @pytest.mark.parametrize("wrong", ["tau", "magic", "force"])
@@ -73,11 +49,7 @@ def test_another_collision_is_told_apart(wrong):
 @pytest.mark.parametrize(("nx", "ny"), [(1, 5), (5, 1), (2, 2), (1, 1)])
 def test_boxes_one_cell_wide_stream_alike(nx, ny):
     for columns, rows in itertools.product((LIDS[0], LIDS[4]), (LIDS[0], LIDS[4])):
-        fluid, other = pair(box(*columns, *rows, speed=0.01), nx=nx, ny=ny)
-        for step in range(1, 6):
-            fluid.advance()
-            other.step()
-            same(fluid, other, step)
+        go(*pair(box(*columns, *rows, speed=0.01), nx=nx, ny=ny))
 
 
 @pytest.mark.parametrize("rows", LIDS[:4])

@@ -7,14 +7,12 @@ import pytest
 
 from porescale.lbm.boundary.sides import Sides
 from porescale.lbm.fluid import Fluid
-from porescale.lbm.lattice import CX, CY
+from tests.lbm.beside_twin import ROUND_OFF, go, same, start
 from tests.reference import lbm as twin
 
 EPS = np.finfo(float).eps
 NX, NY = 7, 6
 FORCE = (2e-4, -1e-4)
-# As in test_lbm_in_place.py: some 60 terms of size 1 in the twin per cell and step, all one way.
-ROUND_OFF = 60 * EPS
 KINDS = ["wall", "slip", "velocity", "pressure"]
 KEY = {"wall": "speed", "velocity": "velocity", "pressure": "density"}
 
@@ -36,29 +34,7 @@ def pair(left, right, bottom, top, *, nx=NX, ny=NY, seed=1):
     given = {f"{name}_{KEY[kind]}": numbers[name] for name, kind in kinds.items() if kind in KEY}
     fluid = Fluid(nx, ny, 0.7, force=FORCE, sides=Sides(**kinds, **given))
     other = twin.Lattice(nx, ny, 0.7, 3 / 16, FORCE, {name: (kinds[name], numbers[name]) for name in kinds})
-    random = np.random.default_rng(seed)
-    rho, ux, uy = 1 + 0.01 * random.uniform(-1, 1, (ny, nx)), *(0.05 * random.uniform(-1, 1, (2, ny, nx)))
-    fluid.set_flow(ux, uy, rho)
-    other.f = twin.equilibrium(rho, ux, uy)
-    return fluid, other
-
-
-def same(fluid, other, steps):
-    rho, jx, jy = other.moments()
-    expected = rho, (jx + other.force[0] / 2) / rho, (jy + other.force[1] / 2) / rho
-    for ours, theirs in zip(fluid.fields(), expected, strict=True):
-        np.testing.assert_allclose(ours, theirs, rtol=0, atol=ROUND_OFF * steps)
-    if fluid.step % 2 == 0:
-        order = [twin.C.index((int(cx), int(cy))) for cx, cy in zip(CX, CY, strict=True)]
-        whole = fluid.populations[:, 1:-1, 1:-1] + np.array(twin.W)[order][:, None, None]
-        np.testing.assert_allclose(whole, other.f[order], rtol=0, atol=ROUND_OFF * steps)
-
-
-def go(fluid, other, steps=5):
-    for step in range(1, steps + 1):
-        fluid.advance()
-        other.step()
-        same(fluid, other, step)
+    return start(fluid, other, seed)
 
 
 @pytest.mark.parametrize(("left", "bottom"), list(itertools.product(KINDS, [*KINDS, "periodic"])))

@@ -6,10 +6,13 @@ import cv2
 import numpy as np
 import pytest
 
+from porescale.benchmarks.piv import LARGEST, SMALLEST, bench_piv
+from porescale.common.compiled.jit import most_threads, set_threads
 from porescale.common.core.errors import InputError
 from porescale.common.pictures.film import write_film
 from porescale.common.record import snapshots
 from porescale.common.record.model import Snapshot
+from porescale.piv.estimate.measure import Settings, measure
 from porescale.piv.estimate.series import Shots, as_grid, averaged, measured
 from porescale.piv.fields.compare import compare
 from porescale.piv.fields.field import COLUMNS, in_metres, read, write_csv, write_openpiv
@@ -24,11 +27,13 @@ pytestmark = pytest.mark.usefixtures("one_thread")
 SIZE = (96, 128)
 
 
-def field(flow=None):
+DISC = flows.Discs(np.array([60.0]), np.array([48.0]), np.array([14.0]))
+
+
+def field(flow=None, size=SIZE, step=8):
     """An exact field of a flow, with a disc where there is one."""
-    flow = flow or flows.past_discs(SIZE, 2.0, flows.Discs(np.array([60.0]), np.array([48.0]), np.array([14.0])))
-    blank = np.zeros(SIZE, np.uint8)
-    return exact(Pair(blank, blank, np.zeros(SIZE, bool), flow), 16, 8)
+    blank = np.zeros(size, np.uint8)
+    return exact(Pair(blank, blank, blank > 0, flow or flows.past_discs(SIZE, 2.0, DISC)), 16, step)
 
 
 def same(one, other, digits=9):
@@ -109,11 +114,8 @@ def test_films_folders_and_patterns_hold_the_same_frames(tmp_path):
     opened = open_film([film], end=4)
     assert (opened.rate, opened.count(), len(list(opened))) == (25.0, 4, 4)
     # H.264 at quality 20 loses some grey levels of small bright spots; another frame differs by whole tracers.
-    assert (
-        np.abs(next(iter(opened)).astype(float) - images[0]).mean()
-        < 6
-        < np.abs(images[1].astype(float) - images[0]).mean()
-    )
+    own, other = (np.abs(it.astype(float) - images[0]).mean() for it in (next(iter(opened)), images[1]))
+    assert own < 6 < other
 
 
 def test_files_that_are_no_films_are_refused(tmp_path):
@@ -134,17 +136,11 @@ def test_a_still_background_goes_and_the_flow_stays(tmp_path):
     film = open_film([tmp_path])
     assert np.all(background(film, "least")[:, 40:44] == 255)
     for kind, off in (("none", True), ("least", False)):
-        found = averaged(Shots(film, background=kind), replace_settings(smooth=False))
+        found = averaged(Shots(film, background=kind), Settings(smooth=False))
         stripe = found.u[:, found.x == 40]
         assert (np.abs(stripe - 2).max() > 0.3) == off
-    fields = list(measured(Shots(film), replace_settings()))
+    fields = list(measured(Shots(film), Settings()))
     assert len(fields) == 4
-
-
-def replace_settings(**changes):
-    from porescale.piv.estimate.measure import Settings
-
-    return replace(Settings(), **changes)
 
 
 def test_masks_from_bitmaps_polygons_and_brightness(tmp_path):
@@ -167,9 +163,7 @@ def test_masks_from_bitmaps_polygons_and_brightness(tmp_path):
 
 
 def test_a_vortex_is_found_where_it_is():
-    flow = flows.lamb_oseen((256, 256), 4.0, 40.0)
-    blank = np.zeros((256, 256), np.uint8)
-    one = exact(Pair(blank, blank, np.zeros((256, 256), bool), flow), 16, 8)
+    one = field(flows.lamb_oseen((256, 256), 4.0, 40.0), (256, 256))
     (found,) = vortices(one)
     assert (found.x, found.y) == pytest.approx((127.5, 127.5), abs=2)
     assert found.circulation < 0  # with the clock, as seen with y up
@@ -202,9 +196,7 @@ def test_a_field_equals_itself_and_differs_by_what_is_added():
 
 def test_fields_on_other_grids_are_compared_where_both_are():
     flow = flows.taylor_green((256, 256), 2.0, 128.0)
-    blank = np.zeros((256, 256), np.uint8)
-    made = Pair(blank, blank, np.zeros((256, 256), bool), flow)
-    coarse, fine = exact(made, 16, 8), exact(made, 16, 4)
+    coarse, fine = (field(flow, (256, 256), step) for step in (8, 4))
     found = compare(coarse, fine)
     assert found.points == coarse.u.size
     assert found.rms < (8 / 128) ** 3  # cubic: (2 pi h/wavelength)^4 and smaller
@@ -223,12 +215,7 @@ def test_a_synthetic_pair_is_the_same_for_the_same_seed_and_loses_what_it_says()
 
 
 def test_any_number_of_threads_gives_the_same_bits():
-    from porescale.common.compiled.jit import most_threads, set_threads
-    from porescale.piv.estimate.measure import measure
-
-    made = pair(
-        flows.past_discs(SIZE, 1.0, flows.Discs(np.array([60.0]), np.array([48.0]), np.array([14.0]))), Camera(SIZE)
-    )
+    made = pair(flows.past_discs(SIZE, 1.0, DISC), Camera(SIZE))
     found = []
     for count in (1, most_threads()):
         set_threads(count)
@@ -238,8 +225,6 @@ def test_any_number_of_threads_gives_the_same_bits():
 
 
 def test_small_and_odd_pictures_are_measured_too():
-    from porescale.piv.estimate.measure import measure
-
     for size in ((17, 40), (33, 65), (101, 67)):
         made = pair(flows.uniform(1.5, -0.5), Camera(size, noise=0.0, lost=0.0), 2)
         found = measure(made.first, made.second)
@@ -250,8 +235,6 @@ def test_small_and_odd_pictures_are_measured_too():
 
 
 def test_brightness_and_contrast_may_change_between_pictures():
-    from porescale.piv.estimate.measure import measure
-
     made = pair(flows.uniform(1.5, -0.5), Camera((128, 128), lost=0.0), 2)
     plain = measure(made.first, made.second)
     dimmer = measure(made.first, made.second * 0.4 + 30)
@@ -259,8 +242,6 @@ def test_brightness_and_contrast_may_change_between_pictures():
 
 
 def test_the_bench_measures_pairs_of_its_sizes():
-    from porescale.benchmarks.piv import LARGEST, SMALLEST, bench_piv
-
     (work,) = bench_piv(SMALLEST, 1, "float32")
     work.call()
     assert (work.updates, work.unit, work.size) == (1.0, "pairs/s", SMALLEST)

@@ -11,5 +11,9 @@ Singles = NDArray[np.float32]
 """Real numbers in single precision."""
 Reals = NDArray[np.floating]
 """Real numbers in either precision."""
+Integers = NDArray[np.int64]
+"""Indices and counts."""
+Flags = NDArray[np.bool_]
+"""Truth values."""
 AnyArray = NDArray[Any]
 """Elements of any kind."""

@@ -8,7 +8,7 @@ import numpy as np
 from porescale.common.compiled.jit import kernel
 from porescale.common.core.types import Reals
 from porescale.coupling.coverage.rows import Patches
-from porescale.coupling.coverage.shape import Shape, periodic
+from porescale.coupling.coverage.shape import Shape
 from porescale.coupling.coverage.through_sides import move_sides, relax_density, side_links, side_loads
 from porescale.lbm.fluid import Fluid
 from porescale.lbm.lattice import WEIGHTS
@@ -35,7 +35,7 @@ class Bodies:
         self.load, self.direct, self.touching = np.zeros((m, 3)), np.zeros((m, 2)), np.zeros(m, np.bool_)
         self.mass = 0.0
         self._links = side_links(fluid)
-        self._grid = fluid.nx, fluid.ny, *periodic(fluid)
+        self._grid = fluid.nx, fluid.ny, *fluid.sides.periodic
         self._force = np.asarray(fluid.force, float)
         self._filled: list[Reals | None] = [None] * m
         self._inside, self._borne = np.zeros((m, 2)), np.zeros((m, 3))

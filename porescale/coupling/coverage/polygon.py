@@ -27,10 +27,9 @@ from numpy.typing import ArrayLike
 
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.core.types import Reals
+from porescale.common.core.types import Integers, Reals
 from porescale.coupling.coverage.discs import FAR, NOWHERE
 from porescale.coupling.coverage.rows import BLOCK, Patches, whole_blocks
-from porescale.coupling.coverage.shape import Integers, periodic
 from porescale.lbm.fluid import Fluid
 
 STRAIGHT = 1e-9
@@ -230,7 +229,7 @@ class Polygons:
         self._at = np.zeros_like(self.outline)
         self.covered_area = np.array([_area(each) for each in moved])
         widest = np.array([_extent(each) for each in moved])
-        for whole, joined in zip((fluid.nx, fluid.ny), periodic(fluid), strict=True):
+        for whole, joined in zip((fluid.nx, fluid.ny), fluid.sides.periodic, strict=True):
             if joined and widest.max(initial=0.0) > whole:
                 raise ValueError("a polygon is longer than the periodic box")
         cells: Integers = np.floor(widest).astype(np.int64) + SPARE

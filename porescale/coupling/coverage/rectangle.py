@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from porescale.common.compiled.jit import kernel
-from porescale.common.core.types import Reals
-from porescale.coupling.coverage.shape import Integers, Shape, periodic
+from porescale.common.core.types import Integers, Reals
+from porescale.coupling.coverage.shape import Shape
 from porescale.lbm.fluid import Fluid
 
 
@@ -43,7 +43,7 @@ class Rectangle(Shape):
     def size(self, fluid: Fluid, shift: float) -> tuple[int, int]:
         """Two cells more than it is long, and no more than the box between walls."""
         cells = []
-        for length, whole, joined in zip(self.extent, (fluid.nx, fluid.ny), periodic(fluid), strict=True):
+        for length, whole, joined in zip(self.extent, (fluid.nx, fluid.ny), fluid.sides.periodic, strict=True):
             if joined and length > whole:
                 raise ValueError("a rectangle is longer than the periodic box")
             wanted = int(np.floor(length)) + 2
@@ -55,7 +55,7 @@ class Rectangle(Shape):
         columns, rows = self.size(fluid, 0.0)
         corner[:] = np.floor(self.lower)
         for a, (count, whole, joined) in enumerate(
-            zip((columns, rows), (fluid.nx, fluid.ny), periodic(fluid), strict=True)
+            zip((columns, rows), (fluid.nx, fluid.ny), fluid.sides.periodic, strict=True)
         ):
             if not joined:
                 corner[a] = min(max(corner[a], 0), whole - count)

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from porescale.common.compiled.jit import kernel
-from porescale.common.core.types import Reals
+from porescale.common.core.types import Integers, Reals
 from porescale.coupling.coverage.discs import CHUNKS, SCRATCH, cover
 from porescale.coupling.coverage.rows import BLOCK, make_patches
-from porescale.coupling.coverage.shape import Integers, Shape, periodic
+from porescale.coupling.coverage.shape import Shape
 from porescale.lbm.fluid import Fluid
 
 
@@ -40,7 +40,7 @@ class Ring(Shape):
 
     def size(self, fluid: Fluid, shift: float) -> tuple[int, int]:
         """The box.  ValueError in a periodic one, where the rotating wall would overlap its own image."""
-        if any(periodic(fluid)):
+        if any(fluid.sides.periodic):
             raise ValueError("a ring stands in a box with sides that are not periodic")
         self.hole = self.radius + shift / self.radius
         return fluid.nx, fluid.ny

@@ -9,10 +9,8 @@ from abc import ABC, abstractmethod
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from porescale.common.core.types import Reals
+from porescale.common.core.types import Integers, Reals
 from porescale.lbm.fluid import Fluid
-
-Integers = NDArray[np.int64]
 
 
 class Shape(ABC):
@@ -48,8 +46,3 @@ class Shape(ABC):
     @abstractmethod
     def fill(self, fluid: Fluid, corner: Integers, fraction: NDArray[np.floating]) -> None:
         """Put the patch's lower left cell into corner (2,), and its solid fractions into fraction (height, stride)."""
-
-
-def periodic(fluid: Fluid) -> tuple[bool, bool]:
-    """Whether the box is periodic along x and y."""
-    return fluid.sides.periodic

@@ -17,12 +17,11 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from porescale.common.compiled.jit import kernel
+from porescale.common.core.types import Integers
 from porescale.lbm.boundary.law import Boundary, Link
 from porescale.lbm.boundary.sides import NAMES, Bounds
 from porescale.lbm.collision.law import moments, numbers
 from porescale.lbm.lattice import CX, CY, OPPOSITE, WEIGHTS, direction
-
-Slots = NDArray[np.int64]
 
 
 class OpenLinks:
@@ -38,13 +37,13 @@ class OpenLinks:
         self.bounds = bounds
         self._owners = [bounds.owners(link) for link in links]
         origins = [_origin(bounds, link) for link in links]
-        self.source: Slots = np.array([slot for slot, _ in origins], np.int64)
+        self.source: Integers = np.array([slot for slot, _ in origins], np.int64)
         self.even = _table([[bounds.flat(int(OPPOSITE[i]), at) for i in range(9)] for _, at in origins])
         self.odd = _table(
             [[bounds.flat(i, (x + int(CX[i]), y + int(CY[i]))) for i in range(9)] for _, (x, y) in origins]
         )
-        self.halo: Slots = np.array([bounds.flat(k.out, k.to) for k in links], np.int64)
-        self.inner: Slots = np.array([bounds.flat(int(OPPOSITE[k.out]), (k.x, k.y)) for k in links], np.int64)
+        self.halo: Integers = np.array([bounds.flat(k.out, k.to) for k in links], np.int64)
+        self.inner: Integers = np.array([bounds.flat(int(OPPOSITE[k.out]), (k.x, k.y)) for k in links], np.int64)
         self.along = np.stack([CX[self.source], CY[self.source]], 1).astype(dtype)
         self.weight = (2 * WEIGHTS[self.source]).astype(dtype)
         self.excess: NDArray[np.floating] = np.zeros(len(links), dtype)
@@ -101,7 +100,7 @@ def _origin(bounds: Bounds, link: Link) -> tuple[int, tuple[int, int]]:
     return back, ((link.to[0] - 1) % bounds.nx + 1, link.y)
 
 
-def _table(rows: list[list[int]]) -> Slots:
+def _table(rows: list[list[int]]) -> Integers:
     return np.array(rows, np.int64).reshape(-1, 9)
 
 

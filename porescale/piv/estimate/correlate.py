@@ -10,11 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, parallel_kernel, prange
-
-Single = NDArray[np.float32]
+from porescale.common.core.types import Singles
 
 SPARSE = 0.2
 """Share of a window that must be fluid in both pictures for a shift to count."""
@@ -65,7 +63,7 @@ class Layout(NamedTuple):
     start: int
     search: int
 
-    def sums(self, a: Single, b: Single) -> Single:
+    def sums(self, a: Singles, b: Singles) -> Singles:
         """Sum a(x) b(x + s) over every window, (ny, nx, 2 search + 1, 2 search + 1)."""
         (ny, nx), n, width = self.shape, self.blocks, 2 * self.search + 1
         found = np.empty((ny + n - 1, nx + n - 1, width, width), np.float32)
@@ -74,14 +72,16 @@ class Layout(NamedTuple):
         rows = sum((found[k : k + ny] for k in range(1, n)), found[:ny].copy())
         return sum((rows[:, k : k + nx] for k in range(1, n)), rows[:, :nx].copy())
 
-    def shifted(self, energy: Single) -> Single:
+    def shifted(self, energy: Singles) -> Singles:
         """``energy`` (of the window that begins at a pixel) at every window and shift, a view."""
         (ny, nx), width, first = self.shape, 2 * self.search + 1, self.start - self.search
         every = sliding_window_view(energy, (width, width))
         return every[first :: self.step, first :: self.step][:ny, :nx]
 
 
-def correlation(layout: Layout, a: Single, b: Single, masks: tuple[Single, Single] | None, energy: Single) -> Single:
+def correlation(
+    layout: Layout, a: Singles, b: Singles, masks: tuple[Singles, Singles] | None, energy: Singles
+) -> Singles:
     """R of every window and shift, (ny, nx, 2 search + 1, 2 search + 1).
 
     a, b : padded pictures less their local means, zero in solids and beyond the edges;  masks : 1 where fluid, None if

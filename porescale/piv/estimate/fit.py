@@ -14,17 +14,14 @@ from typing import Any
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-from porescale.common.core.types import Floats
+from porescale.common.core.types import Floats, Singles
 from porescale.piv.estimate.grid import Axis, Grid, expand
 from porescale.piv.estimate.interpolate import sample
 from porescale.piv.estimate.passes import Paths, moved, places, seen
 from porescale.piv.estimate.rims import WEIGHT, Rims
 from porescale.piv.estimate.splines import bending, collect, moments, weighted
 from porescale.piv.images.prepare import Ready
-
-Single = NDArray[np.float32]
 
 NORMAL = 1.4826
 """Standard deviation over the median size of normal errors."""
@@ -50,10 +47,10 @@ class Equations:
     products of the last two; and m, their correlation.
     """
 
-    sums: Single
-    squares: Single
-    correlation: Single
-    seen: Single
+    sums: Singles
+    squares: Singles
+    correlation: Singles
+    seen: Singles
 
 
 def equations(
@@ -93,7 +90,7 @@ def equations(
     return Equations(total, squares, np.asarray(match / max(1, count), np.float32), shown)
 
 
-def _local(sums: Single, least: float) -> tuple[Single, Single]:
+def _local(sums: Singles, least: float) -> tuple[Singles, Singles]:
     """Mean a, mean b, gain and n^2 (4, …) around each block, and the correlation there; zero where nothing is seen."""
     around = [blurred(it) for it in sums]
     light = np.maximum(around[0], np.float32(1e-6))
@@ -106,7 +103,7 @@ def _local(sums: Single, least: float) -> tuple[Single, Single]:
     return np.array([a, b, gain, floor], np.float32), np.asarray(alike, np.float32)
 
 
-def blurred(blocks: Single) -> Single:
+def blurred(blocks: Singles) -> Singles:
     """Means around each block, by a bell of standard deviation AROUND."""
     sigma = AROUND / BLOCK
     found: Any = cv2.GaussianBlur(blocks, (0, 0), sigma, borderType=cv2.BORDER_REFLECT_101)
@@ -117,7 +114,7 @@ BENT = 20.0
 """Diagonal of ``bending`` away from the edges."""
 
 
-def solved(grid: Grid, c: Single, known: Equations, stiffness: float, still: Rims | None = None) -> Single:
+def solved(grid: Grid, c: Singles, known: Equations, stiffness: float, still: Rims | None = None) -> Singles:
     """Update of the coefficients c (2, m, n) of u and v, by conjugate gradients.
 
     stiffness : s over the mean of w g^2 in the fluid and the square of a step;  still : rims where the field is zero.
@@ -130,14 +127,14 @@ def solved(grid: Grid, c: Single, known: Equations, stiffness: float, still: Rim
     spare = np.empty((2, hxx.shape[0], c.shape[2]), np.float32)
     at = np.empty((2, *hxx.shape), np.float32)
 
-    def carried(values: tuple[Single, Single], axes: tuple[Axis, Axis] = (down, across)) -> Single:
+    def carried(values: tuple[Singles, Singles], axes: tuple[Axis, Axis] = (down, across)) -> Singles:
         """Values of pixels gathered at the knots by the splines' weights."""
         found = np.empty_like(c)
         for k in (0, 1):
             collect(values[k], axes[0].first, axes[0].weights, axes[1].first, axes[1].weights, spare[k], found[k])
         return found
 
-    def bent(p: Single) -> Single:
+    def bent(p: Singles) -> Singles:
         """What stiffness, and rims that are still, take of the coefficients p."""
         found = np.empty_like(p)
         for k in (0, 1):
@@ -147,7 +144,7 @@ def solved(grid: Grid, c: Single, known: Equations, stiffness: float, still: Rim
                 found[k] += held * still.pulled(p[k])
         return found
 
-    def applied(p: Single) -> Single:
+    def applied(p: Singles) -> Singles:
         """The whole matrix times p; overwrites ``spare`` and ``at``."""
         for k in (0, 1):
             expand(p[k], down.first, down.weights, across.first, across.weights, spare[k], at[k])
@@ -176,12 +173,12 @@ def solved(grid: Grid, c: Single, known: Equations, stiffness: float, still: Rim
     return found
 
 
-def _dot(a: Single, b: Single) -> float:
+def _dot(a: Singles, b: Singles) -> float:
     """Sum of products, in one order whatever the number of threads."""
     return float((a * b).sum(dtype=np.float64))
 
 
-def variances(known: Equations, freedom: float) -> Single:
+def variances(known: Equations, freedom: float) -> Singles:
     """Variance of a component at each block, px^2, if one square px of data gave it: of H^-1 Q H^-1, H the information
     of pictures on an update, Q its variance, found from how it scatters (White 1980, Econometrica 48, 817).
 
@@ -204,7 +201,7 @@ def variances(known: Equations, freedom: float) -> Single:
     return np.where(good, 0.5 * np.maximum(0, both) / short**2, np.inf).astype(np.float32)
 
 
-def at_places(blocks: Single, x: Floats, y: Floats) -> Floats:
+def at_places(blocks: Singles, x: Floats, y: Floats) -> Floats:
     """Values of blocks at columns x and rows y, px, straight between the blocks' middles."""
     across, down = np.meshgrid((x + 0.5) / BLOCK - 0.5, (y + 0.5) / BLOCK - 0.5)
     found: Any = cv2.remap(

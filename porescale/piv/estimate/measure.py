@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import threads
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.core.types import Floats
+from porescale.common.core.types import Flags, Floats
 from porescale.piv.estimate.fit import Equations, at_places, equations, solved, variances
 from porescale.piv.estimate.grid import Grid, nearest
 from porescale.piv.estimate.outliers import THRESHOLD, filled, residual
@@ -19,8 +19,6 @@ from porescale.piv.estimate.passes import correlation_pass, paths
 from porescale.piv.estimate.rims import Rims, rims
 from porescale.piv.estimate.smoothing import smoothed
 from porescale.piv.images.prepare import Ready, ready
-
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,9 @@
 """Vectors that do not fit their neighbours, and what to put in their place.  Only vectors of the fluid count."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.compiled.jit import inline, kernel
-from porescale.common.core.types import Floats
-
-Flags = NDArray[np.bool_]
+from porescale.common.core.types import Flags, Floats
 
 THRESHOLD, LEAST = 2.0, 0.1
 """Of the normalised median test: bound, and fluctuation in px taken as normal (Westerweel & Scarano 2005)."""

@@ -12,12 +12,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.core.types import Floats
+from porescale.common.core.types import Floats, Singles
 from porescale.piv.estimate.correlate import Layout, correlation, peaks
 from porescale.piv.estimate.grid import Grid, spread
 from porescale.piv.images.prepare import Ready
 
-Single = NDArray[np.float32]
 Pairs = Sequence[tuple[Ready, Ready]]
 
 LEAST_WINDOW = 16
@@ -40,8 +39,8 @@ class Paths(NamedTuple):
     reach : no path goes further than this, px.
     """
 
-    first: tuple[Single, Single]
-    second: tuple[Single, Single]
+    first: tuple[Singles, Singles]
+    second: tuple[Singles, Singles]
     reach: float
 
 
@@ -106,14 +105,14 @@ def correlation_pass(
     return Correlated(part * found.u, part * found.v, found.value, found.ratio)
 
 
-def places(way: tuple[Single, Single]) -> tuple[Single, Single]:
+def places(way: tuple[Singles, Singles]) -> tuple[Singles, Singles]:
     """Source position of each pixel, px, for OpenCV."""
     rows, columns = way[0].shape
     x, y = np.arange(columns, dtype=np.float32), np.arange(rows, dtype=np.float32)[:, None]
     return np.asarray(way[0] + x, np.float32), np.asarray(way[1] + y, np.float32)
 
 
-def seen(one: Ready, at: tuple[Single, Single], reach: float) -> Single:
+def seen(one: Ready, at: tuple[Singles, Singles], reach: float) -> Singles:
     """1 where the picture shows fluid at places, none further than ``reach`` px from its pixel, else 0."""
     if one.solid:
         return moved(one.fluid, at, cv2.INTER_NEAREST)
@@ -126,12 +125,12 @@ def seen(one: Ready, at: tuple[Single, Single], reach: float) -> Single:
     return found
 
 
-def moved(image: Single, at: tuple[Single, Single], how: int) -> Single:
+def moved(image: Singles, at: tuple[Singles, Singles], how: int) -> Singles:
     """``image`` at places, zero outside."""
     found: Any = cv2.remap(image, at[0], at[1], how, borderMode=cv2.BORDER_CONSTANT, borderValue=0)
     return np.asarray(found, np.float32)
 
 
-def _padded(image: Single, pad: int) -> Single:
+def _padded(image: Singles, pad: int) -> Singles:
     """``image`` with a border of zeros."""
     return np.asarray(cv2.copyMakeBorder(image, pad, pad, pad, pad, cv2.BORDER_CONSTANT, value=0))

@@ -7,13 +7,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
+from porescale.common.core.types import Flags, Singles
 from porescale.piv.estimate.grid import Grid
-
-Single = NDArray[np.float32]
-Flags = NDArray[np.bool_]
 
 WEIGHT = 3.0
 """Square px of the fluid that a point of a rim, about one a px, weighs as much as: a spot's width."""
@@ -24,11 +21,11 @@ class Rims(NamedTuple):
 
     values: csr_matrix
 
-    def pulled(self, p: Single) -> Single:
+    def pulled(self, p: Singles) -> Singles:
         """Sum over points of the weights that carry coefficients p (m, n) to a point times p's value there."""
         return np.asarray(self.values.T @ (self.values @ p.ravel()), np.float32).reshape(p.shape)
 
-    def diagonal(self, shape: tuple[int, int]) -> Single:
+    def diagonal(self, shape: tuple[int, int]) -> Singles:
         """Squared weights summed over points, (m, n)."""
         return np.asarray(self.values.multiply(self.values).sum(0), np.float32).reshape(shape)
 

@@ -10,21 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Flags, Singles
 from porescale.common.record.model import Grid
-from porescale.piv.estimate.measure import (
-    Settings,
-    Vectors,
-    check_pictures,
-    measure,
-    measure_ready,
-    nothing,
-    unseen,
-)
+from porescale.piv.estimate.measure import Settings, Vectors, check_pictures, measure, measure_ready, nothing, unseen
 from porescale.piv.images.film import Film, background
-from porescale.piv.images.masks import Mask, masks
+from porescale.piv.images.masks import masks
 from porescale.piv.images.prepare import Ready, ready
-
-Single = NDArray[np.float32]
 
 
 @dataclass(frozen=True)
@@ -39,18 +30,18 @@ class Shots:
     polygons: tuple[str, ...] = ()
     background: str = "none"
 
-    def frames(self) -> Iterator[tuple[NDArray[Any], Mask | None]]:
+    def frames(self) -> Iterator[tuple[NDArray[Any], Flags | None]]:
         """Each frame less the background, and where it is solid."""
         still = self._still
         for frame, mask in zip(self.film, masks(self.mask, list(self.polygons), self.film), strict=False):
             yield (frame if still is None else frame.astype(np.float32) - still), mask
 
     @cached_property
-    def _still(self) -> Single | None:
+    def _still(self) -> Singles | None:
         """The background of the film, computed once; None without one."""
         return background(self.film, self.background)
 
-    def pairs(self) -> Iterator[tuple[tuple[NDArray[Any], Mask | None], tuple[NDArray[Any], Mask | None]]]:
+    def pairs(self) -> Iterator[tuple[tuple[NDArray[Any], Flags | None], tuple[NDArray[Any], Flags | None]]]:
         """Pairs of each frame with the next, with their masks."""
         return pairwise(self.frames())
 
@@ -109,7 +100,7 @@ class _Prepared:
             yield pair
 
 
-def _or(mask: Mask | None, empty: Mask) -> Mask:
+def _or(mask: Flags | None, empty: Flags) -> Flags:
     return empty if mask is None else mask
 
 

@@ -6,14 +6,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.atomic import write_text
 from porescale.common.core.errors import Fault, InputError
-from porescale.common.core.types import Floats
+from porescale.common.core.types import Flags, Floats
 from porescale.piv.estimate.measure import Vectors
-
-Flags = NDArray[np.bool_]
 
 COLUMNS = ("x", "y", "u", "v", "valid", "replaced", "solid", "correlation", "uncertainty")
 OPENPIV = ("x", "y", "u", "v", "flags", "mask")

@@ -6,23 +6,21 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.types import Flags
 from porescale.piv.images.film import Film, Picture, open_film, picture
-
-Mask = NDArray[np.bool_]
 
 GREY = 0.5
 """Share of white from which a pixel is solid."""
 
 
-def bitmap(image: Picture) -> Mask:
+def bitmap(image: Picture) -> Flags:
     """True where a mask picture is white."""
     return np.asarray(image > GREY * (np.iinfo(image.dtype).max if image.dtype.kind == "u" else 1.0), bool)
 
 
-def polygon(text: str, size: tuple[int, int]) -> Mask:
+def polygon(text: str, size: tuple[int, int]) -> Flags:
     """True within a polygon "x,y x,y x,y …", px, of a picture of ``size`` (rows, columns); InputError if none."""
     try:
         corners = np.array([[float(part) for part in corner.split(",")] for corner in text.split()])
@@ -35,7 +33,7 @@ def polygon(text: str, size: tuple[int, int]) -> Mask:
     return drawn > 0
 
 
-def segmented(image: Picture, *, bright: bool, least: int = 9) -> Mask:
+def segmented(image: Picture, *, bright: bool, least: int = 9) -> Flags:
     """Large bright (or dark) bodies of a picture: what is left of it, smaller than ``least`` px wiped out, by Otsu's
     bound.
 
@@ -50,7 +48,7 @@ def segmented(image: Picture, *, bright: bool, least: int = 9) -> Mask:
     return np.asarray(found > 0, bool)
 
 
-def masks(source: str | None, corners: list[str], film: Film) -> Iterator[Mask | None]:
+def masks(source: str | None, corners: list[str], film: Film) -> Iterator[Flags | None]:
     """The mask of every chosen frame of ``film``, in turn.
 
     source : None, a bitmap, a film or series of bitmaps (one a frame, frames chosen like the film's), "bright" or
@@ -67,7 +65,7 @@ def masks(source: str | None, corners: list[str], film: Film) -> Iterator[Mask |
         yield mask
 
 
-def _sources(source: str | None, film: Film) -> Iterator[Mask | None]:
+def _sources(source: str | None, film: Film) -> Iterator[Flags | None]:
     """Masks from files, None where there are none."""
     if source is None or source in ("bright", "dark"):
         yield from repeat(None)

@@ -6,10 +6,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from porescale.common.core.types import Singles
+from porescale.common.core.types import Flags, Singles
 from porescale.piv.estimate.interpolate import coefficients
-
-Mask = NDArray[np.bool_]
 
 RIM = 1
 """Pixels around a solid that its blurred edge brightens."""
@@ -29,7 +27,7 @@ class Ready(NamedTuple):
     solid: bool
 
 
-def ready(picture: NDArray[Any], solid: Mask | None, reach: int) -> Ready:
+def ready(picture: NDArray[Any], solid: Flags | None, reach: int) -> Ready:
     """Prepare a grey picture (rows, columns); ``reach`` : px over which the local mean is taken."""
     grey = np.ascontiguousarray(picture, np.float32)
     side = (2 * (reach // 2) + 1,) * 2

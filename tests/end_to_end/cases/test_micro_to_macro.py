@@ -29,14 +29,14 @@ def row(name: str) -> tuple[float, float]:
 def test_the_material_file_is_of_the_scene_beside_it():
     scene = load(CASE / "bed.toml")
     made = tomllib.loads((CASE / "material.toml").read_text(encoding="utf-8"))["made"]
-    asked, packing = section_of(scene), packing_of(scene)
+    section, packing = section_of(scene), packing_of(scene)
     assert scene.grains
-    assert made["seeds"] == list(range(packing.seed, packing.seed + asked.packings))
-    assert (made["grains"], made["strain"], made["pressure"]) == (asked.grains, asked.strain, pressure_of(scene))
+    assert made["seeds"] == list(range(packing.seed, packing.seed + section.packings))
+    assert (made["grains"], made["strain"], made["pressure"]) == (section.grains, section.strain, pressure_of(scene))
     assert (made["diameter"], made["grain_density"]) == (packing.diameter, scene.grains.density)
     assert made["lambda"] == scene.grains.hydraulic_radius_ratio
     assert made["stiffness_over_pressure"] == pytest.approx(stiffness_over_pressure(scene))
-    assert made["cells"] == pytest.approx(asked.cells, rel=0.01)
+    assert made["cells"] == pytest.approx(section.cells, rel=0.01)
 
 
 def test_both_columns_and_the_bed_are_of_the_same_grains():

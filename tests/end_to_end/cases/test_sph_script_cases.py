@@ -166,5 +166,5 @@ def test_a_dam_lets_through_what_its_levels_say_and_its_surface_runs_where_it_mu
         if which == "L = 2 H1":
             exact = [one.discharge / other.discharge, *one.surface / other.surface][["q", *PLACES].index(what)]
             off[name] = numbers[name.replace("2 H1", "H1")] * exact
-    told = ("q", *PLACES[1:])  # at a quarter of their length both surfaces are as high, within 3 %
-    assert missed(CASES / case, off) == [f"{what} over its exact value, L = 2 H1" for what in told]
+    different = ("q", *PLACES[1:])  # at a quarter of their length both surfaces are as high, within 3 %
+    assert missed(CASES / case, off) == [f"{what} over its exact value, L = 2 H1" for what in different]

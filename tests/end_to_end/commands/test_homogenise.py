@@ -105,10 +105,10 @@ def test_a_scene_becomes_a_material_that_the_continuum_reads(tmp_path, asks, cap
         rows = list(csv.DictReader(text))
     assert [row["seed"] for row in rows] == ["1", "2"]
     values = [float(row["porosity"]) for row in rows]
-    told = made["measured"]["porosity"]
-    assert told["values"] == values
-    assert told["mean"] == pytest.approx(sum(values) / 2)
-    assert told["standard_error"] == pytest.approx(abs(values[0] - values[1]) / 2)
+    porosity = made["measured"]["porosity"]
+    assert porosity["values"] == values
+    assert porosity["mean"] == pytest.approx(sum(values) / 2)
+    assert porosity["standard_error"] == pytest.approx(abs(values[0] - values[1]) / 2)
     assert made["made"]["lambda"] == 0.8
     assert 3.5 < made["made"]["cells"] < 4.5
     assert made["pores"]["permeability"] > 0

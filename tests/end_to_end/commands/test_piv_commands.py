@@ -198,10 +198,10 @@ def test_300_frames_take_no_more_memory_than_50_and_say_how_far_they_are(measure
         write(*those)
 
     monkeypatch.setattr(snapshots, "write_part", counted)
-    code, said, told = measure("film.mp4", "--mask", "masks", "--window", 32, "--out", "m", "--json")
+    code, said, lines = measure("film.mp4", "--mask", "masks", "--window", 32, "--out", "m", "--json")
     assert code == 0
     assert json.loads(said)["pairs"] == len(used) == 299
-    assert "298 of 299 pairs" in told[-1]
+    assert "298 of 299 pairs" in lines[-1]
     # 249 frames of a byte a pixel are 16 MB; a quarter of that is left to names and numbers of snapshots.
     assert max(used) - used[50] < 0.25 * 249 * size[0] * size[1]
     first, last = (columns(tmp_path / "m" / f"vectors_{k:04d}.csv") for k in (0, 298))
@@ -215,11 +215,11 @@ def test_300_frames_take_no_more_memory_than_50_and_say_how_far_they_are(measure
 
 def test_a_blank_frame_spoils_its_own_pairs_only(measure, tmp_path):
     filmed(5, tmp_path, {1: 255})
-    code, said, told = measure("film.mp4", "--mask", "masks", "--out", "m", "--json")
+    code, said, lines = measure("film.mp4", "--mask", "masks", "--out", "m", "--json")
     assert code == 0
     assert json.loads(said)["pairs"] == 4
-    assert len(told) == 2
-    assert all("overexposed" in line or "no tracers" in line for line in told)
+    assert len(lines) == 2
+    assert all("overexposed" in line or "no tracers" in line for line in lines)
     for k, good in enumerate((False, False, True, True)):
         found = columns(tmp_path / "m" / f"vectors_{k:04d}.csv")
         assert np.isfinite(found["u"][found["solid"] == 0]).all()
@@ -229,9 +229,9 @@ def test_a_blank_frame_spoils_its_own_pairs_only(measure, tmp_path):
 
 def test_a_film_that_shows_nothing_is_refused(measure, tmp_path):
     filmed(4, tmp_path, dict.fromkeys(range(4), 90))
-    code, out, told = measure("film.mp4", "--out", "m")
+    code, out, lines = measure("film.mp4", "--out", "m")
     assert (code, out) == (2, "")
-    assert "same tracers" in told[-1]
+    assert "same tracers" in lines[-1]
     assert not (tmp_path / "m" / "piv.vtkhdf").exists()
 
 
@@ -250,18 +250,18 @@ def test_an_overexposed_half_is_flagged_and_the_whole_refused(measure, tmp_path)
     found = columns(tmp_path / "m.csv")
     assert found["valid"][found["x"] < COLUMNS // 2 - 24].max() == 0
     assert found["valid"][found["x"] > COLUMNS // 2 + 16].mean() > 0.9
-    code, out, told = measure("white_0.png", "white_1.png", "--csv", "w.csv")
+    code, out, lines = measure("white_0.png", "white_1.png", "--csv", "w.csv")
     assert (code, out) == (2, "")
-    assert "overexposed" in told[0]
+    assert "overexposed" in lines[0]
 
 
 def test_pairs_of_a_film_are_averaged_over_steps_and_regions(measure, tmp_path, monkeypatch):
     filmed(9, tmp_path)
     monkeypatch.setattr(piv_measure, "PATIENCE", 0.0)
     chosen = ("--start", 1, "--end", 8, "--step", 2, "--region", "8,0,128,96", "--average", "--csv", "m.csv")
-    code, _, told = measure("film.mp4", "--mask", "masks", *chosen)
+    code, _, lines = measure("film.mp4", "--mask", "masks", *chosen)
     assert code == 0
-    assert "pass 1: 1 of 3 pairs" in told[0]
+    assert "pass 1: 1 of 3 pairs" in lines[0]
     found = columns(tmp_path / "m.csv")
     assert found["x"].min() == 16.0
     far = (found["solid"] == 0) & (np.hypot(found["x"] - 31, found["y"] - 48) > 28)

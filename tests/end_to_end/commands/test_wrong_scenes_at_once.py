@@ -1,4 +1,4 @@
-"""Scenes are judged before a compiler is imported for them, so that a wrong one is answered at once."""
+"""Scenes are checked before a compiler is imported for them, so that a wrong one is answered at once."""
 
 import shutil
 import sys
@@ -23,7 +23,7 @@ sys.exit(code)
 """
 
 
-def asked(package: str, *words: object) -> tuple[int, bool, list[str]]:
+def run(package: str, *words: object) -> tuple[int, bool, list[str]]:
     """Exit code of a command line, whether numba was imported, and the lines on stderr."""
     text = SCRIPT.format(first=FIRST[package])
     ended = done([sys.executable, "-c", text, *words], cwd=ROOT)
@@ -35,11 +35,11 @@ def asked(package: str, *words: object) -> tuple[int, bool, list[str]]:
 def test_what_is_no_scene_is_said_before_numba_is_imported(tmp_path, package):
     (tmp_path / "torn.toml").write_text("[domain\nwidth = 1\n")
     (tmp_path / "latin.toml").write_bytes("title = 'Körner'\n".encode("latin-1"))
-    code, compiler, lines = asked(package, "run", tmp_path / "torn.toml", "--out", tmp_path / "out")
+    code, compiler, lines = run(package, "run", tmp_path / "torn.toml", "--out", tmp_path / "out")
     assert (code, compiler, len(lines)) == (2, False, 1)
     assert "torn.toml: line 1" in lines[0]
     for name, words in (("none.toml", "no scene here"), ("latin.toml", "is not UTF-8"), ("torn.toml", "line 1")):
-        code, compiler, lines = asked(package, "check", tmp_path / name)
+        code, compiler, lines = run(package, "check", tmp_path / name)
         assert (code, compiler, len(lines)) == (2, False, 1)
         assert words in lines[0]
     assert sorted(path.name for path in tmp_path.iterdir()) == ["latin.toml", "torn.toml"]
@@ -54,20 +54,18 @@ none of and what it is taken for."""
 
 
 @pytest.mark.parametrize("package", FIRST)
-def test_a_scene_is_judged_before_numba_is_imported_whatever_is_wrong_with_it(tmp_path, package):
+def test_a_scene_is_checked_before_numba_is_imported_whatever_is_wrong_with_it(tmp_path, package):
     folder, number, said, key, meant = WRONG[package]
     scene = shutil.copy(ROOT / folder / "template.toml", tmp_path / "scene.toml")
     for words in (["check", scene], ["run", scene, "--out", tmp_path / "out"]):
-        code, compiler, lines = asked(package, *words, "--set", number)
+        code, compiler, lines = run(package, *words, "--set", number)
         assert (code, compiler) == (2, False)
         assert said in "".join(lines)
-    code, compiler, lines = asked(
-        package, "run", scene, "--set", key, "--set", "time.end=-1", "--out", tmp_path / "out"
-    )
+    code, compiler, lines = run(package, "run", scene, "--set", key, "--set", "time.end=-1", "--out", tmp_path / "out")
     assert (code, compiler, len(lines)) == (2, False, 2)
     assert f"did you mean {meant}" in "".join(lines)
     assert "out of range" in "".join(lines)
     # The twin: the question can be answered otherwise, here by what counts the machine's threads.
-    code, compiler, lines = asked(package, "run", scene, "--threads", 0, "--out", tmp_path / "out")
+    code, compiler, lines = run(package, "run", scene, "--threads", 0, "--out", tmp_path / "out")
     assert (code, compiler, len(lines)) == (2, True, 1)
     assert not (tmp_path / "out").exists()

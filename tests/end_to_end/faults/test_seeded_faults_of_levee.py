@@ -9,7 +9,7 @@ from continuum_sph.builders.simulation import Simulation
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import POROSITY
 from continuum_sph.validation.seepage.levee import Levee
-from tests.reference.seeded import INF, NAN, Running, put, running, times
+from tests.reference.seeded import INF, NAN, Running, coincide, put, running, times
 
 pytestmark = pytest.mark.slow
 
@@ -38,13 +38,7 @@ def flood(simulation: Simulation) -> None:
     simulation.flow.supply.reservoirs[0].levels[:] = 5.0
 
 
-def crowd(simulation: Simulation) -> None:
-    """Twenty particles of soil in one place."""
-    soil = simulation.flow.ground.soil
-    soil.x[40:60] = soil.x[40]
-
-
-def inside(count: int) -> Callable[[Simulation], None]:
+def thrown_out(count: int) -> Callable[[Simulation], None]:
     """So many particles of water in the soil are thrown out over the levee, the tank, or beneath its floor."""
 
     def fault(simulation: Simulation) -> None:
@@ -68,10 +62,10 @@ FAULTS: dict[str, Callable[[Simulation], None]] = {
     "soil thrown up": put(f"{SOIL}x", (50, 1), 3.0),
     "soil thrown through the wall": put(f"{SOIL}x", (50, 0), -1.0),
     "soil thrown aside": put(f"{SOIL}x", (50, 0), 1.0),
-    "soil crowded": crowd,
+    "soil crowded": coincide(f"{SOIL}x", slice(40, 60)),
     "porosity runs away": times(f"{SOIL}density", slice(30, 60), 3.0),
-    "water thrown out of the levee": inside(1),
-    "much water thrown out of the levee": inside(30),
+    "water thrown out of the levee": thrown_out(1),
+    "much water thrown out of the levee": thrown_out(30),
     "water thrown through the wall": put(f"{WATER}x", (20, 0), -1.0),
     "water thrown through the floor": put(f"{WATER}x", (20, 1), -1.0),
     **{f"water {name} {value:g}": put(f"{WATER}{name}", at, value) for name, at, value in (

@@ -19,8 +19,8 @@ STATE: dict[str, Any] = {"step": 3, "grains": {"x": np.arange(6.0).reshape(3, 2)
 
 
 def command(*words: str) -> subprocess.CompletedProcess[str]:
-    told = [sys.executable, "-m", "tests.fingerprints", *words]
-    return subprocess.run(told, cwd=ROOT, capture_output=True, text=True, check=False)
+    line = [sys.executable, "-m", "tests.fingerprints", *words]
+    return subprocess.run(line, cwd=ROOT, capture_output=True, text=True, check=False)
 
 
 def changed(**grains: Any) -> dict[str, Any]:

@@ -251,7 +251,7 @@ OF_FRAMES: dict[str, tuple[Callable[[Path], None], str]] = {
 
 
 @pytest.mark.parametrize("way", OF_FRAMES)
-def test_indices_of_frames_and_bonds_are_judged(tmp_path, complaints, halves, way):
+def test_indices_of_frames_and_bonds_are_checked(tmp_path, complaints, halves, way):
     half, (spoil, words) = halves("framed"), OF_FRAMES[way]
     run = Path(shutil.copytree(half.folder, tmp_path / "run"))
     grains = read_checkpoint(run / "checkpoint.h5")["state"]["grains"]
