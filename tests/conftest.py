@@ -20,6 +20,9 @@ settings.load_profile("steady")
 
 # Tests compare one thread with two, on machines with one core too; read by numba when it is first imported.
 os.environ.setdefault("NUMBA_NUM_THREADS", str(max(2, os.cpu_count() or 1)))
+# Threads of OpenBLAS spin while they wait for each other: beside other work a solve of 1 s takes minutes.  Read at the
+# first import of numpy.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

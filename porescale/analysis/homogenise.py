@@ -76,7 +76,7 @@ def require_measurable(scene: Scene) -> None:
         if getattr(scene, name):
             faults.append(Fault(name, None, "is not measured: specimens are of single discs", repair="leave it out"))
     if not faults and not pressure_of(scene) > 0.0:
-        problem, repair = "is needed where weight presses nothing", "give the stress that the soil is asked about"
+        problem, repair = "is needed where weight presses nothing", "give the stress at which the soil is tested"
         faults.append(Fault("homogenise.pressure", None, problem, "Pa", "> 0", repair))
     if not faults and stiffness_over_pressure(scene) < 1.0 / DEEPEST:
         problem = f"would press grains into each other by {1.0 / stiffness_over_pressure(scene):.2g} of a diameter"

@@ -74,7 +74,7 @@ ASLEEP = "grains asleep ()"
 
 MASS = Held(
     "mass over that at rest, less 1 ()", lambda steps: 1e-12,
-    "asked for; the sum of nine rounded populations errs by eps a step either way, 1e3 eps in a million",
+    "required; the sum of nine rounded populations errs by eps a step either way, 1e3 eps in a million",
 )  # fmt: skip
 ROUNDING = "round-off: every step, and each of its 4 contact steps, rounds velocities, all one way: 5 eps a step"
 PLACES = ("mean place x (diameters)", "mean height (diameters)", "highest grain (diameters)")

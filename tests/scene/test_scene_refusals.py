@@ -149,7 +149,7 @@ def test_a_periodic_box_in_which_a_grain_meets_another_twice_is_refused(side, en
     narrow = {"grains": grains, "gate": None} | {f"domain__{end}": "periodic" for end in ends.split()}
     if not wet:
         narrow |= {"fluid": None, "grains__hydraulic_radius_ratio": None}
-    line = f"domain.{side} = 0.0038 m: is periodic and so short that a grain would meet another twice "
+    line = f"domain.{side} = 0.0038 m: is periodic and so short that a grain would be in contact with another twice "
     line += f"(allowed: >= 0.004 m); make the box 0.004 m {word}, or the grains smaller"
     assert lines(**narrow, **{f"domain__{side}": 0.0038}) == [line]
     assert build(validate(Scene, table(**narrow, **{f"domain__{side}": 0.004}))).grains.discs.count == 1

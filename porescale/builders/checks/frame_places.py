@@ -74,7 +74,7 @@ def _out_of_the_box(domain: Domain, placed: Sequence[Placed]) -> list[Fault]:
             faults.setdefault(it.key, Fault(it.key, where, "reaches out of the box", "m", repair="move it inside"))
         long = np.ptp(at, axis=0) > 0.5 * size
         if np.any(long & periodic):
-            problem = "is longer than half of a periodic box, so that it would meet its own image"
+            problem = "is longer than half of a periodic box, so that it would be in contact with its own image"
             faults.setdefault(it.key, Fault(it.key, None, problem, repair="make the box larger, or walls of its sides"))
     return list(faults.values())
 

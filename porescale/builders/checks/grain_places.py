@@ -113,7 +113,7 @@ def _too_short(domain: Domain, largest: float, skin: float, faults: list[Fault])
     sides = (("width", domain.width, "wide"), ("height", domain.height, "high"))
     short = [side for side, periodic in zip(sides, domain.periodic, strict=True) if periodic and side[1] < least]
     for name, length, word in short:
-        problem = "is periodic and so short that a grain would meet another twice"
+        problem = "is periodic and so short that a grain would be in contact with another twice"
         repair = f"make the box {least:.4g} m {word}, or the grains smaller"
         faults.append(Fault(f"domain.{name}", length, problem, "m", f">= {least:.4g}", repair))
     return bool(short)

@@ -120,7 +120,9 @@ def _check_box(scene: Scene, faults: list[Fault]) -> None:
         repair = "give it once, or the same everywhere"
         faults.append(Fault("rectangle.make_good", None, "differs from one to the next", repair=repair))
     if scene.grains and any(d.periodic):
-        faults.append(Fault("rectangle", None, "meets grains in a periodic box", repair="give the box walls"))
+        faults.append(
+            Fault("rectangle", None, "is not available beside grains in a periodic box", repair="give the box walls")
+        )
     for k, it in enumerate(scene.rectangle):
         key = f"rectangle[{k}]"
         for a, axis in enumerate("xy"):

@@ -61,7 +61,7 @@ def require_length(path: Path, keep: int) -> None:
     """InputError unless the file has ``keep`` bytes or more."""
     size = path.stat().st_size if path.exists() else 0
     if size < keep:
-        problem = f"has {size} bytes, the checkpoint knows {keep}"
+        problem = f"has {size} bytes, the checkpoint needs {keep}"
         raise InputError(Fault("series", str(path), problem, repair="start the run anew"))
 
 

@@ -186,7 +186,7 @@ def hexagonal(
 @VALIDATIONS.row(
     "coupling.square_arrays",
     source="Stokes drag on square arrays of cylinders, solid fraction 0.1, 0.2, 0.3, by point forces",
-    because="1 % was asked for as the mean over places in a cell, and 2 % of single ones, or the row fails: the most"
+    because="1 % was required as the mean over places in a cell, and 2 % of single ones, or the row fails: the most"
     " that the radius shift leaves, chosen so that c = 0.6 is met too; 16 places give the mean to 0.01 %",
     tolerance=REQUIRED,
 )
@@ -210,7 +210,7 @@ def arrays_at_any_viscosity() -> Measured:
 @VALIDATIONS.row(
     "coupling.denser_square_array",
     source="as for square arrays, solid fraction 0.4",
-    because="asked for: 2 % as the mean over places, 4 % of single ones; the gap is 4 cells wide",
+    because="required: 2 % as the mean over places, 4 % of single ones; the gap is 4 cells wide",
     tolerance=2 * REQUIRED,
 )
 def denser_array() -> Measured:
@@ -221,7 +221,7 @@ def denser_array() -> Measured:
 @VALIDATIONS.row(
     "coupling.dense_square_array",
     source="as for square arrays, solid fraction 0.6",
-    because="asked for: 5 %; the drag goes as the gap of 2.9 cells to the power -5/2, and is off as if that were 0.05"
+    because="required: 5 %; the drag goes as the gap of 2.9 cells to the power -5/2, and is off as if that were 0.05"
     " cells wider, a quarter of a per cent of the diameter",
     tolerance=0.05,
 )
@@ -323,7 +323,7 @@ def leak(diameter: float, method: Method = DEFAULT) -> float:
 @VALIDATIONS.row(
     "coupling.leak_of_touching_discs",
     source="touching discs close the plane: K = 0",
-    because="asked for: 5.5e-5 R² at 15 cells per diameter; and a fourth of what it is or less at 30 (second order), or"
+    because="required: 5.5e-5 R² at 15 cells per diameter; and a fourth of what it is or less at 30 (second order), or"
     " the row fails",
     tolerance=5.5e-5,
 )

@@ -43,7 +43,7 @@ def neutral() -> Measured:
 @VALIDATIONS.row(
     "coupling.mass",
     source="each collision, side and plate conserves mass",
-    because="asked for: 1e-12 of the mass",
+    because="required: 1e-12 of the mass",
     tolerance=1e-12,
 )
 def mass() -> Measured:
@@ -92,7 +92,7 @@ def mirror_error(acceleration: tuple[float, float], steps: int, nudge: float = 0
 @VALIDATIONS.row(
     "coupling.mirror",
     source="symmetry of the equations, left for right",
-    because="asked for: 1e-12 of the box",
+    because="required: 1e-12 of the box",
     tolerance=1e-12,
 )
 def mirror() -> Measured:

@@ -95,7 +95,7 @@ def fast_starts(cases: tuple[tuple[float, float, float], ...], **options: bool |
 @VALIDATIONS.row(
     "coupling.fast_start",
     source="a cylinder set moving at once, Re 100 and 500, tau 0.5225 and 0.5045: body-fitted solution in the tests",
-    because="2.5 %, half of what was asked for: the constants of the soft rim leave up to 1.2 % where they were chosen"
+    because="2.5 %, half of what was required: the constants of the soft rim leave up to 1.2 % where they were chosen"
     " (10 and 15 cells, speed 0.04), the box of 40 by 30 diameters 0.3 % (its mirror images hold back (pi/2)(d/W)²"
     " = 0.1 to 0.2 %), the place in the cell and the speed the rest; noise at most 2 %, or the row fails",
     tolerance=0.025,
@@ -108,7 +108,7 @@ def fast() -> Measured:
 @VALIDATIONS.row(
     "coupling.fast_starts",
     source="the same for Re 50 to 500, tau 0.52 to 0.5005, in directions that no constant was chosen for",
-    because="5 %: what was asked for; at a given Reynolds number it grows as the speed falls, as central moments damp"
+    because="5 %: what was required; at a given Reynolds number it grows as the speed falls, as central moments damp"
     " short waves at a rate that does not fall with the viscosity; noise at most 2 %, or the row fails",
     tolerance=0.05,
     slow=True,

@@ -322,7 +322,7 @@ def films() -> Measured:
 @VALIDATIONS.row(
     "coupling.towed_noise",
     source="steady drag, whatever the place in the cell",
-    because="asked for: 0.35 % at 10 cells per diameter, tau 0.8",
+    because="required: 0.35 % at 10 cells per diameter, tau 0.8",
     tolerance=3.5e-3,
 )
 def noise() -> Measured:

@@ -73,7 +73,7 @@ def repose(settling: int = 12_000, running: int = 100_000, seed: int = 1) -> tup
 @VALIDATIONS.row(
     "dem.energy_book_of_the_repose_run",
     source="first law; DEMseg tutorial I-7: 582 discs, 112 000 steps, friction, a gate that opens",
-    because="asked for: 1e-3 of the energy turned over, at the tutorial's own step (18 steps in a contact)",
+    because="required: 1e-3 of the energy turned over, at DEMseg's own step (18 steps in a contact)",
     tolerance=1e-3,
     slow=True,
 )

@@ -154,7 +154,7 @@ def discs() -> Measured:
 @VALIDATIONS.row(
     "dem.rock_of_discs_is_weak_when_pressed",
     source=TUTORIAL + ".1: compressive over tensile strength about 2 for discs",
-    because="1.5 to 3 as asked for: a factor of the root of 2 either way",
+    because="1.5 to 3 as required: a factor of the root of 2 either way",
     tolerance=0.5,
     slow=True,
 )
@@ -168,7 +168,7 @@ def ratio_of_discs() -> Measured:
 @VALIDATIONS.row(
     "dem.rock_of_polygons_is_strong_when_pressed",
     source=TUTORIAL + ".2: compressive over tensile strength about 10 for triangles, more for Voronoi cells",
-    because="at least 6 for triangles as asked for, and for cells no less than for triangles: what is short of it",
+    because="at least 6 for triangles as required, and for cells no less than for triangles: what is short of it",
     tolerance=0.0,
     slow=True,
 )

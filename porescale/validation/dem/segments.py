@@ -242,7 +242,7 @@ def masses() -> Measured:
 @VALIDATIONS.row(
     "dem.energy_of_bouncing_segments",
     source="first law; " + TUTORIAL + " I-2: segment and polygon that bounce, without loss",
-    because="asked for: below 1e-3 of the kinetic energy, here at 200 steps in a contact",
+    because="required: below 1e-3 of the kinetic energy, here at 200 steps in a contact",
     tolerance=1e-3,
 )
 def bouncing_row() -> Measured:

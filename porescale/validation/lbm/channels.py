@@ -176,7 +176,7 @@ def couette_row() -> Measured:
 @VALIDATIONS.row(
     "lbm.taylor_green_order",
     source="Taylor & Green 1937, vortices that a uniform flow carries; diffusive scaling",
-    because="the next term of the error is fourth order: (16/32)² of 1.5 % of 16's own error, 0.01; 0.1 asked for",
+    because="the next term of the error is fourth order: (16/32)² of 1.5 % of 16's own error, 0.01; 0.1 required",
     tolerance=0.1,
 )
 def taylor_green_row() -> Measured:

@@ -107,7 +107,7 @@ WAVE_NUMBER = 2 * np.pi / CELLS
 @VALIDATIONS.row(
     "lbm.taylor_green_order_of_each_operator",
     source="Taylor & Green 1937, vortices that a uniform flow carries; diffusive scaling",
-    because="the next term of the error is fourth order: (16/32)² of a few % of 16's own error, 0.01; 0.1 asked for",
+    because="the next term of the error is fourth order: (16/32)² of a few % of 16's own error, 0.01; 0.1 required",
     tolerance=0.1,
 )
 def taylor_green() -> Measured:

@@ -178,7 +178,7 @@ def _rms(values: Floats) -> float:
 
 ROUND_OFF = float(np.finfo(np.float32).eps)
 ROWS = "exact displacement; tracers 2.8 px, 0.05 a pixel, noise 3 grey levels, 5 % lost, window 16, every fluid vector"
-PUBLISHED = "OpenPIV 0.26.1 (64, 32, 16 px, deformed) reaches {best} px on such pairs; half of the least is asked for"
+PUBLISHED = "OpenPIV 0.26.1 (64, 32, 16 px, deformed) reaches {best} px on such pairs; half of the least is required"
 
 
 @VALIDATIONS.row(
@@ -219,7 +219,7 @@ def quintic_row() -> Measured:
 @VALIDATIONS.row(
     "piv.still_pair",
     source="a picture against itself does not move",
-    because="0.001 px asked for: a tenth and less of what noise and lost tracers make of other pairs",
+    because="0.001 px required: a tenth and less of what noise and lost tracers make of other pairs",
     tolerance=1e-3,
 )
 def still_row() -> Measured:
