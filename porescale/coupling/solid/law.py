@@ -107,6 +107,28 @@ def collide_then_blend(f, cell, shares, m, rate, law, solid):
     return blend(f, collide(f, m, rate, law), cell, m, rate, solid)
 
 
+@inline
+def bounce(f, g, b, px, py):
+    """Populations (1 - B) g_i + B f_-i + w_i c_i.p of a cell: those of the fluid bounced back, and a momentum p/3."""
+    f0, f1, f2, f3, f4, f5, f6, f7, f8 = f
+    g0, g1, g2, g3, g4, g5, g6, g7, g8 = g
+    c = numbers(b)
+    free = c.one - b
+    sx, sy = c.w1 * px, c.w1 * py
+    up, down = c.w2 * (px + py), c.w2 * (py - px)
+    return (
+        free * g0 + b * f0,
+        free * g1 + (b * f2 + sx),
+        free * g2 + (b * f1 - sx),
+        free * g3 + (b * f4 + sy),
+        free * g4 + (b * f3 - sy),
+        free * g5 + (b * f6 + up),
+        free * g6 + (b * f5 - up),
+        free * g7 + (b * f8 + down),
+        free * g8 + (b * f7 - down),
+    )
+
+
 def with_sharp_rims(law: type) -> type:
     """Give a law, as a decorator of its class, bodies for the share 1 - B and sharp rims; returns it."""
     force_share.of(law)(free_share)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from porescale.coupling.solid.entry import Holds, SolidOperator
-from porescale.coupling.solid.law import blend, momentum_to_solid, with_sharp_rims
+from porescale.coupling.solid.law import blend, bounce, momentum_to_solid, with_sharp_rims
 from porescale.lbm.collision.law import numbers
 
 
@@ -27,28 +27,9 @@ class OddSc1(NamedTuple):
 @blend.of(OddSc1)
 def _blend(f, g, cell, m, rate, solid):
     """Antisymmetric half of SC1."""
-    f0, f1, f2, f3, f4, f5, f6, f7, f8 = f
-    g0, g1, g2, g3, g4, g5, g6, g7, g8 = g
-    b, vx, vy, ux, uy = cell.b, cell.vx, cell.vy, m.ux, m.uy
-    c = numbers(b)
-    rho = c.one + m.d
-    free = c.one - b
-    p = c.three * rho * b
-    px = p * (vx + ux)
-    py = p * (vy + uy)
-    sx, sy = c.w1 * px, c.w1 * py
-    up, down = c.w2 * (px + py), c.w2 * (py - px)
-    return (
-        free * g0 + b * f0,
-        free * g1 + (b * f2 + sx),
-        free * g2 + (b * f1 - sx),
-        free * g3 + (b * f4 + sy),
-        free * g4 + (b * f3 - sy),
-        free * g5 + (b * f6 + up),
-        free * g6 + (b * f5 - up),
-        free * g7 + (b * f8 + down),
-        free * g8 + (b * f7 - down),
-    )
+    c = numbers(cell.b)
+    p = c.three * (c.one + m.d) * cell.b
+    return bounce(f, g, cell.b, p * (cell.vx + m.ux), p * (cell.vy + m.uy))
 
 
 @momentum_to_solid.of(OddSc1)

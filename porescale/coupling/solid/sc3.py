@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from porescale.coupling.solid.entry import SolidOperator
-from porescale.coupling.solid.law import blend, momentum_to_solid, with_sharp_rims
+from porescale.coupling.solid.law import blend, bounce, momentum_to_solid, with_sharp_rims
 from porescale.lbm.collision.law import numbers
 
 
@@ -27,27 +27,9 @@ class Sc3(NamedTuple):
 @blend.of(Sc3)
 def _blend(f, g, cell, m, rate, solid):
     """Bounce-back from the moving solid."""
-    f0, f1, f2, f3, f4, f5, f6, f7, f8 = f
-    g0, g1, g2, g3, g4, g5, g6, g7, g8 = g
-    b, vx, vy = cell.b, cell.vx, cell.vy
-    c = numbers(b)
-    rho = c.one + m.d
-    free = c.one - b
-    p = c.two * c.three * rho * b
-    px, py = p * vx, p * vy
-    sx, sy = c.w1 * px, c.w1 * py
-    up, down = c.w2 * (px + py), c.w2 * (py - px)
-    return (
-        free * g0 + b * f0,
-        free * g1 + (b * f2 + sx),
-        free * g2 + (b * f1 - sx),
-        free * g3 + (b * f4 + sy),
-        free * g4 + (b * f3 - sy),
-        free * g5 + (b * f6 + up),
-        free * g6 + (b * f5 - up),
-        free * g7 + (b * f8 + down),
-        free * g8 + (b * f7 - down),
-    )
+    c = numbers(cell.b)
+    p = c.two * c.three * (c.one + m.d) * cell.b
+    return bounce(f, g, cell.b, p * cell.vx, p * cell.vy)
 
 
 @momentum_to_solid.of(Sc3)
