@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from porescale.coupling.psm import SaturatedCells
-from porescale.coupling.solid import exact_wall
+from porescale.coupling.solid import exact_wall, odd_sc1, sc3
 from porescale.coupling.solid.choose import SOLID_OPERATORS, choose_solid
-from porescale.coupling.solid.law import SolidCell, blend, force_share, momentum_to_solid, rates
+from porescale.coupling.solid.law import SolidCell, blend, bounce, force_share, momentum_to_solid, rates
 from porescale.coupling.weighting.choose import WEIGHTINGS, choose_weight, fitting_weight
 from porescale.coupling.weighting.law import weight
 from porescale.lbm.boundary.sides import Sides
@@ -169,6 +169,8 @@ def test_an_operator_stays_in_single_precision(solid, monkeypatch):
     # Compiled ones hand numbers to Python in double precision.
     for name in ("rates", "_rates", "_missing_momentum", "add_partial"):
         monkeypatch.setattr(exact_wall, name, getattr(exact_wall, name).py_func)
+    for module in (odd_sc1, sc3):
+        monkeypatch.setattr(module, "bounce", bounce.py_func)
     law = choose_solid(solid, 0.8, 1.0, np.float32)
     b = np.float32(0.3)
     found = [
