@@ -96,7 +96,7 @@ def test_a_series_cut_back_and_continued_is_the_uninterrupted_one(tmp_path):
 
 
 def test_a_series_shorter_than_its_checkpoint_is_refused(tmp_path):
-    with pytest.raises(InputError, match="the checkpoint knows 100"):
+    with pytest.raises(InputError, match="the checkpoint needs 100"):
         Series(tmp_path / "series.csv", 100)
 
 
