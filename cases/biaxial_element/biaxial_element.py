@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from continuum_sph.soil import Material
-from continuum_sph.soil.state import XX, YY
+from continuum_sph.soil.stress import XX, YY
 from continuum_sph.validation.soil.element import biaxial, confined
 from porescale.output.case import conclude, options, stage
 

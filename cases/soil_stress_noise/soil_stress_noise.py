@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 
 from continuum_sph.builders.soil import geostatic
 from continuum_sph.soil import Material, SoilFlow
-from continuum_sph.soil.state import XX, YY
+from continuum_sph.soil.stress import XX, YY
 from continuum_sph.validation.soil.setups import in_tank, run_until
 from porescale.common.neighbors import square_lattice
 from porescale.output.case import conclude, options, stage

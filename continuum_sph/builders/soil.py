@@ -23,7 +23,7 @@ from continuum_sph.scene.soil import SoilSection
 from continuum_sph.seepage.sheet_pile import CutPairList, Pile
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw, porosity
 from continuum_sph.soil.parameters import RULES
-from continuum_sph.soil.state import XX, XY, YY, ZZ
+from continuum_sph.soil.stress import XX, XY, YY, ZZ
 from continuum_sph.soil.walls import HOLDING, SLIPPING
 from continuum_sph.water.image_walls import facing
 from continuum_sph.water.pressure_walls import tank_walls

@@ -30,7 +30,6 @@ import numpy as np
 
 from continuum_sph.soil.gradient import before
 from continuum_sph.soil.state import (
-    GROWN,
     GXX,
     GXY,
     GYX,
@@ -45,13 +44,10 @@ from continuum_sph.soil.state import (
     VOLUME,
     VX,
     VY,
-    XX,
-    XY,
-    YY,
-    ZZ,
     X,
     Y,
 )
+from continuum_sph.soil.stress import GROWN, XX, XY, YY, ZZ
 from continuum_sph.water.bundles import image, inverse_period, nearest_image
 from continuum_sph.water.smoothing import slope_scale, slope_shape
 from porescale.common.compiled.jit import inline, parallel_kernel, prange

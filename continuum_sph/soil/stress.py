@@ -15,25 +15,11 @@ import numpy as np
 
 from continuum_sph.soil.material import AREA, SHEAR, softening
 from continuum_sph.soil.plasticity import new_stress
-from continuum_sph.soil.state import (
-    GROWN,
-    GXX,
-    GXY,
-    GYX,
-    GYY,
-    SHEAR_RATE,
-    SOUND_OVER_DENSITY,
-    TXX,
-    TXY,
-    TYX,
-    TYY,
-    VOLUME,
-    XX,
-    XY,
-    YY,
-    ZZ,
-)
+from continuum_sph.soil.state import GXX, GXY, GYX, GYY, SHEAR_RATE, SOUND_OVER_DENSITY, TXX, TXY, TYX, TYY, VOLUME
 from porescale.common.compiled.jit import parallel_kernel, prange
+
+XX, YY, XY, ZZ, GROWN = range(5)
+"""Columns of a stress, Pa, compression positive; and, of what diffuses, that of the volume, m²/s."""
 
 
 class Straining(NamedTuple):

@@ -16,7 +16,8 @@ without cohesion has no tension to act on, and soil that cannot yield is left al
 
 import numpy as np
 
-from continuum_sph.soil.state import MASS, VOLUME, XX, XY, YY, X, Y
+from continuum_sph.soil.state import MASS, VOLUME, X, Y
+from continuum_sph.soil.stress import XX, XY, YY
 from continuum_sph.water.bundles import image
 from continuum_sph.water.smoothing import kernel_value, slope_scale, slope_shape
 from porescale.common.compiled.jit import inline, parallel_kernel, prange

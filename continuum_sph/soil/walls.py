@@ -12,22 +12,8 @@ import numpy as np
 
 from continuum_sph.soil.gradient import before
 from continuum_sph.soil.material import AREA, DENSITY, SHEAR
-from continuum_sph.soil.state import (
-    MASS,
-    TXX,
-    TXY,
-    TYX,
-    TYY,
-    VOLUME,
-    VX,
-    VY,
-    XX,
-    XY,
-    YY,
-    ZZ,
-    X,
-    Y,
-)
+from continuum_sph.soil.state import MASS, TXX, TXY, TYX, TYY, VOLUME, VX, VY, X, Y
+from continuum_sph.soil.stress import XX, XY, YY, ZZ
 from continuum_sph.water.bundles import image
 from continuum_sph.water.smoothing import kernel_value
 from porescale.common.compiled.jit import parallel_kernel, prange

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from continuum_sph.soil import SoilFlow
-from continuum_sph.soil.state import GROWN
+from continuum_sph.soil.stress import GROWN
 from continuum_sph.validation.seepage.levee import FAR, GRAINS, PARTS, QUICK, STIFFER, Levee, gone
 from tests.validation.tolerances import tolerance
 

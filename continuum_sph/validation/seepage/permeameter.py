@@ -7,7 +7,7 @@ import numpy as np
 
 from continuum_sph.seepage import Frame, Resistance, Seepage
 from continuum_sph.soil import Material, SoilFlow
-from continuum_sph.soil.state import YY
+from continuum_sph.soil.stress import YY
 from continuum_sph.validation.seepage.setups import COLUMNS, GRAINS, WATER, water_in
 from continuum_sph.validation.soil.setups import in_tank
 from continuum_sph.water.state import VY

@@ -9,7 +9,7 @@ import numpy as np
 
 from continuum_sph.soil import Material
 from continuum_sph.soil.plasticity import new_stress
-from continuum_sph.soil.state import XX, YY
+from continuum_sph.soil.stress import XX, YY
 from continuum_sph.validation.soil.setups import DENSITY, POISSON, TAN_PHI
 from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations

@@ -15,7 +15,8 @@ import numpy as np
 from continuum_sph.builders.soil import geostatic
 from continuum_sph.soil import Material, SoilFlow
 from continuum_sph.soil.momentum import Choices, accelerate
-from continuum_sph.soil.state import GXX, GXY, GYX, GYY, VOLUME, XX, XY, YY
+from continuum_sph.soil.state import GXX, GXY, GYX, GYY, VOLUME
+from continuum_sph.soil.stress import XX, XY, YY
 from continuum_sph.validation.soil.setups import RATIO, in_tank, run_until
 from porescale.common.core.types import Floats
 from porescale.common.evidence.validations import Measured, Validations

@@ -8,7 +8,7 @@ import numpy as np
 
 from continuum_sph.builders.soil import geostatic
 from continuum_sph.soil import Material, SoilFlow
-from continuum_sph.soil.state import GROWN
+from continuum_sph.soil.stress import GROWN
 from continuum_sph.validation.soil.setups import AREA, COLUMN, DENSITY, POISSON, STIFFNESS, TAN_PHI, in_tank, run_until
 from porescale.common.evidence.validations import Measured, Validations
 from porescale.common.neighbors import square_lattice

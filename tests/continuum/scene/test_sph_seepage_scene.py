@@ -11,7 +11,7 @@ from continuum_sph.builders.simulation import Simulation
 from continuum_sph.cli import PACKAGE
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import Seepage
-from continuum_sph.soil.state import YY
+from continuum_sph.soil.stress import YY
 from continuum_sph.validation.seepage.saturated_box import saturated_box
 from porescale.common.compiled.jit import set_threads
 from porescale.common.core.constants import GRAVITY

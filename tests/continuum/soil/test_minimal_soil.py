@@ -7,7 +7,7 @@ import pytest
 
 from continuum_sph.benchmarks.minimal_soil import Ground, soil_step
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
-from continuum_sph.soil.state import XX, XY, YY
+from continuum_sph.soil.stress import XX, XY, YY
 from continuum_sph.water.smoothing import Smoothing
 from porescale.common.neighbors import PairList, square_lattice
 

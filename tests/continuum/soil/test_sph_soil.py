@@ -19,8 +19,8 @@ from continuum_sph.soil import stress as soil_stress
 from continuum_sph.soil.gradient import inverse, velocity_gradients
 from continuum_sph.soil.momentum import Choices, accelerate
 from continuum_sph.soil.plasticity import returned
-from continuum_sph.soil.state import MASS, VOLUME, XX, YY, X
-from continuum_sph.soil.stress import Straining, deform
+from continuum_sph.soil.state import MASS, VOLUME, X
+from continuum_sph.soil.stress import XX, YY, Straining, deform
 from continuum_sph.soil.tension import repel_under_tension
 from continuum_sph.validation.soil.element import Element
 from continuum_sph.validation.soil.setups import body, in_tank

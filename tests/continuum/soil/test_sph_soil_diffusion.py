@@ -5,8 +5,8 @@ import pytest
 
 from continuum_sph.soil import Material, Soil, SoilFlow, SoilLaw
 from continuum_sph.soil import flow as flow_module
-from continuum_sph.soil.state import GROWN, GXX, SHEAR_RATE, VOLUME, YY
-from continuum_sph.soil.stress import Straining, deform
+from continuum_sph.soil.state import GXX, SHEAR_RATE, VOLUME
+from continuum_sph.soil.stress import GROWN, YY, Straining, deform
 from continuum_sph.validation.soil.setups import RATIO, body
 from continuum_sph.water.smoothing import Smoothing, kernel_slope
 from porescale.common.core.errors import InputError
