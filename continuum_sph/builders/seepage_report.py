@@ -3,13 +3,13 @@
 from continuum_sph.builders.air import air_report, dry_pores
 from continuum_sph.builders.pore_water import largest_modulus, pore_law
 from continuum_sph.builders.soil import soil_law, soil_particles, soil_section
-from continuum_sph.builders.soil_report import report_origin
+from continuum_sph.builders.soil_report import SNAPSHOT, report_origin
 from continuum_sph.builders.water import water_state
 from continuum_sph.builders.water_report import water_report
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.step import SHARE
-from porescale.common.cli.report import Report
+from porescale.common.cli.report import Report, report_output
 from porescale.common.core.errors import Fault, InputError
 
 RATE = 4e5  # particle-steps of both layers per second and thread, on a busy two-core machine, rounded down
@@ -54,6 +54,7 @@ def seepage_report(scene: Scene) -> Report:
     out.row("longest step for sound in both together", step, "s")
     step = min(step, law.limits(0.0, 0.0)[0])  # of air beside water
     out.row("expected time", scene.time.end / step * (len(soil) + len(soil)) / RATE, "s", "of both layers, about")
+    report_output(out, scene.time.end, scene.output, round(scene.time.end / step), 1000.0 + 2.0 * SNAPSHOT * len(soil))
     report_origin(out, section.origin)
     if scene.reservoir:
         levels(scene, out)

@@ -6,9 +6,10 @@ from continuum_sph.builders.soil import material_of, soil_law, soil_particles, s
 from continuum_sph.scene.material_file import Origin
 from continuum_sph.scene.sections import Scene
 from continuum_sph.soil.parameters import RULES
-from porescale.common.cli.report import Report
+from porescale.common.cli.report import Report, report_output
 
 RATE = 1.5e6  # particle-steps per second and thread, measured on the two-core machine of the benchmarks, rounded down
+SNAPSHOT = 80  # per particle of a snapshot on disk, about
 BYTES = 900  # per particle: state, record, and about 27 partners in two lists
 SOFTEST = 1e-3
 """Strain under its own weight above which soil is so soft that its shape is not the scene's."""
@@ -51,6 +52,7 @@ def soil_report(scene: Scene) -> Report:
     out.row("steps", round(steps))
     out.row("memory", BYTES * count / 2**20, "MiB")
     out.row("expected time", steps * count / RATE, "s", f"at {RATE:.2g} particle-steps/s, one thread")
+    report_output(out, scene.time.end, scene.output, round(steps), 1000.0 + SNAPSHOT * count)
     report_origin(out, section.origin)
     if strain > 10.0 * SOFTEST:
         out.warn(f"the soil's weight strains it by {100.0 * strain:.2g} %: raise soil.stiffness")

@@ -7,7 +7,7 @@ from continuum_sph.scene.numerics import NumericsSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.water.parameters import RULES
 from continuum_sph.water.smoothing import SUPPORT
-from porescale.common.cli.report import Report
+from porescale.common.cli.report import Report, report_output
 from porescale.common.core.errors import Fault, InputError
 
 MACH_WARNED, MACH_REFUSED = 0.1, 0.3
@@ -15,6 +15,7 @@ MACH_WARNED, MACH_REFUSED = 0.1, 0.3
 # of 2 000 and 20 000 particles do 14e6 and more, a second fluid takes 4 % of it; with corrected gradients or shifting
 # 5e6 to 9e6, 4.3e6 with XSPH and lengths of their own besides; with surface tension 8e6, without walls 5e6
 RATE, RATE_OF_MORE = 8e6, 4e6
+SNAPSHOT = 60  # per particle of a snapshot on disk, about
 BYTES = 560  # per particle, walls included: 420 to 500 in plain columns, the small ones most, 560 with all choices
 
 
@@ -66,6 +67,8 @@ def water_report(scene: Scene) -> Report:
     more = law.corrected or law.shifting > 0.0 or law.tension > 0.0
     rate = RATE_OF_MORE if more else RATE
     out.row("expected time", steps * (water + walls) / rate, "s", f"at {rate:.2g} particle-steps/s, one thread")
+    if scene.soil is None:  # else the step is shorter
+        report_output(out, scene.time.end, scene.output, round(steps), 1000.0 + SNAPSHOT * water)
     _warn(scene, mach, out)
     return out
 

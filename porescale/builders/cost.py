@@ -16,6 +16,8 @@ CELLS_PER_SECOND, DISCS_PER_SECOND = 150e6, 15e6
 CALLS, COUPLED_CALLS = 5e-6, 45e-6
 """Seconds of a step that do not depend on its size, without and with coupling (measured on 2400 cells, 31 grains):
 without them a run of a small scene would make every machine look slow."""
+SNAPSHOT = 1000.0
+"""Bytes of a snapshot besides its numbers."""
 SIDE = 10
 """What a side of a polygon costs, in discs, at the most (verify measures it)."""
 
@@ -31,6 +33,12 @@ def memory(derived: Derived) -> float:
     if derived.diameters and derived.scales:
         total += 8 * derived.grain_count * (math.ceil(derived.diameters[2] / derived.scales.spacing) + 2) ** 2
     return total
+
+
+def snapshot_bytes(derived: Derived) -> float:
+    """Bytes of a snapshot on disk, about: velocity, pressure and solid share of the cells, the grains' columns."""
+    cells = derived.cells[0] * derived.cells[1] if derived.cells else 0
+    return SNAPSHOT + 20.0 * cells + 100.0 * derived.grain_count
 
 
 def step_seconds(derived: Derived) -> float:

@@ -4,12 +4,12 @@ import math
 from collections.abc import Sequence
 
 from porescale.analysis.permeability import gebart, kozeny_carman
-from porescale.builders.cost import expected_seconds, memory, require_memory
+from porescale.builders.cost import expected_seconds, memory, require_memory, snapshot_bytes
 from porescale.builders.derive import Derived, derive
 from porescale.builders.initial.fluid_options import has_soft_rim, weight_of
 from porescale.builders.initial.random_polygons import copies_of
 from porescale.builders.kinds import SECTIONS
-from porescale.common.cli.report import Report
+from porescale.common.cli.report import Report, report_output
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting.choose import WEIGHTINGS
 from porescale.lbm.collision.choose import OPERATORS
@@ -181,5 +181,4 @@ def _cost(scene: Scene, derived: Derived, out: Report) -> None:
             f"the run is expected to take {seconds / 86400:.3g} days, more than a week; a coarser spacing, "
             "longer steps, softer contacts or an earlier end shorten it"
         )
-    snapshots = scene.time.end / scene.output.snapshot_interval
-    out.row("snapshots", math.floor(snapshots + 1e-9) + 1)
+    report_output(out, scene.time.end, scene.output, steps, snapshot_bytes(derived))

@@ -22,7 +22,7 @@ COLOURS = 128
 
 def expected(folder: Path) -> list[dict[str, Any]]:
     """The rows of ``folder``/expected.toml."""
-    rows: list[dict[str, Any]] = tomllib.loads((folder / "expected.toml").read_text(encoding="utf-8"))["expected"]
+    rows: list[dict[str, Any]] = tomllib.loads((folder / "expected.toml").read_text(encoding="utf-8-sig"))["expected"]
     return rows
 
 

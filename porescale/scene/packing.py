@@ -1,14 +1,14 @@
 """[grains.packing]: grains placed at random, settled or pressed; sizes uniform, graded or lognormal."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pydantic
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.units import to_si
-from porescale.common.neighbors.grading import check_curve, graded_radii
+from porescale.common.neighbors.grading import check_count, check_curve, graded_radii
 from porescale.common.schema.sections import Refused, Section, quantity
 from porescale.scene.ranges import FRICTION, LENGTH
 
@@ -20,6 +20,10 @@ class Packing(Section):
     and seed decide.  With settle = false they stay where they were placed (packing_fraction at most 0.8); with compress
     = true they are grown and pressed together in the whole box until it has that fraction, or void ratio, to round-off.
     """
+
+    follows: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("number", "count", "grains"), "packing_fraction (or void_ratio), width, height and diameter"
+    )
 
     left: float = quantity("m", ge=0, le=1e3, help="left edge of the rectangle")
     bottom: float = quantity("m", 0.0, ge=0, le=1e3, help="lower edge of the rectangle")
@@ -41,6 +45,16 @@ class Packing(Section):
     compress: bool = pydantic.Field(False, description="grow in place to packing_fraction, without gravity")
     pressure: float | None = quantity("Pa", None, gt=0, le=1e12, help="mean stress to compress to, without gravity")
     material: str = pydantic.Field("", description="name of its material (default: the first)")
+
+    def _faults(self) -> list[Fault]:
+        try:
+            if self.log_spread is not None or (self.compress and not self.grading):
+                check_count(
+                    self.packing_fraction * self.width * self.height / (np.pi / 4.0 * self.diameter**2), "diameter"
+                )
+        except InputError as error:
+            return error.faults
+        return []
 
     @pydantic.model_validator(mode="before")
     @classmethod
@@ -103,15 +117,19 @@ def require_curve(curve: tuple[tuple[float, float], ...]) -> tuple[tuple[float, 
 
 def _mean_of(curve: Any, table: Mapping[str, Any]) -> float | None:
     """Mean diameter of the grains of a curve in the rectangle of ``table``; None where either is at fault, which
-    other checks report."""
+    other checks report.  InputError where the curve has no grain in it, or far too many."""
     numbers = [_number(table.get(key), "m") for key in ("width", "height")]
     fraction = _number(table.get("packing_fraction", 0.81))
     try:
         points = tuple((to_si(d, "m"), float(p)) for d, p in curve)
         if fraction is None or None in numbers or check_curve(points):
             return None
+        if not all(LENGTH["ge"] <= number <= LENGTH["le"] for number in numbers if number is not None):
+            return None
+        if not 0.0 < fraction <= 1.0:
+            return None
         return 2.0 * float(graded_radii(points, fraction * float(np.prod(np.array(numbers, float)))).mean())
-    except (TypeError, ValueError, InputError):
+    except (TypeError, ValueError):
         return None
 
 

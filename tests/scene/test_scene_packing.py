@@ -1,5 +1,6 @@
 """Packings of a scene: graded, lognormal, compressed, from files; each refusal names its key and what to do."""
 
+import os
 from typing import Any
 
 import numpy as np
@@ -168,3 +169,37 @@ def test_circles_of_a_file_may_be_of_a_material(tmp_path):
     grains = grains_of(validate(Scene, given, folder=tmp_path))
     assert grains.material.tolist() == [1, 1]
     np.testing.assert_allclose(grains.discs.mass, 7800 * grains.discs.area)
+
+
+@pytest.mark.parametrize(
+    ("keys", "line"),
+    [
+        (
+            {"grading": [[1e-9, 0.0], [5e-9, 100.0]], "diameter": None},
+            r"grains.packing.grading: makes about \S+ grains",
+        ),
+        ({"grading": [[1e300, 0.0], [5e300, 100.0]]}, r"grains.packing.grading = .*is out of range"),
+        ({"log_spread": 0.4, "diameter": 1e-9}, r"grains.packing.diameter: makes about \S+ grains"),
+    ],
+)
+def test_sizes_of_far_too_many_grains_are_refused_before_they_are_drawn(keys, line):
+    with pytest.raises(InputError, match=line):
+        packed(**keys)
+
+
+@pytest.mark.parametrize("name", ["circles.csv", "circles.h5"])
+def test_circles_are_read_from_a_file_of_fitting_size_only(tmp_path, name):
+    os.mkfifo(tmp_path / name)
+    keys = {"grains__packing": None, "grains__circles": {"file": str(tmp_path / name)}}
+    with pytest.raises(InputError, match=r"grains.circles.file = .* is no regular file"):
+        dry(**keys)
+    (tmp_path / name).unlink()
+    with open(tmp_path / name, "wb") as file:
+        file.truncate(2**29)  # of nothing: takes no room
+    with pytest.raises(InputError, match=r"is too large \(512 MiB\) \(allowed: <= 256 MiB\)"):
+        dry(**keys)
+
+
+def test_a_number_of_grains_is_named_with_what_it_follows_from():
+    with pytest.raises(InputError, match=r"packing.number = 3: unknown key; it follows from packing_fraction"):
+        packed(number=3)

@@ -336,3 +336,17 @@ def test_derived_numbers_are_absent_where_parts_are():
 
 def test_table_1_as_a_file_is_refused_by_load():
     assert len(refusals(lambda: load_scene(ROOT / "cases" / "column_collapse_table1"))) == 4
+
+
+def test_snapshots_that_no_disk_holds_are_refused_and_many_are_warned_of():
+    def said(interval: float, end: float, key: str = "snapshot_interval") -> Any:
+        return report(dry(time__end=end, **{f"output__{key}": interval}))
+
+    (row,) = [it for it in said(0.005, 0.1).groups["Cost"] if it.name == "snapshots"]
+    assert row.value == 21
+    for key in ("snapshot_interval", "series_interval"):
+        line = rf"(?m)^output\.{key} = 1e-12 s: makes \S+ .*, about \S+ GiB; lengthen it$"
+        with pytest.raises(InputError, match=line):
+            said(1e-12, 1e6, key)
+    (doubt,) = [it for it in said(1e-12, 10.0).warnings if "snapshot_interval" in it]
+    assert "snapshots, about" in doubt

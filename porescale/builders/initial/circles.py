@@ -5,17 +5,21 @@ from pathlib import Path
 
 import numpy as np
 
-from porescale.common.core.errors import InputError
+from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.types import Floats
 from porescale.common.neighbors.placement import part
 from porescale.dem.prepare.compaction import read_circles, read_packing
 from porescale.scene.circles import STILLS, Circles
+
+LARGEST = 2**28
+"""Bytes of a file of circles, millions of them: one that is larger holds something else."""
 
 
 def grains_of(circles: Circles, folder: Path | None) -> list[dict[str, float | str]]:
     """The circles as entries of [[grains.grain]]; raises InputError with keys of [grains]."""
     path = (folder or Path()) / circles.file
     try:
+        _require_readable(path)
         if path.suffix.lower() in STILLS:
             position, radius = _pictured(circles, path)
         elif path.suffix == ".h5":
@@ -32,6 +36,21 @@ def grains_of(circles: Circles, folder: Path | None) -> list[dict[str, float | s
         {"x": x, "y": y, "diameter": 2.0 * r, "material": circles.material}
         for (x, y), r in zip(position.tolist(), radius.tolist(), strict=True)
     ]
+
+
+def _require_readable(path: Path) -> None:
+    """InputError for what reading would not end of: a pipe, a device, a file far too large.  What is not there is the
+    reader's to say."""
+    try:
+        is_file, is_other, size = path.is_file(), path.exists() and not path.is_dir(), path.stat().st_size
+    except (OSError, ValueError):
+        return
+    if is_other and not is_file:
+        problem, repair = "is no regular file", "name a .csv, a .h5 or a picture"
+        raise InputError(Fault("file", str(path), problem, repair=repair))
+    if size > LARGEST and is_file:
+        problem, allowed = f"is too large ({size / 2**20:.0f} MiB)", f"<= {LARGEST / 2**20:.0f} MiB"
+        raise InputError(Fault("file", str(path), problem, "", allowed, "name a list of circles or a picture"))
 
 
 def _pictured(circles: Circles, path: Path) -> tuple[Floats, Floats]:

@@ -1,6 +1,8 @@
 """The command line that every package has, and how a command ends."""
 
+import codecs
 import errno
+import io
 import os
 import sys
 from collections.abc import Sequence
@@ -17,6 +19,10 @@ INTERRUPTED = 130
 
 OF_THE_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EPERM, errno.EROFS, errno.EIO, errno.EFBIG)
 """What the system may answer to any call, even where it names no file."""
+
+
+PLAIN = {"²": "^2", "³": "^3", "±": "+-", "·": "*", "–": "-", "…": "...", "→": "->", "ν": "nu", "τ": "tau", "ρ": "rho"}
+"""Signs of reports and messages as a terminal without them is given them."""
 
 
 def application(package: Package) -> App:
@@ -50,6 +56,7 @@ def main(app: App, tokens: Sequence[str] | None = None) -> int:
     0 done, 1 a check or run failed, 2 wrong use or input, 3 unstable, 130 interrupted.  What people can cause is
     printed in one line each on stderr; any other exception is a bug of the package and keeps its traceback.
     """
+    _print_anywhere()
     try:
         result = app(list(sys.argv[1:] if tokens is None else tokens))
         sys.stdout.flush()
@@ -78,6 +85,23 @@ def main(app: App, tokens: Sequence[str] | None = None) -> int:
             raise
         _say(f"{error.filename if error.filename is not None else 'writing'}: {error.strerror or error}")
         return PorescaleError.code
+
+
+def _print_anywhere() -> None:
+    """Let stdout and stderr spell what their encoding has no sign for, in place of UnicodeEncodeError."""
+    codecs.register_error("porescale.plain", _plain)
+    for stream in (sys.stdout, sys.stderr):
+        if not isinstance(stream, io.TextIOWrapper):
+            continue
+        if stream.errors == "strict" or codecs.lookup(stream.encoding).name != "utf-8":
+            stream.reconfigure(errors="porescale.plain")
+
+
+def _plain(error: UnicodeError) -> tuple[str | bytes, int]:
+    """What stands for characters that cannot be encoded: their spelling, else a question mark for each."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return "".join(PLAIN.get(sign, "?") for sign in error.object[error.start : error.end]), error.end
 
 
 def _say(text: str) -> None:

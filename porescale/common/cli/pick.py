@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,7 +37,11 @@ def pick(
         end = getattr(getattr(opened.scene, "time", None), "end", None)
         return begun(lambda: package.build(opened.scene), end)
 
-    choice = choose(front, allowed, seconds, here)
+    try:
+        choice = choose(front, allowed, seconds, here)
+    except InputError as refused:  # said with what was given
+        given = {"--error": error, "--budget": budget}
+        raise InputError([replace(it, value=given.get(it.key) or it.value) for it in refused.faults]) from None
     if settings and not quiet:
         print(f"warning: {front.file} was measured without --set {' '.join(settings)}", file=sys.stderr)
     if not quiet:

@@ -5,9 +5,14 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from porescale.common.core.errors import InputError
+from porescale.common.record.schedule import recorded, too_many
+
 if TYPE_CHECKING:
     from rich.console import Console
 
+ROW = 300
+"""Bytes of a row of series.csv, about."""
 Value = float | int | str | bool
 
 
@@ -68,6 +73,28 @@ class Report:
             console.print(table)
         for warning in self.warnings:
             console.print(Text(f"warning: {warning}", style="yellow"), soft_wrap=True)
+
+
+def report_output(out: Report, end: float, output: Any, steps: int, snapshot_bytes: float) -> None:
+    """Add how many snapshots a run of ``steps`` until ``end`` (s) writes, with a warning of far too many.
+
+    output : the section [output];  snapshot_bytes : of one, about.  InputError where they are beyond what can be
+    written.
+    """
+    snapshots, rows = (recorded(end, it, steps) for it in (output.snapshot_interval, output.series_interval))
+    size = snapshots * snapshot_bytes
+    out.row("snapshots", snapshots, "", f"about {size / 2**20:.3g} MiB")
+    faults = []
+    for what, interval, count, bytes_ in (
+        ("snapshot", output.snapshot_interval, snapshots, size), ("series", output.series_interval, rows, ROW * rows),
+    ):  # fmt: skip
+        try:
+            if doubt := too_many(what, interval, count, bytes_):
+                out.warn(doubt)
+        except InputError as error:
+            faults += error.faults
+    if faults:
+        raise InputError(faults)
 
 
 def shown(value: Any) -> str:

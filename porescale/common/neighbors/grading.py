@@ -15,6 +15,10 @@ Curve = Sequence[tuple[float, float]]
 
 WIDEST = 10.0
 """Largest over smallest diameter: the pair search has one cutoff for all, so that wider mixtures cost too much."""
+SMALLEST, LARGEST = 1e-9, 1e3
+"""Diameters of a curve, m: beyond them a unit is wrong."""
+MOST, MOST_GRADED = 10_000_000, 300_000
+"""Discs whose sizes are drawn up, at once or one after the other along a curve: more are a wrong unit."""
 TAIL = 2.5
 """Lognormal sizes end at so many standard deviations of the logarithm."""
 
@@ -28,6 +32,9 @@ def check_curve(curve: Curve, key: str = "grading") -> list[Fault]:
     faults = []
     if not np.all(np.isfinite(diameter)) or diameter[0] <= 0.0 or np.any(np.diff(diameter) <= 0.0):
         faults.append(Fault(key, str(diameter.tolist()), "diameters must ascend", "m", "> 0", form))
+    elif diameter[0] < SMALLEST or diameter[-1] > LARGEST:
+        allowed, repair = f"{SMALLEST:g} to {LARGEST:g}", "give diameters in metres"
+        faults.append(Fault(key, str(diameter.tolist()), "is out of range", "m", allowed, repair))
     elif diameter[-1] > WIDEST * diameter[0] * (1.0 + 1e-9):
         problem = f"spans diameters of 1 to {diameter[-1] / diameter[0]:.3g}"
         faults.append(Fault(key, None, problem, "", f"1 to {WIDEST:g}", "cut off the finest grains"))
@@ -49,13 +56,17 @@ def graded_radii(curve: Curve, area: float) -> Floats:
         raise InputError(faults)
     diameter, finer = np.array(curve, dtype=np.float64).T
     share, logs = finer / 100.0, np.log(diameter)
+    even = (np.arange(1000) + 0.5) / 1000
+    check_count(float(4.0 / np.pi * area * np.exp(-2.0 * np.interp(even, share, logs)).mean()), "grading", MOST_GRADED)
     chosen: list[float] = []
     done = 0.0
     while done < 1.0:
         d = float(np.exp(np.interp(done, share, logs)))
         for _ in range(30):  # own share = pi d²/4 A, d at its middle: contracts as a disc is a small share
-            half = np.pi * d * d / (8.0 * area)
+            half, before = np.pi * d * d / (8.0 * area), d
             d = float(np.exp(np.interp(min(done + half, 1.0), share, logs)))
+            if d == before:
+                break
         own = np.pi * d * d / (4.0 * area)
         if done + 0.5 * own > 1.0:
             break
@@ -65,6 +76,13 @@ def graded_radii(curve: Curve, area: float) -> Floats:
         repair = "make the rectangle larger"
         raise InputError(Fault("grading", float(diameter[0]), "not one grain fits the area", "m", repair=repair))
     return np.array(chosen)
+
+
+def check_count(count: float, key: str, most: int = MOST) -> None:
+    """InputError, of ``key``, where so many discs are too many to draw up their sizes."""
+    if not count <= most:
+        repair = "make the rectangle smaller or the grains larger"
+        raise InputError(Fault(key, None, f"makes about {count:.3g} grains", "", f"<= {most}", repair))
 
 
 def lognormal_radii(count: int, diameter: float, spread: float) -> Floats:

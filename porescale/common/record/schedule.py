@@ -58,6 +58,31 @@ class Schedule:
             self.done = math.floor(time / self.interval + SLACK)
 
 
+MOST, MOST_BYTES = 10_000_000, 2**44
+"""Snapshots or rows of a run, and bytes of them, beyond which nothing could hold or read them."""
+MANY, MANY_BYTES = 100_000, 2**35
+"""Beyond these a slip is likely."""
+
+
+def recorded(end: float, interval: float, steps: int) -> int:
+    """Events until ``end`` (s), the first at 0: one for each ``interval`` (s), at most one for each step."""
+    return min(math.floor(end / interval + SLACK), steps) + 1
+
+
+def too_many(what: str, interval: float, count: int, size: float) -> str:
+    """A warning of so many events of ``output.{what}_interval`` (s) and so many bytes, "" where they are few.
+
+    InputError where they are beyond what can be written.
+    """
+    events = {"snapshot": "snapshots", "series": "rows of series.csv"}[what]
+    problem = f"makes {count:.3g} {events}, about {size / 2**30:.3g} GiB"
+    if count > MOST or size > MOST_BYTES:
+        raise InputError(Fault(f"output.{what}_interval", interval, problem, "s", repair="lengthen it"))
+    if count > MANY or size > MANY_BYTES:
+        return f"output.{what}_interval = {interval:g} s {problem}; a longer one saves time and disk"
+    return ""
+
+
 def positive(key: str, value: float, *, endless: bool = False) -> float:
     """``value`` (s) if it is a positive number, finite unless ``endless``; else InputError."""
     number = float(value)

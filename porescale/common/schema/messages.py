@@ -120,7 +120,11 @@ def _fault(
 
 
 def _suggestion(name: str, owners: Sequence[type[BaseModel]], root: type[BaseModel]) -> str:
-    """The nearest known key beside ``name``; else the section that has a key of that name; else all known keys."""
+    """What ``name`` follows from where that is known; else the nearest known key beside it; else the section that has a
+    key of that name; else all known keys."""
+    for owner in owners:
+        if name in (instead := getattr(owner, "follows", {})):
+            return f"it follows from {instead[name]}"
     known = {alias for owner in owners for alias in _fields(owner)}
     if not difflib.get_close_matches(name, known, n=1, cutoff=0.6):
         elsewhere = [place for place in every_key(root) if place[-1] == name]

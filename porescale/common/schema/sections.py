@@ -39,6 +39,8 @@ class Section(BaseModel):
 
     elsewhere: ClassVar[Mapping[str, str]] = {}
     """Of a scene: sections that it has not and every scene of another program has, and that program."""
+    follows: ClassVar[Mapping[str, str]] = {}
+    """Names that a person may give and no key has, and the keys that what they mean follows from."""
     checks: ClassVar[list[Callable[[Any], list[Fault]]]] = []
     """Functions that return what is wrong with a valid section of this very class.  Checks between sections, and those
     that need physics, are registered here by the builders: sections import neither."""
@@ -216,7 +218,11 @@ def _levels(table: Mapping[str, Any], chosen: str | None) -> tuple[dict[str, dic
             faults.append(Fault(f"quality.{name}", entries, "is not a table", repair=f"write [quality.{name}.section]"))
     levels = {name: dict(given[name]) for name in LEVELS if isinstance(given.get(name), Mapping)}
     level, key = (chosen, "--quality") if chosen is not None else (default, "quality_default")
-    if level is not None and level not in levels:
+    if level is not None and not isinstance(level, str):
+        shown = level if isinstance(level, int | float) else None
+        faults.append(Fault(key, shown, "is not the name of a level", "", ", ".join(LEVELS), 'write it as "draft"'))
+        level = None
+    elif level is not None and level not in levels:
         has = ", ".join(levels)
         repair = f"choose one of these or add [quality.{level}]" if has else f"add [quality.{level}] or leave it out"
         faults.append(Fault(key, level, "this scene has no such level", "", has or "none", repair))

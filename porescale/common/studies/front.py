@@ -151,8 +151,10 @@ def choose(front: Front, error: float | None, budget: float | None, try_here: Tr
     if error is not None:
         good = [point for point in front.points if point.error <= error]
         if not good:
-            best = min(point.error for point in front.points)
-            raise InputError(Fault("--error", percent(error), "is below the best point measured", "", percent(best)))
+            best = min(front.points, key=lambda point: point.error)
+            least = f"{math.ceil(1000 * best.error) / 10:g}%"  # rounded up: what is named here is accepted
+            problem, repair = "is below the best point measured", f"--error {least} takes {best.label}"
+            raise InputError(Fault("--error", percent(error), problem, "", f">= {least}", repair))
         found = _here(good[0], try_here)
         if budget is not None and found.seconds > budget:
             problem = f"is not enough for an error of {percent(error)}: {found.point.label} takes {found.seconds:.3g} s"

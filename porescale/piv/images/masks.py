@@ -1,6 +1,7 @@
 """Where solids are in pictures: bitmaps with solid white, polygons, segmented; one for all frames or one each."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import repeat
 from pathlib import Path
 
@@ -72,13 +73,22 @@ def _sources(source: str | None, film: Film) -> Iterator[Flags | None]:
         return
     path = Path(source)
     if path.is_file() and path.suffix.lower() not in (".mp4", ".avi", ".mov", ".mkv", ".webm"):
-        still = bitmap(picture(path))
+        try:
+            still = bitmap(picture(path))
+        except InputError as error:
+            raise InputError([replace(fault, key="--mask") for fault in error.faults]) from None
         if film.region is not None:
             left, top, right, bottom = film.region
             still = still[top:bottom, left:right]
         yield from repeat(still)
         return
-    several = open_film([source], start=film.start, end=film.end, step=film.step, region=film.region)
+    if not path.exists() and not any(letter in source for letter in "*?["):
+        repair = "name a bitmap, a film, a folder or pattern of bitmaps; or bright or dark, to segment"
+        raise InputError(Fault("--mask", source, "is no file", repair=repair))
+    try:
+        several = open_film([source], start=film.start, end=film.end, step=film.step, region=film.region)
+    except InputError as error:
+        raise InputError([replace(it, key="--mask" if it.key == "film" else it.key) for it in error.faults]) from None
     count = 0
     for frame in several:
         count += 1

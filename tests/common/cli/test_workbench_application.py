@@ -1,5 +1,6 @@
 """The command line, with a toy package: what it does and says, how it ends; what people, disks and bugs do to it."""
 
+import io
 import json
 import os
 import subprocess
@@ -309,3 +310,12 @@ def test_a_scene_is_checked_once_and_its_warnings_are_said_once(capsys):
 def test_what_the_report_refuses_is_not_built(capsys):
     assert run_warned("--set", "decay.rate=1000") == (2, ["report"])
     assert "beyond the stable limit" in capsys.readouterr().err
+
+
+def test_a_terminal_without_signs_is_given_their_spelling(toy, monkeypatch) -> None:
+    said = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
+    monkeypatch.setattr(sys, "stdout", said)
+    app = application(replace(TOY, summary="m² ± 3 …"))
+    app.command(lambda: print("0.1 ± 0.2 m²… ☃"), name="signs")
+    assert main(app, ["signs"]) == 0
+    assert said.buffer.getvalue() == b"0.1 +- 0.2 m^2... ?\n"

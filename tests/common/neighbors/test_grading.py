@@ -50,3 +50,16 @@ def test_sizes_too_far_apart_and_areas_too_small_are_refused():
         lognormal_radii(10, 1e-3, 0.6)
     with pytest.raises(InputError, match="not one grain"):
         graded_radii(CURVE, 1e-9)
+
+
+@pytest.mark.parametrize(
+    ("curve", "words"),
+    [
+        (((1e-9, 0.0), (5e-9, 100.0)), "makes about"),
+        (((1e-300, 0.0), (5e-300, 100.0)), "is out of range"),
+        (((1e-300, 0.0), (5e300, 100.0)), "is out of range"),
+    ],
+)
+def test_a_curve_of_far_too_many_grains_or_of_no_size_is_refused_at_once(curve, words):
+    with pytest.raises(InputError, match=words):
+        graded_radii(curve, 1e-3)

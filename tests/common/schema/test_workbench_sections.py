@@ -355,3 +355,16 @@ def test_words_are_one_of_the_choices_beside_numbers() -> None:
     with pytest.raises(InputError) as caught:
         validate(Fluid, {"spacing": 0.1, "viscosity": "automatic"})
     assert 'allowed: "auto", > 0' in str(caught.value)
+
+
+@pytest.mark.parametrize("default", ["[1, 2, 3]", "{ a = 1 }", "3", "true"])
+def test_a_default_level_that_is_no_name_is_said(write, default: str) -> None:
+    (said,) = lines(write(f"quality_default = {default}\n" + GOOD))
+    assert "quality_default" in said
+    assert 'is not the name of a level (allowed: draft, standard, fine); write it as "draft"' in said
+
+
+def test_a_byte_order_mark_is_no_part_of_a_file(write) -> None:
+    assert load(write("\ufeff" + GOOD), Scene) == load(write(GOOD), Scene)
+    (said,) = lines(write("\ufeff" + GOOD + "wrong"))  # the twin: what is wrong is said as without it
+    assert "\ufeff" not in said

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from porescale.common.cli.pick import _seconds, _share
+from porescale.common.cli.pick import _seconds, _share, pick
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate
 from porescale.common.studies import trade_files
@@ -19,6 +20,8 @@ from porescale.common.studies.quantities import curve, measured
 from porescale.common.studies.runner import Ended
 from porescale.common.studies.trade import Errors, Traded, distance, front
 from porescale.common.studies.trade_plan import Plan, read_plan
+from tests.reference.folders import ROOT
+from tests.reference.toy_package import TEMPLATE, TOY
 
 PLAN = """
 [over]
@@ -299,3 +302,25 @@ def test_the_last_row_stands_for_half_a_row_more() -> None:
     columns = {"time (s)": np.array([0.0, 0.2, 0.399]), "front (m)": np.array([0.0, 2.0, 3.0])}
     assert measured(columns, {"column": "front (m)", "at": 0.4}) == 3.0  # a step that does not divide the end
     assert math.isnan(measured(columns, {"column": "front (m)", "at": 0.5}))  # over 0.0995 s, half a row
+
+
+def test_what_was_given_is_said_as_it_was_given(tmp_path, monkeypatch):
+    written(tmp_path, [traded(0.2, 5.0), traded(0.1041, 10.0)])
+    scene = tmp_path / "scene.toml"
+    scene.write_text(TEMPLATE)
+    monkeypatch.setattr("porescale.common.studies.front.begun", lambda build, end: Here(1.0, 1.0))
+    with pytest.raises(InputError, match=r"^--budget = '1 s': is not enough"):
+        pick(TOY, scene, None, "1 s", (), quiet=True)
+    with pytest.raises(InputError, match=r"^--error = '10.4%': is below .* \(allowed: >= 10.5%\); --error 10.5% takes"):
+        pick(TOY, scene, "10.4%", None, (), quiet=True)
+    assert pick(TOY, scene, "10.5%", None, (), quiet=True).point.error == 0.1041  # what the line names is accepted
+
+
+def test_errors_that_the_pages_ask_for_can_be_had():
+    asked = []
+    for page in [ROOT / "README.md", *ROOT.glob("docs/*.md"), *ROOT.glob("cases/*/README.md")]:
+        asked += re.findall(r"cases/(\w+)\s+--error (\d+)%", page.read_text(encoding="utf-8"))
+    assert len(asked) >= 3
+    for case, error in asked:
+        points = read_front(ROOT / "cases" / case / "scene.toml").points
+        assert min(point.error for point in points) <= int(error) / 100, case

@@ -267,3 +267,14 @@ def test_pairs_of_a_film_are_averaged_over_steps_and_regions(measure, tmp_path, 
     far = (found["solid"] == 0) & (np.hypot(found["x"] - 31, found["y"] - 48) > 28)
     # Two frames apart: twice the speed; three pairs of a film, a tenth of a pixel.
     assert np.sqrt(np.mean((found["u"][far] - 2 * SPEED) ** 2)) < 0.1
+
+
+def test_a_mask_that_is_not_there_is_named_with_its_option(measure, tmp_path):
+    for name in ("a.png", "b.png"):
+        cv2.imwrite(str(tmp_path / name), np.zeros((64, 64), np.uint8))
+    (tmp_path / "no.png").write_text("no picture")
+    for name, words in (("missing.png", "is no file; name a bitmap"), ("no.png", "is no picture")):
+        code, out, said = measure("a.png", "b.png", "--mask", name)
+        assert (code, out, len(said)) == (2, "", 1)
+        assert said[0].startswith(f"--mask = '{name}': {words}")
+        assert not (tmp_path / "runs").exists() or not any((tmp_path / "runs").rglob("*.csv"))
