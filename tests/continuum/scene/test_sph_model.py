@@ -268,3 +268,10 @@ def test_a_flow_without_a_next_step_names_particle_and_rule():
     flow.layer.density[5] = 1e6
     with pytest.raises(Unstable, match=r"particle 5 .* limited by sound; .* 1e\+06 kg/m³"):
         flow.finish(0.0)
+
+
+def test_rows_that_no_disk_holds_are_refused() -> None:
+    table = scene().model_dump(mode="json", by_alias=True, exclude_none=True)
+    table["time"]["end"], table["output"]["snapshot_interval"] = 1e6, 1e-9
+    with pytest.raises(InputError, match=r"output\.snapshot_interval = 1e-09 s: makes \S+ snapshots, about \S+ GiB"):
+        report(validate(type(scene()), table))
