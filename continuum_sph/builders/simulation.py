@@ -7,7 +7,7 @@ from continuum_sph.builders.assembly import Assembly
 from continuum_sph.builders.sanity import Now, advance_one
 from continuum_sph.scene.sections import Scene
 from porescale.common.record.model import Snapshot
-from porescale.common.record.part import Part, restore, row_of, state_of, tables_of
+from porescale.common.record.part import Part, overrides, restore, row_of, state_of, tables_of
 
 P = TypeVar("P", bound=Part)
 
@@ -48,7 +48,10 @@ class Simulation:
 
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps; Unstable when a position is no number any more."""
+        before = [part.before for part in self.parts if overrides(part, "before")]
         for _ in range(steps):
+            for act in before:
+                act()
             advance_one(self.flow.advance, Now(self.step, self.time, self.repair))
             self._take_time()
 

@@ -17,4 +17,4 @@ class OutputSection(Section):
     snapshot_interval: float = quantity("s", ge=1e-9, le=1e9, help="time between snapshots (frames of the film)")
     series_interval: float = quantity("s", ge=1e-9, le=1e9, help="time between rows of series.csv")
     checkpoint_seconds: float = quantity("s", 30.0, ge=1e-3, le=1e9, help="wall-clock time between checkpoints")
-    energy: bool = pydantic.Field(False, description="energy book of the water, as columns of series.csv")
+    energy: bool = pydantic.Field(False, description="energy budget of the water, as columns of series.csv")

@@ -18,8 +18,8 @@ from porescale.common.core.constants import GRAVITY
 CONSTANT, KOZENY_CARMAN = 0, 1
 LAWS = ("constant", "kozeny-carman")
 LEAST_GRAINS = 1e-16
-"""Share of the volume, less than any 1 - n but 0: grains that only just reach water leave it an n that rounds to 1, and
-would else not resist at all, for which `exchange.apply_drag` has no time of relaxation."""
+"""Share of the volume, less than any 1 - n but 0.  Where n rounds to 1 with grains in reach, 1 - n = 0 would make
+`exchange.apply_drag` divide 0 by 0."""
 
 
 @inline

@@ -88,7 +88,7 @@ class Coupled:
         self.lubrication: Lubrication | None = None
         if lubrication:
             if self.polygons:
-                raise InputError(Fault("lubrication", True, "is not available between polygons", repair="leave it out"))
+                raise InputError(Fault("lubrication", True, "has no films between polygons", repair="leave it out"))
             self.lubrication = Lubrication(
                 grains, self.hydraulic_radius, viscosity=scales.density * scales.viscosity,
                 cut=film_gap * scales.spacing, dt=scales.step / contact_steps,

@@ -92,7 +92,9 @@ class Grains(State):
     def set_rectangles(self, rectangles: Sequence[Rectangle]) -> None:
         """Put these rectangles, and no others, into the box; without contacts so far.  InputError beside segments."""
         if self.segments is not None and rectangles:
-            raise InputError(Fault("rectangles", problem="do not touch segments", repair="make them frames"))
+            raise InputError(
+                Fault("rectangles", problem="cannot be in contact with segments", repair="make them frames")
+            )
         self.rectangle_frictions = [it.friction for it in rectangles]
         self.rectangles = np.array([it.row() for it in rectangles]).reshape(-1, 6)
         self.rectangle_laws = laws.surface_laws(self, self.rectangle_frictions)

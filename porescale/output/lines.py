@@ -9,7 +9,7 @@ import numpy as np
 
 from porescale.common.core.atomic import write_text
 from porescale.common.evidence.files import csv_text
-from porescale.lbm.boundary.choose import boundary
+from porescale.lbm.boundary.choose import boundaries
 from porescale.output.sample import Sampler, along
 
 if TYPE_CHECKING:
@@ -34,7 +34,10 @@ def write_lines(run: Run, folder: Path) -> list[Path]:
         return []
     grid = run.snapshot(0).grids["fields"]
     ny, nx = grid.shape
-    periodic_x, periodic_y = (boundary(scene["domain"][side]["kind"]).periodic for side in ("left", "bottom"))
+    kinds = (
+        boundaries().get(scene["domain"][side]["kind"]) for side in ("left", "bottom")
+    )  # None: since gone
+    periodic_x, periodic_y = (kind is not None and kind.periodic for kind in kinds)
     ratio = (scene.get("grains") or {}).get("hydraulic_radius_ratio")
     samplers = [
         Sampler(along(line["start"], line["end"], line["points"]), (nx, ny), grid.spacing[0], (periodic_x, periodic_y))

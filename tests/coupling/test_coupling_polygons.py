@@ -169,7 +169,7 @@ def test_frames_that_are_no_convex_polygons_are_refused_in_fluid():
     square = turned(outlines.regular(4, 36.0), 0.0, 16.0, 16.0)
     with pytest.raises(InputError, match="centre of mass"):
         put(polygon(square, 0.2, 2.0, body=Body(72.0, (15.0, 16.0), 500.0, True, 36.0)))
-    with pytest.raises(InputError, match="not available between polygons"):
+    with pytest.raises(InputError, match="no films between polygons"):
         put(polygon(square, 0.2, 2.0), lubrication=True)
     with pytest.raises(ValueError, match="longer than the periodic box"):
         SaturatedCells(

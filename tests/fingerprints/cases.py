@@ -86,7 +86,12 @@ def unnamed() -> dict[str, tuple[str, int, str | None, tuple[str, ...]]]:
     files = sorted(it.relative_to(CASES).as_posix() for it in CASES.glob("*/scene.toml"))
     new = [it for it in files if it not in SCENES and it not in NO_SUBJECT]
     tables = {it: tomllib.loads((CASES / it).read_text(encoding="utf-8")) for it in new}
-    return {it: (CONTINUUM if {"tank", "soil"} & set(tables[it]) else GRAINS, 100, "draft", ()) for it in new}
+    return {
+        it: (
+            CONTINUUM if {"tank", "soil"} & set(tables[it]) else GRAINS, 100,
+            "draft" if "draft" in tables[it].get("quality", {}) else None, (),
+        ) for it in new
+    }  # fmt: skip
 
 
 def subjects() -> dict[str, Subject]:

@@ -129,16 +129,18 @@ def test_an_exact_wall_goes_over_into_fluid_and_into_a_rigid_cell(tau):
 
 
 def moving(solid, weight, seed):
-    """A box of uneven flow with a force, and three discs that share cells."""
+    """A box of uneven flow with a force, before an even or an odd step; one to five discs, two of which share cells."""
     random = np.random.default_rng(seed)
-    tau = random.uniform(0.55, 1.5)
+    tau, discs = random.uniform(0.51, 2.0), random.integers(1, 6)
     force = np.array([2e-4, -1e-4]) * random.uniform(-1, 1, 2)
     ux, uy, rho = *(0.05 * random.uniform(-1, 1, (2, N, N))), 1 + 0.05 * random.uniform(-1, 1, (N, N))
-    centre, velocity = random.uniform(0, N, (3, 2)), random.uniform(-0.05, 0.05, (3, 2))
-    radius, spin = random.uniform(1.5, 4.5, 3), random.uniform(-0.01, 0.01, 3)
-    centre[1] = centre[0] + (radius[0] + radius[1] - 0.3, 0.4)
+    centre, velocity = random.uniform(0, N, (discs, 2)), random.uniform(-0.05, 0.05, (discs, 2))
+    radius, spin = random.uniform(0.3, 5.0, discs), random.uniform(-0.01, 0.01, discs)
+    centre[1:2] = centre[0] + (radius[:2].sum() - 0.3, 0.4)
     fluid = Fluid(N, N, tau, force=tuple(force), sides=PERIODIC)
     fluid.set_flow(ux, uy, rho)
+    if random.integers(2):
+        fluid.advance()
     wet = SaturatedCells(fluid, radius, solid_operator=solid, weighting=weight)
     return fluid, wet, (centre, velocity, spin)
 

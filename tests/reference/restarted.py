@@ -23,7 +23,7 @@ def differing(one: Grains, other: Grains) -> set[str]:
     """Names of what differs between the states of two systems, which have the same parts."""
     a, b = flat(one.state()), flat(other.state())
     assert a.keys() == b.keys()
-    return {name for name in a if not np.array_equal(a[name], b[name], equal_nan=True)}
+    return {name for name in a if not np.array_equal(a[name], b[name])}
 
 
 def saved_on_the_way(first: Grains, second: Grains, dt: float, steps: int, before: int, folder: Path) -> Grains:

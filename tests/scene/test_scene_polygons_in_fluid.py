@@ -70,7 +70,7 @@ def test_what_is_no_convex_polygon_is_dry():
     said = faults(arrow)
     assert "polygon[0]" in said
     assert "cut it into convex polygons" in said
-    assert "not available between polygons" in faults(SQUARE, lubrication={})
+    assert "no films between polygons" in faults(SQUARE, lubrication={})
 
 
 def test_a_plate_of_one_cell_is_warned_of():

@@ -42,7 +42,7 @@ def check_in_fluid(scene: Scene, frames: Sequence[str]) -> list[Fault]:
         except InputError as error:
             faults += error.faults
     if scene.polygon and scene.lubrication:
-        faults.append(Fault("lubrication", None, "is not available between polygons", repair="leave it out"))
+        faults.append(Fault("lubrication", None, "has no films between polygons", repair="leave it out"))
     return faults
 
 

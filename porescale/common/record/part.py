@@ -1,9 +1,9 @@
 """A part of a simulation: one thing of a scene, with all that it adds to a run.
 
-A simulation is a list of parts.  What a scene does not request is no part of its list, and costs neither memory nor
-time, neither built nor imported.  In every step: ``before`` of all parts, the physics, the clock, ``after`` of all.
-The order of the list is the order of the columns of series.csv and of the order in which parts act; states are
-restored from the last part to the first, so that a part may rely on what those after it have restored.
+A simulation is a list of parts.  What a scene does not request is no part of its list: it is not built, and costs
+neither memory nor time.  In every step: ``before`` of all parts, the physics, the clock, ``after`` of all.  The order
+of the list is the order of the columns of series.csv and of the order in which parts act; states are restored from the
+last part to the first, so that a part may rely on what those after it have restored.
 """
 
 from collections.abc import Iterable

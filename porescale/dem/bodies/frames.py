@@ -211,7 +211,9 @@ def framed(
     own = np.concatenate([np.full(len(frame.corners), frame.material) for frame in frames])
     given = np.broadcast_to(np.asarray(0 if material is None else material), (first,))
     if more.get("plates"):
-        raise InputError(Fault("plates", len(more["plates"]), "do not touch segments", repair="make them frames"))
+        raise InputError(
+            Fault("plates", len(more["plates"]), "cannot be in contact with segments", repair="make them frames")
+        )
     radii = np.zeros(0) if discs is None else discs.radius
     grains = Grains(
         every, law, box, skin=skin_of(radii, frames) if skin is None else skin,

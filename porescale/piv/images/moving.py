@@ -170,4 +170,4 @@ def velocity_grid(snapshot: Snapshot, folder: str) -> Grid:
     for grid in snapshot.grids.values():
         if "velocity" in grid.cells:
             return grid
-    raise InputError(Fault("run folder", folder, "has no velocity of a fluid: there is no flow"))
+    raise InputError(Fault("run folder", folder, "has no velocity of a fluid: there is no flow to film or to compare"))

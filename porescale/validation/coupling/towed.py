@@ -212,7 +212,7 @@ def jeffrey_onishi(motion: str, gap: float) -> float:
 def under_way(
     diameter: float, speed: float, degrees: float, drag: float, *, relaxation_time: float, method: Method
 ) -> Iterator[tuple[Coupled, Floats, float]]:
-    """A disc towed through a periodic box of four diameters, at an angle to the grid, in each of ten cells' steps.
+    """A disc towed through a periodic box of four diameters, at an angle to the grid, after each step over ten cells.
 
     Once the flow is steady: (the box, direction (2,), body force against ``drag``, F/(mu U) expected).
     """

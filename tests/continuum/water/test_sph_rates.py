@@ -132,18 +132,20 @@ def difference(quick, slow):
     ]
 
 
-PLAIN_ONLY = ("shifted", "corrected", "images, xsph", "gravity sideways, beta, noise floor", "varied", "two fluids")
+PLAIN_FIRST = ("shifted", "corrected", "images, xsph", "gravity sideways, beta, noise floor", "varied", "two fluids")
 """Flows of which every choice is compiled in some other of them: in plain Python, which compiles nothing, from the
-start."""
+start; compiled among the slow tests."""
 
 
-@pytest.mark.parametrize("name", [name for name in FLOWS if name not in PLAIN_ONLY])
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name in PLAIN_FIRST else []) for name in FLOWS]
+)
 def test_sums_are_those_of_the_equations(name):
     flow = FLOWS[name]()
     assert max(difference(found(flow), pair_sums(flow, HALF))) <= 1.0
 
 
-@pytest.mark.parametrize("name", PLAIN_ONLY)
+@pytest.mark.parametrize("name", PLAIN_FIRST)
 def test_sums_in_plain_python_are_those_of_the_equations(name, monkeypatch):
     uncompile(monkeypatch, *WATER, surface_tension)
     flow = FLOWS[name]()
@@ -157,7 +159,7 @@ def test_compiled_sums_run_in_plain_python_too(name, monkeypatch):
     assert max(difference(found(flow), pair_sums(flow, HALF))) <= 1.0
 
 
-@pytest.mark.parametrize("name", ["all", "two fluids, corrected"])
+@pytest.mark.parametrize("name", ["all", "two fluids, corrected", pytest.param("slip", marks=pytest.mark.slow)])
 def test_a_budget_changes_no_bit_of_the_flow(name):
     flow = FLOWS[name]()
     flow.layer.has_budget = False

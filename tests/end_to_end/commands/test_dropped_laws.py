@@ -280,5 +280,8 @@ def test_a_case_is_a_scene_in_a_folder(tree: Path) -> None:
     ended = porescale(tree, "run", "cases/bounce", "--quiet")
     assert ended.returncode == 0, ended.stdout + ended.stderr
     assert (tree / "runs" / "bounce" / "montage.png").exists()
-    words = [sys.executable, "-m", "tests.fingerprints", "list"]
-    assert "scene/bounce" in done(words, cwd=tree, env={**os.environ, "PYTHONPATH": str(tree)}).stdout
+    words = ["write", "scene/bounce", "--threads", "1", "--record", "x.json"]
+    taken = [sys.executable, "-m", "tests.fingerprints", *words]
+    ended = done(taken, cwd=tree, env={**os.environ, "PYTHONPATH": str(tree)})
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+    assert '"scene/bounce"' in (tree / "x.json").read_text(encoding="utf-8")
