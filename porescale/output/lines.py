@@ -34,9 +34,7 @@ def write_lines(run: Run, folder: Path) -> list[Path]:
         return []
     grid = run.snapshot(0).grids["fields"]
     ny, nx = grid.shape
-    kinds = (
-        boundaries().get(scene["domain"][side]["kind"]) for side in ("left", "bottom")
-    )  # None: since gone
+    kinds = (boundaries().get(scene["domain"][side]["kind"]) for side in ("left", "bottom"))  # None: since gone
     periodic_x, periodic_y = (kind is not None and kind.periodic for kind in kinds)
     ratio = (scene.get("grains") or {}).get("hydraulic_radius_ratio")
     samplers = [

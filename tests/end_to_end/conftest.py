@@ -9,6 +9,7 @@ import pytest
 from porescale.cli.main import PACKAGE
 from porescale.common.cli.application import application, main
 from porescale.common.compiled import jit
+from tests.reference.folders import complaints_in
 from tests.reference.scenes import COLUMN, write
 
 
@@ -38,8 +39,8 @@ def porescale() -> Callable[..., int]:
 
 @pytest.fixture
 def complaints(capsys: pytest.CaptureFixture[str]) -> Callable[[], list[str]]:
-    """Gives the lines on stderr since the last call, but for warnings."""
-    return lambda: [line for line in capsys.readouterr().err.splitlines() if not line.startswith("warning: ")]
+    """Gives the lines on stderr since the last call, but for warnings and progress."""
+    return lambda: complaints_in(capsys.readouterr().err)
 
 
 @pytest.fixture(scope="session")

@@ -14,7 +14,7 @@ from porescale.cli.main import commands
 from porescale.common.cli.application import application, main
 from porescale.common.compiled import jit
 from tests.reference.command_lines import Line, made
-from tests.reference.folders import ROOT
+from tests.reference.folders import ROOT, complaints_in
 from tests.reference.waiting import done
 
 LINES = int(os.environ.get("PORESCALE_LINES", "40"))
@@ -68,7 +68,7 @@ def as_process(line: Line, folder: Path) -> tuple[int, str]:
 
 def judged(line: Line, code: int, said: str) -> None:
     """AssertionError unless the line ended well or in clear words."""
-    lines = [part for part in said.splitlines() if not part.startswith("warning: ")]
+    lines = complaints_in(said)
     assert "Traceback" not in said, said
     assert code in (0, 2), (line.words, code, said)
     if code == 2:

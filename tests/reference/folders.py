@@ -1,12 +1,21 @@
-"""Where things lie in a checkout, and scripts of cases as modules."""
+"""Where things lie in a checkout, scripts of cases as modules, and what a command says besides its results."""
 
 import importlib.util
+import re
 import sys
 from pathlib import Path
 from types import ModuleType
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES, DOCS, SAMPLES = ROOT / "cases", ROOT / "docs", ROOT / "tests" / "samples"
+
+PROGRESS = re.compile(r"[^:]+: .+, t = \S+ of \S+ s \(")
+
+
+def complaints_in(said: str) -> list[str]:
+    """Lines on stderr that are neither empty nor a warning, nor the progress that slow runs print."""
+    lines = (line for line in said.splitlines() if line)
+    return [line for line in lines if not line.startswith("warning: ") and not PROGRESS.match(line)]
 
 
 def script(case: str, name: str = "") -> ModuleType:

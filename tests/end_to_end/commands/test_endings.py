@@ -14,7 +14,7 @@ from porescale.builders.simulation import Simulation
 from porescale.common.core.errors import Unstable
 from porescale.common.record.checkpoint import read_checkpoint
 from porescale.lbm.sanity import SOUND, WORST_MACH
-from tests.reference.folders import ROOT
+from tests.reference.folders import ROOT, complaints_in
 from tests.reference.same_run import differences
 from tests.reference.scenes import COLUMN, grain, table, write
 from tests.reference.waiting import done
@@ -24,14 +24,14 @@ TABLE1 = ROOT / "cases" / "column_collapse_table1"
 
 @pytest.fixture
 def ends(porescale, capsys):
-    """Exit code of a command and the lines on stderr but for warnings; no traceback among them."""
+    """Exit code of a command and the complaints on stderr; no traceback among them."""
 
     def run(*words):
         capsys.readouterr()
         code = porescale(*words)
         said = capsys.readouterr().err
         assert "Traceback" not in said
-        return code, [line for line in said.splitlines() if not line.startswith("warning: ")]
+        return code, complaints_in(said)
 
     return run
 
