@@ -1,7 +1,11 @@
-"""Rate of density of a pair: continuity (eq. 25 of Maeda & Sakai 2004) and diffusion against acoustic noise.
+"""Rate of density of a pair: continuity (eq. 25 of Maeda & Sakai 2004), diffusion against acoustic noise, a filter.
 
 Continuity with the partner's volume, dρ_i/dt = ρ_i Σ V_j v_ij · ∇W, not its mass (eq. 25): the same within one fluid
 but for density differences of 1 %, and right beside a fluid of another density.
+
+A filter within one fluid (eq. 27), ρ_i = Σ m_j W/Σ (m_j/ρ_j) W with i itself included: a Shepard average, which keeps
+any uniform density, so makes no pressure and cannot stand for continuity; every 20 to 40 steps it takes out the noise
+that continuity collects.
 
 Diffusion: Molteni & Colagrossi, Comput. Phys. Commun. 180 (2009) 861 ("plain"); of the departure from the hydrostatic
 density only, so that water at rest stays: Fourtakas et al., Computers & Fluids 190 (2019) 346 ("hydrostatic"); of the
@@ -27,8 +31,13 @@ that, and stops itself.  Under "linear" water in the open keeps moving at five t
 2.8 in place of 3.9·10⁻³ in 10⁵ steps; among grains, whose drag stops it, it stands.
 """
 
-from porescale.common.compiled.jit import inline
+import numpy as np
+
+from continuum_sph.water.smoothing import kernel_value
+from continuum_sph.water.state import X, Y
+from porescale.common.compiled.jit import inline, parallel_kernel, prange
 from porescale.common.compiled.simd import maximum, minimum
+from porescale.common.neighbors.cells import minimum_image
 
 PLAIN, HYDROSTATIC, LINEAR = range(3)
 NAMES = ("plain", "hydrostatic", "linear")
@@ -49,3 +58,26 @@ def noise_scale(noise_speed, h):
     if noise_speed > 0.0:
         return 1.0 / (h * noise_speed), 0.0
     return 0.0, 1.0
+
+
+@parallel_kernel
+def filtered(start, split, partner, record, material, mass, density, out, kind, h, period_x, period_y):
+    """Overwrites ``out`` (fluid,) with the normalised ``density`` (fluid,), kg/m³.
+
+    start, split, partner: full list, wall partners from ``split[i]`` on (they take no part);  record: see Layer, its
+    positions are read;  volumes are mass/density;  kind, h: smoothing;  periods, m or 0.
+    """
+    for i in prange(density.shape[0]):
+        value = kernel_value(kind, 0.0, h)
+        above = mass[i] * value
+        below = mass[i] / density[i] * value
+        for k in range(np.uint64(start[i]), np.uint64(split[i])):
+            j = np.uint64(partner[k])
+            if material[j] != material[i]:
+                continue
+            dx = minimum_image(record[i, X] - record[j, X], period_x)
+            dy = minimum_image(record[i, Y] - record[j, Y], period_y)
+            value = kernel_value(kind, np.sqrt(dx * dx + dy * dy) / h, h)
+            above += mass[j] * value
+            below += mass[j] / density[j] * value
+        out[i] = above / below

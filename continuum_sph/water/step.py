@@ -22,8 +22,7 @@ from typing import Any
 import numpy as np
 
 from continuum_sph.water.bundles import Choices, Fluids, Gradients, Neighbours, Walls
-from continuum_sph.water.density import LINEAR
-from continuum_sph.water.density_filter import filtered
+from continuum_sph.water.density import LINEAR, filtered
 from continuum_sph.water.fluids import table
 from continuum_sph.water.image_walls import WallDensities, facing, update_walls, wall_rates
 from continuum_sph.water.kernel_correction import neighbourhood_moments
