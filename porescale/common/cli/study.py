@@ -120,7 +120,7 @@ def _stability(package: Package) -> Callable[..., int]:
                 spent = time.perf_counter() - start
                 left = f"{done} of {total}, about {spent / done * (total - done):.0f} s left"
                 say(f"{flow.name}: {law} ({left})")
-        words = " ".join([package.name, "study stability", *names, *(["--quick"] if quick else [])])
+        words = _command_line(package, "stability", names, *(["--quick"] if quick else []))
         study.write(folder, words, package.version, flows, rows, quick)
         if json:
             print_json(row.as_dict() for row in rows)
