@@ -1,33 +1,13 @@
 """The command line ``continuum-sph``, made of the same parts as ``porescale``."""
 
-from __future__ import annotations
-
-from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
+from continuum_sph.program import PROGRAM
 from porescale.common.cli import application
 from porescale.common.cli.package import Package
-from porescale.common.cli.run import drive_scene
-from porescale.common.core.version import VERSION
 from porescale.common.evidence.register import discovered
 
-if TYPE_CHECKING:
-    from continuum_sph.scene.sections import Scene
-    from porescale.common.cli.report import Report
-    from porescale.common.record.drive import Outcome
-    from porescale.common.record.model import Model
-
 BENCHMARKS = "continuum_sph.benchmarks"
-FORMERLY = {"numerics": {"noise_floor": 0.0}}
-"""What was done before keys were there whose defaults do something else: no run changes its physics when resumed."""
-
-
-def scene_type() -> type[Scene]:
-    """The type of a continuum scene."""
-    from continuum_sph.scene.sections import Scene
-
-    return Scene
 
 
 def template() -> str:
@@ -35,94 +15,16 @@ def template() -> str:
     return Path(__file__).with_name("template.toml").read_text(encoding="utf-8")
 
 
-def build(scene: Scene) -> Model:
-    """The simulation of a scene that passes `report`."""
-    from continuum_sph.builders.simulation import Simulation
-
-    return Simulation(scene)
-
-
-def drive(model: Model, folder: Path, scene: Scene, **options: Any) -> Outcome:
-    """Run the model to the scene's end and write the run folder; options as of `Package`."""
-    return drive_scene(model, folder, scene, after=show, formerly=FORMERLY, **options)
-
-
-def report(scene: Scene) -> Report:
-    """Every derived number of a scene; raises InputError with all refusals."""
-    from continuum_sph.builders.report import report as scene_report
-
-    return scene_report(scene)
-
-
-def show(folder: Path) -> list[Path]:
-    """Write pictures and film of the run in ``folder``; returns their paths."""
-    from dataclasses import replace
-
-    from continuum_sph.builders.phreatic import NAME, line_of
-    from porescale.common.pictures.film import film
-    from porescale.common.pictures.look import Look
-    from porescale.common.pictures.picture import paint_last, pictures
-    from porescale.common.record.open_run import open_run
-
-    run = open_run(folder)
-    scene = run.card["scene"]
-    width, height = scene["tank"]["width"], scene["tank"]["height"]
-    corners = [(0.0, height), (0.0, 0.0), (width, 0.0), (width, height)]
-    if scene["tank"]["lid"]:
-        corners.append(corners[0])
-    margin = 0.02 * width
-    look = Look(
-        title=scene["title"] or run.card.get("name", ""),
-        cloud="particles",
-        colour="fluid" if scene["inclusion"] else "velocity",
-        kinds=TWO if scene["inclusion"] else {},
-        lines=list(pairwise(corners)),
-        dot=0.5 * scene["numerics"]["spacing"],
-        view=(-margin, width + margin, -margin, height + margin),
-    )
-    if scene["soil"] and not (scene["water"]["column"] or scene.get("reservoir")):
-        look = replace(look, colour="displacement")
-        more = [paint_last(folder, name, replace(look, colour=name)) for name in SOIL]
-        return [*pictures(folder, look), *more, film(folder, look)]
-    if scene["soil"]:
-        line = line_of(run.table(NAME), scene["numerics"]["spacing"])
-        look = replace(look, colour="layer", kinds=LAYERS | (AIR if scene.get("air") else {}) | LINE, marks=line)
-        more = [paint_last(folder, name, replace(look, colour=name, kinds={})) for name in SEEPAGE]
-        return [*pictures(folder, look), *more, film(folder, look)]
-    return [*pictures(folder, look), film(folder, look)]
-
-
-SEEPAGE = ("pressure", "velocity", "porosity")
-"""What is shown of soil and water at the end, besides where they are."""
-LAYERS = {0: ("water", "#5b8fd0"), 1: ("dry soil", "#d9bd82"), 2: ("wet soil", "#8a6d3b")}
-"""Names and colours of water and soil."""
-LINE = {-1: ("phreatic", "#c0182b")}
-"""Of the surface of the water in soil, which is no particle's layer."""
-AIR = {3: ("air", "#e2e2e2")}
-"""And of air in it."""
-SOIL = ("mean_stress", "plastic_strain", "velocity")
-"""What is shown of soil at the end, besides how far it has come."""
-TWO = {0: ("water", "#5b8fd0"), 1: ("second fluid", "#e8a33d")}
-"""Names and colours of two fluids."""
-
-
-PACKAGE = Package(
-    name="continuum-sph",
+PACKAGE = Package.of(
+    PROGRAM,
     summary="Soil, water and air as layers of smoothed particles (water and soil in a tank, seepage, bubbles).",
-    version=VERSION,
-    scene=scene_type,
     template=template,
-    build=build,
-    drive=drive,
-    report=report,
-    show=show,
     validations=discovered("continuum_sph.validation", "VALIDATIONS"),
     benchmarks=discovered(BENCHMARKS, "BENCHMARKS"),
     case=Path(__file__).resolve().parents[1] / "cases" / "collapsing_water_column",
     extremes=discovered(BENCHMARKS, "EXTREMES"),
     endurance=discovered(BENCHMARKS, "ENDURANCES"),
     parts=discovered(BENCHMARKS, "KINDS"),
-    formerly=FORMERLY,
 )
 
 

@@ -13,7 +13,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from porescale import Scene
-from porescale.cli.run import build
 from porescale.common.compiled.jit import set_threads
 from porescale.common.record.drive import drive
 from porescale.common.record.open_run import open_run
@@ -22,6 +21,7 @@ from porescale.output.case import conclude, options
 from porescale.piv.fields.compare import compare
 from porescale.piv.fields.field import Field
 from porescale.piv.fields.vortices import Vortex, vortices
+from porescale.program import build
 
 HERE = Path(__file__).resolve().parent
 FASTER = 240.0

@@ -20,13 +20,13 @@ from matplotlib.patches import Circle
 from variants import VARIANTS, Variant
 
 from porescale import Scene
-from porescale.cli.run import build
 from porescale.common.core.atomic import save, write_text
 from porescale.common.core.errors import InputError
 from porescale.common.record.drive import drive
 from porescale.common.record.open_run import open_run
 from porescale.common.schema.sections import open_scene, scene_as_dict
 from porescale.piv.fields.vortices import Vortex, vortices
+from porescale.program import build
 
 CASES = Path(__file__).resolve().parents[1]
 TIMES = (0.6, 1.0, 1.5)

@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from porescale import Scene
-from porescale.cli.run import build
 from porescale.common.compiled.jit import set_threads
 from porescale.common.record.drive import drive
 from porescale.common.record.open_run import open_run
@@ -23,6 +22,7 @@ from porescale.piv.fields.of_run import field_of_run
 from porescale.piv.fields.vortices import Vortex, vortices
 from porescale.piv.images.camera import Frame, Shooting, frames, shooting
 from porescale.piv.images.synth import Camera
+from porescale.program import build
 
 HERE = Path(__file__).resolve().parent
 PIXELS = 512

@@ -20,7 +20,7 @@ from continuum_sph.water.eos.register import laws
 from continuum_sph.water.fluids import Fluid
 from continuum_sph.water.parameters import Law
 from continuum_sph.water.state import P
-from porescale.common.cli.report import Report
+from porescale.common.api.report import Report
 from porescale.common.core.types import Floats
 from porescale.common.record.part import Part
 

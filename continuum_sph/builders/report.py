@@ -4,7 +4,7 @@ from continuum_sph.builders.seepage_report import seepage_report
 from continuum_sph.builders.soil_report import soil_report
 from continuum_sph.builders.water_report import water_report
 from continuum_sph.scene.sections import Scene
-from porescale.common.cli.report import Report
+from porescale.common.api.report import Report
 
 
 def report(scene: Scene) -> Report:

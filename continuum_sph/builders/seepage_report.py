@@ -9,7 +9,7 @@ from continuum_sph.builders.water_report import water_report
 from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage.mixture import LEAST_POROSITY
 from continuum_sph.seepage.step import SHARE
-from porescale.common.cli.report import Report, report_output
+from porescale.common.api.report import Report, report_output
 from porescale.common.core.errors import Fault, InputError
 
 RATE = 4e5  # particle-steps of both layers per second and thread, on a busy two-core machine, rounded down

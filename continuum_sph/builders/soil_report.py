@@ -6,7 +6,7 @@ from continuum_sph.builders.soil import material_of, soil_law, soil_particles, s
 from continuum_sph.scene.material_file import Origin
 from continuum_sph.scene.sections import Scene
 from continuum_sph.soil.parameters import RULES
-from porescale.common.cli.report import Report, report_output
+from porescale.common.api.report import Report, report_output
 
 RATE = 1.5e6  # particle-steps per second and thread, measured on the two-core machine of the benchmarks, rounded down
 SNAPSHOT = 80  # per particle of a snapshot on disk, about

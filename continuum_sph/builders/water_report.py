@@ -7,7 +7,7 @@ from continuum_sph.scene.numerics import NumericsSection
 from continuum_sph.scene.sections import Scene
 from continuum_sph.water.parameters import RULES
 from continuum_sph.water.smoothing import SUPPORT
-from porescale.common.cli.report import Report, report_output
+from porescale.common.api.report import Report, report_output
 from porescale.common.core.errors import Fault, InputError
 
 MACH_WARNED, MACH_REFUSED = 0.1, 0.3

@@ -9,7 +9,7 @@ from porescale.builders.derive import Derived, derive
 from porescale.builders.initial.fluid_options import has_soft_rim, weight_of
 from porescale.builders.initial.random_polygons import copies_of
 from porescale.builders.kinds import SECTIONS
-from porescale.common.cli.report import Report, report_output
+from porescale.common.api.report import Report, report_output
 from porescale.coupling.solid.choose import SOLID_OPERATORS
 from porescale.coupling.weighting.choose import WEIGHTINGS
 from porescale.lbm.collision.choose import OPERATORS

@@ -23,9 +23,9 @@ OPEN_SCENE = "porescale.common.schema.sections:open_scene"
 """(path, type of the scene, quality=, overrides=) with the attribute ``scene``."""
 LOAD, BUILD = "porescale.builders.build:load_scene", "porescale.builders.build:build"
 """(path, quality=, settings=) -> scene -> model."""
-CONTINUUM_TYPE = "continuum_sph.cli:scene_type"
+CONTINUUM_TYPE = "continuum_sph.program:scene_type"
 """() -> type of a continuum scene."""
-CONTINUUM_BUILD = "continuum_sph.cli:build"
+CONTINUUM_BUILD = "continuum_sph.program:build"
 """(scene) -> model."""
 
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from continuum_sph.cli import report
+from continuum_sph.program import report
 from continuum_sph.scene.sections import Scene
 from porescale.common.core.errors import InputError
 from porescale.common.schema.sections import validate

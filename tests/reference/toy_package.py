@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from porescale.common.api.report import Report
 from porescale.common.cli.package import Package
-from porescale.common.cli.report import Report
 from porescale.common.core.errors import Fault, InputError, PorescaleError, Unstable
 from porescale.common.evidence.benchmarks import Benchmarks, Work
 from porescale.common.evidence.validations import Measured, Validations
@@ -109,6 +109,7 @@ def benchmarks() -> Benchmarks:
 
 TOY = Package(
     name="toy",
+    module="tests.reference.toy_package",
     summary="A toy.",
     version="1.2.3",
     scene=lambda: ToyScene,

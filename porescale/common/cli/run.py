@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
-from types import MappingProxyType
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from porescale.common.api.run_scene import card_of, check_scene_resume
 from porescale.common.cli import pick
 from porescale.common.cli.folders import named_folder, require_writable, unusable
 from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, use_threads
@@ -22,8 +22,6 @@ from porescale.common.record.read_card import read_card
 
 if TYPE_CHECKING:
     from porescale.common.record.drive import Outcome
-    from porescale.common.record.model import Model
-    from porescale.common.schema.sections import Opened, Section
 
 
 def command(package: Package) -> Callable[..., int]:
@@ -78,81 +76,6 @@ def command(package: Package) -> Callable[..., int]:
         return 0
 
     return run
-
-
-def drive_scene(
-    model: Model,
-    folder: Path,
-    scene: Any,
-    *,
-    card: dict[str, Any],
-    after: Callable[[Path], object],
-    formerly: Mapping[str, Any] = MappingProxyType({}),
-    **options: Any,
-) -> Outcome:
-    """`drive` the model for as long as its scene says, with rows, snapshots and checkpoints when it says.
-
-    after, options : of `drive`;  formerly : of `Package`.
-    """
-    from porescale.common.record.drive import drive
-
-    return drive(
-        model,
-        folder,
-        scene.time.end,
-        snapshot_interval=scene.output.snapshot_interval,
-        series_interval=scene.output.series_interval,
-        checkpoint_seconds=scene.output.checkpoint_seconds,
-        card=card,
-        after=after,
-        today=_completing(type(scene), card, formerly),
-        **options,
-    )
-
-
-def check_scene_resume(package: Package, folder: Path, card: dict[str, Any]) -> None:
-    """InputError where the run in ``folder`` cannot be gone on with as ``card`` requests."""
-    from porescale.common.record.drive import check_resume
-
-    check_resume(folder, card, today=_completing(package.scene(), card, package.formerly))
-
-
-def _completing(
-    scene_type: type[Section], card: Mapping[str, Any], formerly: Mapping[str, Any] = MappingProxyType({})
-) -> Callable[[Mapping[str, Any]], Mapping[str, Any]]:
-    """What completes the full scene on an older run's card with the keys that came after it, at what they were before.
-
-    That is their default, or what ``formerly``, tables like those of a scene, says where the default does something
-    else.  Files that it names are looked for where the scene of ``card`` lies, with which the run is resumed.  A
-    scene that is none today stays as it is.
-    """
-
-    from porescale.common.schema import scene_file
-    from porescale.common.schema.sections import scene_as_dict, validate
-
-    def completed(scene: Mapping[str, Any]) -> Mapping[str, Any]:
-        """The scene of a card with the keys that came later."""
-        folder = Path(card["scene_file"]).parent if "scene_file" in card else None
-        try:
-            return scene_as_dict(validate(scene_type, scene_file.merge(formerly, scene), folder=folder))
-        except InputError:
-            return scene
-
-    return completed
-
-
-def card_of(package: Package, opened: Opened[Any]) -> dict[str, Any]:
-    """The entries of a run card that describe the request."""
-    from porescale.common.schema.sections import scene_as_dict
-
-    return {
-        "package": package.name,
-        "name": opened.name,
-        "scene": scene_as_dict(opened.scene),
-        "scene_file": str(opened.file.resolve()),
-        "quality": opened.quality,
-        "settings": list(opened.settings),
-    }
 
 
 def _require_free_choice(quality: str | None, resume: bool) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from porescale.common.cli.report import shown
+from porescale.common.api.report import shown
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.evidence.register import Register
 from porescale.common.evidence.timing import interleaved, repeated, seconds_of

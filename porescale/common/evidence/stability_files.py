@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from porescale.common.cli.report import shown
+from porescale.common.api.report import shown
 from porescale.common.evidence import files
 from porescale.common.evidence.stability import RIGHT, STABLE, UNSTABLE, Flow, Row, holds_up_to
 

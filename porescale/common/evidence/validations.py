@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from porescale.common.cli.report import shown
+from porescale.common.api.report import shown
 from porescale.common.evidence.files import finite
 from porescale.common.evidence.register import Register
 

@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from porescale.common.api.run_scene import card_of
 from porescale.common.cli.package import Package
-from porescale.common.cli.run import card_of
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.evidence.benchmarks import Benchmarks, Dtype, Work
 from porescale.common.record.read_card import read_card

@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 
+from porescale.common.api.report import Report
 from porescale.common.cli.application import application, main
-from porescale.common.cli.report import Report
 from porescale.common.schema.sections import load
 from tests.reference.toy_package import TEMPLATE, TOY, ToyModel, ToyScene
 from tests.reference.waiting import done, running, talked
@@ -165,7 +165,9 @@ def test_asking_for_help_imports_nothing_heavy() -> None:
         "import sys; from porescale.common.cli.application import application, main\n"
         "from porescale.common.cli.package import Package\n"
         "f = lambda *a, **k: 1 / 0\n"
-        "code = main(application(Package('toy', 's', '1', f, f, f, f, f, f, f, f)), ['--help'])\n"
+        "names = ('scene', 'build', 'drive', 'report', 'show', 'template', 'validations', 'benchmarks')\n"
+        "toy = Package(name='toy', module='toy', version='1', summary='s', **dict.fromkeys(names, f))\n"
+        "code = main(application(toy), ['--help'])\n"
         "heavy = {'numba', 'numpy', 'pint', 'pydantic', 'matplotlib', 'h5py'} & set(sys.modules)\n"
         "sys.exit(code or (str(heavy) if heavy else 0))"
     )
@@ -180,7 +182,9 @@ def test_a_reader_that_leaves_is_no_traceback(tmp_path: Path) -> None:
         "from porescale.common.schema.sections import Section\n"
         "f = lambda *a, **k: 1 / 0\n"
         "show = lambda folder: (folder / str(i) for i in range(100000))\n"
-        "toy = Package('toy', 's', '1', lambda: Section, f, f, f, f, show, f, f)\n"
+        "names = ('build', 'drive', 'report', 'template', 'validations', 'benchmarks')\n"
+        "toy = Package(name='toy', module='toy', version='1', summary='s', scene=lambda: Section, show=show, "
+        "**dict.fromkeys(names, f))\n"
         "sys.exit(main(application(toy), ['show', '.']))"
     )
     read, write = os.pipe()

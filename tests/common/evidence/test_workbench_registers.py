@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
-from porescale.common.cli.report import Report
+from porescale.common.api.report import Report
 from porescale.common.core.errors import InputError
 from porescale.common.evidence import benchmarks, validations
 from porescale.common.evidence.bandwidth import Copy, flip

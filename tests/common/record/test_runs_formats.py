@@ -16,9 +16,9 @@ from continuum_sph.cli import PACKAGE as CONTINUUM
 from continuum_sph.scene.sections import Scene as Ground
 from porescale import Scene
 from porescale.cli.main import PACKAGE as PORESCALE
+from porescale.common.api.run_scene import check_scene_resume
 from porescale.common.cli.application import application, main
 from porescale.common.cli.package import Package
-from porescale.common.cli.run import check_scene_resume
 from porescale.common.core.errors import InputError
 from porescale.common.record.checkpoint import read_checkpoint, read_header
 from porescale.common.record.open_run import open_run

@@ -6,7 +6,7 @@ import pytest
 from continuum_sph.builders.inclusion import inclusion_row, pieces
 from continuum_sph.builders.report import report
 from continuum_sph.builders.simulation import Simulation
-from continuum_sph.cli import scene_type
+from continuum_sph.program import scene_type
 from continuum_sph.validation.water import fluids as trials_fluids
 from continuum_sph.validation.water.fluids import TENSION
 from continuum_sph.water.energy_budget import budget

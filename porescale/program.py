@@ -1,17 +1,17 @@
-"""What the common commands need of porescale: the scene, its template, report, model and run folder."""
+"""porescale as a program: the type of its scenes, their report, model, run folder and pictures."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from porescale.common.api.program import Program
+from porescale.common.core.version import VERSION
 
 if TYPE_CHECKING:
     from porescale.builders.scene import Scene
     from porescale.builders.simulation import Simulation
-    from porescale.common.cli.report import Report
-    from porescale.common.core.types import AnyArray
+    from porescale.common.api.report import Report
     from porescale.common.record.drive import Outcome
 
 
@@ -20,21 +20,6 @@ def scene_type() -> type[Scene]:
     from porescale.builders.scene import Scene
 
     return Scene
-
-
-def template() -> str:
-    """The text of the scene that ``new`` writes, with the names that the registers offer."""
-    from porescale.coupling.solid.choose import SOLID_OPERATORS
-    from porescale.coupling.weighting.choose import WEIGHTINGS
-    from porescale.dem.contact.choose import LAWS
-    from porescale.lbm.boundary.choose import boundaries
-    from porescale.lbm.collision.choose import OPERATORS
-
-    text = files("porescale.cli").joinpath("template.toml").read_text(encoding="utf-8")
-    for place, names in (("sides", boundaries()), ("operators", OPERATORS), ("solid_operators", SOLID_OPERATORS),
-                         ("weightings", WEIGHTINGS), ("contact_laws", LAWS)):  # fmt: skip
-        text = text.replace(f"{{{place}}}", " | ".join(names))
-    return text
 
 
 def report(scene: Scene) -> Report:
@@ -55,8 +40,7 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
     """Run the model to the scene's end, write the run folder, and note how fast this machine is."""
     from porescale.analysis.bed_permeability import write_permeability
     from porescale.builders.cost import remember
-    from porescale.cli.show import show
-    from porescale.common.cli.run import drive_scene
+    from porescale.common.api.run_scene import drive_scene
     from porescale.common.record.open_run import open_run
 
     def after(finished: Path) -> None:
@@ -71,8 +55,20 @@ def drive(model: Simulation, folder: Path, scene: Scene, *, card: dict[str, Any]
     return outcome
 
 
-def features() -> Mapping[str, Callable[[Path, float | None], AnyArray]]:
-    """What a trade study may read of a run besides its tables."""
-    from porescale.analysis.features import FEATURES
+def show(folder: Path) -> list[Path]:
+    """Write pictures, film, surface and profiles of the run in ``folder``; returns their paths."""
+    from porescale.output.show import show as show_run
 
-    return FEATURES
+    return show_run(folder)
+
+
+PROGRAM = Program(
+    name="porescale",
+    module="porescale",
+    version=VERSION,
+    scene=scene_type,
+    build=build,
+    drive=drive,
+    report=report,
+    show=show,
+)

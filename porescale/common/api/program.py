@@ -1,0 +1,69 @@
+"""Interface of a program to all that runs scenes, from Python and from the command line.
+
+Every part is a function, so that nothing is imported before it is needed: `--help` must not wait for a compiler.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from porescale.common.api.report import Report
+    from porescale.common.core.types import AnyArray
+    from porescale.common.record.drive import Outcome
+    from porescale.common.schema.sections import Section
+
+
+class Drive(Protocol):
+    """Takes a model through the time of its scene, keeping the record in a run folder."""
+
+    def __call__(
+        self,
+        model: Any,
+        folder: Path,
+        scene: Any,
+        *,
+        card: dict[str, Any],
+        resume: bool,
+        quiet: bool,
+        overwrite: bool = False,
+    ) -> Outcome:
+        """Run, or go on with the run in ``folder``.
+
+        card : what card.json must hold of the request: package, name, scene (full, with defaults), scene_file,
+        quality, settings;  quiet : no progress;  overwrite : replace the run there, whatever it cost.
+        """
+
+
+def run_table(folder: Path, name: str) -> Mapping[str, AnyArray]:
+    """Columns of a table of the run in ``folder``, "series" for series.csv; {} when there is none."""
+    from porescale.common.record.series import read_series
+
+    return read_series(folder / f"{name}.csv")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Program:
+    """What runs scenes of one kind.
+
+    name : of the command and on run cards;  module : its Python package;  version;  scene : gives the scene type;
+    build : scene -> model, of scenes that report accepts;  drive : runs it;  report : scene -> the report of `check`,
+    warnings and all (it may raise InputError);
+    show : makes pictures and a film in a run folder and gives their paths;
+    table : columns of a table of a run folder by its name, "series" for series.csv;
+    formerly : tables like those of a scene, with what was done before keys were there whose defaults do something else.
+    """
+
+    name: str
+    module: str
+    version: str
+    scene: Callable[[], type[Section]]
+    build: Callable[[Any], Any]
+    drive: Drive
+    report: Callable[[Any], Report]
+    show: Callable[[Path], Iterable[Path]]
+    table: Callable[[Path, str], Mapping[str, AnyArray]] = run_table
+    formerly: Mapping[str, Any] = field(default_factory=dict)

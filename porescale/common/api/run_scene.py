@@ -1,0 +1,91 @@
+"""A run as its scene requests it: what its card holds, how long it takes, and whether it can be gone on with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from porescale.common.core.errors import InputError
+
+if TYPE_CHECKING:
+    from porescale.common.api.program import Program
+    from porescale.common.record.drive import Outcome
+    from porescale.common.record.model import Model
+    from porescale.common.schema.sections import Opened, Section
+
+
+def drive_scene(
+    model: Model,
+    folder: Path,
+    scene: Any,
+    *,
+    card: dict[str, Any],
+    after: Callable[[Path], object],
+    formerly: Mapping[str, Any] = MappingProxyType({}),
+    **options: Any,
+) -> Outcome:
+    """`drive` the model for as long as its scene says, with rows, snapshots and checkpoints when it says.
+
+    after, options : of `drive`;  formerly : of `Program`.
+    """
+    from porescale.common.record.drive import drive
+
+    return drive(
+        model,
+        folder,
+        scene.time.end,
+        snapshot_interval=scene.output.snapshot_interval,
+        series_interval=scene.output.series_interval,
+        checkpoint_seconds=scene.output.checkpoint_seconds,
+        card=card,
+        after=after,
+        today=_completing(type(scene), card, formerly),
+        **options,
+    )
+
+
+def check_scene_resume(program: Program, folder: Path, card: dict[str, Any]) -> None:
+    """InputError where the run in ``folder`` cannot be gone on with as ``card`` requests."""
+    from porescale.common.record.drive import check_resume
+
+    check_resume(folder, card, today=_completing(program.scene(), card, program.formerly))
+
+
+def _completing(
+    scene_type: type[Section], card: Mapping[str, Any], formerly: Mapping[str, Any] = MappingProxyType({})
+) -> Callable[[Mapping[str, Any]], Mapping[str, Any]]:
+    """What completes the full scene on an older run's card with the keys that came after it, at what they were before.
+
+    That is their default, or what ``formerly``, tables like those of a scene, says where the default does something
+    else.  Files that it names are looked for where the scene of ``card`` lies, with which the run is resumed.  A
+    scene that is none today stays as it is.
+    """
+
+    from porescale.common.schema import scene_file
+    from porescale.common.schema.sections import scene_as_dict, validate
+
+    def completed(scene: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The scene of a card with the keys that came later."""
+        folder = Path(card["scene_file"]).parent if "scene_file" in card else None
+        try:
+            return scene_as_dict(validate(scene_type, scene_file.merge(formerly, scene), folder=folder))
+        except InputError:
+            return scene
+
+    return completed
+
+
+def card_of(program: Program, opened: Opened[Any]) -> dict[str, Any]:
+    """The entries of a run card that describe the request."""
+    from porescale.common.schema.sections import scene_as_dict
+
+    return {
+        "package": program.name,
+        "name": opened.name,
+        "scene": scene_as_dict(opened.scene),
+        "scene_file": str(opened.file.resolve()),
+        "quality": opened.quality,
+        "settings": list(opened.settings),
+    }
