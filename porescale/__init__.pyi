@@ -8,12 +8,14 @@ from .common.compiled.jit import set_threads as set_threads
 from .common.core.constants import GRAVITY as GRAVITY
 from .common.core.errors import InputError as InputError
 from .common.core.types import Floats as Floats
+from .common.record.open_run import Run as Run
 
 __version__: str
 __all__ = [
     "GRAVITY",
     "Floats",
     "InputError",
+    "Run",
     "Scene",
     "Simulation",
     "__version__",
