@@ -58,7 +58,10 @@ def _copy(name: str, folder: Path) -> None:
     if folder.exists():
         _refuse(folder)
     with whole_folder(folder) as beside:
-        shutil.copytree(case.path, beside, ignore=shutil.ignore_patterns(*LEFT_OUT), copy_function=shutil.copyfile)
+        try:
+            shutil.copytree(case.path, beside, ignore=shutil.ignore_patterns(*LEFT_OUT), copy_function=shutil.copyfile)
+        except shutil.Error as error:  # of every file that failed: source, target, why
+            raise OSError(error.args[0][0][2]) from error
     for path in sorted(folder.rglob("*")):
         if path.is_file():
             print(path)

@@ -101,8 +101,11 @@ def test_a_copy_is_whole_or_absent(run, tmp_path, monkeypatch):
         return target
 
     monkeypatch.setattr(shutil, "copyfile", fails)
-    code, out, _ = run("new", "mine", "--from", "column_collapse")
-    assert (code, out, len(copied)) == (2, "", 2)
+    code, out, said = run("new", "mine", "--from", "column_collapse")
+    assert (code, out) == (2, "")
+    assert "No space left on device" in said
+    assert len(said.splitlines()) == 1
+    assert copied
     assert not list(tmp_path.iterdir())
 
 
@@ -120,3 +123,10 @@ def test_decks_are_found_by_name(run, tmp_path):
 
 def test_package_names_are_those_of_the_cases():
     assert {case.package for case in shipped.cases()} == {PACKAGE.name, CONTINUUM.name}
+
+
+def test_python_lists_the_same_cases():
+    import continuum_sph
+    import porescale
+
+    assert porescale.cases() == continuum_sph.cases() == shipped.cases()
