@@ -1,5 +1,6 @@
 # The public names of porescale, in one list: imported when first used, and what type checkers and editors see.
 from .api import build as build
+from .api import cases as cases
 from .api import load as load
 from .api import open_run as open_run
 from .builders.scene import Scene as Scene
@@ -20,6 +21,7 @@ __all__ = [
     "Simulation",
     "__version__",
     "build",
+    "cases",
     "load",
     "open_run",
     "set_threads",
