@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 import porescale as ps
-from porescale.common.api.shipped import case_names
 
 
 def line(act) -> str:
@@ -29,13 +28,9 @@ def test_a_case_has_a_name_and_a_path_precedes_it(tmp_path: Path, monkeypatch: p
 
 
 def test_an_unknown_name_gives_the_nearest_in_one_line() -> None:
-    assert (
-        line(lambda: ps.load("colum_colapse"))
-        == "colum_colapse: no scene here; did you mean the case 'column_collapse'?"
-    )
+    assert "did you mean the case 'column_collapse'?" in line(lambda: ps.load("colum_colapse"))
     assert "looked for a file or folder" in line(lambda: ps.load("qqq"))
-    assert "continuum-sph check" in line(lambda: ps.load("collapsing_water_column"))
-    assert {"column_collapse", "collapsing_water_column"} <= set(case_names())
+    assert "is a case of continuum-sph" in line(lambda: ps.load("collapsing_water_column"))
 
 
 def test_settings_are_texts_or_a_mapping() -> None:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from porescale.common.api.shipped import case_names, find_case
+from porescale.common.api.shipped import scene_path
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema import scene_file
-from porescale.common.schema.messages import closest
 
 if TYPE_CHECKING:
     from porescale.common.api.program import Program
@@ -24,24 +21,8 @@ def load_scene(program: Program, scene: str | Path, quality: str | None, setting
     """The scene that ``scene`` names; arguments and errors as of the packages' ``load``."""
     from porescale.common.schema.sections import load
 
-    overrides = setting_texts(settings)
-    return load(find_scene(scene), program.scene(), quality=quality, overrides=overrides)
-
-
-def find_scene(scene: str | Path) -> Path:
-    """The file that ``scene`` names: a file, a folder with scene.toml, else the name of a shipped case; InputError."""
-    path = Path(scene)
-    try:
-        return scene_file.find(path)
-    except InputError as error:
-        name = str(scene)
-        if os.sep in name or path.suffix or os.path.lexists(path):
-            raise
-        if case := find_case(name):
-            return scene_file.find(case)
-        if name := closest(name, case_names()):
-            raise InputError([replace(it, repair=f"did you mean the case {name!r}?") for it in error.faults]) from None
-        raise
+    file = scene_file.find(scene_path(scene, program.name))
+    return load(file, program.scene(), quality=quality, overrides=setting_texts(settings))
 
 
 def setting_texts(settings: Settings) -> tuple[str, ...]:

@@ -25,14 +25,10 @@ def dotted(key: Key) -> str:
 def nearest(name: str, known: Iterable[str], what: str = "keys") -> str:
     """A repair for an unknown name: the nearest known one, else all of them."""
     names = sorted(set(known))
-    if close := closest(name, names):
-        return f"did you mean {close!r}?"
+    close = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
+    if close:
+        return f"did you mean {close[0]!r}?"
     return f"known {what}: {', '.join(names)}" if names else f"there are no {what} here"
-
-
-def closest(name: str, known: Iterable[str]) -> str:
-    """The known name that is most like ``name``; "" if none is."""
-    return next(iter(difflib.get_close_matches(name, sorted(set(known)), n=1, cutoff=0.6)), "")
 
 
 def translate(error: ValidationError, scene_type: type[BaseModel], data: Mapping[str, Any]) -> list[tuple[Key, Fault]]:

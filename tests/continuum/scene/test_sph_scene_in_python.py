@@ -22,6 +22,6 @@ def test_faults_of_python_are_those_of_files() -> None:
         cs.Scene(tank={"widht": 1}, numerics={"spacing": "1 s"})
     assert len(caught.value.faults) == 6  # width, height, time and output are missing, too
     with pytest.raises(cs.InputError, match="did you mean the case 'collapsing_water_column'"):
-        cs.load("collapsing_water")
+        cs.load("collapsing_water_colum")
     assert cs.InputError is ps.InputError
     assert cs.PorescaleWarning is ps.PorescaleWarning
