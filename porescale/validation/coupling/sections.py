@@ -5,6 +5,7 @@ import numpy as np
 from porescale.builders.build import build
 from porescale.builders.scene import Scene
 from porescale.common.evidence.validations import Measured, Validations
+from porescale.common.schema.sections import validate
 
 VALIDATIONS = Validations()
 
@@ -20,18 +21,17 @@ def fluxes(solid_operator: str, relaxation_time: float = 0.8, steps: int = 10000
     """Fluxes of volume and of solid (m²/s) through the sections once a force has driven the fluid for so many steps."""
     # The viscosity for a step of 1 ms at the relaxation time, and a force that gives Mach 1e-3 or less.
     viscosity = (relaxation_time - 0.5) / 3 * SPACING**2 / 1e-3
-    scene = Scene(  # type: ignore[call-arg]
-        domain={"width": LENGTH, "height": HEIGHT, "left": "periodic", "right": "periodic", "bottom": "periodic",
-                "top": "periodic"},
-        time={"end": 1.0},
-        output={"snapshot_interval": 1.0, "series_interval": 1.0},
-        gravity=(0.0, 0.0),
-        fluid={"density": 1000.0, "viscosity": viscosity, "spacing": SPACING, "relaxation_time": relaxation_time,
-               "body_force": (1.0, 0.0), "operator": "trt", "solid_operator": solid_operator},
-        disc=[{"x": x, "y": y, "diameter": DIAMETER} for x, y in DISCS],
-        flux=[{"start": (x, 0.0), "end": (x, HEIGHT)} for x in SECTIONS],
-    )  # fmt: skip
-    simulation = build(scene)
+    scene = {
+        "domain": {"width": LENGTH, "height": HEIGHT, **dict.fromkeys(("left", "right", "bottom", "top"), "periodic")},
+        "time": {"end": 1.0},
+        "output": {"snapshot_interval": 1.0, "series_interval": 1.0},
+        "gravity": (0.0, 0.0),
+        "fluid": {"density": 1000.0, "viscosity": viscosity, "spacing": SPACING, "relaxation_time": relaxation_time,
+                  "body_force": (1.0, 0.0), "operator": "trt", "solid_operator": solid_operator},
+        "disc": [{"x": x, "y": y, "diameter": DIAMETER} for x, y in DISCS],
+        "flux": [{"start": (x, 0.0), "end": (x, HEIGHT)} for x in SECTIONS],
+    }  # fmt: skip
+    simulation = build(validate(Scene, scene))
     simulation.advance(steps)
     row = simulation.tables()["flux"]
     flux = [value for name, value in row.items() if "volume flux" in name]
