@@ -154,6 +154,7 @@ class BaseSimulation(ABC):
         rate = 0.0
 
         def ended() -> bool:
+            """Whether the end is reached."""
             if last is not None:
                 return self.step >= last
             return end is None or self.time >= end - SLACK * abs(end)
