@@ -4,8 +4,12 @@ from .api import PorescaleError as PorescaleError
 from .api import PorescaleWarning as PorescaleWarning
 from .api import Unstable as Unstable
 from .api import build as build
+from .api import cases as cases
+from .api import check as check
 from .api import load as load
 from .api import open_run as open_run
+from .api import run as run
+from .api import set_threads as set_threads
 from .builders.simulation import Simulation as Simulation
 from .scene.sections import Scene as Scene
 
@@ -19,6 +23,10 @@ __all__ = [
     "Unstable",
     "__version__",
     "build",
+    "cases",
+    "check",
     "load",
     "open_run",
+    "run",
+    "set_threads",
 ]

@@ -67,7 +67,10 @@ def cases_folder() -> Path | None:
 
 @cache
 def cases() -> tuple[Case, ...]:
-    """All cases, by name; empty where they were not installed."""
+    """All cases that come with the packages, by name; empty where they were not installed.
+
+    One is loaded by its name, from any folder, and `Case.command` is the command line that runs it.
+    """
     folder = cases_folder()
     return tuple(_cases(folder)) if folder else ()
 
