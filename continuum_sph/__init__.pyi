@@ -1,10 +1,7 @@
 # The public names of continuum_sph, in one list: imported when first used, and what type checkers and editors see.
 from .api import build as build
-<<<<<<< HEAD
-from .api import check as check
-=======
 from .api import cases as cases
->>>>>>> main
+from .api import check as check
 from .api import load as load
 from .api import open_run as open_run
 from .api import run as run
@@ -13,8 +10,4 @@ from .builders.simulation import Simulation as Simulation
 from .scene.sections import Scene as Scene
 
 __version__: str
-<<<<<<< HEAD
-__all__ = ["Scene", "Simulation", "__version__", "build", "check", "load", "open_run", "run", "set_threads"]
-=======
-__all__ = ["Scene", "Simulation", "__version__", "build", "cases", "load", "open_run"]
->>>>>>> main
+__all__ = ["Scene", "Simulation", "__version__", "build", "cases", "check", "load", "open_run", "run", "set_threads"]

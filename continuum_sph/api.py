@@ -7,11 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from continuum_sph.program import PROGRAM
-<<<<<<< HEAD
 from porescale.common.api.run import set_threads as set_threads
-=======
 from porescale.common.api.shipped import cases as cases
->>>>>>> main
 
 if TYPE_CHECKING:
     from continuum_sph.builders.simulation import Simulation
@@ -19,11 +16,7 @@ if TYPE_CHECKING:
     from porescale.common.api.report import Report
     from porescale.common.record.open_run import Run
 
-<<<<<<< HEAD
-__all__ = ["build", "check", "load", "open_run", "run", "set_threads"]
-=======
-__all__ = ["build", "cases", "load", "open_run"]
->>>>>>> main
+__all__ = ["build", "cases", "check", "load", "open_run", "run", "set_threads"]
 
 
 def load(scene: str | Path, *, quality: str | None = None, settings: Sequence[str] = ()) -> Scene:
