@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -73,4 +74,7 @@ def set_threads(count: int | None) -> int:
     """
     from porescale.common.compiled import jit
 
-    return jit.set_threads(count)
+    try:
+        return jit.set_threads(count)
+    except InputError as error:
+        raise InputError([replace(fault, key="threads") for fault in error.faults]) from None
