@@ -11,7 +11,7 @@ from continuum_sph.program import PROGRAM
 if TYPE_CHECKING:
     from continuum_sph.builders.simulation import Simulation
     from continuum_sph.scene.sections import Scene
-    from porescale.common.record.open_run import Run
+    from porescale.common.api.run import Run
 
 __all__ = ["build", "load", "open_run"]
 
@@ -35,6 +35,6 @@ def build(scene: Scene) -> Simulation:
 
 def open_run(folder: str | Path) -> Run:
     """Open the folder of a run, finished, running or killed; InputError where it holds none, or a damaged one."""
-    from porescale.common.record.open_run import open_run
+    from porescale.common.api.run import open_run
 
-    return open_run(folder)
+    return open_run(folder, PROGRAM)
