@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from continuum_sph.program import PROGRAM
+from porescale.common.api.shipped import cases as cases
 
 if TYPE_CHECKING:
     from continuum_sph.builders.simulation import Simulation
     from continuum_sph.scene.sections import Scene
     from porescale.common.api.run import Run
 
-__all__ = ["build", "load", "open_run"]
+__all__ = ["build", "cases", "load", "open_run"]
 
 
 def load(scene: str | Path, *, quality: str | None = None, settings: Sequence[str] = ()) -> Scene:

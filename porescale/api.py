@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from porescale.common.api.shipped import cases as cases
 from porescale.program import PROGRAM
 
 if TYPE_CHECKING:
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     from porescale.builders.simulation import Simulation
     from porescale.common.api.run import Run
 
-__all__ = ["build", "load", "open_run"]
+__all__ = ["build", "cases", "load", "open_run"]
 
 
 def load(scene: str | Path, *, quality: str | None = None, settings: Sequence[str] = ()) -> Scene:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 PACKAGE = "porescale demseg"
 CHECKPOINT_SECONDS = 30.0
 """Wall-clock time between checkpoints."""
-Folder = Annotated[Path, Parameter(help="folder with in_gm.dat and in_bc.dat")]
+Folder = Annotated[Path, Parameter(help="folder with in_gm.dat and in_bc.dat, or name of a case (see `cases`)")]
 Seed = Annotated[int, Parameter(help="of the random discs of mode 0")]
 Release = Annotated[Literal["overlap", "force"], Parameter(help="contacts end without overlap, or without force")]
 Rod = Annotated[float | None, Parameter(help="width of segments that weigh; 2 thick, or 0.1, if not given")]
@@ -58,6 +58,7 @@ def run(
     if seed < 0:
         raise InputError(Fault("--seed", seed, "is out of range", allowed=">= 0"))
     options = Options(seed, release, rule, rod)
+    folder = _deck_folder(folder)
     deck = read_deck(folder)
     name = folder.resolve().name
     where = out or Path("runs") / name
@@ -71,6 +72,13 @@ def run(
     if not quiet:
         print(summary("porescale", name, where, outcome).rsplit("\n", 1)[0])
     return 0
+
+
+def _deck_folder(given: Path) -> Path:
+    """``given`` where it is there, else the case of that name where there is one."""
+    from porescale.common.api.shipped import find_case
+
+    return given if given.exists() else find_case(given) or given
 
 
 def drive_deck(
@@ -142,6 +150,7 @@ def convert(
     from porescale.demseg.deck import BONDED, CF0, read_deck
     from porescale.demseg.tension import read_tensions
 
+    folder = _deck_folder(folder)
     name = folder.resolve().name
     file = out or Path(f"{name}.toml")
     require_writable(file.parent, "--out")

@@ -46,7 +46,7 @@ def command(package: Package) -> Callable[..., int]:
         """Run a scene and write its run folder."""
         from porescale.common.schema.sections import open_scene
 
-        require_scene(scene)
+        scene = require_scene(scene, package.name)
         chosen = None
         if error is not None or budget is not None:
             _require_free_choice(quality, resume)
