@@ -12,7 +12,7 @@ from porescale.common.api.shipped import cases as cases
 if TYPE_CHECKING:
     from continuum_sph.builders.simulation import Simulation
     from continuum_sph.scene.sections import Scene
-    from porescale.common.api.run import Run
+    from porescale.common.api.open_run import Run
 
 __all__ = ["build", "cases", "load", "open_run"]
 
@@ -36,6 +36,6 @@ def build(scene: Scene) -> Simulation:
 
 def open_run(folder: str | Path) -> Run:
     """Open the folder of a run, finished, running or killed; InputError where it holds none, or a damaged one."""
-    from porescale.common.api.run import open_run
+    from porescale.common.api.open_run import open_run
 
     return open_run(folder, PROGRAM)

@@ -5,7 +5,7 @@ from .api import load as load
 from .api import open_run as open_run
 from .builders.scene import Scene as Scene
 from .builders.simulation import Simulation as Simulation
-from .common.api.run import Run as Run
+from .common.api.open_run import Run as Run
 from .common.compiled.jit import set_threads as set_threads
 from .common.core.constants import GRAVITY as GRAVITY
 from .common.core.errors import InputError as InputError
