@@ -1,12 +1,14 @@
 # The public names of porescale, in one list: imported when first used, and what type checkers and editors see.
 from .api import build as build
 from .api import cases as cases
+from .api import check as check
 from .api import load as load
 from .api import open_run as open_run
+from .api import run as run
+from .api import set_threads as set_threads
 from .builders.scene import Scene as Scene
 from .builders.simulation import Simulation as Simulation
 from .common.api.open_run import Run as Run
-from .common.compiled.jit import set_threads as set_threads
 from .common.core.constants import GRAVITY as GRAVITY
 from .common.core.errors import InputError as InputError
 from .common.core.types import Floats as Floats
@@ -22,7 +24,9 @@ __all__ = [
     "__version__",
     "build",
     "cases",
+    "check",
     "load",
     "open_run",
+    "run",
     "set_threads",
 ]
