@@ -11,6 +11,7 @@ from .api import open_run as open_run
 from .api import run as run
 from .api import set_threads as set_threads
 from .builders.simulation import Simulation as Simulation
+from .run_folder import Run as Run
 from .scene.sections import Scene as Scene
 
 __version__: str
@@ -18,6 +19,7 @@ __all__ = [
     "InputError",
     "PorescaleError",
     "PorescaleWarning",
+    "Run",
     "Scene",
     "Simulation",
     "Unstable",

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from continuum_sph.builders.simulation import Simulation
     from continuum_sph.scene.sections import Scene
     from porescale.common.api.load_scene import Settings
+    from porescale.common.api.open_run import Run
     from porescale.common.api.report import Report
-    from porescale.common.record.open_run import Run
 
 __all__ = [
     "InputError",
@@ -86,6 +86,6 @@ def run(
 
 def open_run(folder: str | Path) -> Run:
     """Open the folder of a run, finished, running or killed; InputError where it holds none, or a damaged one."""
-    from porescale.common.record.open_run import open_run
+    from porescale.common.api.open_run import open_run
 
-    return open_run(folder)
+    return open_run(folder, PROGRAM)
