@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, Parameter
 
+from porescale.common.api.folders import check_folder
 from porescale.common.cli.options import Threads, use_threads
-from porescale.common.cli.run import check_folder, summary
+from porescale.common.cli.run import summary
 from porescale.common.core.errors import Fault, InputError
 
 if TYPE_CHECKING:
