@@ -151,7 +151,8 @@ def compare(
     """
     from porescale.common.core.atomic import write_text
     from porescale.common.evidence.files import finite
-    from porescale.piv.fields import compare as comparing
+    from porescale.piv.fields.compare import ALIGNED
+    from porescale.piv.fields.compare import compare as compare_fields
     from porescale.piv.fields.of_run import surface_of_run
     from porescale.piv.fields.pictures import comparison
 
@@ -163,7 +164,7 @@ def compare(
         raise InputError(Fault(bad[0], bad[1], "is out of range", allowed=bad[2]))
     first, second = _field(reference, moment), _field(other, moment)
     one, two = (surface_of_run(path, first.x, moment) if path.is_dir() else None for path in (reference, other))
-    found = comparing.compare(first, second, within, factor, (one, two))
+    found = compare_fields(first, second, within, factor, (one, two))
     text = json_text.dumps(finite(found.as_dict()), indent=1, allow_nan=False)
     if out is not None:
         write_text(out / "compare.json", text + "\n")
@@ -176,7 +177,7 @@ def compare(
     print(f"difference over it: rms {found.rms:.4g}, largest {found.largest:.4g}")
     print(f"bias over it: u {found.bias_u:.3g}, v {found.bias_v:.3g}")
     print(f"mean cosine between directions {found.direction:.5g}, correlation {found.correlation:.5g}")
-    print(f"{100 * found.aligned:.1f} % of the directions within {comparing.ALIGNED:g} degrees")
+    print(f"{100 * found.aligned:.1f} % of the directions within {ALIGNED:g} degrees")
     if found.surface is not None:
         rms, largest, mean, highest = found.surface
         unit = unit.split("/")[0].split(" ")[0]
