@@ -107,7 +107,7 @@ def probe_row(
 
     share (n,): of each particle's volume that is water.
     """
-    row = {}
+    row: dict[str, float] = {}
     for k, probe in enumerate(probes):
         name = probe.name or f"probe {k}"
         if probe.width is not None:
