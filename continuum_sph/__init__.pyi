@@ -7,7 +7,20 @@ from .api import open_run as open_run
 from .api import run as run
 from .api import set_threads as set_threads
 from .builders.simulation import Simulation as Simulation
+from .run_folder import Run as Run
 from .scene.sections import Scene as Scene
 
 __version__: str
-__all__ = ["Scene", "Simulation", "__version__", "build", "cases", "check", "load", "open_run", "run", "set_threads"]
+__all__ = [
+    "Run",
+    "Scene",
+    "Simulation",
+    "__version__",
+    "build",
+    "cases",
+    "check",
+    "load",
+    "open_run",
+    "run",
+    "set_threads",
+]

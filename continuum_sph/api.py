@@ -13,8 +13,8 @@ from porescale.common.api.shipped import cases as cases
 if TYPE_CHECKING:
     from continuum_sph.builders.simulation import Simulation
     from continuum_sph.scene.sections import Scene
+    from porescale.common.api.open_run import Run
     from porescale.common.api.report import Report
-    from porescale.common.record.open_run import Run
 
 __all__ = ["build", "cases", "check", "load", "open_run", "run", "set_threads"]
 
@@ -72,6 +72,6 @@ def run(
 
 def open_run(folder: str | Path) -> Run:
     """Open the folder of a run, finished, running or killed; InputError where it holds none, or a damaged one."""
-    from porescale.common.record.open_run import open_run
+    from porescale.common.api.open_run import open_run
 
-    return open_run(folder)
+    return open_run(folder, PROGRAM)

@@ -8,10 +8,10 @@ from .api import run as run
 from .api import set_threads as set_threads
 from .builders.scene import Scene as Scene
 from .builders.simulation import Simulation as Simulation
+from .common.api.open_run import Run as Run
 from .common.core.constants import GRAVITY as GRAVITY
 from .common.core.errors import InputError as InputError
 from .common.core.types import Floats as Floats
-from .common.record.open_run import Run as Run
 
 __version__: str
 __all__ = [

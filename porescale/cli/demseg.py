@@ -121,15 +121,11 @@ def drive_deck(
 def show(folder: Path) -> list[Path]:
     """Write pictures and a film of the deck's run in ``folder``, finished or not; returns their paths."""
     from porescale.common.pictures.film import film
-    from porescale.common.pictures.look import Look
     from porescale.common.pictures.picture import pictures
     from porescale.common.record.open_run import open_run
+    from porescale.output.show import look_of
 
-    run = open_run(folder)
-    x1, x2, y1, y2 = (float(value) for value in run.card["scene"]["deck"]["domain"])
-    sides = [((x1, y1), (x2, y1)), ((x2, y1), (x2, y2)), ((x2, y2), (x1, y2)), ((x1, y2), (x1, y1))]
-    look = Look(title=run.name, cloud="grains", shapes="ends", colour="velocity", lines=sides, view=(x1, x2, y1, y2),
-                plain=True)  # fmt: skip
+    look = look_of(open_run(folder))
     return [*pictures(folder, look), film(folder, look)]
 
 

@@ -11,9 +11,9 @@ from porescale.common.api.run_scene import card_of_scene, check_scene_resume
 from porescale.common.core.errors import Fault, InputError
 
 if TYPE_CHECKING:
+    from porescale.common.api.open_run import Run
     from porescale.common.api.program import Program
     from porescale.common.api.simulation import BaseSimulation
-    from porescale.common.record.open_run import Run
 
 
 def run(
@@ -27,8 +27,8 @@ def run(
     progress: bool = True,
 ) -> Run:
     """Run a scene, or a simulation at time 0, to the scene's end and open its folder; see ``run`` of the packages."""
+    from porescale.common.api.open_run import open_run
     from porescale.common.api.simulation import BaseSimulation
-    from porescale.common.record.open_run import open_run
 
     model = given if isinstance(given, BaseSimulation) else None
     scene = given if model is None else model.scene
@@ -49,7 +49,7 @@ def run(
     if model is None:
         model = program.build(scene)
     program.drive(model, folder, scene, card=card, resume=resume, quiet=not progress, overwrite=overwrite)
-    return open_run(folder)
+    return open_run(folder, program)
 
 
 def _require_start(model: BaseSimulation) -> None:
