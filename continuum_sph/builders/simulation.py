@@ -8,7 +8,9 @@ from continuum_sph.builders import mixture, soil, water
 from continuum_sph.builders.assembly import Assembly
 from continuum_sph.builders.sanity import Now, advance_one
 from continuum_sph.scene.sections import Scene
+from porescale.common.api.hooks import ForceHook, Hook
 from porescale.common.api.simulation import BaseSimulation
+from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
 from porescale.common.record.model import Snapshot
 from porescale.common.record.part import Part, overrides, restore, row_of, state_of, tables_of
@@ -70,6 +72,15 @@ class Simulation(BaseSimulation):
         """Masses of the particles, (n,) kg per metre of depth; a copy."""
         return self.shown.masses()
 
+    def _add_force(self, hook: ForceHook, instead_of: Hook | None) -> None:
+        from continuum_sph.builders.user_forces import UserForces
+
+        part = next((it for it in self.parts if isinstance(it, UserForces)), None)
+        if part is None:
+            part = UserForces(self.flow, self.shown)
+            self.parts.append(part)
+        part.hooks = [*(it for it in part.hooks if it is not instead_of), hook]
+
     def _after(self) -> None:
         for part in self.parts:
             part.after()
@@ -84,11 +95,16 @@ class Simulation(BaseSimulation):
         for _ in range(steps):
             for act in before:
                 act()
-            advance_one(self.flow.advance, Now(self.step, self.time, self.repair))
+            try:
+                advance_one(self.flow.advance, Now(self.step, self.time, self.repair))
+            except Unstable:
+                self._check_forces()
+                raise
             self._after()
 
     def check(self) -> None:
         """Raise Unstable when the state of a part is not finite or out of bounds."""
+        self._check_forces()
         for part in self.parts:
             part.check()
 

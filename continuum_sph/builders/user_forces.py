@@ -14,7 +14,7 @@ from porescale.common.record.part import Part
 
 
 class UserForces(Part):
-    """Calls all force hooks once a step, where a step computes accelerations: at its end, with velocities of its middle.
+    """Calls all force hooks once a step, where it computes accelerations: at its end, with velocities of its middle.
 
     hooks : in the order in which they act;  flow : what moves;  shown : the part whose particles they are.
     """
@@ -70,8 +70,3 @@ class UserForces(Part):
         else:
             assert isinstance(self.flow, Flow)
             self.flow.layer.acceleration += force / mass
-
-    def check(self) -> None:
-        """Raise Unstable where a force is no number."""
-        for hook in self.hooks:
-            hook.check(self.flow.step, self.flow.time)

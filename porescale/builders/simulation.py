@@ -4,6 +4,7 @@ from typing import Any, TypeVar
 
 from porescale.builders.stepper import Fields, Stepper
 from porescale.builders.system import System
+from porescale.common.api.hooks import ForceHook, Hook
 from porescale.common.api.simulation import BaseSimulation, absent
 from porescale.common.core.errors import Unstable
 from porescale.common.core.types import Floats
@@ -31,6 +32,7 @@ class Simulation(BaseSimulation):
         self.fluid, self.grains, self.coupled = system.fluid, system.grains, system.coupled
         self.weight, self.frames = system.weight, system.frames
         self.stepper, self.parts = stepper, system.parts
+        self._held = system.held
         self._before = [part.before for part in self.parts if overrides(part, "before")]
         self._after = [part.after for part in self.parts if overrides(part, "after")]
         self._between = [part for part in self.parts if acts_between(part)]
@@ -94,11 +96,27 @@ class Simulation(BaseSimulation):
         values: Floats = getattr(self.grains.discs, name)[:count].copy()
         return values
 
+    def _add_force(self, hook: ForceHook, instead_of: Hook | None) -> None:
+        from porescale.builders.parts.clouds import GrainCloud
+        from porescale.builders.parts.user_forces import UserForces
+
+        part = self.part(UserForces)
+        if part is None:
+            cloud = self.part(GrainCloud)
+            if cloud is None:
+                raise absent(f"force {hook.name}", "discs that it could act on", "add [grains], [[disc]] or [[clump]]")
+            part = UserForces(self.stepper, self.coupled, cloud, self._held)
+            self.parts.append(part)
+            self._before.append(part.before)
+            self._between.append(part)
+        part.hooks = [*(it for it in part.hooks if it is not instead_of), hook]
+
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps; raises Unstable when a grain is nowhere."""
         try:
             self._advance(steps)
         except Unstable as error:
+            self._check_forces()
             raise self.stepper.explained(error) from None
 
     def _advance(self, steps: int) -> None:
@@ -120,6 +138,7 @@ class Simulation(BaseSimulation):
 
     def check(self) -> None:
         """Raise Unstable, naming cell or grain, quantity and step, when the state is not finite or out of bounds."""
+        self._check_forces()
         for part in self.parts:
             part.check()
 

@@ -44,8 +44,3 @@ class UserForces(Part):
         for hook in self.hooks:
             force = hook.call(clock.step, clock.time, *self.views)
             total[:free] += force[:free]
-
-    def check(self) -> None:
-        """Raise Unstable where a force is no number."""
-        for hook in self.hooks:
-            hook.check(self.clock.step, self.clock.time)

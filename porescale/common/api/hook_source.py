@@ -17,7 +17,7 @@ DEEP = 8
 
 
 def source_of(function: Callable[..., Any]) -> str:
-    """The text of a function from its ``def`` on, without decorators; "" where it cannot be read (typed at a prompt)."""
+    """The text of a function from its ``def`` on, without decorators; "" where it cannot be read."""
     try:
         text = textwrap.dedent(inspect.getsource(function))
         node = ast.parse(text).body[0]

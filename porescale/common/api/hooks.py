@@ -1,4 +1,4 @@
-"""Hooks: functions of the user's that a simulation calls while it runs.  Nothing of them is there until one is added."""
+"""Hooks: functions of the user's that a simulation calls while it runs; nothing of them is there without one."""
 
 from __future__ import annotations
 
@@ -100,9 +100,7 @@ class EveryHook(Hook):
     kind = "every"
     arguments = "sim"
 
-    def __init__(
-        self, function: SampleFunction, simulation: BaseSimulation, interval: str, schedule: Schedule
-    ) -> None:
+    def __init__(self, function: SampleFunction, simulation: BaseSimulation, interval: str, schedule: Schedule) -> None:
         super().__init__(function)
         self.simulation, self.interval, self.schedule = simulation, interval, schedule
         self.restart()
@@ -111,9 +109,13 @@ class EveryHook(Hook):
         """Forget all rows."""
         self.columns: dict[str, list[float]] = {}
         self.last_step, self.loose = -1, False
+        self.schedule.done = -1
 
     def sample(self, *, scheduled: bool) -> dict[str, float] | None:
-        """Call the function; the row that it gives, which is kept, or None.  A row of an end that was none is dropped."""
+        """Call the function; the row that it gives, which is kept, or None.
+
+        A row that was there only because the run ended is dropped when it goes on.
+        """
         sim, step = self.simulation, self.simulation.step
         if self.loose:
             for column in self.columns.values():
@@ -157,7 +159,7 @@ def when(seconds: float | None, steps: int | None, step_seconds: float | None) -
     """The interval as text, and the schedule; step_seconds : None where the length of steps varies."""
     if (seconds is None) == (steps is None) or callable(seconds):
         problem = "needs an interval" if steps is None else "has two intervals"
-        raise InputError(Fault("every", None, problem, repair="write @sim.every(seconds=1e-3), or @sim.every(steps=10)"))
+        raise InputError(Fault("every", None, problem, repair="write @sim.every(seconds=1e-3) or @sim.every(steps=10)"))
     if steps is not None:
         if not steps >= 1 or int(steps) != steps:
             raise InputError(Fault("every.steps", steps, "is no number of steps", allowed=">= 1, whole"))

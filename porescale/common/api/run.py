@@ -38,6 +38,8 @@ def run(
     if model is not None:
         _require_start(model)
     card = card_of_scene(program, scene)
+    if model is not None and model.hooks:
+        card["hooks"] = {name: hook.on_card() for name, hook in model.hooks.items()}
     folder = named_folder(out, card["name"], IN_PYTHON.out)
     check_folder(folder, program.name, resume=resume, overwrite=overwrite, words=IN_PYTHON)
     report = program.report(scene)  # what contradicts itself is refused
