@@ -1,4 +1,8 @@
 # The public names of continuum_sph, in one list: imported when first used, and what type checkers and editors see.
+from .api import InputError as InputError
+from .api import PorescaleError as PorescaleError
+from .api import PorescaleWarning as PorescaleWarning
+from .api import Unstable as Unstable
 from .api import build as build
 from .api import cases as cases
 from .api import check as check
@@ -12,9 +16,13 @@ from .scene.sections import Scene as Scene
 
 __version__: str
 __all__ = [
+    "InputError",
+    "PorescaleError",
+    "PorescaleWarning",
     "Run",
     "Scene",
     "Simulation",
+    "Unstable",
     "__version__",
     "build",
     "cases",

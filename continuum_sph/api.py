@@ -2,32 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from continuum_sph.program import PROGRAM
 from porescale.common.api.run import set_threads as set_threads
 from porescale.common.api.shipped import cases as cases
+from porescale.common.core.errors import InputError, PorescaleError, PorescaleWarning, Unstable
 
 if TYPE_CHECKING:
     from continuum_sph.builders.simulation import Simulation
     from continuum_sph.scene.sections import Scene
+    from porescale.common.api.load_scene import Settings
     from porescale.common.api.open_run import Run
     from porescale.common.api.report import Report
 
-__all__ = ["build", "cases", "check", "load", "open_run", "run", "set_threads"]
+__all__ = [
+    "InputError",
+    "PorescaleError",
+    "PorescaleWarning",
+    "Unstable",
+    "build",
+    "cases",
+    "check",
+    "load",
+    "open_run",
+    "run",
+    "set_threads",
+]
 
 
-def load(scene: str | Path, *, quality: str | None = None, settings: Sequence[str] = ()) -> Scene:
-    """The scene at a path: a TOML file or a folder with scene.toml.
+def load(scene: str | Path, *, quality: str | None = None, settings: Settings = ()) -> Scene:
+    """The scene at a path, a TOML file or a folder with scene.toml; else that of a shipped case, by its name.
 
-    quality : level "draft", "standard" or "fine"; None: the file's own default;  settings : ``section.key=value``.
-    Raises InputError with every fault of the file.
+    quality : level "draft", "standard" or "fine"; None: the file's own default;  settings : ``section.key=value``
+    each, or a mapping, ``{"numerics.spacing": "0.3 mm"}``.  Raises InputError with every fault of the file.
     """
-    from continuum_sph.scene.sections import load_scene
+    from porescale.common.api.load_scene import load_scene
 
-    return load_scene(scene, quality=quality, settings=settings)
+    made: Scene = load_scene(PROGRAM, scene, quality, settings)
+    return made
 
 
 def build(scene: Scene) -> Simulation:

@@ -11,6 +11,9 @@ from .builders.simulation import Simulation as Simulation
 from .common.api.open_run import Run as Run
 from .common.core.constants import GRAVITY as GRAVITY
 from .common.core.errors import InputError as InputError
+from .common.core.errors import PorescaleError as PorescaleError
+from .common.core.errors import PorescaleWarning as PorescaleWarning
+from .common.core.errors import Unstable as Unstable
 from .common.core.types import Floats as Floats
 
 __version__: str
@@ -18,9 +21,12 @@ __all__ = [
     "GRAVITY",
     "Floats",
     "InputError",
+    "PorescaleError",
+    "PorescaleWarning",
     "Run",
     "Scene",
     "Simulation",
+    "Unstable",
     "__version__",
     "build",
     "cases",

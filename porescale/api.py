@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,21 +12,23 @@ from porescale.program import PROGRAM
 if TYPE_CHECKING:
     from porescale.builders.scene import Scene
     from porescale.builders.simulation import Simulation
+    from porescale.common.api.load_scene import Settings
     from porescale.common.api.open_run import Run
     from porescale.common.api.report import Report
 
 __all__ = ["build", "cases", "check", "load", "open_run", "run", "set_threads"]
 
 
-def load(scene: str | Path, *, quality: str | None = None, settings: Sequence[str] = ()) -> Scene:
-    """The scene at a path: a TOML file or a folder with scene.toml.
+def load(scene: str | Path, *, quality: str | None = None, settings: Settings = ()) -> Scene:
+    """The scene at a path, a TOML file or a folder with scene.toml; else that of a shipped case, by its name.
 
-    quality : level "draft", "standard" or "fine"; None: the file's own default;  settings : ``section.key=value``.
-    Raises InputError with every fault of the file.
+    quality : level "draft", "standard" or "fine"; None: the file's own default;  settings : ``section.key=value``
+    each, or a mapping, ``{"fluid.spacing": "0.3 mm"}``.  Raises InputError with every fault of the file.
     """
-    from porescale.builders.build import load_scene
+    from porescale.common.api.load_scene import load_scene
 
-    return load_scene(scene, quality=quality, settings=settings)
+    made: Scene = load_scene(PROGRAM, scene, quality, settings)
+    return made
 
 
 def build(scene: Scene) -> Simulation:

@@ -89,7 +89,7 @@ def names(app: App, before: str) -> Iterator[str]:
 
 APPS = {"porescale": commands(), "continuum-sph": application(CONTINUUM)}
 KNOWN = {name for package, app in APPS.items() for name in names(app, package)}
-QUOTED = re.compile(r"(?<![\w.-])(?<!from )(porescale|continuum-sph) ([a-z]+)(?: ([a-z]+))?")
+QUOTED = re.compile(r"(?<![\w.-])(?<!from )(?<!import )(porescale|continuum-sph) ([a-z]+)(?: ([a-z]+))?")
 
 
 def unknown_commands(text: str) -> list[str]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from porescale.common.api.folders import IN_PYTHON, check_folder, named_folder
 from porescale.common.api.run_scene import card_of_scene, check_scene_resume
-from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.errors import Fault, InputError, PorescaleWarning
 
 if TYPE_CHECKING:
     from porescale.common.api.open_run import Run
@@ -66,7 +66,7 @@ def warn(texts: list[str]) -> None:
     import warnings
 
     for text in texts:
-        warnings.warn(text, UserWarning, stacklevel=4)
+        warnings.warn(text, PorescaleWarning, stacklevel=4)
 
 
 def set_threads(count: int | None) -> int:
