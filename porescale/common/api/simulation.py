@@ -108,8 +108,8 @@ class BaseSimulation(ABC):
 
     @property
     def name(self) -> str:
-        """What the simulation is called in progress and pictures: the title of its scene."""
-        return self.scene.title or type(self.scene).__module__.partition(".")[0]
+        """What the simulation is called in progress and pictures: title or name of its scene."""
+        return str(self.scene.title or self.scene.name or type(self.scene).__module__.partition(".")[0])
 
     def force(self, function: ForceFunction) -> ForceFunction:
         """Decorator: a force on every grain or particle, ``function(time, positions, velocities, out)``.
