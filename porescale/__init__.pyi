@@ -1,4 +1,5 @@
 # The public names of porescale, in one list: imported when first used, and what type checkers and editors see.
+from . import piv as piv
 from .api import build as build
 from .api import cases as cases
 from .api import check as check
@@ -33,6 +34,7 @@ __all__ = [
     "check",
     "load",
     "open_run",
+    "piv",
     "run",
     "set_threads",
 ]

@@ -46,7 +46,7 @@ def behind(text: str, package: str, known: Iterable[Validation]) -> list[str]:
     found = sorted(stands ^ {one.name for one in known})
     found += [f"{name}: twice" for name in sorted(stands) if text.count(f"\n| {name} ") > 1]
     for one in known if not found else ():
-        start, end = WRITER["written"](["", one.source])[3:-1], f"| {WRITER['number'](one.tolerance)} |"
+        start, end = WRITER["markdown_row"](["", one.source])[3:-1], f"| {WRITER['number'](one.tolerance)} |"
         if start not in lines[one.name] or not lines[one.name].endswith(end):
             found.append(f"{one.name}: source or tolerance")
     return found

@@ -10,7 +10,7 @@ from typing import Any, get_args
 
 from cyclopts import App, CycloptsError, Parameter, Token, convert
 
-from porescale.common.cli import bench, cases, check, new, run, show, study, sweep, verify
+from porescale.common.cli import bench, cases, check, completion, new, run, show, study, sweep, verify
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import InputError, PorescaleError
 
@@ -40,6 +40,7 @@ def application(package: Package) -> App:
     )
     for part in (run, check, show, new, cases, sweep, verify, bench, study):
         app.command(part.command(package))
+    app.command(completion.command(app), name="--install-completion")
     return app
 
 

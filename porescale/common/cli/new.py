@@ -41,7 +41,7 @@ def _write(folder: Path, text: str) -> None:
     if file.exists() or (folder.exists() and not folder.is_dir()):
         _refuse(file if file.exists() else folder)
     folder.mkdir(parents=True, exist_ok=True)
-    with file.open("x", encoding="utf-8") as stream:  # "x": never over a file that came in between
+    with file.open("x", encoding="utf-8", newline="\n") as stream:  # "x": never over a file that came in between
         stream.write(text)
 
 
