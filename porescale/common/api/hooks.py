@@ -13,8 +13,8 @@ from porescale.common.core.errors import Fault, InputError, Unstable
 from porescale.common.record.schedule import Schedule, positive
 
 if TYPE_CHECKING:
-    from porescale.common.api.simulation import BaseSimulation
     from porescale.common.core.types import AnyArray, Floats
+    from porescale.common.record.model import Model
 
 TIME = "time (s)"
 ForceFunction = Callable[[float, "AnyArray", "AnyArray", "AnyArray"], None]
@@ -100,7 +100,7 @@ class EveryHook(Hook):
     kind = "every"
     arguments = "sim"
 
-    def __init__(self, function: SampleFunction, simulation: BaseSimulation, interval: str, schedule: Schedule) -> None:
+    def __init__(self, function: SampleFunction, simulation: Model, interval: str, schedule: Schedule) -> None:
         super().__init__(function)
         self.simulation, self.interval, self.schedule = simulation, interval, schedule
         self.restart()

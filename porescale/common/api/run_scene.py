@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from porescale.common.api.program import Program
     from porescale.common.record.drive import Outcome
     from porescale.common.record.model import Model
-    from porescale.common.schema.scene import SceneBase
     from porescale.common.schema.sections import Opened, Section
 
 
@@ -92,7 +91,7 @@ def card_of(program: Program, opened: Opened[Any]) -> dict[str, Any]:
     }
 
 
-def card_of_scene(program: Program, scene: SceneBase) -> dict[str, Any]:
+def card_of_scene(program: Program, scene: Any) -> dict[str, Any]:
     """`card_of` of a scene by itself: what it knows of where it comes from."""
     from porescale.common.schema.sections import scene_as_dict
 

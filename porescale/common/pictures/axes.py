@@ -97,7 +97,9 @@ def _points(cloud: Cloud, found: Survey, axes: Axes, factor: float) -> None:
     if discs and "angle" in cloud.data:
         angle = np.asarray(cloud.data["angle"], float)[there]
         tip = at + 0.4 * size[:, None] * np.column_stack((np.cos(angle), np.sin(angle)))
-        axes.add_collection(LineCollection(list(np.stack((at, tip), axis=1)), colors=RIM, linewidths=0.4), autolim=False)
+        axes.add_collection(
+            LineCollection(list(np.stack((at, tip), axis=1)), colors=RIM, linewidths=0.4), autolim=False
+        )
 
 
 def _shapes(cloud: Cloud, found: Survey, axes: Axes, factor: float) -> None:
@@ -118,7 +120,9 @@ def _shapes(cloud: Cloud, found: Survey, axes: Axes, factor: float) -> None:
         across *= thick[:, None]
         strips = np.stack((ends[:, 0] + across, ends[:, 1] + across, ends[:, 1] - across, ends[:, 0] - across), axis=1)
         colours = own[cloud.lines[:, 0]]
-        axes.add_collection(PolyCollection(list(strips), facecolors=colours, edgecolors=RIM, linewidths=0.6), autolim=False)
+        axes.add_collection(
+            PolyCollection(list(strips), facecolors=colours, edgecolors=RIM, linewidths=0.6), autolim=False
+        )
 
 
 def _colours(cloud: Cloud, found: Survey) -> AnyArray:

@@ -120,7 +120,7 @@ def test_a_force_moves_the_middle_of_mass(kind):
 def test_grains_that_are_held_stay_and_bodies_of_segments_have_none():
     still = {"x": 0.003, "y": 0.004, "diameter": 0.001}
     bar = {"corners": [[0.006, 0.004], [0.008, 0.004], [0.008, 0.005]], "thickness": 0.0002, "density": 2500}
-    sim = porescale.build(dry(grains=None, disc=[still], polygon=[bar]))
+    sim = porescale.build(dry(grains={"density": 2500}, disc=[still], polygon=[bar]))
     assert len(sim.positions) == 1
 
     @sim.force
@@ -131,7 +131,7 @@ def test_grains_that_are_held_stay_and_bodies_of_segments_have_none():
     assert sim.positions.tolist() == [[0.003, 0.004]]
     x = sim.grains.discs.position[1:, 0]
     assert x.tolist() == [0.006, 0.008, 0.008]  # the polygon falls straight down
-    only = porescale.build(dry(grains=None, polygon=[bar]))
+    only = porescale.build(dry(grains={"density": 2500}, polygon=[bar]))
     assert "this scene has no discs that it could act on" in refused_force(only, strong)
 
 
