@@ -6,6 +6,7 @@ from .api import Unstable as Unstable
 from .api import build as build
 from .api import cases as cases
 from .api import check as check
+from .api import diff as diff
 from .api import load as load
 from .api import open_run as open_run
 from .api import run as run
@@ -28,6 +29,7 @@ __all__ = [
     "build",
     "cases",
     "check",
+    "diff",
     "load",
     "open_run",
     "run",

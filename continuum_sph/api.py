@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from porescale.common.api.open_run import Run
     from porescale.common.api.report import Report
     from porescale.common.api.sweep import Vary
+    from porescale.common.schema.diff import Diff
 
 __all__ = [
     "InputError",
@@ -28,6 +29,7 @@ __all__ = [
     "build",
     "cases",
     "check",
+    "diff",
     "load",
     "open_run",
     "run",
@@ -46,6 +48,16 @@ def load(scene: str | Path, *, quality: str | None = None, settings: Settings = 
 
     made: Scene = load_scene(PROGRAM, scene, quality, settings)
     return made
+
+
+def diff(a: Scene | Run, b: Scene | Run) -> Diff:
+    """What differs between two scenes, or those of two runs: a mapping, key -> (value in a, value in b), SI.
+
+    None where one has no such key; empty where they are equal.  Raises InputError for anything else.
+    """
+    from porescale.common.schema.diff import diff
+
+    return diff(a, b, PROGRAM.scene())
 
 
 def build(scene: Scene) -> Simulation:

@@ -3,6 +3,7 @@ from . import piv as piv
 from .api import build as build
 from .api import cases as cases
 from .api import check as check
+from .api import diff as diff
 from .api import load as load
 from .api import open_run as open_run
 from .api import run as run
@@ -33,6 +34,7 @@ __all__ = [
     "build",
     "cases",
     "check",
+    "diff",
     "load",
     "open_run",
     "piv",

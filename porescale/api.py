@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     from porescale.common.api.open_run import Run
     from porescale.common.api.report import Report
     from porescale.common.api.sweep import Vary
+    from porescale.common.schema.diff import Diff
 
-__all__ = ["build", "cases", "check", "load", "open_run", "run", "set_threads", "sweep"]
+__all__ = ["build", "cases", "check", "diff", "load", "open_run", "run", "set_threads", "sweep"]
 
 
 def load(scene: str | Path, *, quality: str | None = None, settings: Settings = ()) -> Scene:
@@ -32,6 +33,16 @@ def load(scene: str | Path, *, quality: str | None = None, settings: Settings = 
 
     made: Scene = load_scene(PROGRAM, scene, quality, settings)
     return made
+
+
+def diff(a: Scene | Run, b: Scene | Run) -> Diff:
+    """What differs between two scenes, or those of two runs: a mapping, key -> (value in a, value in b), SI.
+
+    None where one has no such key; empty where they are equal.  Raises InputError for anything else.
+    """
+    from porescale.common.schema.diff import diff
+
+    return diff(a, b, PROGRAM.scene())
 
 
 def build(scene: Scene) -> Simulation:
