@@ -79,6 +79,7 @@ def _completing(
 
 def card_of(program: Program, opened: Opened[Any]) -> dict[str, Any]:
     """The entries of a run card that describe the request."""
+    from porescale.common.schema.own import on_card
     from porescale.common.schema.sections import scene_as_dict
 
     return {
@@ -88,4 +89,5 @@ def card_of(program: Program, opened: Opened[Any]) -> dict[str, Any]:
         "scene_file": str(opened.file.resolve()),
         "quality": opened.quality,
         "settings": list(opened.settings),
+        **on_card(opened.scene),
     }
