@@ -1,9 +1,34 @@
 # The public names of continuum_sph, in one list: imported when first used, and what type checkers and editors see.
+from .api import InputError as InputError
+from .api import PorescaleError as PorescaleError
+from .api import PorescaleWarning as PorescaleWarning
+from .api import Unstable as Unstable
 from .api import build as build
+from .api import cases as cases
+from .api import check as check
 from .api import load as load
 from .api import open_run as open_run
+from .api import run as run
+from .api import set_threads as set_threads
 from .builders.simulation import Simulation as Simulation
+from .run_folder import Run as Run
 from .scene.sections import Scene as Scene
 
 __version__: str
-__all__ = ["Scene", "Simulation", "__version__", "build", "load", "open_run"]
+__all__ = [
+    "InputError",
+    "PorescaleError",
+    "PorescaleWarning",
+    "Run",
+    "Scene",
+    "Simulation",
+    "Unstable",
+    "__version__",
+    "build",
+    "cases",
+    "check",
+    "load",
+    "open_run",
+    "run",
+    "set_threads",
+]

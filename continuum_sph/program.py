@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,8 +14,10 @@ from porescale.common.core.version import VERSION
 if TYPE_CHECKING:
     from continuum_sph.scene.sections import Scene
     from porescale.common.api.report import Report
+    from porescale.common.pictures.look import Look
     from porescale.common.record.drive import Outcome
     from porescale.common.record.model import Model
+    from porescale.common.record.open_run import Run
 
 FORMERLY = {"numerics": {"noise_floor": 0.0}}
 """What was done before keys were there whose defaults do something else: no run changes its physics when resumed."""
@@ -50,38 +53,51 @@ def show(folder: Path) -> list[Path]:
     """Write pictures and film of the run in ``folder``; returns their paths."""
     from dataclasses import replace
 
-    from continuum_sph.builders.phreatic import NAME, line_of
     from porescale.common.pictures.film import film
-    from porescale.common.pictures.look import Look
     from porescale.common.pictures.picture import paint_last, pictures
     from porescale.common.record.open_run import open_run
 
     run = open_run(folder)
+    look, scene = look_of(run), run.card["scene"]
+    names = () if not scene["soil"] else SOIL if _dry(scene) else SEEPAGE
+    more = [paint_last(folder, name, replace(look, colour=name, kinds={})) for name in names]
+    return [*pictures(folder, look), *more, film(folder, look)]
+
+
+def look_of(run: Run) -> Look:
+    """How pictures and films show a run: the speed of water, or where fluids and soil are, or how far soil has come."""
+    from continuum_sph.builders.phreatic import NAME, line_of
+    from porescale.common.pictures.look import Look
+
     scene = run.card["scene"]
     width, height = scene["tank"]["width"], scene["tank"]["height"]
     corners = [(0.0, height), (0.0, 0.0), (width, 0.0), (width, height)]
     if scene["tank"]["lid"]:
         corners.append(corners[0])
     margin = 0.02 * width
-    look = Look(
+    more: dict[str, Any] = {"colour": "velocity"}
+    if scene["soil"] and _dry(scene):
+        more = {"colour": "displacement"}
+    elif scene["soil"]:
+        surface = run.table(NAME) if (run.folder / f"{NAME}.csv").exists() else {}
+        line = line_of(surface, scene["numerics"]["spacing"])
+        kinds = LAYERS | (AIR if scene.get("air") else {}) | LINE
+        more = {"colour": "layer", "kinds": kinds, "marks": line}
+    elif scene["inclusion"]:
+        more = {"colour": "fluid", "kinds": TWO}
+    return Look(
         title=scene["title"] or run.card.get("name", ""),
         cloud="particles",
-        colour="fluid" if scene["inclusion"] else "velocity",
-        kinds=TWO if scene["inclusion"] else {},
         lines=list(pairwise(corners)),
         dot=0.5 * scene["numerics"]["spacing"],
         view=(-margin, width + margin, -margin, height + margin),
+        **more,
     )
-    if scene["soil"] and not (scene["water"]["column"] or scene.get("reservoir")):
-        look = replace(look, colour="displacement")
-        more = [paint_last(folder, name, replace(look, colour=name)) for name in SOIL]
-        return [*pictures(folder, look), *more, film(folder, look)]
-    if scene["soil"]:
-        line = line_of(run.table(NAME), scene["numerics"]["spacing"])
-        look = replace(look, colour="layer", kinds=LAYERS | (AIR if scene.get("air") else {}) | LINE, marks=line)
-        more = [paint_last(folder, name, replace(look, colour=name, kinds={})) for name in SEEPAGE]
-        return [*pictures(folder, look), *more, film(folder, look)]
-    return [*pictures(folder, look), film(folder, look)]
+
+
+def _dry(scene: Mapping[str, Any]) -> bool:
+    """Whether a scene with soil is without water."""
+    return not (scene["water"]["column"] or scene.get("reservoir"))
 
 
 SEEPAGE = ("pressure", "velocity", "porosity")
@@ -107,5 +123,6 @@ PROGRAM = Program(
     drive=drive,
     report=report,
     show=show,
+    look=look_of,
     formerly=FORMERLY,
 )

@@ -2,29 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from porescale.common.api.run import set_threads as set_threads
+from porescale.common.api.shipped import cases as cases
 from porescale.program import PROGRAM
 
 if TYPE_CHECKING:
     from porescale.builders.scene import Scene
     from porescale.builders.simulation import Simulation
-    from porescale.common.record.open_run import Run
+    from porescale.common.api.load_scene import Settings
+    from porescale.common.api.open_run import Run
+    from porescale.common.api.report import Report
 
-__all__ = ["build", "load", "open_run"]
+__all__ = ["build", "cases", "check", "load", "open_run", "run", "set_threads"]
 
 
-def load(scene: str | Path, *, quality: str | None = None, settings: Sequence[str] = ()) -> Scene:
-    """The scene at a path: a TOML file or a folder with scene.toml.
+def load(scene: str | Path, *, quality: str | None = None, settings: Settings = ()) -> Scene:
+    """The scene at a path, a TOML file or a folder with scene.toml; else that of a shipped case, by its name.
 
-    quality : level "draft", "standard" or "fine"; None: the file's own default;  settings : ``section.key=value``.
-    Raises InputError with every fault of the file.
+    quality : level "draft", "standard" or "fine"; None: the file's own default;  settings : ``section.key=value``
+    each, or a mapping, ``{"fluid.spacing": "0.3 mm"}``.  Raises InputError with every fault of the file.
     """
-    from porescale.builders.build import load_scene
+    from porescale.common.api.load_scene import load_scene
 
-    return load_scene(scene, quality=quality, settings=settings)
+    made: Scene = load_scene(PROGRAM, scene, quality, settings)
+    return made
 
 
 def build(scene: Scene) -> Simulation:
@@ -36,8 +40,42 @@ def build(scene: Scene) -> Simulation:
     return made
 
 
+def check(scene: Scene) -> Report:
+    """What `check` says of a scene: every number that follows from it, the cost, and warnings; prints as a table.
+
+    Raises InputError with all that a scene must not request.
+    """
+    return PROGRAM.report(scene)
+
+
+def run(
+    scene: Scene | Simulation,
+    out: str | Path | None = None,
+    *,
+    resume: bool = False,
+    overwrite: bool = False,
+    threads: int | None = None,
+    progress: bool = True,
+) -> Run:
+    """Run a scene to its end, write the run folder that the command ``run`` writes, and open it.
+
+    scene : a scene, or a simulation of one at time 0, with its hooks;  out : the folder, runs/ and the scene's name if
+    not given;  resume : go on with the run there, bit for bit as if it had not stopped;  overwrite : replace it;
+    threads : of all that is computed from now on;  progress : a bar with the time left.
+
+    Warnings of `check` are given as `PorescaleWarning`.  Raises InputError for what the scene must not request, for a
+    folder that is in use, and for a run that is another's; Unstable, with the last valid state kept in the folder; and
+    Interrupted after Ctrl-C, with the state saved.
+    """
+    from porescale.common.api.run import run
+
+    return run(
+        PROGRAM, scene, out, resume=resume, overwrite=overwrite, threads=threads, progress=progress,
+    )  # fmt: skip
+
+
 def open_run(folder: str | Path) -> Run:
     """Open the folder of a run, finished, running or killed; InputError where it holds none, or a damaged one."""
-    from porescale.common.record.open_run import open_run
+    from porescale.common.api.open_run import open_run
 
-    return open_run(folder)
+    return open_run(folder, PROGRAM)

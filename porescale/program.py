@@ -12,7 +12,9 @@ if TYPE_CHECKING:
     from porescale.builders.scene import Scene
     from porescale.builders.simulation import Simulation
     from porescale.common.api.report import Report
+    from porescale.common.pictures.look import Look
     from porescale.common.record.drive import Outcome
+    from porescale.common.record.open_run import Run
 
 
 def scene_type() -> type[Scene]:
@@ -62,6 +64,13 @@ def show(folder: Path) -> list[Path]:
     return show_run(folder)
 
 
+def look(run: Run) -> Look:
+    """How pictures and films show a run, of a scene or of a deck of DEMseg."""
+    from porescale.output.show import look_of
+
+    return look_of(run)
+
+
 PROGRAM = Program(
     name="porescale",
     module="porescale",
@@ -71,4 +80,5 @@ PROGRAM = Program(
     drive=drive,
     report=report,
     show=show,
+    look=look,
 )

@@ -8,15 +8,11 @@ import numpy as np
 from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
 
-from porescale.common.core.types import Floats
-from porescale.common.neighbors.placement import place
-from porescale.dem.contact.linear import Linear
-from porescale.dem.discs import make_discs
-from porescale.dem.forces.rectangle import Rectangle
-from porescale.dem.forces.walls import HIGH, Box, Plate
-from porescale.dem.grains import Grains
-from porescale.dem.measures.energy import energy_budget
-from porescale.output.case import conclude, options, stage
+from porescale import Floats
+from porescale.common.neighbors import place
+from porescale.dem import HIGH, Box, Grains, Linear, Plate, Rectangle, make_discs
+from porescale.dem.measures import energy_budget
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 COUNT, SIDE, TOE, GRAVITY, DT = 582, 80.0, 4.0, 980.0, 5e-5  # discs, cm, cm, cm/s², s: the tutorial's

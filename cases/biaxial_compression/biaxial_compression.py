@@ -10,15 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from porescale import build, load
-from porescale.common.core.types import Floats
-from porescale.dem.discs import make_discs
-from porescale.dem.forces.walls import PX, PY
-from porescale.dem.grains import Grains
-from porescale.dem.measures.coarse_graining import CoarseGrained, Raster
-from porescale.dem.measures.contacts import contacts
-from porescale.dem.motion.time_function import Table
-from porescale.output.case import conclude, options, stage
+from porescale import Floats, build, load
+from porescale.dem import PX, PY, Grains, Table, make_discs
+from porescale.dem.measures import CoarseGrained, Raster, contacts
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 SCENE = HERE / "specimen.toml"

@@ -5,10 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.soil import Material
-from continuum_sph.soil.stress import XX, YY
-from continuum_sph.validation.soil.element import biaxial, confined
-from porescale.output.case import conclude, options, stage
+from continuum_sph.soil import XX, YY, Material
+from continuum_sph.validation.soil import element
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 PRESSURE = 1e5  # Pa
@@ -26,7 +25,7 @@ def main() -> int:
     figure, (left, middle, right) = stage(3, 12.0, 3.8)
     numbers = {}
     for name, material in KINDS.items():
-        _, rows = biaxial(material, PRESSURE, 0.02, words.steps)
+        _, rows = element.biaxial(material, PRESSURE, 0.02, words.steps)
         upright, across, major, minor = rows.T
         left.plot(100.0 * upright, major / minor, label=name)
         middle.plot(100.0 * upright, 100.0 * (upright + across), label=name)
@@ -39,7 +38,7 @@ def main() -> int:
         ("eq. 43", Material(1e7, 1590.0, modulus="printed")),
         ("eq. 43, elastic", Material(1e7, 1590.0, modulus="printed", yields=False)),
     ):
-        stresses = np.array([confined(material, strain).stress for strain in np.linspace(1e-4, 0.01, 20)])
+        stresses = np.array([element.confined(material, strain).stress for strain in np.linspace(1e-4, 0.01, 20)])
         right.plot(stresses[:, YY] / 1e3, stresses[:, XX] / 1e3, label=label)
         numbers[f"pressure at rest, {label}"] = float(stresses[-1, XX] / stresses[-1, YY])
     for panel, x, y in (

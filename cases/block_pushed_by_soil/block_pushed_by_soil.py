@@ -13,21 +13,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from porescale.common.core.constants import GRAVITY
-from porescale.common.core.types import Floats
-from porescale.common.neighbors.placement import place
-from porescale.common.pictures.film import write_film
-from porescale.dem.bodies.frames import chain, framed, polygon
-from porescale.dem.contact.linear import Linear
-from porescale.dem.discs import make_discs
-from porescale.dem.forces.walls import Box
-from porescale.dem.grains import Grains
-from porescale.dem.motion.control import Control, Moved
-from porescale.dem.motion.drivers import Clump
-from porescale.dem.motion.time_function import Table
-from porescale.output.case import conclude, options, stage
-from porescale.output.case_bodies import LARGEST, PLATE, Shot, draw_bodies, frame, pixels, shot
-from porescale.validation.dem.segments import OPEN, REST, weights
+from porescale import GRAVITY, Floats
+from porescale.common.neighbors import place
+from porescale.common.pictures import write_film
+from porescale.dem import Box, Clump, Control, Grains, Linear, Moved, Table, chain, framed, make_discs, polygon
+from porescale.output import LARGEST, PLATE, Shot, conclude, draw_bodies, frame, options, pixels, shot, stage
+from porescale.validation.dem import segments
 
 HERE = Path(__file__).resolve().parent
 DIAMETER, DENSITY = 0.02, 2500.0  # m, mean, radii 3:5; kg/m³
@@ -83,11 +74,11 @@ def laid(seed: int) -> Grains:
         chain([(foot, -THICK), (left + 3.0 * WIDE, -THICK)], THICK, DENSITY, long=True),
         polygon([(left, THICK), (left + WIDE, THICK), (left + WIDE, tall), (left, tall)], THICK, DENSITY, long=True),
     ]
-    box = Box((-1.0, -1.0), (3.0, 3.0), **OPEN)
+    box = Box((-1.0, -1.0), (3.0, 3.0), **segments.OPEN)
     grains = framed(make_discs(at, radius, DENSITY), parts, LAW, box)
     for body in (PUSHER, GROUND, BASE):
-        grains.steering.control(body, REST, REST, REST)
-    grains.steering.control(BLOCK, REST, None, REST)
+        grains.steering.control(body, segments.REST, segments.REST, segments.REST)
+    grains.steering.control(BLOCK, segments.REST, None, segments.REST)
     return grains
 
 
@@ -95,7 +86,7 @@ def laid(seed: int) -> Grains:
 def settled(seed: int) -> dict[str, Any]:
     """State of the site once its discs have come to rest."""
     grains = laid(seed)
-    dt, load = grains.stable_step(), weights(grains.discs)
+    dt, load = grains.stable_step(), segments.weights(grains.discs)
     for drag in (0.0, 5.0):
         grains.step(dt, load, count=round(0.8 / dt), drag=drag)
     grains.reset_clock()
@@ -117,17 +108,17 @@ def weigh(grains: Grains, weight: float) -> None:
     c.inertia[BLOCK.number] *= factor
     grains.discs.mass[members] *= factor
     grains.discs.inertia[members] *= factor
-    dt, load = grains.stable_step(), weights(grains.discs)
+    dt, load = grains.stable_step(), segments.weights(grains.discs)
     grains.step(dt, load, count=round(0.2 / dt), drag=20.0)
     grains.reset_clock()
 
 
 def run(grains: Grains, seconds: float, block: Sequence[Control | None], speed: float = 0.0, looks: int = 0) -> Record:
     """What happens while the block is controlled so and the plate comes to ``speed`` (m/s); looks : shots taken."""
-    grains.steering.control(PUSHER, Moved(Table([0.0, RAMP], [0.0, speed])), REST, REST)
+    grains.steering.control(PUSHER, Moved(Table([0.0, RAMP], [0.0, speed])), segments.REST, segments.REST)
     grains.steering.control(BLOCK, *block)
     grains.steering.watch(PUSHER, BASE, BLOCK)
-    dt, load = grains.stable_step(), weights(grains.discs)
+    dt, load = grains.stable_step(), segments.weights(grains.discs)
     count, rows, shots = round(EACH / dt), [], [(0, shot(grains))]
     total = round(seconds / EACH)
     for k in range(total):
@@ -198,7 +189,7 @@ def find(seed: int = 1, weights_over_half: Sequence[float] = WEIGHTS, heavy: flo
     height, unit = surface(grains)
     half = 0.5 * unit * height**2
     away = Moved(Table([0.0, RAMP], [0.0, YIELD]))
-    drawn = run(grains, 1.0, (away, None, REST))
+    drawn = run(grains, 1.0, (away, None, segments.REST))
     freed = []
     for weight in weights_over_half:
         grains = site(seed)

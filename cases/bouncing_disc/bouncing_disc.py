@@ -7,12 +7,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from porescale.common.core.constants import GRAVITY
-from porescale.dem.contact.linear import Linear
-from porescale.dem.discs import make_discs
-from porescale.dem.forces.walls import Box
-from porescale.dem.grains import Grains
-from porescale.output.case import conclude, options, stage
+from porescale import GRAVITY
+from porescale.dem import Box, Grains, Linear, make_discs
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 RADIUS = 1e-3  # m

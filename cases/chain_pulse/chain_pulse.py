@@ -7,12 +7,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.special import jn_zeros, jnp_zeros, jv
 
-from porescale.common.core.types import Floats
-from porescale.dem.contact.linear import Linear
-from porescale.dem.discs import make_discs
-from porescale.dem.forces.walls import Box
-from porescale.dem.grains import Grains
-from porescale.output.case import conclude, options, stage
+from porescale import Floats
+from porescale.dem import Box, Grains, Linear, make_discs
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 APART, RADIUS, STIFFNESS, DENSITY = 2.0, 1.1, 1e8, 2.5  # cm, cm, dyn/cm, g/cm³: the tutorial's

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from continuum_sph.validation.soil.bodies import bar_that_spins, elongation
-from porescale.output.case import conclude, options, stage
+from continuum_sph.validation.soil import bodies
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 PULLS = (0.0045, 0.018)  # tension in the middle over E'
@@ -17,8 +17,8 @@ def main() -> int:
     numbers = {}
     for panel, (name, strength) in zip(axes, METHODS.items(), strict=True):
         for pull in PULLS:
-            flow = bar_that_spins(pull, rows=words.rows, repulsion=strength)
-            numbers[f"elongation, {name}, pull {pull:g}"] = elongation(flow, pull, words.turns)
+            flow = bodies.bar_that_spins(pull, rows=words.rows, repulsion=strength)
+            numbers[f"elongation, {name}, pull {pull:g}"] = bodies.elongation(flow, pull, words.turns)
             if pull == PULLS[0]:
                 x, stress = flow.soil.x, flow.soil.stress
                 dots = panel.scatter(x[:, 0], x[:, 1], c=-0.5e-3 * (stress[:, 0] + stress[:, 1]), s=8, vmin=0, vmax=3)

@@ -8,11 +8,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from scipy.integrate import quad
 
-from porescale import build, load
-from porescale.common.core.types import Floats
-from porescale.dem.grains import Grains
-from porescale.dem.measures.energy import energy_budget
-from porescale.output.case import conclude, options, stage
+from porescale import Floats, build, load
+from porescale.dem import Grains
+from porescale.dem.measures import energy_budget
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 SCENE = HERE / "clump.toml"

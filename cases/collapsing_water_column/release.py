@@ -4,12 +4,11 @@ import argparse
 
 import numpy as np
 
-from continuum_sph.builders.water import wall_layers, water_flow
+from continuum_sph.builders import wall_layers, water_flow
 from continuum_sph.validation.water import dam_break as verify
 from continuum_sph.validation.water import setups as trials
-from continuum_sph.water.state import Layer
-from continuum_sph.water.step import Flow
-from porescale.common.core.constants import GRAVITY
+from continuum_sph.water import Flow, Layer
+from porescale import GRAVITY
 from porescale.common.neighbors import PairList, square_lattice
 
 SCALE = (2.0 * GRAVITY) ** 0.5  # 1/s, √(2g/a), a = 1 m

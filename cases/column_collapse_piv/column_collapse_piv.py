@@ -12,16 +12,11 @@ from filmed import BOX, FLOWS, RATE, STIRS, TANK, Place, film, lattice, named, r
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from porescale import Scene
-from porescale.common.compiled.jit import set_threads
+from porescale import Scene, build, open_run, set_threads
 from porescale.common.record.drive import drive
-from porescale.common.record.open_run import open_run
 from porescale.common.schema.sections import open_scene, scene_as_dict
-from porescale.output.case import conclude, options
-from porescale.piv.fields.compare import compare
-from porescale.piv.fields.field import Field
-from porescale.piv.fields.vortices import Vortex, vortices
-from porescale.program import build
+from porescale.output import conclude, options
+from porescale.piv.fields import Field, Vortex, compare, vortices
 
 HERE = Path(__file__).resolve().parent
 FASTER = 240.0

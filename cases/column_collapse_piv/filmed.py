@@ -7,14 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from porescale.common.core.types import Floats
-from porescale.common.record.open_run import Run, open_run
-from porescale.piv.estimate.measure import Settings, measure
-from porescale.piv.fields.field import Field, in_metres, in_pixels
-from porescale.piv.fields.of_run import field_of_run
-from porescale.piv.fields.vortices import Vortex, vortices
-from porescale.piv.images.camera import Shooting, frames, shooting
-from porescale.piv.images.synth import Camera
+from porescale import Floats, Run, open_run
+from porescale.piv.estimate import Settings, measure
+from porescale.piv.fields import Field, Vortex, field_of_run, in_metres, in_pixels, vortices
+from porescale.piv.images import Camera, Shooting, frames, shooting
 
 RATE = 60.0
 """Frames a second, as in the experiment."""

@@ -19,14 +19,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from variants import VARIANTS, Variant
 
-from porescale import Scene
+from porescale import InputError, Scene, build, open_run
 from porescale.common.core.atomic import save, write_text
-from porescale.common.core.errors import InputError
 from porescale.common.record.drive import drive
-from porescale.common.record.open_run import open_run
 from porescale.common.schema.sections import open_scene, scene_as_dict
-from porescale.piv.fields.vortices import Vortex, vortices
-from porescale.program import build
+from porescale.piv.fields import Vortex, vortices
 
 CASES = Path(__file__).resolve().parents[1]
 TIMES = (0.6, 1.0, 1.5)

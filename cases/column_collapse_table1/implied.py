@@ -5,10 +5,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from porescale import Scene
-from porescale.common.core.errors import InputError
-from porescale.common.schema.sections import open_scene
-from porescale.output.case import draw, options, stage
+from porescale import InputError, load
+from porescale.output import draw, options, stage
 
 HERE = Path(__file__).resolve().parent
 IMPLIED = re.compile(r"imply ([0-9.e+-]+)")
@@ -17,7 +15,7 @@ IMPLIED = re.compile(r"imply ([0-9.e+-]+)")
 def refused() -> list[tuple[str, float, float, str]]:
     """Key, printed and implied value, and unit, of each number that does not go with the others."""
     try:
-        open_scene(HERE, Scene)
+        load(HERE)
     except InputError as error:
         found = [(fault, IMPLIED.search(fault.problem)) for fault in error.faults]
         return [

@@ -5,14 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.validation.seepage.consolidation import (
-    FACTORS,
-    Consolidation,
-    consolidation,
-    isochrones,
-    realised_modulus,
-)
-from porescale.output.case import conclude, options, stage
+from continuum_sph.validation.seepage import consolidation as lab
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 RATIOS = (1.0, 4.0, 20.0)
@@ -23,11 +17,11 @@ COLOURS = ("#1b4965", "#5b8fd0", "#2a9d8f", "#e8a33d", "#c8553d")
 def main() -> int:
     """Measure, say, draw; 1 if a row of expected.toml is missed."""
     given = options(__doc__ or "", HERE, rows=(int, 30, "particles over the height"))
-    layer = Consolidation(rows=given.rows, permeability=1e-3, ratio=100.0)
+    layer = lab.Consolidation(rows=given.rows, permeability=1e-3, ratio=100.0)
     figure, axes = stage(2, 9.0, 4.2)
     worst, middle = 0.0, []
     heights = np.linspace(0.0, layer.height, 101)
-    for factor, colour, (reached, z, u) in zip(FACTORS, COLOURS, isochrones(layer, FACTORS), strict=True):
+    for factor, colour, (reached, z, u) in zip(lab.FACTORS, COLOURS, lab.isochrones(layer, lab.FACTORS), strict=True):
         worst = max(worst, float(np.abs(u - layer.excess(z, reached)).max()))
         near = np.abs(z / layer.height - 0.5) < 0.6 / layer.rows
         middle.append(float(u[near].mean() * np.exp(np.pi**2 * (reached - factor))))
@@ -35,7 +29,7 @@ def main() -> int:
         axes[0].plot(u, z, ".", color=colour, markersize=3)
     axes[0].set(xlabel="excess pressure / u0", ylabel="height / H", xlim=(0, 1), ylim=(0, 1))
     axes[0].legend(fontsize=8, frameon=False)
-    soft = {ratio: consolidation(replace(layer, rows=20, ratio=ratio), COURSE)[0] for ratio in RATIOS}
+    soft = {ratio: lab.consolidation(replace(layer, rows=20, ratio=ratio), COURSE)[0] for ratio in RATIOS}
     times = np.linspace(0.0, 0.21, 101)
     for ratio, colour in zip(RATIOS, COLOURS[1:], strict=False):
         exact = np.exp(-(np.pi**2) * times / (1.0 + 1.0 / ratio))
@@ -46,9 +40,9 @@ def main() -> int:
     axes[1].legend(fontsize=8, frameon=False)
     numbers = {
         "largest error of the isochrones": worst,
-        "modulus of the soil over M": realised_modulus(layer) / layer.modulus,
+        "modulus of the soil over M": lab.realised_modulus(layer) / layer.modulus,
     }
-    numbers |= {f"middle at T_v = {factor:g}": value for factor, value in zip(FACTORS, middle, strict=True)}
+    numbers |= {f"middle at T_v = {factor:g}": value for factor, value in zip(lab.FACTORS, middle, strict=True)}
     numbers |= {f"middle at T_v = 0.1, K_w = {ratio:g} n M": soft[ratio][COURSE.index(0.1)] for ratio in RATIOS}
     return conclude(HERE, numbers, figure, given.out)
 

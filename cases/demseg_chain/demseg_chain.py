@@ -6,12 +6,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from porescale.demseg.build import Options
-from porescale.demseg.deck import NEW, read_deck
-from porescale.demseg.run import DeckRun
-from porescale.demseg.tension import tensions
-from porescale.demseg.trace import Trace, draw_shapes, trace
-from porescale.output.case import conclude, options, stage
+from porescale.demseg import NEW, DeckRun, Options, Trace, draw_shapes, read_deck, tensions, trace
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 PULLED = "body 20: "

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from porescale.demseg.trace import draw_shapes, trace
-from porescale.output.case import conclude, options, stage
+from porescale.demseg import draw_shapes, trace
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 BODY = "body 2: "

@@ -8,9 +8,20 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from matplotlib.figure import Figure
 
-from porescale.demseg.deck import MOVED, NEW, Body, Control, Deck, read_deck
-from porescale.demseg.trace import Trace, draw_energies, draw_shapes, trace, unbalanced
-from porescale.output.case import conclude, options, stage
+from porescale.demseg import (
+    MOVED,
+    NEW,
+    Body,
+    Control,
+    Deck,
+    Trace,
+    draw_energies,
+    draw_shapes,
+    read_deck,
+    trace,
+    unbalanced,
+)
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 MORE, FLOWING = 10_000, 100_000  # steps

@@ -13,15 +13,11 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from porescale.common.core.constants import GRAVITY
-from porescale.common.core.types import Floats
-from porescale.common.neighbors.placement import place
-from porescale.dem.contact.linear import Linear
-from porescale.dem.discs import make_discs
-from porescale.dem.forces.walls import Box, Plate
-from porescale.dem.grains import Grains
-from porescale.dem.measures.survey import centre_of_mass
-from porescale.output.case import conclude, options, stage
+from porescale import GRAVITY, Floats
+from porescale.common.neighbors import place
+from porescale.dem import Box, Grains, Linear, Plate, make_discs
+from porescale.dem.measures import centre_of_mass
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 DIAMETER, SPREAD, DENSITY = 5e-3, 0.2, 2500.0  # m, half width of the sizes over their mean, kg/m³

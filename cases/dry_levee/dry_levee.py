@@ -8,19 +8,17 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from continuum_sph.seepage import Seepage
-from continuum_sph.validation.seepage.dam import POROSITY
-from continuum_sph.validation.seepage.wetting import BOUSSINESQ, Levee, sag
-from porescale.common.core.types import Floats
-from porescale.common.pictures.film import write_film
-from porescale.output.case import conclude, options, stage
-from porescale.output.case_bodies import pixels
+from continuum_sph.validation.seepage import dam, wetting
+from porescale import Floats
+from porescale.common.pictures import write_film
+from porescale.output import conclude, options, pixels, stage
 
 HERE = Path(__file__).resolve().parent
 STAGES = (1.2, 2.4, 4.2, 6.0)  # s
 EVERY = 0.06  # s, between frames
 
 
-def sight(axes: Axes, given: Levee, both: Seepage, title: str) -> None:
+def sight(axes: Axes, given: wetting.Levee, both: Seepage, title: str) -> None:
     """Soil, water by its pressure, and the wetting line."""
     layer, ground = both.water.layer, given.ground
     n = layer.fluid
@@ -36,7 +34,7 @@ def sight(axes: Axes, given: Levee, both: Seepage, title: str) -> None:
 def main() -> int:
     """Measure, say, draw; 1 if a row of expected.toml is missed."""
     asked = options(__doc__ or "", HERE, spacing=(float, 0.02, "of the particles, m"), film=(bool, False, "a film"))
-    given = Levee(spacing=asked.spacing)
+    given = wetting.Levee(spacing=asked.spacing)
     both = given.build()
     figure = Figure(figsize=(11.0, 7.2), layout="constrained")
     FigureCanvasAgg(figure)
@@ -47,7 +45,7 @@ def main() -> int:
         time = count * EVERY
         while both.time < time:
             both.advance()
-        way, hang = sag(*given.line(both), given.level)
+        way, hang = wetting.sag(*given.line(both), given.level)
         rows.append((time, way))
         for when in STAGES:
             if abs(time - when) < 0.5 * EVERY:
@@ -58,7 +56,7 @@ def main() -> int:
             sight(inside, given, both, f"t = {time:.2f} s")
             images.append(pixels(frame))
     times, ways = np.array(rows).T
-    scale = (given.permeability * given.level / POROSITY) ** 0.5
+    scale = (given.permeability * given.level / dam.POROSITY) ** 0.5
     for first, last in ((1.2, 2.4), (2.4, 6.0)):
         part = (times > first - 0.5 * EVERY) & (times < last + 0.5 * EVERY)
         pace = float(np.polyfit(np.sqrt(times[part]), ways[part], 1)[0]) / scale
@@ -66,7 +64,7 @@ def main() -> int:
     numbers["speed of the foot at 6 s over that at 1.2 s"] = speed(times, ways, 6.0) / speed(times, ways, 1.2)
     places["way"].plot(np.sqrt(times), ways, ".", label="measured")
     late = np.sqrt(times[times > 2.4])
-    places["way"].plot(late, ways[-1] + BOUSSINESQ * scale * (late - late[-1]), label="Boussinesq's pace")
+    places["way"].plot(late, ways[-1] + wetting.BOUSSINESQ * scale * (late - late[-1]), label="Boussinesq's pace")
     places["way"].set(xlabel="√t, √s", ylabel="way of the foot, m")
     places["way"].legend(fontsize=8, frameon=False)
     if asked.film:

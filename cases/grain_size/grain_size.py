@@ -9,14 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
 
-from porescale.common.core.types import Floats
-from porescale.dem.contact.linear import Linear
-from porescale.dem.discs import make_discs
-from porescale.dem.forces.rectangle import Rectangle
-from porescale.dem.forces.walls import Box
-from porescale.dem.grains import Grains
-from porescale.dem.prepare.compaction import Compactor, kept
-from porescale.output.case import conclude, options, stage
+from porescale import Floats
+from porescale.dem import Box, Grains, Linear, Rectangle, make_discs
+from porescale.dem.prepare import Compactor, kept
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 LENGTH, HEIGHT, PRESSURE, DENSITY, SPREAD = 0.2, 0.1, 1e4, 2500.0, 0.2  # m, m, Pa, kg/m³, -

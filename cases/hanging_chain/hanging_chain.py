@@ -8,24 +8,18 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from porescale.common.core.constants import GRAVITY
-from porescale.common.core.types import Floats
-from porescale.dem.contact.linear import Linear
-from porescale.dem.grains import Grains
-from porescale.dem.motion.control import Moved
-from porescale.dem.motion.time_function import Table
-from porescale.output.case import conclude, options, stage
-from porescale.output.case_bodies import Shot, by_piece, draw_bodies, frame, shot
-from porescale.validation.dem.segments import catenary, hung, weights
-from porescale.validation.dem.setups import MASS, RADIUS
+from porescale import GRAVITY, Floats
+from porescale.dem import Grains, Linear, Moved, Table
+from porescale.output import Shot, by_piece, conclude, draw_bodies, frame, options, shot, stage
+from porescale.validation.dem import segments, setups
 
 HERE = Path(__file__).resolve().parent
 COUNT = 20
 SPAN = 0.7  # of the length: distance of the ends while it hangs
 LAW = Linear(1e6, 500.0)  # N/m and N s/m: 0.4 of critical for two discs
 PRESSED = 0.04  # radii of overlap when they are bonded
-STRENGTH = LAW.stiffness * PRESSED * RADIUS  # N/m, k δ0
-LENGTH = (COUNT - 1) * (2.0 - PRESSED) * RADIUS  # m
+STRENGTH = LAW.stiffness * PRESSED * setups.RADIUS  # N/m, k δ0
+LENGTH = (COUNT - 1) * (2.0 - PRESSED) * setups.RADIUS  # m
 TAUT = 0.985  # of the length: from there on the pull is slow
 FAST, SLOW = 0.03, 1e-3  # m/s; the slow one makes waves of v √(k m) = 0.9 N/m
 DRAG = 10.0  # 1/s, twice √(g/length): swings end, while 0.24 N/m a disc resist the fast pull
@@ -53,7 +47,7 @@ class Pull:
 
 def pull(strength: float = STRENGTH) -> Pull:
     """The chain hangs, its right end moves away, a bond breaks, and what is left of it falls; strength N/m of bonds."""
-    grains = hung(COUNT, SPAN, pressed=strength / (LAW.stiffness * RADIUS), law=LAW)
+    grains = segments.hung(COUNT, SPAN, pressed=strength / (LAW.stiffness * setups.RADIUS), law=LAW)
     grains.reset_clock()
     assert grains.bonds is not None
     start, whole = float(np.ptp(grains.discs.position[:, 0])), grains.bonds.count
@@ -62,7 +56,7 @@ def pull(strength: float = STRENGTH) -> Pull:
     grains.steering.control(0, Moved(), Moved(), Moved())
     grains.steering.control(COUNT - 1, Moved(speed), Moved(), Moved())
     grains.steering.watch(COUNT - 1)
-    dt, load = grains.stable_step(), weights(grains.discs)
+    dt, load = grains.stable_step(), segments.weights(grains.discs)
     rows: list[tuple[float, ...]] = []
     count, shots = round(EACH / dt), [shot(grains)]
     before = shots[0]
@@ -85,18 +79,19 @@ def measure(strength: float = STRENGTH) -> tuple[dict[str, float], Figure]:
     """Shape and support against the catenary, pull and slope at which a bond breaks, over what is expected."""
     made = pull(strength)
     at = made.shots[0].position
-    curve = catenary(at)
+    curve = segments.catenary(at)
     sag = -float(curve.min())
     middle = 0.5 * (at[0, 0] + at[-1, 0])
     size = 0.5 * (at[-1, 0] - middle) ** 2 / sag  # a of the catenary by Newton's method, from that of a parabola
     for _ in range(20):
         ratio = (at[-1, 0] - middle) / size
         size -= (size * (math.cosh(ratio) - 1.0) - sag) / (math.cosh(ratio) - 1.0 - ratio * math.sinh(ratio))
-    weight = MASS * GRAVITY / float(np.hypot(*np.diff(at, axis=0).T).mean())  # N/m a metre of chain
+    weight = setups.MASS * GRAVITY / float(np.hypot(*np.diff(at, axis=0).T).mean())  # N/m a metre of chain
     pulled = np.hypot(*made.force.T)
     numbers = {
         "hanging: largest distance from the catenary, of the sag": float(np.abs(curve - at[:, 1]).max()) / sag,
-        "hanging: weight borne by one end, over half of 18 discs": -float(made.force[0, 1]) / (9.0 * MASS * GRAVITY),
+        "hanging: weight borne by one end, over half of 18 discs": -float(made.force[0, 1])
+        / (9.0 * setups.MASS * GRAVITY),
         "hanging: horizontal pull over that of the catenary": -float(made.force[0, 0]) / (weight * size),
         "pull that breaks it over k δ0": float(pulled[made.last]) / STRENGTH,
         "slope of the end when it breaks": float(made.force[made.last, 1] / made.force[made.last, 0]),
@@ -116,12 +111,12 @@ def draw(made: Pull) -> Figure:
         draw_bodies(axes[0], made.grains, shown, by_piece(made.grains, shown))
         axes[0].text(0.27, -down - 0.01, name, fontsize=8)
         if k == 0:
-            axes[0].plot(at.position[:, 0], catenary(at.position), color="#b3122b", lw=1.2, label="catenary")
+            axes[0].plot(at.position[:, 0], segments.catenary(at.position), color="#b3122b", lw=1.2, label="catenary")
     axes[0].legend(fontsize=7, loc=(0.66, 0.75))
     frame(axes[0], (-0.15, 0.42, -0.44, 0.03))
     axes[1].plot(1e3 * made.span, np.hypot(*made.force.T), color="#2a6f97", lw=1.2, label="pull at the moved end")
     axes[1].axhline(STRENGTH, color="k", ls=":", lw=1, label="k δ0")
-    half = 9.0 * MASS * GRAVITY
+    half = 9.0 * setups.MASS * GRAVITY
     axes[1].axhline(half, color="0.6", ls="--", lw=1, label="half of the weight")
     axes[1].set(xlabel="distance of the ends, mm", ylabel="N/m", ylim=(0.0, 1.15 * STRENGTH),
                 title="pulled until it breaks")  # fmt: skip

@@ -8,17 +8,16 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from continuum_sph.seepage import Seepage
-from continuum_sph.validation.seepage.infiltration import Imbibition
-from porescale.common.pictures.film import write_film
-from porescale.output.case import conclude, options, stage
-from porescale.output.case_bodies import pixels
+from continuum_sph.validation.seepage import infiltration
+from porescale.common.pictures import write_film
+from porescale.output import conclude, options, pixels, stage
 
 HERE = Path(__file__).resolve().parent
 WATCHED = (0.3, 0.6, 0.9)  # s
 COLOURS = ("#1b4965", "#5b8fd0", "#2a9d8f")
 
 
-def sight(axes: Axes, given: Imbibition, both: Seepage, title: str) -> None:
+def sight(axes: Axes, given: infiltration.Imbibition, both: Seepage, title: str) -> None:
     """Particles of soil and of water, coloured by pressure, and the exact front."""
     layer = both.water.layer
     n = layer.fluid
@@ -28,7 +27,7 @@ def sight(axes: Axes, given: Imbibition, both: Seepage, title: str) -> None:
     axes.set(aspect="equal", xlabel="x, m", ylabel="y, m", title=title)
 
 
-def course(given: Imbibition, end: float) -> Iterator[Seepage]:
+def course(given: infiltration.Imbibition, end: float) -> Iterator[Seepage]:
     """The column at every hundredth of a second up to ``end``, s."""
     both = given.build()
     for time in np.arange(0.0, end + 1e-9, 0.01):
@@ -37,7 +36,7 @@ def course(given: Imbibition, end: float) -> Iterator[Seepage]:
         yield both
 
 
-def frames(given: Imbibition, end: float) -> Iterator[NDArray[np.uint8]]:
+def frames(given: infiltration.Imbibition, end: float) -> Iterator[NDArray[np.uint8]]:
     """Pictures of it."""
     for both in course(given, end):
         figure, (axes,) = stage(1, 3.0, 6.0)
@@ -49,7 +48,10 @@ def main() -> int:
     """Measure, say, draw; 1 if a row of expected.toml is missed."""
     given = options(__doc__ or "", HERE, rows=(int, 30, "particles over the soil"), film=(bool, False, "write a film"))
     figure, axes = stage(2, 9.0, 4.6)
-    trials = {"head 0.3 m": Imbibition(rows=given.rows), "head 0.15 m": Imbibition(rows=given.rows, head=0.15)}
+    trials = {
+        "head 0.3 m": infiltration.Imbibition(rows=given.rows),
+        "head 0.15 m": infiltration.Imbibition(rows=given.rows, head=0.15),
+    }
     numbers = {}
     for (name, trial), colour in zip(trials.items(), COLOURS, strict=False):
         times, ways = [], []
@@ -67,7 +69,8 @@ def main() -> int:
     axes[0].legend(fontsize=8, frameon=False)
     if given.film:
         given.out.mkdir(parents=True, exist_ok=True)
-        print(f"film: {write_film(given.out / 'front', frames(Imbibition(rows=given.rows), WATCHED[-1]), 20)}")
+        images = frames(infiltration.Imbibition(rows=given.rows), WATCHED[-1])
+        print(f"film: {write_film(given.out / 'front', images, 20)}")
     return conclude(HERE, numbers, figure, given.out)
 
 

@@ -5,10 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from continuum_sph.builders.simulation import Simulation
-from continuum_sph.scene.sections import Scene
-from porescale.common.schema.sections import validate
-from porescale.output.case import conclude, options, stage
+from continuum_sph import Scene, Simulation, build
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 WIDTH, HEIGHT, TANK = 0.05, 0.1, 0.2  # m
@@ -33,7 +31,7 @@ def column(viscosity: float, across: int, end: float) -> Simulation:
         "time": {"end": end},
         "output": {"snapshot_interval": end, "series_interval": end},
     }
-    return Simulation(validate(Scene, made))
+    return build(Scene(**made))
 
 
 def watch(model: Simulation, end: float) -> tuple[dict[str, np.ndarray], dict[float, np.ndarray]]:

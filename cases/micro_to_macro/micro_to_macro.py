@@ -8,19 +8,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from continuum_sph.builders.simulation import Simulation
-from continuum_sph.builders.soil import material_of, soil_section
-from continuum_sph.scene.material_file import speed
-from continuum_sph.scene.sections import Scene as SoilScene
-from continuum_sph.scene.soil import SoilSection
-from continuum_sph.validation.seepage.permeameter import Permeameter, upward
-from continuum_sph.validation.soil.element import biaxial
-from porescale import build, load
-from porescale.common.core.constants import GRAVITY
-from porescale.common.core.types import Floats
-from porescale.common.record.model import Model
-from porescale.common.schema.sections import open_scene
-from porescale.output.case import conclude, options, stage
+import continuum_sph as cs
+import porescale as ps
+from continuum_sph.builders import material_of
+from continuum_sph.validation.seepage import permeameter
+from continuum_sph.validation.soil import element as lab
+from porescale import GRAVITY, Floats
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 STILL, TAPS = 0.05, (0.005, 0.015)
@@ -41,16 +35,16 @@ class Fall:
     top: Floats
 
 
-def ground(settings: tuple[str, ...] = ()) -> SoilScene:
+def ground(settings: tuple[str, ...] = ()) -> cs.Scene:
     """The continuum's scene, which has taken over material.toml."""
-    return open_scene(HERE / "ground.toml", SoilScene, overrides=settings).scene
+    return cs.load(HERE / "ground.toml", settings=settings)
 
 
 def bed(seed: int) -> float:
     """K (m²) of a bed of free grains that water is pressed through, from flux and taps, as in a laboratory."""
-    scene = load(HERE / "bed.toml", settings=[f"grains.packing.seed={seed}"])
+    scene = ps.load(HERE / "bed.toml", settings=[f"grains.packing.seed={seed}"])
     assert scene.fluid
-    simulation = build(scene)
+    simulation = ps.build(scene)
     flux, drop = [], []
     each = round(EVERY / simulation.step_seconds)
     while simulation.time < scene.time.end - 0.5 * EVERY:
@@ -63,7 +57,7 @@ def bed(seed: int) -> float:
     return scene.fluid.density * scene.fluid.viscosity * float(np.mean(flux)) / gradient
 
 
-def fall_of_pressure(simulation: Model, density: float) -> float:
+def fall_of_pressure(simulation: ps.Simulation, density: float) -> float:
     """Pressure (Pa) that the flow loses between the taps: that of the water in the rows there, without its weight."""
     fields = simulation.snapshot().grids["fields"]
     found = []
@@ -75,18 +69,18 @@ def fall_of_pressure(simulation: Model, density: float) -> float:
     return found[0] - found[1] - density * GRAVITY * (TAPS[1] - TAPS[0])
 
 
-def darcy(soil: SoilSection, k: float, gradient: float) -> float:
+def darcy(porosity: float, k: float, gradient: float) -> float:
     """Flux q of the continuum's permeameter of that soil over k i."""
-    column = Permeameter(permeability=k, porosity=soil.porosity, sound_speed=0.6 / k)
+    column = permeameter.Permeameter(permeability=k, porosity=porosity, sound_speed=0.6 / k)
     both = column.build(gradient)
     for _ in range(FLOWS):
         both.advance()
-    return upward(both, 0.2 * column.height, 0.8 * column.height) / (k * gradient)
+    return permeameter.upward(both, 0.2 * column.height, 0.8 * column.height) / (k * gradient)
 
 
 def grains_fall(seed: int) -> Fall:
     """The column of grains of column.toml."""
-    simulation = build(load(HERE / "column.toml", settings=[f"grains.packing.seed={seed}"]))
+    simulation = ps.build(ps.load(HERE / "column.toml", settings=[f"grains.packing.seed={seed}"]))
     assert simulation.grains
     d, rows = simulation.grains.discs, []
     each = max(1, round(0.01 / simulation.step_seconds))
@@ -100,7 +94,7 @@ def grains_fall(seed: int) -> Fall:
 def soil_falls(angle: float) -> Fall:
     """The column of soil of ground.toml with another angle of friction (rad)."""
     scene = ground((f"soil.friction_angle={angle!r}",))
-    simulation, rows = Simulation(scene), []
+    simulation, rows = cs.build(scene), []
     particles = simulation.flow.soil.x[: simulation.flow.soil.soil]
     while simulation.time < scene.time.end:
         rows.append((simulation.time, float(particles[:, 0].mean())))
@@ -118,18 +112,19 @@ def surface(position: Floats, radius: Floats) -> Floats:
 
 def measure(beds: int, columns: int) -> tuple[dict[str, float], Figure]:
     """Numbers of expected.toml, and the picture."""
-    soil = soil_section(ground())
+    soil = ground().soil
+    assert soil
     origin = soil.origin
     assert origin
     assert origin.intrinsic_permeability
     wanted, known = origin.intrinsic_permeability, origin.measured["permeability"][1]
-    scene = load(HERE / "bed.toml")
+    scene = ps.load(HERE / "bed.toml")
     assert scene.fluid
     assert scene.fluid.viscosity
-    k = speed(wanted, {"density": scene.fluid.density, "viscosity": scene.fluid.density * scene.fluid.viscosity})
+    k = wanted * scene.fluid.density * GRAVITY / (scene.fluid.density * scene.fluid.viscosity)
     through = np.array([bed(seed) for seed in range(1, beds + 1)]) / wanted
-    across = darcy(soil, k, 0.2)
-    _, rows = biaxial(material_of(soil), soil.reference, 0.05, 2000)
+    across = darcy(soil.porosity, k, 0.2)
+    _, rows = lab.biaxial(material_of(soil), soil.reference, 0.05, 2000)
     strong = (rows[-1, 2] - rows[-1, 3]) / (rows[-1, 2] + rows[-1, 3])
     angle, error = origin.measured["critical_friction_angle"]
     fell = [grains_fall(seed) for seed in range(1, columns + 1)]

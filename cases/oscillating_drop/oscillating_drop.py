@@ -4,11 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.validation.water import fluids as trials_fluids
-from continuum_sph.validation.water.drop_swing import drop_swing, swing_period
-from continuum_sph.validation.water.fluids import OUTER, SWINGING, TENSION
-from continuum_sph.validation.water.setups import run_until
-from porescale.output.case import conclude, options, stage
+from continuum_sph.validation.water import drop_swing as exact_drop
+from continuum_sph.validation.water import fluids, setups
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 RADIUS, AT_REST = 0.2, 0.25  # m
@@ -18,27 +16,28 @@ AMPLITUDE = 0.05  # of R
 def main() -> int:
     """Measure, say, draw; 1 if a row of expected.toml is missed."""
     given = options(__doc__ or "", HERE, across=(int, 64, "particles across the box of 1 m"))
-    flow, radius = trials_fluids.kicked(given.across, RADIUS, AMPLITUDE)
-    exact = trials_fluids.exact_period(radius)
-    t, s = trials_fluids.swing(flow, 1.4 * exact)
-    still = run_until(trials_fluids.drop(40, AT_REST), 0.25)
+    flow, radius = fluids.kicked(given.across, RADIUS, AMPLITUDE)
+    exact = fluids.exact_period(radius)
+    t, s = fluids.swing(flow, 1.4 * exact)
+    still = setups.run_until(fluids.drop(40, AT_REST), 0.25)
     figure, (left, right) = stage(2)
-    swift = 2.0 * np.pi / trials_fluids.exact_period(radius, viscous=False)
-    inert = swing_period(radius, TENSION, (1.0, OUTER), SWINGING) / exact  # what sound adds is taken out
-    tips = drop_swing(inert * t[1:], radius, TENSION, (1.0, OUTER), SWINGING)
+    swift = 2.0 * np.pi / fluids.exact_period(radius, viscous=False)
+    # What sound adds is taken out.
+    inert = exact_drop.swing_period(radius, fluids.TENSION, (1.0, fluids.OUTER), fluids.SWINGING) / exact
+    tips = exact_drop.drop_swing(inert * t[1:], radius, fluids.TENSION, (1.0, fluids.OUTER), fluids.SWINGING)
     left.plot(t / exact, 0.5 * s / AMPLITUDE, color="#1f5fa8", label="computed")
     left.plot(t[1:] / exact, swift * tips, "--", color="#777777", label="exact")
     left.set(xlabel="time over the exact period", ylabel="elongation, 1 without viscosity", title="a drop swings")
     left.legend()
     layer = still.layer
     r = np.hypot(layer.x[:, 0] - 0.5, layer.x[:, 1] - 0.5)
-    right.plot(r / AT_REST, layer.pressure * AT_REST / TENSION, ".", markersize=2, color="#1f5fa8")
-    outside = layer.pressure[r > 1.5 * AT_REST].mean() * AT_REST / TENSION
+    right.plot(r / AT_REST, layer.pressure * AT_REST / fluids.TENSION, ".", markersize=2, color="#1f5fa8")
+    outside = layer.pressure[r > 1.5 * AT_REST].mean() * AT_REST / fluids.TENSION
     right.step([0.0, 1.0, 2.0], [1.0 + outside, 1.0 + outside, outside], "--", color="#777777")
     right.set(xlabel="r/R", ylabel="p R/σ", title="and one at rest")
     numbers = {
-        "period": trials_fluids.second_round(t, s, 0.7 * exact) / exact,
-        "pressure jump": trials_fluids.pressure_jump(still, AT_REST) * AT_REST / TENSION,
+        "period": fluids.second_round(t, s, 0.7 * exact) / exact,
+        "pressure jump": fluids.pressure_jump(still, AT_REST) * AT_REST / fluids.TENSION,
     }
     return conclude(HERE, numbers, figure, given.out)
 

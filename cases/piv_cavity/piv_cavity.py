@@ -9,20 +9,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from porescale import Scene
-from porescale.common.compiled.jit import set_threads
+from porescale import Scene, build, open_run, set_threads
 from porescale.common.record.drive import drive
-from porescale.common.record.open_run import open_run
 from porescale.common.schema.sections import open_scene, scene_as_dict
-from porescale.output.case import conclude, options, stage
-from porescale.piv.estimate.measure import Settings, measure
-from porescale.piv.fields.compare import Comparison, compare
-from porescale.piv.fields.field import Field, in_metres, in_pixels
-from porescale.piv.fields.of_run import field_of_run
-from porescale.piv.fields.vortices import Vortex, vortices
-from porescale.piv.images.camera import Frame, Shooting, frames, shooting
-from porescale.piv.images.synth import Camera
-from porescale.program import build
+from porescale.output import conclude, options, stage
+from porescale.piv.estimate import Settings, measure
+from porescale.piv.fields import Comparison, Field, Vortex, compare, field_of_run, in_metres, in_pixels, vortices
+from porescale.piv.images import Camera, Frame, Shooting, frames, shooting
 
 HERE = Path(__file__).resolve().parent
 PIXELS = 512

@@ -9,13 +9,10 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from porescale.common.compiled.jit import set_threads
-from porescale.common.core.atomic import write_text
-from porescale.common.core.types import Floats
-from porescale.output.case import conclude, options, stage
-from porescale.piv.estimate.measure import Settings, measure
-from porescale.piv.images import flows
-from porescale.piv.images.synth import Camera, Pair, pair
+from porescale import Floats, set_threads
+from porescale.output import conclude, options, stage
+from porescale.piv.estimate import Settings, measure
+from porescale.piv.images import Camera, Pair, flows, pair
 from porescale.validation.piv import pairs as lab
 
 HERE = Path(__file__).resolve().parent
@@ -132,7 +129,7 @@ def into_readme(lines: list[str]) -> None:
     text = path.read_text(encoding="utf-8")
     start = text.index("|---|") + len("|---|---|---|---|---|---|\n")
     stop = text.index("\n\n", start)
-    write_text(path, text[:start] + "\n".join(lines) + text[stop:])
+    path.write_text(text[:start] + "\n".join(lines) + text[stop:], encoding="utf-8")
 
 
 def drawn(bars: list[tuple[str, float, float | None]], curves: dict[float, Floats]) -> Figure:

@@ -10,42 +10,41 @@ from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
 from continuum_sph.seepage import Seepage
-from continuum_sph.validation.seepage.dam import STATIONS, Dam, steady
-from continuum_sph.validation.seepage.setups import WATER
-from porescale.common.core.constants import GRAVITY
-from porescale.common.pictures.film import write_film
-from porescale.output.case import conclude, options, stage
-from porescale.output.case_bodies import pixels
+from continuum_sph.validation.seepage import dam as lab
+from continuum_sph.validation.seepage import setups
+from porescale import GRAVITY
+from porescale.common.pictures import write_film
+from porescale.output import conclude, options, pixels, stage
 
 HERE = Path(__file__).resolve().parent
 SPANS = {"L = H1": (3.5, 7.0), "L = 2 H1": (6.0, 12.0), "H2 = 0.3 H1": (3.5, 7.0)}
 """Between which times (s) each dam is taken for steady."""
 
 
-def dams(rows: int) -> dict[str, Dam]:
+def dams(rows: int) -> dict[str, lab.Dam]:
     """The dams by name."""
-    given = Dam(rows=rows)
+    given = lab.Dam(rows=rows)
     return dict(zip(SPANS, (given, replace(given, length=2.0), replace(given, downstream=0.3)), strict=True))
 
 
-def sight(axes: Axes, given: Dam, both: Seepage, title: str) -> None:
+def sight(axes: Axes, given: lab.Dam, both: Seepage, title: str) -> None:
     """Heads of the water's particles over the soil; the measured surface and the exact one."""
     layer = both.water.layer
     n = layer.fluid
     there = layer.mass[:n] > 0.0
     x = layer.x[:n][there]
-    head = x[:, 1] + layer.pressure[:n][there] / (WATER * GRAVITY)
+    head = x[:, 1] + layer.pressure[:n][there] / (setups.WATER * GRAVITY)
     axes.add_patch(Rectangle((given.basin, 0.0), given.length, 1.2 * given.upstream, color="#e9dcc0", lw=0))
     dots = 260.0 / given.rows / both.water.porosity[there]
     axes.scatter(*x.T, c=head, s=dots, vmin=0.0, vmax=given.upstream, cmap="viridis", lw=0)
-    places = given.basin + np.array(STATIONS) * given.length
+    places = given.basin + np.array(lab.STATIONS) * given.length
     axes.plot(places, given.surface, "x", color="#c8553d", markersize=9, mew=2, label="exact")
     axes.plot(places, given.heights(both), "o", mfc="none", color="black", label="measured")
     axes.set(aspect="equal", xlim=(0, 2 * given.basin + given.length), ylim=(0, 1.2 * given.upstream), title=title)
     axes.set(xlabel="x / H1", ylabel="height / H1")
 
 
-def wetting(given: Dam, end: float, every: float) -> Iterator[NDArray[np.uint8]]:
+def wetting(given: lab.Dam, end: float, every: float) -> Iterator[NDArray[np.uint8]]:
     """Pictures of a dam that was dry, ``every`` (s) up to ``end`` (s)."""
     both = replace(given, full=False).build()
     for time in np.arange(0.0, end, every):
@@ -65,9 +64,9 @@ def main() -> int:
         both = dam.build()
         begin, end = SPANS[name]
         rows = dam.course(both, end, 0.05)
-        into, out, heights = steady(rows, begin)
+        into, out, heights = lab.steady(rows, begin)
         numbers[f"q over its exact value, {name}"] = 0.5 * (into + out) / dam.discharge
-        for part, ratio in zip(STATIONS, heights / dam.surface, strict=True):
+        for part, ratio in zip(lab.STATIONS, heights / dam.surface, strict=True):
             numbers[f"height at {part:g} L over its exact value, {name}"] = float(ratio)
         sight(where, dam, both, name)
         time = rows[:, 0]
@@ -79,7 +78,7 @@ def main() -> int:
     axes[3].legend(fontsize=7)
     if given.film:
         given.out.mkdir(parents=True, exist_ok=True)
-        print(f"film: {write_film(given.out / 'wetting', wetting(Dam(rows=given.rows), 6.0, 0.05), 20)}")
+        print(f"film: {write_film(given.out / 'wetting', wetting(lab.Dam(rows=given.rows), 6.0, 0.05), 20)}")
     return conclude(HERE, numbers, figure, given.out)
 
 

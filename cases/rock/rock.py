@@ -10,12 +10,23 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from porescale.common.core.types import Floats
-from porescale.common.pictures.film import write_film
-from porescale.dem.measures.network import stiffness, voigt
-from porescale.dem.prepare.rock import Curve, Kind, Rock, load
-from porescale.output.case import conclude, options, stage
-from porescale.output.case_bodies import Shot, by_piece, draw_bodies, draw_cracks, frame, keep, pixels, shot
+from porescale import Floats
+from porescale.common.pictures import write_film
+from porescale.dem.measures import stiffness, voigt
+from porescale.dem.prepare import Curve, Kind, Rock, load
+from porescale.output import (
+    Shot,
+    by_piece,
+    conclude,
+    draw_bodies,
+    draw_cracks,
+    frame,
+    keep,
+    options,
+    pixels,
+    shot,
+    stage,
+)
 from porescale.validation.dem import rock as lab
 
 HERE = Path(__file__).resolve().parent

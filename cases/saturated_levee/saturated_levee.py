@@ -10,32 +10,32 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from continuum_sph.builders.simulation import Simulation
-from continuum_sph.builders.soil import SoilPart
-from continuum_sph.validation.seepage.levee import FAR, OVER, PARTS, Levee
-from porescale.common.pictures.film import write_film
-from porescale.output.case import conclude, draw, options
-from porescale.output.case_bodies import pixels
+from continuum_sph import Simulation
+from continuum_sph.builders import SoilPart
+from continuum_sph.validation.seepage import levee as lab
+from porescale.common.pictures import write_film
+from porescale.output import conclude, draw, options, pixels
 
 HERE = Path(__file__).resolve().parent
 COLOURS = ("#c8553d", "#c99a2e", "#3f7f4f")
 
 
-OVERFLOW = Levee(
+OVERFLOW = lab.Levee(
     land=5.0, river=3.0, plain=1.6, crest=0.3, rising=0.8, low=0.8, high=1.12, end=7.5
 )  # fmt: skip
 """A levee flat enough to stand, and a river that rises over its crest."""
 SLID = (
-    (1, FAR, "(a) the toe slides"), (3, FAR, "(b) failure has reached the crest"), (4, OVER, "(c) overtopping"),
-    (4, 0.2, "(d) overflow"),
+    (1, lab.FAR, "(a) the toe slides"), (3, lab.FAR, "(b) failure has reached the crest"),
+    (4, lab.OVER, "(c) overtopping"), (4, 0.2, "(d) overflow"),
 )  # fmt: skip
 BROKEN = (
-    (3, 0.1, "water on the crest"), (3, FAR, "the crest goes"), (1, FAR, "the slope goes"), (4, 0.2, "overflow"),
+    (3, 0.1, "water on the crest"), (3, lab.FAR, "the crest goes"), (1, lab.FAR, "the slope goes"),
+    (4, 0.2, "overflow"),
 )  # fmt: skip
 """Stages to draw: column of the course, what it exceeds, and what that is."""
 
 
-def sight(axes: Axes, model: Simulation, given: Levee, title: str) -> None:
+def sight(axes: Axes, model: Simulation, given: lab.Levee, title: str) -> None:
     """Soil by its displacement with velocities, over the water."""
     soil, layer = model.flow.water.skeleton, model.flow.water.layer
     water = layer.x[: layer.fluid][layer.mass[: layer.fluid] > 0.0]
@@ -50,7 +50,7 @@ def sight(axes: Axes, model: Simulation, given: Levee, title: str) -> None:
     axes.set(aspect="equal", xlim=(0.0, width), ylim=(0.0, 1.2 * given.height), title=title)
 
 
-def frames(given: Levee, every: float = 0.05) -> Iterator[NDArray[np.uint8]]:
+def frames(given: lab.Levee, every: float = 0.05) -> Iterator[NDArray[np.uint8]]:
     """Pictures of the whole course."""
     for row, model in given.course(every):
         figure = Figure(figsize=(11.0, 2.4), layout="constrained")
@@ -65,7 +65,7 @@ def main() -> int:
         __doc__ or "", HERE, rows=(int, 16, "particles over the height"), stiffness=(float, 0.5e6, "E, Pa"),
         film=(bool, False, "film of it"), overflow=(bool, False, "another: the river over a levee that stands"),
     )  # fmt: skip
-    levee = replace(OVERFLOW if given.overflow else Levee(), rows=given.rows, stiffness=given.stiffness)
+    levee = replace(OVERFLOW if given.overflow else lab.Levee(), rows=given.rows, stiffness=given.stiffness)
     figure = Figure(figsize=(9.0, 10.5), layout="constrained")
     FigureCanvasAgg(figure)
     *places, curve = figure.subplots(5, 1)
@@ -77,10 +77,10 @@ def main() -> int:
             sight(places[len(places) - len(stages)], model, levee, f"{stages.pop(0)[2]}: {row[0]:.2f} s")
     table = np.array(rows)
     times = levee.times(table)
-    for column, (name, colour) in enumerate(zip(PARTS, COLOURS, strict=True), 1):
+    for column, (name, colour) in enumerate(zip(lab.PARTS, COLOURS, strict=True), 1):
         curve.plot(table[:, 0], table[:, column] / levee.height, color=colour, label=f"{name} moved / H")
     curve.plot(table[:, 0], table[:, 4] / levee.height**2, color="#5b8fd0", label="river beyond the crest / H²")
-    curve.axhline(FAR, color="0.5", lw=0.8)
+    curve.axhline(lab.FAR, color="0.5", lw=0.8)
     curve.set(xlabel="s since the river began to rise", ylim=(0.0, 1.5))
     curve.legend(frameon=False)
     numbers = {

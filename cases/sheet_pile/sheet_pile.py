@@ -4,10 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.validation.seepage.setups import WATER
-from continuum_sph.validation.seepage.sheet_pile import SheetPile, flux
-from porescale.common.core.constants import GRAVITY
-from porescale.output.case import conclude, options, stage
+from continuum_sph.validation.seepage import setups, sheet_pile
+from porescale import GRAVITY
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 DEPTHS = (0.25, 0.5, 0.75)
@@ -20,15 +19,15 @@ def main() -> int:
     figure, (field, curve) = stage(2, 10.0, 3.6)
     numbers: dict[str, float] = {}
     for share in DEPTHS:
-        pile = SheetPile(share, given.rows)
+        pile = sheet_pile.SheetPile(share, given.rows)
         discharge, gradient, both = pile.run(100 * given.rows)
         numbers[f"q/(k h) over its exact value, s/T = {share:g}"] = discharge / pile.discharge
         numbers[f"i_E T/h over its exact value, s/T = {share:g}"] = gradient / pile.exit_gradient
         curve.plot(share, discharge, "o", color="#5b8fd0")
         curve.plot(share, gradient, "s", color="#c8553d")
         if share == SHOWN:
-            x, q, _ = flux(both)
-            head = both.water.layer.pressure[: len(x)] / (WATER * GRAVITY)
+            x, q, _ = sheet_pile.flux(both)
+            head = both.water.layer.pressure[: len(x)] / (setups.WATER * GRAVITY)
             # The other half is its mirror image, head for head below that of the middle.
             for side, level in ((1.0, head), (-1.0, 1.0 - head)):
                 field.tricontour(side * x[:, 0], x[:, 1], level, np.linspace(0.05, 0.95, 19), colors="#5b8fd0",
@@ -40,8 +39,10 @@ def main() -> int:
     field.plot([-1.2, 1.2], [1.0, 1.0], color="#8a6d3b", linewidth=1.0)
     field.set(xlim=(-1.2, 1.2), ylim=(0.0, 1.2), aspect="equal", xlabel="x / T", ylabel="y / T")
     shares = np.linspace(0.1, 0.9, 81)
-    curve.plot(shares, [SheetPile(float(s)).discharge for s in shares], color="#5b8fd0", label="q / (k h)")
-    curve.plot(shares, [SheetPile(float(s)).exit_gradient for s in shares], color="#c8553d", label="i_E T / h")
+    curve.plot(shares, [sheet_pile.SheetPile(float(s)).discharge for s in shares], color="#5b8fd0", label="q / (k h)")
+    curve.plot(
+        shares, [sheet_pile.SheetPile(float(s)).exit_gradient for s in shares], color="#c8553d", label="i_E T / h"
+    )
     curve.set(xlabel="s / T", ylim=(0.0, 2.0))
     curve.legend(frameon=False)
     return conclude(HERE, numbers, figure, given.out)

@@ -10,14 +10,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from continuum_sph.builders.simulation import Simulation
-from continuum_sph.builders.soil import SoilPart
-from continuum_sph.validation.seepage.heave import BOUNDS, FREELY, Heave
-from continuum_sph.validation.seepage.setups import WATER
-from porescale.common.core.constants import GRAVITY
-from porescale.common.pictures.film import write_film
-from porescale.output.case import conclude, options
-from porescale.output.case_bodies import pixels
+from continuum_sph import Simulation
+from continuum_sph.builders import SoilPart
+from continuum_sph.validation.seepage import heave, setups
+from porescale import GRAVITY
+from porescale.common.pictures import write_film
+from porescale.output import conclude, options, pixels
 
 HERE = Path(__file__).resolve().parent
 STAGES = {"before": 0.25, "onset": 1.0, "failure": 12.0}
@@ -26,9 +24,9 @@ SHOWN = 0.5
 COLOURS = {0.25: "#5b8fd0", 0.5: "#c8553d", 0.75: "#3f7f4f"}
 
 
-def cases(rows: int) -> dict[float, Heave]:
+def cases(rows: int) -> dict[float, heave.Heave]:
     """The grounds by s/T: the shorter the pile the finer."""
-    given = Heave(rows=rows, modulus=5e5, cover=0.17, permeability=3e-2, first=2.5, rate=0.5, settle=0.4)
+    given = heave.Heave(rows=rows, modulus=5e5, cover=0.17, permeability=3e-2, first=2.5, rate=0.5, settle=0.4)
     return {
         0.25: replace(given, share=0.25, rows=5 * rows // 3, reach=1.0, rate=0.8),
         0.5: given,
@@ -36,7 +34,7 @@ def cases(rows: int) -> dict[float, Heave]:
     }
 
 
-def sight(where: tuple[Axes, Axes], model: Simulation, given: Heave, title: str) -> None:
+def sight(where: tuple[Axes, Axes], model: Simulation, given: heave.Heave, title: str) -> None:
     """Soil by its displacement, with velocities;  excess pressure over water at rest at the level behind the pile."""
     soil, flow = model.flow.water.skeleton, model.flow.water
     layer, n = flow.layer, flow.layer.fluid
@@ -44,7 +42,7 @@ def sight(where: tuple[Axes, Axes], model: Simulation, given: Heave, title: str)
     water, pressure = layer.x[:n][there], layer.pressure[:n][there]
     moved = np.hypot(*(soil.x - model.part(SoilPart).first).T) / given.buried
     level = given.depth + round(given.cover * given.rows) * given.spacing
-    excess = (pressure / (WATER * GRAVITY) - (level - water[:, 1])) / (given.critical * given.buried)
+    excess = (pressure / (setups.WATER * GRAVITY) - (level - water[:, 1])) / (given.critical * given.buried)
     size = 3600.0 / given.rows**2
     left, right = where
     left.scatter(*water.T, s=0.3 * size, c="#a9c8ea", lw=0)
@@ -63,10 +61,10 @@ def sight(where: tuple[Axes, Axes], model: Simulation, given: Heave, title: str)
         axes.tick_params(labelsize=7)
 
 
-def frames(given: Heave, every: float = 0.04) -> Iterator[NDArray[np.uint8]]:
+def frames(given: heave.Heave, every: float = 0.04) -> Iterator[NDArray[np.uint8]]:
     """Pictures of the course until the ground has failed."""
     for _, _, rise, model in given.course(every):
-        if rise > 1.5 * STAGES["failure"] * FREELY * given.elastic:
+        if rise > 1.5 * STAGES["failure"] * heave.FREELY * given.elastic:
             return
         figure = Figure(figsize=(10.0, 3.6), layout="constrained")
         FigureCanvasAgg(figure)
@@ -86,7 +84,7 @@ def main() -> int:
     grid = figure.add_gridspec(4, 2)
     curve, numbers = figure.add_subplot(grid[3, :]), {}
     for share, case in cases(given.rows).items():
-        rows, limit = [], FREELY * case.elastic
+        rows, limit = [], heave.FREELY * case.elastic
         stages = list(STAGES.items()) if share == SHOWN else []
         last = STAGES["failure"] if share == SHOWN else 2.0
         for time, head, rise, model in case.course():
@@ -101,7 +99,7 @@ def main() -> int:
         begun = np.flatnonzero(rises > limit)
         numbers[f"h/(i_c s) at the onset, s/T = {share:g}"] = float(heads[begun[0]]) if begun.size else float("nan")
         curve.plot(heads, rises / limit, color=COLOURS[share], label=f"s/T = {share:g}")
-        curve.axvspan(*BOUNDS[share], color=COLOURS[share], alpha=0.15, lw=0)
+        curve.axvspan(*heave.BOUNDS[share], color=COLOURS[share], alpha=0.15, lw=0)
     curve.axhline(1.0, color="0.5", lw=0.8)
     curve.set(xlabel="h / (i_c s)", ylabel="rise over that at the onset", ylim=(0.0, 4.0), xlim=(2.5, 4.2))
     curve.legend(frameon=False)

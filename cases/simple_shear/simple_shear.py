@@ -9,11 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from porescale import build, load
-from porescale.common.core.types import Floats
-from porescale.dem.grains import Grains
-from porescale.dem.measures.contacts import contacts
-from porescale.output.case import conclude, options, stage
+from porescale import Floats, build, load
+from porescale.dem import Grains
+from porescale.dem.measures import contacts
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 SCENE = HERE / "cell.toml"

@@ -6,12 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from continuum_sph.builders.soil import geostatic
-from continuum_sph.soil import Material, SoilFlow
-from continuum_sph.soil.stress import XX, YY
-from continuum_sph.validation.soil.setups import in_tank, run_until
+from continuum_sph.builders import geostatic
+from continuum_sph.soil import XX, YY, Material, SoilFlow
+from continuum_sph.validation.soil import setups
 from porescale.common.neighbors import square_lattice
-from porescale.output.case import conclude, options, stage
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 METHODS: dict[str, dict[str, float | bool]] = {
@@ -37,7 +36,7 @@ def column(name: str, spacing: float, tank: tuple[float, float], width: float) -
     """A column of soil ``width`` (m) wide in the left corner of a ``tank`` (m)."""
     x = square_lattice((0.0, 0.0), (width, HEIGHT), spacing)
     stress = geostatic(HEIGHT - x[:, 1], MATERIAL)
-    return in_tank(x, stress, tank, spacing, MATERIAL, **METHODS[name])  # type: ignore[arg-type]
+    return setups.in_tank(x, stress, tank, spacing, MATERIAL, **METHODS[name])  # type: ignore[arg-type]
 
 
 def noise(flow: SoilFlow) -> float:
@@ -61,7 +60,7 @@ def flowing(name: str, spacing: float) -> tuple[float, float, float]:
     """(noise of stress, nearest two particles over the spacing, front m) of a column 0.2 s after it was let go."""
     flow = column(name, spacing, (0.5, 0.15), WIDTH)
     try:
-        run_until(flow, 0.2)
+        setups.run_until(flow, 0.2)
     except ValueError:  # positions that are no numbers
         return float("nan"), float("nan"), float("nan")
     n = flow.soil.soil
@@ -73,7 +72,7 @@ def creep(name: str, spacing: float, seconds: float) -> float:
     """Largest displacement of level ground in ``seconds``, over its depth."""
     flow = column(name, spacing, (8 * spacing, 0.15), 8 * spacing)
     first = flow.soil.x[: flow.soil.soil].copy()
-    run_until(flow, seconds)
+    setups.run_until(flow, seconds)
     return float(np.hypot(*(flow.soil.x[: flow.soil.soil] - first).T).max()) / HEIGHT
 
 

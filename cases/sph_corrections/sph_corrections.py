@@ -5,17 +5,13 @@ from pathlib import Path
 
 import numpy as np
 
-from continuum_sph.builders.water import water_flow
+from continuum_sph import Scene
+from continuum_sph.builders import water_flow
 from continuum_sph.validation.water import channels, flows, setups
-from continuum_sph.validation.water.channels import poiseuille
-from continuum_sph.water.eos.liquid import Tait
-from continuum_sph.water.smoothing import Smoothing
-from continuum_sph.water.state import Layer
-from continuum_sph.water.step import Flow
-from porescale.common.core.constants import GRAVITY
+from continuum_sph.water import Flow, Layer, Smoothing, Tait
+from porescale import GRAVITY
 from porescale.common.neighbors import PairList
-from porescale.common.schema.sections import validate
-from porescale.output.case import conclude, options, stage
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 METHODS: dict[str, dict[str, float | str | int]] = {
@@ -60,7 +56,7 @@ def plates(name: str, across: int) -> float:
     """Largest error of a flow between plates after a second, over its speed."""
     flow = setups.run_until(chosen(channels.channel(1e-3, across, 1e-6, 1e-3, force=1e-4), name), 1.0)
     y, u = channels.speed_profile(flow)
-    return float(np.abs(u - poiseuille(y, flow.time, 1e-3, 1e-4, 1e-6)).max()) / 1.25e-5
+    return float(np.abs(u - channels.poiseuille(y, flow.time, 1e-3, 1e-4, 1e-6)).max()) / 1.25e-5
 
 
 def rest(name: str, rows: int, seconds: float) -> tuple[float, float]:
@@ -70,7 +66,7 @@ def rest(name: str, rows: int, seconds: float) -> tuple[float, float]:
     table = scene.model_dump()
     if name == "as printed":
         table["tank"]["wall_particles"] = "images"
-    flow = setups.run_until(water_flow(validate(type(scene), table)), seconds)
+    flow = setups.run_until(water_flow(Scene(**table)), seconds)
     layer, state = flow.layer, flow.law.state
     assert isinstance(state, Tait)
     n = layer.fluid

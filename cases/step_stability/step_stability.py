@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from porescale.common.core.types import Floats
-from porescale.output.case import conclude, options, stage
-from porescale.validation.dem.critical_step import critical_step
-from porescale.validation.dem.setups import MASS, RADIUS, STIFFNESS, law_at, row_on_floor
+from porescale import Floats
+from porescale.output import conclude, options, stage
+from porescale.validation.dem import critical_step as lab
+from porescale.validation.dem import setups
 
 HERE = Path(__file__).resolve().parent
-UNIT = math.sqrt(MASS / STIFFNESS)  # s
+UNIT = math.sqrt(setups.MASS / setups.STIFFNESS)  # s
 RATIOS = (0.0, 0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0)
 SHARES = (0.02, 0.05, 0.1, *np.linspace(0.125, 0.95, 34))
 PHASES = 200
@@ -27,18 +27,18 @@ def lagged(ratio: Floats | float) -> Floats:
 
 def growth(ratio: float, step: float, steps: int = 60) -> float:
     """Factor per step by which a small disturbance of a disc pressed on a floor grows, ``step`` in sqrt(m/k)."""
-    grains = row_on_floor(1, -0.1 * RADIUS, law_at(ratio))
-    load = np.array([[0.0, -0.1 * RADIUS * STIFFNESS]])
+    grains = setups.row_on_floor(1, -0.1 * setups.RADIUS, setups.law_at(ratio))
+    load = np.array([[0.0, -0.1 * setups.RADIUS * setups.STIFFNESS]])
     d = grains.discs
     rest = d.position.copy()
-    d.position[0, 1] += 1e-12 * RADIUS
+    d.position[0, 1] += 1e-12 * setups.RADIUS
     grains.refresh()
     size = []
     for _ in range(steps):
         grains.step(step * UNIT, load)
         off = abs(float(d.position[0, 1] - rest[0, 1])) + abs(float(d.velocity[0, 1])) * UNIT
         size.append(off)
-        if off > 1e-3 * RADIUS or off < 1e-16:
+        if off > 1e-3 * setups.RADIUS or off < 1e-16:
             break
     half = len(size) // 3
     return float((size[-1] / size[half]) ** (1.0 / max(len(size) - 1 - half, 1)))
@@ -49,9 +49,9 @@ def gains(share: float, ratio: float = 0.0) -> Floats:
     touches at all moments of a step."""
     dt = share * float(lagged(ratio)) * UNIT
     speed = 1.0
-    law = law_at(ratio)
+    law = setups.law_at(ratio)
     gap = speed * dt * (np.arange(PHASES) + 0.5) / PHASES
-    grains = row_on_floor(PHASES, gap, law)
+    grains = setups.row_on_floor(PHASES, gap, law)
     grains.discs.velocity[:, 1] = -speed
     grains.step(dt, count=int(6.0 * UNIT / dt) + 4)
     found: Floats = (grains.discs.velocity[:, 1] / speed) ** 2 - 1.0
@@ -60,7 +60,7 @@ def gains(share: float, ratio: float = 0.0) -> Floats:
 
 def measure() -> tuple[dict[str, float], Figure]:
     """Limits against both formulas, gains of a bounce, and their picture."""
-    found = {ratio: critical_step(ratio) for ratio in RATIOS}
+    found = {ratio: lab.critical_step(ratio) for ratio in RATIOS}
     numbers = {f"longest step, h = {ratio:g}": value for ratio, value in found.items()}
     worst = {share: gains(share) for share in SHARES}
     for share in (0.1, 0.02):

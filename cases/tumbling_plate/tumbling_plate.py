@@ -9,9 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from porescale import build, load
-from porescale.common.core.types import Floats
-from porescale.output.case import conclude, options, stage
+from porescale import Floats, build, load
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 SCENE = HERE / "plate.toml"

@@ -6,10 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from continuum_sph.soil import Material
-from continuum_sph.validation.soil.bodies import turn
-from continuum_sph.validation.soil.setups import body
+from continuum_sph.validation.soil import bodies, setups
 from porescale.common.neighbors import square_lattice
-from porescale.output.case import conclude, options, stage
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 SPACING = 0.05  # m
@@ -28,8 +27,8 @@ def main() -> int:
     figure, (left, right) = stage(2, 10.0, 4.0)
     numbers = {}
     for name, law in METHODS.items():
-        flow = body(x, SPACING, Material(1e7, 1590.0, yields=False), STRESS, **law)
-        angles, errors = turn(flow, 0.5 * math.pi, words.steps)
+        flow = setups.body(x, SPACING, Material(1e7, 1590.0, yields=False), STRESS, **law)
+        angles, errors = bodies.turn(flow, 0.5 * math.pi, words.steps)
         left.semilogy(np.degrees(angles), np.maximum(errors, 1e-17), label=name)
         numbers[f"on the way, {name}"] = float(errors.max())
         numbers[f"at 90 degrees, {name}"] = float(errors[-1])

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from continuum_sph.validation.seepage.permeameter import BOILING, PERMEABILITIES, boiling, darcy, ramp
-from porescale.output.case import conclude, options, stage
+from continuum_sph.validation.seepage import permeameter
+from porescale.output import conclude, options, stage
 
 HERE = Path(__file__).resolve().parent
 
@@ -11,9 +11,9 @@ HERE = Path(__file__).resolve().parent
 def main() -> int:
     """Measure, say, draw; 1 if a row of expected.toml is missed."""
     given = options(__doc__ or "", HERE)
-    fluxes = {k: darcy(k) for k in PERMEABILITIES}
-    part, upright, speed = ramp()
-    found, _, _ = boiling()
+    fluxes = {k: permeameter.darcy(k) for k in permeameter.PERMEABILITIES}
+    part, upright, speed = permeameter.ramp()
+    found, _, _ = permeameter.boiling()
     figure, (left, right) = stage(2)
     left.axhline(1.0, color="#888888", linewidth=1.0)
     left.semilogx(list(fluxes), list(fluxes.values()), "o", color="#5b8fd0")
@@ -28,7 +28,7 @@ def main() -> int:
     right.legend(fontsize=8, frameon=False, loc="upper center")
     numbers = {f"q/(k i), k = {k:g} m/s": value for k, value in fluxes.items()}
     numbers["gradient at which stress vanishes over i_c"] = found
-    numbers["critical gradient"] = BOILING.critical
+    numbers["critical gradient"] = permeameter.BOILING.critical
     return conclude(HERE, numbers, figure, given.out)
 
 

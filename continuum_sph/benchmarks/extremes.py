@@ -60,7 +60,8 @@ def front(model: Simulation) -> float:
     layer = model.flow.layer
     x = layer.x[: layer.fluid, 0]
     first = int(np.argmax(x))
-    return float(x[first] + layer.v[first, 0] * (JUDGED - model.time)) + 0.5 * model.scene.numerics.spacing
+    spacing: float = model.scene.numerics.spacing
+    return float(x[first] + layer.v[first, 0] * (JUDGED - model.time)) + 0.5 * spacing
 
 
 @cache

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from porescale.common.core.types import Floats
+from porescale.common.record.model import Cloud
 from porescale.common.record.part import Part
 
 
@@ -25,11 +27,25 @@ class System(Protocol):
         """Advance the state by one time step."""
 
 
+class Particles(Protocol):
+    """The part whose particles a snapshot shows as the cloud "particles"."""
+
+    def cloud(self) -> Cloud:
+        """The particles with all their arrays; copies."""
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Positions (n, 2) m and velocities (n, 2) m/s in the order of the cloud, as they lie in memory or copies."""
+
+    def masses(self) -> Floats:
+        """Masses in the order of the cloud, (n,) kg/m; a copy."""
+
+
 @dataclass
 class Assembly:
-    """flow : what moves (`System`);  parts : what it consists of, in the order of their columns;  repair : what helps
-    when it is unstable."""
+    """flow : what moves (`System`);  parts : what it consists of, in the order of their columns;  shown : that of them
+    whose particles are seen;  repair : what helps when it is unstable."""
 
     flow: Any
     parts: list[Part]
+    shown: Particles
     repair: str

@@ -20,6 +20,7 @@ from continuum_sph.scene.sections import Scene
 from continuum_sph.seepage import PoreFlow, Seepage
 from continuum_sph.soil import SoilFlow
 from porescale.common.core.errors import Unstable
+from porescale.common.core.types import Floats
 from porescale.common.record.model import Cloud, Snapshot
 from porescale.common.record.part import Part
 
@@ -78,14 +79,28 @@ class MixturePart(Part):
             "heat of drag (J/m)": float(flow.heat.sum()),
         }
 
-    def show(self, snapshot: Snapshot) -> None:
-        """Water, air and soil as a cloud each, and all as one to look at, soil over the others: layer, velocity,
-        pressure (of soil mean effective stress), porosity."""
-        flow = self.flow.water
-        water, soil, layer = self.water.cloud(), self.soil.cloud(), flow.layer
-        water.data["porosity"] = flow.porosity.copy()
+    def rows(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Numbers of the particles of the layer in the pores that are there now: of the water, and of the air."""
+        layer = self.flow.water.layer
         there, gas = layer.mass[: layer.fluid] > 0.0, layer.material[: layer.fluid] == GAS
-        air, water = chosen(water, there & gas), chosen(water, there & ~gas)
+        return np.flatnonzero(there & ~gas), np.flatnonzero(there & gas)
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Positions (n, 2) m and velocities (n, 2) m/s of water, air and soil that are there now; copies."""
+        layer, rows = self.flow.water.layer, np.concatenate(self.rows())
+        x, v = self.soil.motion()
+        return np.concatenate((layer.x[rows], x)), np.concatenate((layer.v[rows], v))
+
+    def masses(self) -> Floats:
+        """Masses of water, air and soil that are there now, (n,) kg/m; a copy."""
+        return np.concatenate((self.flow.water.layer.mass[np.concatenate(self.rows())], self.soil.masses()))
+
+    def _clouds(self) -> dict[str, Cloud]:
+        """Water, air and soil as a cloud each, and all as one to look at."""
+        flow = self.flow.water
+        water, soil = self.water.cloud(), self.soil.cloud()
+        water.data["porosity"] = flow.porosity.copy()
+        water, air = (chosen(water, rows) for rows in self.rows())
         soil.data["saturation"] = flow.saturation()
         kind = np.where(soil.data["saturation"] < 0.5, DRY, WET)
         parts = (
@@ -96,7 +111,16 @@ class MixturePart(Part):
         data = {name: np.concatenate(values) for name, *values in parts}
         units = {"velocity": "m/s", "pressure": "Pa"}
         whole = Cloud(np.concatenate((water.position, air.position, soil.position)), data, units)
-        snapshot.clouds |= {"particles": whole, "water": water, "soil": soil} | ({"air": air} if self.air else {})
+        return {"particles": whole, "water": water, "soil": soil} | ({"air": air} if self.air else {})
+
+    def cloud(self) -> Cloud:
+        """All particles that are there now: water, air, soil."""
+        return self._clouds()["particles"]
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Water, air and soil as a cloud each, and all as one to look at, soil over the others: layer, velocity,
+        pressure (of soil mean effective stress), porosity."""
+        snapshot.clouds |= self._clouds()
 
     def state(self) -> dict[str, Any]:
         """State of the part: the next time step of both layers, s."""
@@ -141,8 +165,8 @@ class PoreInstruments(Part):
         return found
 
 
-def chosen(cloud: Cloud, rows: NDArray[np.bool_]) -> Cloud:
-    """The points of a cloud in ``rows`` (n,)."""
+def chosen(cloud: Cloud, rows: NDArray[np.int64]) -> Cloud:
+    """The points of a cloud by their numbers, ``rows`` (m,)."""
     return Cloud(cloud.position[rows], {key: values[rows] for key, values in cloud.data.items()}, cloud.units)
 
 
@@ -152,7 +176,8 @@ def assemble(scene: Scene) -> Assembly:
     assert isinstance(both.ground, SoilFlow)
     water, soil = PoreWaterPart(scene, both.water), WetSoilPart(scene, both.ground)
     water.jumps.strips = [(it.left, it.right) for it in scene.reservoir]
-    parts: list[Part] = [water, soil, MixturePart(both, water, soil, air=scene.air is not None)]
+    mixture = MixturePart(both, water, soil, air=scene.air is not None)
+    parts: list[Part] = [water, soil, mixture]
     if both.supply:
         parts.append(ReservoirPart(both.supply, both, scene.tank.height))
     if scene.pile and scene.gravity > 0.0:
@@ -161,4 +186,4 @@ def assemble(scene: Scene) -> Assembly:
     parts.append(PoreInstruments(scene, both.water))
     if scene.air:
         parts.append(AirPart(both.water))
-    return Assembly(both, parts, REPAIR)
+    return Assembly(both, parts, mixture, REPAIR)

@@ -2,10 +2,14 @@
 
 from typing import Any, TypeVar
 
+import numpy as np
+
 from continuum_sph.builders import mixture, soil, water
 from continuum_sph.builders.assembly import Assembly
 from continuum_sph.builders.sanity import Now, advance_one
 from continuum_sph.scene.sections import Scene
+from porescale.common.api.simulation import BaseSimulation
+from porescale.common.core.types import Floats
 from porescale.common.record.model import Snapshot
 from porescale.common.record.part import Part, overrides, restore, row_of, state_of, tables_of
 
@@ -19,11 +23,14 @@ def assemble(scene: Scene) -> Assembly:
     return soil.assemble(scene) if scene.dry else mixture.assemble(scene)
 
 
-class Simulation:
+class Simulation(BaseSimulation):
     """Model of a scene; see `porescale.common.record.model.Model`.
 
+    Particles, as in `positions`, are those that a snapshot shows: water or soil in the order in which they were placed;
+    of water in soil first the water, then the air, then the soil.  Where reservoirs supply water their number changes.
+
     flow : what moves: `water.step.Flow` of water, `soil.SoilFlow` of soil, `seepage.Seepage` of both;  parts : see
-    `porescale.common.record.part.Part`.
+    `porescale.common.record.part.Part`;  shown : that of them whose particles are seen.
     """
 
     variable_step = True
@@ -31,14 +38,39 @@ class Simulation:
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
         made = assemble(scene)
-        self.flow, self.parts, self.repair = made.flow, made.parts, made.repair
-        self._take_time()
+        self.flow, self.parts, self.shown, self.repair = made.flow, made.parts, made.shown, made.repair
+        self._after()
 
-    def _take_time(self) -> None:
-        """Steps done, time reached (s) and length of the next step (s), for the run loop; parts follow."""
-        self.step: int = self.flow.step
-        self.time: float = self.flow.time
-        self.step_seconds: float = self.flow.next_step
+    @property
+    def step(self) -> int:
+        """Number of steps done since time 0."""
+        return int(self.flow.step)
+
+    @property
+    def time(self) -> float:
+        """Time reached, in seconds."""
+        return float(self.flow.time)
+
+    @property
+    def step_seconds(self) -> float:
+        """Length of the next step, s."""
+        return float(self.flow.next_step)
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Positions (n, 2) m and velocities (n, 2) m/s of the particles; views, or copies of water in soil."""
+        return self.shown.motion()
+
+    @property
+    def radii(self) -> Floats:
+        """Half the spacing of the particles, (n,) m."""
+        return np.full(len(self.motion()[0]), 0.5 * self.scene.numerics.spacing)
+
+    @property
+    def masses(self) -> Floats:
+        """Masses of the particles, (n,) kg per metre of depth; a copy."""
+        return self.shown.masses()
+
+    def _after(self) -> None:
         for part in self.parts:
             part.after()
 
@@ -53,7 +85,7 @@ class Simulation:
             for act in before:
                 act()
             advance_one(self.flow.advance, Now(self.step, self.time, self.repair))
-            self._take_time()
+            self._after()
 
     def check(self) -> None:
         """Raise Unstable when the state of a part is not finite or out of bounds."""
@@ -82,4 +114,4 @@ class Simulation:
     def restore(self, state: dict[str, Any]) -> None:
         """Go on bit for bit from a state of a simulation of the same scene."""
         restore(self.parts, state)
-        self._take_time()
+        self._after()

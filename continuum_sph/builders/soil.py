@@ -122,6 +122,15 @@ class SoilPart(Part):
             **{f"steps limited by {rule} ()": float(k) for rule, k in zip(RULES, flow.limited, strict=True)},
         }
 
+    def motion(self) -> tuple[Floats, Floats]:
+        """Positions (n, 2) m and velocities (n, 2) m/s of the soil; views."""
+        soil = self.flow.soil
+        return soil.x[: soil.soil], soil.v[: soil.soil]
+
+    def masses(self) -> Floats:
+        """Masses of the soil, (n,) kg/m; a copy."""
+        return self.flow.soil.mass[: self.flow.soil.soil].copy()
+
     def cloud(self) -> Cloud:
         """The soil: velocity, displacement, stress, what yielded and what came apart."""
         soil, n = self.flow.soil, self.flow.soil.soil
@@ -162,7 +171,8 @@ class SoilPart(Part):
 def assemble(scene: Scene) -> Assembly:
     """Build the flow and the parts of a scene of soil in a tank."""
     flow = soil_flow(scene)
-    return Assembly(flow, [SoilPart(scene, flow)], REPAIR)
+    part = SoilPart(scene, flow)
+    return Assembly(flow, [part], part, REPAIR)
 
 
 def geostatic(depth: Floats, material: Material, gravity: float = GRAVITY, rest: float | None = None) -> Floats:

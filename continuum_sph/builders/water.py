@@ -111,6 +111,15 @@ class WaterPart(Part):
             "stops at walls ()": float(self.flow.stopped),
         }
 
+    def motion(self) -> tuple[Floats, Floats]:
+        """Positions (n, 2) m and velocities (n, 2) m/s of the water; views."""
+        layer = self.flow.layer
+        return layer.x[: layer.fluid], layer.v[: layer.fluid]
+
+    def masses(self) -> Floats:
+        """Masses of the water, (n,) kg/m; a copy."""
+        return self.flow.layer.mass[: self.flow.layer.fluid].copy()
+
     def cloud(self) -> Cloud:
         """The water: velocity, pressure, density."""
         layer = self.flow.layer
@@ -155,13 +164,14 @@ class WaterSteps(Part):
 def assemble(scene: Scene) -> Assembly:
     """Water in a tank, with what is measured in it."""
     flow = water_flow(scene)
-    parts: list[Part] = [WaterPart(scene, flow)]
+    water = WaterPart(scene, flow)
+    parts: list[Part] = [water]
     if scene.inclusion:
         parts.append(InclusionPart(flow))
     parts.append(WaterSteps(flow))
     if scene.probe or scene.level:
         parts.append(WaterInstruments(scene.probe, scene.level, flow, scene.inner[0]))
-    return Assembly(flow, parts, REPAIR)
+    return Assembly(flow, parts, water, REPAIR)
 
 
 def water_state(scene: Scene) -> Tait:

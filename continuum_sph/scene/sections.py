@@ -20,13 +20,14 @@ from continuum_sph.scene.tank import TankSection
 from continuum_sph.scene.water import Column, WaterSection
 from porescale.common.core.constants import GRAVITY
 from porescale.common.core.errors import Fault
-from porescale.common.schema.sections import Refused, Section, load, quantity
+from porescale.common.schema.scene import SceneBase
+from porescale.common.schema.sections import Refused, load, quantity
 
 CALM_MACH = 10.0
 """Sound speed over the speed of free fall from the highest water: Mach number 0.1, so that density changes by 1 %."""
 
 
-class Scene(Section):
+class Scene(SceneBase):
     """A tank with water, soil, or both."""
 
     elsewhere: ClassVar[Mapping[str, str]] = {"domain": "porescale"}

@@ -46,11 +46,6 @@ Parts: `Skeleton`, the soil as the water equations need it (`skeleton`);  `Overl
 `Supply`, water kept at levels (`level`);  `Seepage`, both layers moving (`step`).
 """
 
-from continuum_sph.seepage.pores import PoreFlow
-from continuum_sph.seepage.pressure_face import Drain
-from continuum_sph.seepage.reservoir import Reservoir, Supply
-from continuum_sph.seepage.resistance import Resistance
-from continuum_sph.seepage.skeleton import Frame, Skeleton, skeleton_of
-from continuum_sph.seepage.step import Seepage
+import lazy_loader
 
-__all__ = ["Drain", "Frame", "PoreFlow", "Reservoir", "Resistance", "Seepage", "Skeleton", "Supply", "skeleton_of"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

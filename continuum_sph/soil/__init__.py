@@ -29,9 +29,6 @@ alone: linear and angular momentum and energy are kept (Bonet & Lok, Comput. Met
 Eqs 33, 35, 37 of Maeda & Sakai 2004 have K = 1 and are a choice; eq. 38 turns the wrong way and is one too, for tests.
 """
 
-from continuum_sph.soil.flow import SoilFlow
-from continuum_sph.soil.material import Material, porosity, table
-from continuum_sph.soil.parameters import SoilLaw
-from continuum_sph.soil.state import Soil
+import lazy_loader
 
-__all__ = ["Material", "Soil", "SoilFlow", "SoilLaw", "porosity", "table"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,1 +1,5 @@
 """Water and air as layers of smoothed particles."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

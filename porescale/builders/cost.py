@@ -3,13 +3,13 @@
 import contextlib
 import json
 import math
-import os
 from pathlib import Path
 
 from porescale.builders.derive import Derived
 from porescale.common.compiled.cache import cache_root
 from porescale.common.core.atomic import write_bytes
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.core.machine import memory_bytes
 
 CELLS_PER_SECOND, DISCS_PER_SECOND = 150e6, 15e6
 """Rates that a run is first reckoned with (two cores, float64); how this machine differs is learnt from its runs."""
@@ -65,7 +65,7 @@ def remember(derived: Derived, steps_per_second: float) -> None:
 
 def require_memory(derived: Derived) -> None:
     """Raise InputError when the arrays would not fit into this machine's memory."""
-    have = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    have = memory_bytes()
     need = memory(derived)
     if need <= 0.9 * have:
         return
@@ -85,7 +85,7 @@ def _file() -> Path:
 
 def _slowness() -> float | None:
     try:
-        value = float(json.loads(_file().read_text())["slowness"])
+        value = float(json.loads(_file().read_text(encoding="utf-8"))["slowness"])
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
     return value if math.isfinite(value) and value > 0 else None

@@ -25,3 +25,5 @@ PolygonBody.checks.append(check_random_places)
 Circles.read = grains_of
 contact.LAWS += LAWS
 CHOICES.update(operator=OPERATORS, solid_operator=SOLID_OPERATORS, weighting=WEIGHTINGS)
+
+Scene.__module__ = __name__  # where what reads a pickle of a scene finds it together with its checks

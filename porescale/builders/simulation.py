@@ -4,15 +4,20 @@ from typing import Any, TypeVar
 
 from porescale.builders.stepper import Fields, Stepper
 from porescale.builders.system import System
+from porescale.common.api.simulation import BaseSimulation, absent
 from porescale.common.core.errors import Unstable
+from porescale.common.core.types import Floats
 from porescale.common.record.model import Snapshot
 from porescale.common.record.part import Part, acts_between, overrides, restore, row_of, state_of, tables_of
 
 P = TypeVar("P", bound=Part)
 
 
-class Simulation:
+class Simulation(BaseSimulation):
     """A scene in motion.
+
+    Grains, as in `positions`, are all discs in the order of the scene: the packing, grains and members of clumps placed
+    by hand, discs that are held; not the bodies of segments.
 
     step : model steps done (fluid steps, or contact steps without fluid);  step_seconds : s;  time : s.
     parts : the stepper first;  scene, derived : what it was built from.
@@ -48,6 +53,46 @@ class Simulation:
     def part(self, kind: type[P]) -> P | None:
         """The part of this class; None where the scene has no section for it."""
         return next((part for part in self.parts if isinstance(part, kind)), None)
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Positions (n, 2) m and velocities (n, 2) m/s of the discs; views.  In a strained cell, as they are shown.
+
+        Velocities are those between the last step and the next, half a step away.
+        """
+        from porescale.builders.parts.clouds import GrainCloud
+
+        cloud = self.part(GrainCloud)
+        if cloud is None:
+            raise absent("positions", "grains", "add [grains], or read self.fields()")
+        position, velocity = cloud.motion()
+        return position[: cloud.count], velocity[: cloud.count]
+
+    @property
+    def radii(self) -> Floats:
+        """Radii of the grains, (n,) m; a copy."""
+        return self._of_discs("radius")
+
+    @property
+    def masses(self) -> Floats:
+        """Masses of the grains, (n,) kg per metre of depth; a copy.  Members of a clump have their shares."""
+        return self._of_discs("mass")
+
+    @property
+    def angles(self) -> Floats:
+        """How far the grains have turned, (n,) rad; a copy."""
+        return self._of_discs("angle")
+
+    @property
+    def spins(self) -> Floats:
+        """Speeds at which the grains turn, (n,) rad/s; a copy."""
+        return self._of_discs("spin")
+
+    def _of_discs(self, name: str) -> Floats:
+        """A copy of an array of the discs."""
+        count = len(self.motion()[0])
+        assert self.grains
+        values: Floats = getattr(self.grains.discs, name)[:count].copy()
+        return values
 
     def advance(self, steps: int) -> None:
         """Do ``steps`` steps; raises Unstable when a grain is nowhere."""

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, Parameter
 
+from porescale.common.api.folders import check_folder
 from porescale.common.cli.options import Threads, use_threads
-from porescale.common.cli.run import check_folder, summary
+from porescale.common.cli.run import summary
 from porescale.common.core.errors import Fault, InputError
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 PACKAGE = "porescale demseg"
 CHECKPOINT_SECONDS = 30.0
 """Wall-clock time between checkpoints."""
-Folder = Annotated[Path, Parameter(help="folder with in_gm.dat and in_bc.dat")]
+Folder = Annotated[Path, Parameter(help="folder with in_gm.dat and in_bc.dat, or name of a case (see `cases`)")]
 Seed = Annotated[int, Parameter(help="of the random discs of mode 0")]
 Release = Annotated[Literal["overlap", "force"], Parameter(help="contacts end without overlap, or without force")]
 Rod = Annotated[float | None, Parameter(help="width of segments that weigh; 2 thick, or 0.1, if not given")]
@@ -58,6 +59,7 @@ def run(
     if seed < 0:
         raise InputError(Fault("--seed", seed, "is out of range", allowed=">= 0"))
     options = Options(seed, release, rule, rod)
+    folder = _deck_folder(folder)
     deck = read_deck(folder)
     name = folder.resolve().name
     where = out or Path("runs") / name
@@ -71,6 +73,13 @@ def run(
     if not quiet:
         print(summary("porescale", name, where, outcome).rsplit("\n", 1)[0])
     return 0
+
+
+def _deck_folder(given: Path) -> Path:
+    """``given`` where it is there, else the case of that name where there is one."""
+    from porescale.common.api.shipped import find_case
+
+    return given if given.exists() else find_case(given) or given
 
 
 def drive_deck(
@@ -112,15 +121,11 @@ def drive_deck(
 def show(folder: Path) -> list[Path]:
     """Write pictures and a film of the deck's run in ``folder``, finished or not; returns their paths."""
     from porescale.common.pictures.film import film
-    from porescale.common.pictures.look import Look
     from porescale.common.pictures.picture import pictures
     from porescale.common.record.open_run import open_run
+    from porescale.output.show import look_of
 
-    run = open_run(folder)
-    x1, x2, y1, y2 = (float(value) for value in run.card["scene"]["deck"]["domain"])
-    sides = [((x1, y1), (x2, y1)), ((x2, y1), (x2, y2)), ((x2, y2), (x1, y2)), ((x1, y2), (x1, y1))]
-    look = Look(title=run.name, cloud="grains", shapes="ends", colour="velocity", lines=sides, view=(x1, x2, y1, y2),
-                plain=True)  # fmt: skip
+    look = look_of(open_run(folder))
     return [*pictures(folder, look), film(folder, look)]
 
 
@@ -146,6 +151,7 @@ def convert(
     from porescale.demseg.deck import BONDED, CF0, read_deck
     from porescale.demseg.tension import read_tensions
 
+    folder = _deck_folder(folder)
     name = folder.resolve().name
     file = out or Path(f"{name}.toml")
     require_writable(file.parent, "--out")

@@ -46,7 +46,7 @@ def homogenise(
     of the scene gives.  material.toml is what `[soil] material = "material.toml"` of a continuum-sph scene reads;
     homogenise.csv and .png show what it stands on.  What was stopped goes on when called again.
     """
-    require_scene(scene)
+    start = require_scene(scene, "porescale")
     from porescale.analysis.homogenise import section_of, specimen
     from porescale.builders.scene import Scene as SceneType
     from porescale.common.schema.sections import open_scene
@@ -54,7 +54,7 @@ def homogenise(
     from porescale.common.studies.runner import Campaign
     from porescale.demseg.convert import toml
 
-    opened = open_scene(scene, SceneType, quality=quality, overrides=settings or ())
+    opened = open_scene(start, SceneType, quality=quality, overrides=settings or ())
     test = specimen(opened.scene)
     request = section_of(opened.scene)
     if jobs < 1:

@@ -110,9 +110,7 @@ class Coupled:
 
     def advance(self) -> None:
         """Advance by one fluid step and its contact steps."""
-        self._to_lattice()
-        seen = self._seen
-        self.saturated.advance(self.fluid, self._centre[seen], self._velocity[seen], self._spin[seen])
+        self.saturated.advance(self.fluid, *self._seen_motion())
         self._load_bodies()
         self._move_bodies()
 
@@ -169,14 +167,26 @@ class Coupled:
     def fields(self) -> tuple[Reals, Reals, Reals, Reals]:
         """Density excess (kg/m³), velocity (m/s, two arrays) and solid fraction of every cell, each (ny, nx).
 
-        Solid are the discs at the hydraulic radius, without what their rims need in the lattice.
+        Velocities are those of fluid and solid together, halfway through a step (`SaturatedCells.flow`).  Solid are the
+        discs at the hydraulic radius, without what their rims need in the lattice.
         """
+        s = self.scales
+        motion = self._seen_motion()
+        rho, jx, jy = self.saturated.flow(self.fluid, *motion)
+        self.saturated.cover(*motion, bare=True)
+        solid = np.minimum(self.saturated.solid, 1)
+        return (rho - 1) * s.density, jx / rho * s.velocity, jy / rho * s.velocity, solid
+
+    def solid_flow(self) -> tuple[Reals, Reals]:
+        """Solid fraction times velocity of the solid in every cell, m/s, two arrays (ny, nx); discs as in `fields`."""
+        self.saturated.cover(*self._seen_motion(), bare=True)
+        share = self.scales.velocity / np.maximum(self.saturated.solid, 1)  # grains that overlap fill a cell once
+        return self.saturated.covered[1] * share, self.saturated.covered[2] * share
+
+    def _seen_motion(self) -> tuple[Reals, Reals, Reals]:
+        """Centre (n, 2), velocity (n, 2) and spin (n,) of the discs in the lattice, lattice units."""
         self._to_lattice()
-        wet, s = self.saturated, self.scales
-        wet.cover(self._centre[self._seen], self._velocity[self._seen], self._spin[self._seen], bare=True)
-        solid = np.minimum(wet.solid, 1)
-        rho, ux, uy = self.fluid.fields(None if wet.operator.force_everywhere else wet.weights())
-        return (rho - 1) * s.density, ux * s.velocity, uy * s.velocity, solid
+        return self._centre[self._seen], self._velocity[self._seen], self._spin[self._seen]
 
     def momentum(self) -> Reals:
         """Conserved momentum, kg/s (per metre), (2,): fluid + discs - the fluid inside them and + virtual masses."""

@@ -1,1 +1,5 @@
 """Pictures and tables of finished runs beyond those common to both packages."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

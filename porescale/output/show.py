@@ -9,19 +9,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from porescale.common.pictures.look import Line
+    from porescale.common.pictures.look import Line, Look
     from porescale.common.record.model import Snapshot
+    from porescale.common.record.open_run import Run
 
 
 def show(folder: Path) -> list[Path]:
     """Write pictures, film, surface and profiles of the run in ``folder``; returns their paths."""
     from porescale.common.pictures.film import film
-    from porescale.common.pictures.look import Look
     from porescale.common.pictures.picture import paint_last, pictures
     from porescale.common.record.open_run import open_run
     from porescale.output.breaks import write_breaks
-    from porescale.output.frame_clouds import FRAMES
-    from porescale.output.frame_pictures import cracks
     from porescale.output.grain_pictures import write_grain_pictures
     from porescale.output.lines import write_lines
     from porescale.output.rock_pictures import write_rock_picture
@@ -29,7 +27,27 @@ def show(folder: Path) -> list[Path]:
 
     run = open_run(folder)
     scene = run.card["scene"]
-    look = Look(
+    look = look_of(run)
+    written = [*pictures(folder, look), film(folder, look)]
+    fields = scene["output"].get("fields", ())
+    written += [paint_last(folder, name, replace(look, field=name, label="")) for name in fields]
+    if scene.get("grains") is not None:
+        written += [write_surface(run, folder)] if "grains" in run.clouds else []
+        written += write_grain_pictures(run, folder, look)
+    written += [*write_breaks(run, folder), *write_rock_picture(run, folder)]
+    return [*written, *write_lines(run, folder)]
+
+
+def look_of(run: Run) -> Look:
+    """How pictures and films show a run, of a scene or of a deck of DEMseg."""
+    from porescale.common.pictures.look import Look
+    from porescale.output.frame_clouds import FRAMES
+    from porescale.output.frame_pictures import cracks
+
+    scene = run.card["scene"]
+    if "deck" in scene:
+        return _look_of_deck(run.name, scene["deck"])
+    return Look(
         title=title(scene, run.name),
         cloud="grains",
         label="speed of the fluid",
@@ -41,14 +59,16 @@ def show(folder: Path) -> list[Path]:
         marks=cracks,
         view=(0.0, scene["domain"]["width"], 0.0, scene["domain"]["height"]),
     )
-    written = [*pictures(folder, look), film(folder, look)]
-    fields = scene["output"].get("fields", ())
-    written += [paint_last(folder, name, replace(look, field=name, label="")) for name in fields]
-    if scene.get("grains") is not None:
-        written += [write_surface(run, folder)] if "grains" in run.clouds else []
-        written += write_grain_pictures(run, folder, look)
-    written += [*write_breaks(run, folder), *write_rock_picture(run, folder)]
-    return [*written, *write_lines(run, folder)]
+
+
+def _look_of_deck(name: str, deck: dict[str, Any]) -> Look:
+    """Discs and segments in the deck's box, in its own units."""
+    from porescale.common.pictures.look import Look
+
+    x1, x2, y1, y2 = (float(value) for value in deck["domain"])
+    sides = [((x1, y1), (x2, y1)), ((x2, y1), (x2, y2)), ((x2, y2), (x1, y2)), ((x1, y2), (x1, y1))]
+    return Look(title=name, cloud="grains", shapes="ends", colour="velocity", lines=sides, view=(x1, x2, y1, y2),
+                plain=True)  # fmt: skip
 
 
 def title(scene: dict[str, Any], name: str) -> str:

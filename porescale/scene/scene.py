@@ -6,7 +6,8 @@ from typing import Any, ClassVar
 import pydantic
 
 from porescale.common.core.constants import GRAVITY
-from porescale.common.schema.sections import Refused, Section, quantity
+from porescale.common.schema.scene import SceneBase
+from porescale.common.schema.sections import Refused, quantity
 from porescale.lbm.scales import NAMES
 from porescale.scene.bodies.bonds import Bonds
 from porescale.scene.bodies.clump import Clump
@@ -36,7 +37,7 @@ from porescale.scene.sleep import Sleep
 from porescale.scene.time import Time
 
 
-class Scene(Section):
+class Scene(SceneBase):
     """A scene: box, time, output, and the parts it needs."""
 
     elsewhere: ClassVar[Mapping[str, str]] = {"tank": "continuum-sph"}

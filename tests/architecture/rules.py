@@ -9,11 +9,11 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
-from tests.architecture.sources import ROOT, Function, Source, functions, is_kernel, sources
+from tests.architecture.sources import ROOT, Function, Source, exports, functions, is_kernel, sources
 
 MOST_FILES, MOST_LINES = 20, 400
 MOST_KERNEL_ARGUMENTS, MOST_KERNEL_LINES, MOST_ARGUMENTS = 12, 80, 8
@@ -44,14 +44,15 @@ def inside(name: str, *folders: str) -> bool:
 
 @dataclass
 class Tree:
-    """The modules of a checkout."""
+    """The modules of a checkout.  exports : of every public module, the modules that its names lie in."""
 
     modules: list[Source]
+    exports: dict[str, dict[str, str]] = field(default_factory=dict)
 
     @classmethod
     def at(cls, root: Path = ROOT) -> Tree:
         """Both packages below ``root``."""
-        return cls(sources(root))
+        return cls(sources(root), exports(root))
 
     @cached_property
     def named(self) -> dict[str, Source]:
@@ -60,12 +61,19 @@ class Tree:
 
     @cached_property
     def imports(self) -> dict[str, dict[str, ast.AST]]:
-        """For every module, the modules that it imports, with the statement that does."""
-        found: dict[str, dict[str, ast.AST]] = {}
+        """For every module, the modules that it imports, with the statement that does.
+
+        A name of a public module is an import of where it lies; a public module by itself is one of all its names.
+        """
+        found: dict[str, dict[str, ast.AST]] = {
+            package: {it: ast.Pass(lineno=1) for it in names.values() if it in self.named}
+            for package, names in self.exports.items()
+        }
         for source in self.modules:
             targets = found.setdefault(source.module, {})
             for node, name in source.imports():
-                module = name if name in self.named else name.rpartition(".")[0]
+                package, _, own = name.rpartition(".")
+                module = name if name in self.named else self.exports.get(package, {}).get(own, package)
                 if module in self.named and module != source.module:
                     targets.setdefault(module, node)
         return found

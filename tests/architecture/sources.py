@@ -59,6 +59,19 @@ def sources(root: Path = ROOT, folders: tuple[str, ...] = PACKAGES) -> list[Sour
     return [read(path, root) for folder in folders for path in sorted((root / folder).rglob("*.py"))]
 
 
+def exports(root: Path = ROOT, folders: tuple[str, ...] = PACKAGES) -> dict[str, dict[str, str]]:
+    """Every public module, with the names of its ``__init__.pyi`` and the module that each lies in."""
+    found: dict[str, dict[str, str]] = {}
+    for path in (it for folder in folders for it in sorted((root / folder).rglob("__init__.pyi"))):
+        package = ".".join(path.parent.relative_to(root).parts)
+        names = found.setdefault(package, {})
+        for node in ast.parse(path.read_text(encoding="utf-8"), str(path)).body:
+            if isinstance(node, ast.ImportFrom):
+                for alias in node.names:
+                    names[alias.name] = f"{package}.{node.module or alias.name}"
+    return found
+
+
 def written(module: str, text: str) -> Source:
     """A source that was never in a file: what the twins that must fail are made of."""
     return Source(module, module.replace(".", "/") + ".py", text)

@@ -46,7 +46,7 @@ def behind(text: str, package: str, known: Iterable[Validation]) -> list[str]:
     found = sorted(stands ^ {one.name for one in known})
     found += [f"{name}: twice" for name in sorted(stands) if text.count(f"\n| {name} ") > 1]
     for one in known if not found else ():
-        start, end = WRITER["written"](["", one.source])[3:-1], f"| {WRITER['number'](one.tolerance)} |"
+        start, end = WRITER["markdown_row"](["", one.source])[3:-1], f"| {WRITER['number'](one.tolerance)} |"
         if start not in lines[one.name] or not lines[one.name].endswith(end):
             found.append(f"{one.name}: source or tolerance")
     return found
@@ -89,7 +89,7 @@ def names(app: App, before: str) -> Iterator[str]:
 
 APPS = {"porescale": commands(), "continuum-sph": application(CONTINUUM)}
 KNOWN = {name for package, app in APPS.items() for name in names(app, package)}
-QUOTED = re.compile(r"(?<![\w.-])(?<!from )(porescale|continuum-sph) ([a-z]+)(?: ([a-z]+))?")
+QUOTED = re.compile(r"(?<![\w.-])(?<!from )(?<!import )(porescale|continuum-sph) ([a-z]+)(?: ([a-z]+))?")
 
 
 def unknown_commands(text: str) -> list[str]:

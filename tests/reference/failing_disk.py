@@ -15,7 +15,7 @@ from unittest.mock import patch
 import h5py
 
 from porescale import open_run
-from porescale.common.record import drive
+from porescale.common.record import schedule
 from porescale.common.record.checkpoint import read_checkpoint
 
 CALLS = ("replace", "open", "fsync", "mkdir", "unlink", "rmdir", "write", "ftruncate")
@@ -78,7 +78,7 @@ def failing(disk: Disk) -> Iterator[Disk]:
     opened = disk.wrap("file", io.open)
     patches += [patch.object(io, "open", opened), patch.object(builtins, "open", opened)]
     patches.append(patch.object(h5py.File, "__init__", h5_file))
-    patches.append(patch.object(drive, "BLOCK_SECONDS", 1e9))
+    patches.append(patch.object(schedule, "BLOCK_SECONDS", 1e9))
     for each in patches:
         each.start()
     try:

@@ -1,1 +1,5 @@
 """Validations of water alone: kernels, rest, channels, sound, vortices, drops, a dam that breaks."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -12,11 +12,11 @@ from porescale.output.frame_clouds import FRAMES, frame_cloud
 
 class GrainCloud(Part):
     """The discs.  hydraulic_radius : (n,) m, None without fluid;  motion : positions (n, 2) m and velocities (n, 2) m/s
-    of all discs as they are shown."""
+    of all discs as they are shown;  count : of discs that are no corners of frames, the first ones."""
 
     def __init__(self, system: System) -> None:
         assert system.grains
-        self.grains = system.grains
+        self.grains, self.count = system.grains, disc_count(system.grains)
         self.hydraulic_radius = system.coupled.hydraulic_radius if system.coupled else None
         self.motion, self.period = self._own, np.array(system.grains.box.period)
         if system.scene.cell:
@@ -29,8 +29,8 @@ class GrainCloud(Part):
 
     def show(self, snapshot: Snapshot) -> None:
         """The cloud "grains"; centres within a periodic box."""
-        own = slice(disc_count(self.grains))
-        d, flat = self.grains.discs, np.zeros((disc_count(self.grains), 3))
+        own = slice(self.count)
+        d, flat = self.grains.discs, np.zeros((self.count, 3))
         position, velocity = self.motion()
         flat[:, :2], position = velocity[own], position[own]
         data = {"radius": d.radius[own], "angle": d.angle[own], "velocity": flat, "spin": d.spin[own]}

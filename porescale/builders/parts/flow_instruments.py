@@ -28,7 +28,7 @@ class FlowInstruments(Part):
         self.probes = Sampler([(it.x, it.y) for it in scene.probe], *grid) if scene.probe else None
         self.probe_names = [it.name or f"probe {k}" for k, it in enumerate(scene.probe)]
         self.fluxes = [_Section(it, k, fluid.scales.spacing, grid) for k, it in enumerate(scene.flux)]
-        self.solid = bool(scene.grains or scene.disc or scene.rectangle)
+        self.coupled = system.coupled
         self.loads = Loading(scene.loads, system.coupled, system.held) if scene.loads and system.coupled else None
         self.first = ratio_column(scene.grains)
 
@@ -58,13 +58,15 @@ class FlowInstruments(Part):
         return row
 
     def _flux_row(self, fields: Fields) -> Row:
-        _, ux, uy, solid = fields
+        """Fluxes of the volume at the density of rest: of mass, in a steady flow the same through every section."""
+        excess, ux, uy, _ = fields
+        relative = 1 + excess / self.fluid.scales.density
+        flow, solid = (ux * relative, uy * relative), self.coupled.solid_flow() if self.coupled else None
         row = {}
         for section in self.fluxes:
-            name = section.name
-            row[f"{name} volume flux (m²/s)"] = section.integral(ux, uy)
-            if self.solid:
-                row[f"{name} flux of solid (m²/s)"] = section.integral(ux * solid, uy * solid)
+            row[f"{section.name} volume flux (m²/s)"] = section.integral(*flow)
+            if solid is not None:
+                row[f"{section.name} flux of solid (m²/s)"] = section.integral(*solid)
         return row
 
 

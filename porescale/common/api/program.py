@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING, Any, Protocol
 if TYPE_CHECKING:
     from porescale.common.api.report import Report
     from porescale.common.core.types import AnyArray
+    from porescale.common.pictures.look import Look
     from porescale.common.record.drive import Outcome
+    from porescale.common.record.open_run import Run
     from porescale.common.schema.sections import Section
 
 
@@ -52,7 +54,7 @@ class Program:
     name : of the command and on run cards;  module : its Python package;  version;  scene : gives the scene type;
     build : scene -> model, of scenes that report accepts;  drive : runs it;  report : scene -> the report of `check`,
     warnings and all (it may raise InputError);
-    show : makes pictures and a film in a run folder and gives their paths;
+    show : makes pictures and a film in a run folder and gives their paths;  look : how they show a run;
     table : columns of a table of a run folder by its name, "series" for series.csv;
     formerly : tables like those of a scene, with what was done before keys were there whose defaults do something else.
     """
@@ -65,5 +67,6 @@ class Program:
     drive: Drive
     report: Callable[[Any], Report]
     show: Callable[[Path], Iterable[Path]]
+    look: Callable[[Run], Look]
     table: Callable[[Path, str], Mapping[str, AnyArray]] = run_table
     formerly: Mapping[str, Any] = field(default_factory=dict)

@@ -68,7 +68,7 @@ def _completing(
 
     def completed(scene: Mapping[str, Any]) -> Mapping[str, Any]:
         """The scene of a card with the keys that came later."""
-        folder = Path(card["scene_file"]).parent if "scene_file" in card else None
+        folder = Path(card["scene_file"]).parent if card.get("scene_file") else None
         try:
             return scene_as_dict(validate(scene_type, scene_file.merge(formerly, scene), folder=folder))
         except InputError:
@@ -90,4 +90,22 @@ def card_of(program: Program, opened: Opened[Any]) -> dict[str, Any]:
         "quality": opened.quality,
         "settings": list(opened.settings),
         **on_card(opened.scene),
+    }
+
+
+def card_of_scene(program: Program, scene: Section) -> dict[str, Any]:
+    """`card_of` of a scene by itself: what it knows of where it comes from."""
+    from porescale.common.schema.own import on_card
+    from porescale.common.schema.sections import scene_as_dict
+
+    source = getattr(scene, "source", None)
+    file = source.file if source else None
+    return {
+        "package": program.name,
+        "name": (source.name if source else "") or program.module,
+        "scene": scene_as_dict(scene),
+        "scene_file": str(file.resolve()) if file else None,
+        "quality": source.quality if source else None,
+        "settings": list(source.settings) if source else [],
+        **on_card(scene),
     }

@@ -10,14 +10,15 @@ from typing import Any, get_args
 
 from cyclopts import App, CycloptsError, Parameter, Token, convert
 
-from porescale.common.cli import bench, check, new, run, show, study, sweep, verify
+from porescale.common.cli import bench, cases, check, completion, new, run, show, study, sweep, verify
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import InputError, PorescaleError
 
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as shells have it: 128 + SIGINT."""
 
-OF_THE_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EPERM, errno.EROFS, errno.EIO, errno.EFBIG)
+QUOTA = getattr(errno, "EDQUOT", errno.ENOSPC)
+OF_THE_MACHINE = (errno.ENOSPC, QUOTA, errno.EACCES, errno.EPERM, errno.EROFS, errno.EIO, errno.EFBIG)
 """What the system may answer to any call, even where it names no file."""
 
 
@@ -37,8 +38,9 @@ def application(package: Package) -> App:
         print_error=False,
         exit_on_error=False,
     )
-    for part in (run, check, show, new, sweep, verify, bench, study):
+    for part in (run, check, show, new, cases, sweep, verify, bench, study):
         app.command(part.command(package))
+    app.command(completion.command(app), name="--install-completion")
     return app
 
 

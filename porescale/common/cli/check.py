@@ -14,8 +14,9 @@ def command(package: Package) -> Callable[..., int]:
         """Say what a scene means (resolution, stability, cost) without running it; warn or refuse."""
         from porescale.common.schema.sections import open_scene
 
-        require_scene(scene)
-        opened = open_scene(scene, package.scene(), quality=quality, overrides=settings or ())
+        opened = open_scene(
+            require_scene(scene, package.name), package.scene(), quality=quality, overrides=settings or ()
+        )
         report = package.report(opened.scene)
         if json:
             print(json_text.dumps(report.as_dict(), indent=1))

@@ -1,5 +1,6 @@
-"""`new NAME`: a commented scene to start from."""
+"""`new NAME`: a commented scene to start from, or a copy of a case."""
 
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
@@ -10,26 +11,68 @@ from porescale.common.cli.folders import unusable
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
 
+From = Annotated[str | None, Parameter(name="--from", help="name of a case (see `cases`) to copy instead")]
+
 
 def command(package: Package) -> Callable[..., int]:
     """The `new` command of a package."""
 
-    def new(name: Annotated[str, Parameter(help="folder to make")], /) -> int:
-        """Write a commented scene to start from."""
+    def new(name: Annotated[str, Parameter(help="folder to make")], /, *, from_: From = None) -> int:
+        """Write a commented scene to start from, or copy a case with the files that it needs."""
         if not name:
             raise InputError(Fault("NAME", name, "is empty", repair="name a folder"))
         folder = Path(name)
-        file = folder / "scene.toml"
         try:
-            if file.exists() or (folder.exists() and not folder.is_dir()):
-                taken = file if file.exists() else folder
-                raise InputError(Fault(str(taken), None, "exists already", repair="choose another name or remove it"))
-            folder.mkdir(parents=True, exist_ok=True)
-            with file.open("x", encoding="utf-8") as stream:  # "x": never over a file that came in between
-                stream.write(package.template())
+            if from_ is not None:
+                _copy(from_, folder)
+                return 0
+            _write(folder, package.template())
         except OSError as error:
             raise unusable(folder, "NAME", error) from error
-        print(f"{file}\nnext: {package.name} check {folder}; {package.name} run {folder}")
+        print(f"{folder / 'scene.toml'}\nnext: {package.name} check {folder}; {package.name} run {folder}")
         return 0
 
     return new
+
+
+def _write(folder: Path, text: str) -> None:
+    """Write the scene into ``folder``; InputError where there is one."""
+    file = folder / "scene.toml"
+    if file.exists() or (folder.exists() and not folder.is_dir()):
+        _refuse(file if file.exists() else folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    with file.open("x", encoding="utf-8", newline="\n") as stream:  # "x": never over a file that came in between
+        stream.write(text)
+
+
+def _copy(name: str, folder: Path) -> None:
+    """Copy what the case needs to run to ``folder``, all of it or nothing; print what is there and what runs it."""
+    from porescale.common.api.shipped import LEFT_OUT, cases, nearest_case
+    from porescale.common.core.atomic import whole_folder
+
+    case = next((it for it in cases() if it.name == name), None)
+    if case is None:
+        near = nearest_case(name)
+        repair = f"did you mean {near!r}? `porescale cases` lists all" if near else "`porescale cases` lists all"
+        raise InputError(Fault("--from", name, "is no case", repair=repair))
+    if folder.exists():
+        _refuse(folder)
+    with whole_folder(folder) as beside:
+        try:
+            shutil.copytree(case.path, beside, ignore=shutil.ignore_patterns(*LEFT_OUT), copy_function=shutil.copyfile)
+        except shutil.Error as error:  # of every file that failed: source, target, why
+            raise OSError(error.args[0][0][2]) from error
+    for path in sorted(folder.rglob("*")):
+        if path.is_file():
+            print(path)
+    if case.kind == "script":
+        print(f"next: python {folder / f'{case.name}.py'}")
+    elif case.kind == "deck":
+        print(f"next: porescale demseg run {folder}")
+    else:
+        print(f"next: {case.package} check {folder}; {case.package} run {folder}")
+
+
+def _refuse(taken: Path) -> None:
+    """InputError: nothing that is there is written over."""
+    raise InputError(Fault(str(taken), None, "exists already", repair="choose another name or remove it"))

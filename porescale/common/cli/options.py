@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-Scene = Annotated[Path, Parameter(help="TOML file, or folder with scene.toml")]
+Scene = Annotated[Path, Parameter(help="TOML file, folder with scene.toml, or name of a case (see `cases`)")]
 Quality = Annotated[
     Literal["draft", "standard", "fine"] | None,
     Parameter(help="level of the scene's [quality.…] tables; its quality_default if not given"),
@@ -38,9 +38,15 @@ def use_threads(count: int | None) -> int:
     return set_threads(count)
 
 
-def require_scene(path: Path) -> None:
-    """InputError unless ``path`` leads to a TOML file: raised at once, before the sections of a scene and the compiler
-    that their packages register are imported."""
+def require_scene(given: Path, program: str) -> Path:
+    """The scene file that ``given`` leads to: a file, a folder, or the name of a case that ``program`` runs.
+
+    InputError unless it is TOML: raised at once, before the sections of a scene and the compiler that their packages
+    register are imported.
+    """
+    from porescale.common.api.shipped import scene_path
     from porescale.common.schema import scene_file
 
-    scene_file.read(scene_file.find(path))
+    file = scene_file.find(scene_path(given, program))
+    scene_file.read(file)
+    return file

@@ -10,15 +10,14 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from porescale.common.api.folders import check_folder
 from porescale.common.api.run_scene import card_of, check_scene_resume
 from porescale.common.cli import pick
-from porescale.common.cli.folders import named_folder, require_writable, unusable
+from porescale.common.cli.folders import named_folder
 from porescale.common.cli.options import Quality, Scene, Settings, Threads, require_scene, use_threads
 from porescale.common.cli.package import Package
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.core.machine import peak_bytes
-from porescale.common.record.read_card import NAME as CARD
-from porescale.common.record.read_card import read_card
 
 if TYPE_CHECKING:
     from porescale.common.record.drive import Outcome
@@ -46,7 +45,7 @@ def command(package: Package) -> Callable[..., int]:
         """Run a scene and write its run folder."""
         from porescale.common.schema.sections import open_scene
 
-        require_scene(scene)
+        scene = require_scene(scene, package.name)
         chosen = None
         if error is not None or budget is not None:
             _require_free_choice(quality, resume)
@@ -84,36 +83,6 @@ def _require_free_choice(quality: str | None, resume: bool) -> None:
         if given:
             repair = "leave one of them out; a run that was picked is resumed with the --quality and --set on its card"
             raise InputError(Fault(option, None, "contradicts --error and --budget", repair=repair))
-
-
-def check_folder(folder: Path, package: str, *, resume: bool, overwrite: bool) -> None:
-    """InputError unless a run may and can be written to ``folder``: nothing that is there is lost by accident."""
-    if resume and overwrite:
-        raise InputError(Fault("--resume", None, "contradicts --overwrite", repair="give one of them"))
-    try:
-        _require_fitting_content(folder, package, resume=resume, overwrite=overwrite)
-    except OSError as error:  # a name too long, a folder that may not be looked into
-        raise unusable(folder, "--out", error) from error
-    require_writable(folder, "--out")
-
-
-def _require_fitting_content(folder: Path, package: str, *, resume: bool, overwrite: bool) -> None:
-    """InputError when what is in ``folder`` does not go with the options."""
-    if folder.exists() and not folder.is_dir():
-        raise InputError(Fault("--out", str(folder), "is a file", repair="name a folder"))
-    if (folder / CARD).is_dir():
-        raise InputError(Fault("--out", str(folder), f"{CARD} there is a folder", repair="name another folder"))
-    if resume:
-        if not (folder / CARD).is_file():
-            repair = f"no {CARD} there; name the run's folder with --out, or leave --resume out"
-            raise InputError(Fault("--out", str(folder), "holds no run to resume", repair=repair))
-        read_card(folder, package)
-    elif folder.is_dir() and any(folder.iterdir()) and not overwrite:
-        problem = "already holds a run" if (folder / CARD).is_file() else "is not empty"
-        repair = "choose another --out, --resume the run, or --overwrite it"
-        if problem == "is not empty":
-            repair = "choose another --out, or --overwrite to write beside what is there"
-        raise InputError(Fault("--out", str(folder), problem, repair=repair))
 
 
 def summary(command: str, name: str, folder: Path, outcome: Outcome) -> str:

@@ -10,7 +10,7 @@ from cyclopts import App, Parameter
 
 from porescale.common.cli import trade
 from porescale.common.cli.folders import output_folder
-from porescale.common.cli.options import Json, List, Scene, Threads, print_json, say, use_threads
+from porescale.common.cli.options import Json, List, Scene, Threads, print_json, require_scene, say, use_threads
 from porescale.common.cli.package import Package
 from porescale.common.cli.trade import circumstances
 from porescale.common.core.errors import Fault, InputError
@@ -42,10 +42,9 @@ def _levels(package: Package) -> Callable[..., int]:
 
         Draft is the cheapest point whose error is allowed, standard the most accurate, fine the reference.
         """
-        from porescale.common.schema.scene_file import find
         from porescale.common.studies.levels import APART, apart, compared
 
-        rows = compared(package, find(scene))
+        rows = compared(package, require_scene(scene, package.name))
         print("\n".join(row.line() for row in rows))
         near = apart(rows) < APART
         print(f"fine costs {apart(rows):.3g} times a draft" + (f", less than {APART:g} times" if near else ""))

@@ -52,9 +52,9 @@ def command(package: Package) -> Callable[..., int]:
         from porescale.common.studies import sweep_files
         from porescale.common.studies.runner import Campaign
 
-        require_scene(scene)
+        start = require_scene(scene, package.name)
         points = chosen_points(table, vary or ())
-        file, name = check_points(package, scene, points, quality, settings or ())
+        file, name = check_points(package, start, points, quality, settings or ())
         folder = output_folder(out, f"{name}_sweep")
         campaign = Campaign(module_of(package), file, folder, tuple(settings or ()), quality, threads or 1, again)
         jobs = enlist(campaign, jobs, scheduler)

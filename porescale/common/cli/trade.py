@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from porescale.common.cli.folders import output_folder
-from porescale.common.cli.options import Scene, Settings, Threads, say, use_threads
+from porescale.common.cli.options import Scene, Settings, Threads, require_scene, say, use_threads
 from porescale.common.cli.package import Package
 from porescale.common.cli.sweep import (
     Again,
@@ -44,13 +44,13 @@ def command(package: Package) -> Callable[..., int]:
         front.json, trade.csv, .md and .png; put front.json beside the scene, and `run --error 5%` or `--budget 3min`
         pick from it.  A study that was stopped goes on when called again.
         """
-        from porescale.common.schema.scene_file import find
         from porescale.common.studies import trade_files
         from porescale.common.studies.runner import Campaign
         from porescale.common.studies.trade import Errors, front
         from porescale.common.studies.trade_plan import read_plan
 
-        planned = read_plan(find(scene), plan)
+        start = require_scene(scene, package.name)
+        planned = read_plan(start, plan)
         features = package.features() if package.features else {}
         unknown = [quantity.feature for quantity in planned.quantity if quantity.feature not in ("", *features)]
         if unknown:
@@ -61,7 +61,7 @@ def command(package: Package) -> Callable[..., int]:
         truth = planned.repeats(reference) if reference else []
         groups = [planned.repeats(point) for _, _, point in variants]
         points = [*truth, *(point for group in groups for point in group)]
-        file, name = check_points(package, scene, points, None, settings or ())
+        file, name = check_points(package, start, points, None, settings or ())
         folder = output_folder(out, f"{name}_trade")
         campaign = Campaign(module_of(package), file, folder / "runs", tuple(settings or ()), None, threads or 1, again)
         slots = enlist(campaign, jobs, scheduler)

@@ -81,3 +81,7 @@ class Unstable(PorescaleError):
         super().__init__(
             f"unstable at step {step} (t = {time:.6g} s): {quantity} = {value:.4g} {unit} at {where}; {cause}"
         )
+
+
+class PorescaleWarning(UserWarning):
+    """What is doubtful and goes on all the same, in one line: `warnings` silences or catches it; commands print it."""

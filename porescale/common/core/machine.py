@@ -1,8 +1,6 @@
 """The machine that numbers are measured on."""
 
-import os
 import platform
-import resource
 import sys
 from pathlib import Path
 from typing import Any
@@ -10,18 +8,29 @@ from typing import Any
 
 def machine() -> dict[str, Any]:
     """Processor, cores this process may use, memory (bytes), operating system."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    memory = None
-    if hasattr(os, "sysconf") and "SC_PHYS_PAGES" in os.sysconf_names:
-        memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    return {"processor": _processor(), "cores": cores, "memory": memory, "system": platform.platform()}
+    return {"processor": _processor(), "cores": _cores(), "memory": memory_bytes(), "system": platform.platform()}
+
+
+def memory_bytes() -> int:
+    """Memory of this machine."""
+    from psutil import virtual_memory
+
+    return int(virtual_memory().total)
+
+
+def _cores() -> int | None:
+    """Cores that this process may use, where the system limits them to some; else those of the machine."""
+    import psutil
+
+    process = psutil.Process()
+    return len(process.cpu_affinity()) if hasattr(process, "cpu_affinity") else psutil.cpu_count()
 
 
 def _processor() -> str:
     """The processor's own name where the system gives it."""
     info = Path("/proc/cpuinfo")
     if info.exists():
-        for line in info.read_text(errors="replace").splitlines():
+        for line in info.read_text(encoding="utf-8", errors="replace").splitlines():
             if line.startswith("model name"):
                 return line.partition(":")[2].strip()
     return platform.processor() or platform.machine()
@@ -29,4 +38,11 @@ def _processor() -> str:
 
 def peak_bytes() -> int:
     """Memory that this process had at most, so far."""
+    try:
+        import resource
+    except ImportError:  # not a POSIX system
+        from psutil import Process
+
+        now = Process().memory_info()
+        return int(getattr(now, "peak_wset", now.rss))
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)

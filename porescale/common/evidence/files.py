@@ -58,9 +58,13 @@ def csv_text(header: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
 
 def markdown_table(header: Sequence[str], rows: Iterable[Iterable[object]]) -> list[str]:
     """The lines of a Markdown table."""
-    lines = [" | ".join(header), "|".join("---" for _ in header)]
-    body = [" | ".join(map(str, row)) for row in rows]
-    return [f"| {lines[0]} |", f"|{lines[1]}|", *(f"| {line} |" for line in body)]
+    return [markdown_row(header), f"|{'|'.join('---' for _ in header)}|", *map(markdown_row, rows)]
+
+
+def markdown_row(cells: Iterable[object]) -> str:
+    """A line of a Markdown table; what would end a cell or the line in it is written so that it does not."""
+    safe = [str(cell).replace("|", "\\|").replace("\n", " ") for cell in cells]
+    return f"| {' | '.join(safe)} |"
 
 
 def new_figure(width: float, height: float) -> Figure:

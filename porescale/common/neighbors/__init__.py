@@ -3,7 +3,6 @@
 Grains and smoothed particles use the same search; it takes positions and a reach for each, nothing else.
 """
 
-from porescale.common.neighbors.pair_list import PairList
-from porescale.common.neighbors.placement import Placement, place, square_lattice, triangular_lattice
+import lazy_loader
 
-__all__ = ["PairList", "Placement", "place", "square_lattice", "triangular_lattice"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

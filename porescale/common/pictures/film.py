@@ -10,8 +10,8 @@ import av
 from porescale.common.core.atomic import whole
 from porescale.common.core.types import AnyArray
 from porescale.common.pictures.look import Look
-from porescale.common.pictures.picture import painter_of
-from porescale.common.record.open_run import open_run
+from porescale.common.pictures.picture import Painter, painter_of
+from porescale.common.record.open_run import Run, open_run
 
 WATCHABLE = 6.0
 """A film is played in about this many seconds, at 5 to 30 frames a second."""
@@ -28,11 +28,13 @@ def film(folder: Path | str, look: Look | None = None, *, rate: int | None = Non
     rate : frames per second (None: so that it lasts about six seconds);  changes : fields of :class:`Look`.
     """
     run = open_run(folder)
-    painter = painter_of(run, replace(look or Look(), **changes))
+    return film_of(run, painter_of(run, replace(look or Look(), **changes)), run.folder / "film", rate)
+
+
+def film_of(run: Run, painter: Painter, stem: Path, rate: int | None = None) -> Path:
+    """Paint every snapshot of a run into <stem>.mp4 (or .webm); returns its path.  rate : as in `film`."""
     rate = rate or min(30, max(5, round(len(run) / WATCHABLE)))
-    return write_film(
-        run.folder / "film", (painter.paint(snapshot) for snapshot in run.snapshots(painter.survey.look.cells)), rate
-    )
+    return write_film(stem, (painter.paint(snapshot) for snapshot in run.snapshots(painter.survey.look.cells)), rate)
 
 
 def write_film(stem: Path, images: Iterable[AnyArray], rate: int) -> Path:

@@ -16,13 +16,9 @@ from porescale.common.record.model import Model, variable_step
 from porescale.common.record.progress import Watch
 from porescale.common.record.record import CHECKPOINT, Gone, Record, Today, check_changes
 from porescale.common.record.resume import how_far, require_same_run
-from porescale.common.record.schedule import SLACK, Schedule, positive
+from porescale.common.record.schedule import CHECK_EVERY, SLACK, Schedule, block, positive
 from porescale.common.record.stop import Interrupted, StopRequest, polite_stop
 
-CHECK_EVERY = 100
-"""Steps after which a model is checked at the latest for a state that is not finite or out of bounds."""
-BLOCK_SECONDS = 0.2
-"""Wall-clock length of a block: how long Ctrl-C and the progress bar may have to wait."""
 SAVE_SHARE = 0.02
 """A checkpoint is also written at a snapshot when it costs at most this share of the time since the last."""
 
@@ -140,15 +136,6 @@ class _Run:
         assert self.step_seconds is not None
         return max(1, round(self.duration / self.step_seconds))
 
-    def block(self, rate: float) -> int:
-        """Steps until something is due, at most a block's worth at ``rate`` steps per wall-clock second."""
-        if self.step_seconds is None:
-            return 1
-        step = self.model.step
-        events = [schedule.following(step) for schedule in self.schedules.values()]
-        due = min(self.last_step, (step // CHECK_EVERY + 1) * CHECK_EVERY, *events)
-        return max(1, min(due - step, int(rate * BLOCK_SECONDS)))
-
 
 def _watched(run: _Run, record: Record, watch: Watch, after: Callable[[Path], object] | None) -> Outcome:
     """The loop, and how it may end."""
@@ -190,7 +177,8 @@ def _loop(run: _Run, record: Record, stop: StopRequest, watch: Watch) -> float:
         record.save(model, run.schedules)
     while not run.ended(model.step, model.time):
         start, busy, before = clock.perf_counter(), clock.process_time(), model.step
-        model.advance(run.block(rate))
+        last = None if run.step_seconds is None else run.last_step
+        model.advance(block(model, last, run.schedules.values(), rate))
         assert model.step > before, "advance() must count its steps"
         assert run.step_seconds in (None, model.step_seconds), "a varying step needs variable_step = True"
         wall = clock.perf_counter() - start

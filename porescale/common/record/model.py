@@ -4,14 +4,17 @@ A model is anything that steps through time, can check whether its state is vali
 state.  Grids and clouds are all that the record, the pictures and ParaView need.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from textwrap import shorten
 from typing import Any, Protocol, runtime_checkable
 
+from porescale.common.core.html import html_table
 from porescale.common.core.types import AnyArray
+from porescale.common.record.columns import WIDE, missing
 
 
-@dataclass
+@dataclass(repr=False)
 class Grid:
     """Values in the cells of a regular grid.
 
@@ -38,8 +41,24 @@ class Grid:
         left, bottom = self.origin
         return left, left + nx * self.spacing[0], bottom, bottom + ny * self.spacing[1]
 
+    def __getitem__(self, name: str) -> AnyArray:
+        array: AnyArray = _named(self.cells, name, "this grid")
+        return array
 
-@dataclass
+    def __repr__(self) -> str:
+        left, right, bottom, top = self.extent
+        ny, nx = self.shape
+        where = f"x {left:.6g} to {right:.6g} m, y {bottom:.6g} to {top:.6g} m"
+        return f"Grid of {ny} x {nx} cells (rows x columns), {where}\n{_listed(self.cells, self.units)}"
+
+    def _repr_html_(self) -> str:
+        return _table(repr(self).partition("\n")[0], self.cells, self.units)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self.cells)
+
+
+@dataclass(repr=False)
 class Cloud:
     """Values at points: grains, particles, tracers.
 
@@ -57,13 +76,29 @@ class Cloud:
     lines: AnyArray | None = None
     polygons: tuple[AnyArray, AnyArray] | None = None
 
+    def __getitem__(self, name: str) -> AnyArray:
+        array: AnyArray = _named({"position": self.position, **self.data}, name, "this cloud")
+        return array
 
-@dataclass
+    def __repr__(self) -> str:
+        shown = {"position": self.position, **self.data}
+        return f"Cloud of {len(self.position)} points\n{_listed(shown, {'position': 'm', **self.units})}"
+
+    def _repr_html_(self) -> str:
+        shown = {"position": self.position, **self.data}
+        return _table(repr(self).partition("\n")[0], shown, {"position": "m", **self.units})
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return ["position", *self.data]
+
+
+@dataclass(repr=False)
 class Snapshot:
     """A model at one instant: ``time`` (s), ``step`` (steps done) and its grids and clouds by name.
 
     Each name becomes a file <name>.vtkhdf; names, array names, types and grid geometry stay the same over a
-    run.
+    run.  ``snapshot["grains"]`` is the grid or cloud of that name, ``snapshot["velocity"]`` the array of the first
+    grid, or else cloud, that has it.
     """
 
     time: float
@@ -77,6 +112,62 @@ class Snapshot:
             yield "grids", name, grid
         for name, cloud in self.clouds.items():
             yield "clouds", name, cloud
+
+    def __getitem__(self, name: str) -> Any:
+        found: dict[str, Any] = {key: block for _, key, block in self.blocks()}
+        for _, _, block in self.blocks():
+            found = (block.cells if isinstance(block, Grid) else block.data) | found
+        return _named(found, name, "this snapshot")
+
+    def __repr__(self) -> str:
+        lines = [f"Snapshot at t = {self.time:.6g} s, step {self.step}"]
+        grids = {name: (" x ".join(map(str, it.shape)), it.cells) for name, it in self.grids.items()}
+        clouds = {name: (f"{len(it.position)} points", it.data) for name, it in self.clouds.items()}
+        for kind, found in (("grids", grids), ("clouds", clouds)):
+            sizes = [f"{name} {size}" for name, (size, _) in found.items()]
+            whole = [f"{name} {size} ({', '.join(arrays)})" for name, (size, arrays) in found.items()]
+            text = f"{kind}: {'; '.join(whole)}"
+            text = text if len(text) <= WIDE else f"{kind}: {'; '.join(sizes)}"
+            lines += [shorten(text, WIDE, placeholder=" …")] if found else []
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        return repr(self).partition("\n")[0] + "".join(
+            _table(f"{name}: {repr(it).partition(chr(10))[0]}", it.cells if isinstance(it, Grid) else it.data, it.units)
+            for _, name, it in self.blocks()
+        )
+
+    def _ipython_key_completions_(self) -> list[str]:
+        arrays = (it.cells if isinstance(it, Grid) else it.data for _, _, it in self.blocks())
+        return list(dict.fromkeys([*self.grids, *self.clouds, *(name for each in arrays for name in each)]))
+
+
+def _named(found: Mapping[str, Any], name: str, where: str) -> Any:
+    """The entry of that name; MissingColumn with the nearest where there is none."""
+    if name in found:
+        return found[name]
+    raise missing("array", name, found, where)
+
+
+def _listed(arrays: Mapping[str, AnyArray], units: Mapping[str, str]) -> str:
+    """Names with units in one line."""
+    return shorten(", ".join(f"{name} ({_unit(units, name)})" for name in arrays), WIDE, placeholder=" …")
+
+
+def _unit(units: Mapping[str, str], name: str) -> str:
+    """The unit of an array, "" where it has none; files have "1" there."""
+    unit = units.get(name, "")
+    return "" if unit == "1" else unit
+
+
+def _table(caption: str, arrays: Mapping[str, AnyArray], units: Mapping[str, str]) -> str:
+    """Arrays with unit, shape, type, least and largest value, as HTML."""
+    rows = [
+        [name, _unit(units, name), " x ".join(map(str, it.shape)), it.dtype, *((f"{it.min():.4g}", f"{it.max():.4g}") if
+         it.size else ("", ""))]
+        for name, it in arrays.items()
+    ]  # fmt: skip
+    return html_table(caption, ["array", "unit", "shape", "type", "least", "largest"], rows)
 
 
 @runtime_checkable

@@ -11,6 +11,7 @@ from porescale.common.core.atomic import owned
 from porescale.common.core.types import AnyArray
 from porescale.common.record import card as cards
 from porescale.common.record import snapshots
+from porescale.common.record.columns import Columns
 from porescale.common.record.model import Snapshot
 from porescale.common.record.series import NAME as SERIES
 from porescale.common.record.series import read_series
@@ -30,13 +31,13 @@ class Run:
         return str(self.card.get("name") or self.folder.resolve().name)
 
     @cached_property
-    def series(self) -> dict[str, AnyArray]:
+    def series(self) -> Columns:
         """Columns of series.csv by name ("time (s)", ...), each (rows,)."""
-        return read_series(self.folder / SERIES)
+        return Columns(read_series(self.folder / SERIES), "series")
 
-    def table(self, name: str) -> dict[str, AnyArray]:
-        """Columns of <name>.csv, a further time series, by name, each (rows,); {} when there is none."""
-        return read_series(self.folder / f"{name}.csv")
+    def table(self, name: str) -> Columns:
+        """Columns of <name>.csv, a further time series, by name, each (rows,); none when there is no such file."""
+        return Columns(read_series(self.folder / f"{name}.csv"), name)
 
     @property
     def times(self) -> AnyArray:
@@ -71,6 +72,10 @@ class Run:
             return snapshots.load(entry, step, cells)
         except snapshots.DAMAGE as error:
             raise snapshots.damaged(self.folder, error) from error
+
+    def frames(self, name: str) -> list[Frame]:
+        """Where each snapshot of the grid or cloud ``name`` lies in the files."""
+        return [entry[name] for _, entry in self._frames]
 
     def nearest(self, time: float) -> Snapshot:
         """The snapshot nearest to ``time``, s."""

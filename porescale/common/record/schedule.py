@@ -1,13 +1,20 @@
 """When to record: events at multiples of an interval, without touching the model's steps."""
 
 import math
+from collections.abc import Iterable
 
 from porescale.common.core.errors import Fault, InputError
+from porescale.common.record.model import Model, variable_step
 
 NEVER = 1 << 62
 SLACK = 1e-9
 """A step that ends this fraction of an interval before an event still counts as on time: summing a million
 steps leaves a relative round-off near 1e-10."""
+
+CHECK_EVERY = 100
+"""Steps after which a model is checked at the latest for a state that is not finite or out of bounds."""
+BLOCK_SECONDS = 0.2
+"""Wall-clock length of a block: how long Ctrl-C and the progress bar may have to wait."""
 
 
 class Schedule:
@@ -56,6 +63,19 @@ class Schedule:
             self.done = int(state["done"])
         elif math.isfinite(self.interval):
             self.done = math.floor(time / self.interval + SLACK)
+
+
+def block(model: Model, last: int | None, schedules: Iterable[Schedule], rate: float) -> int:
+    """Steps until something is due or checked, at most a block's worth at ``rate`` steps per wall-clock second.
+
+    last : step at which the run ends, None where only its time decides.
+    """
+    if variable_step(model):
+        return 1
+    step = model.step
+    events = [schedule.following(step) for schedule in schedules]
+    due = min(*events, (step // CHECK_EVERY + 1) * CHECK_EVERY, NEVER if last is None else last)
+    return max(1, min(due - step, int(rate * BLOCK_SECONDS)))
 
 
 MOST, MOST_BYTES = 10_000_000, 2**44

@@ -8,6 +8,9 @@ from types import FrameType
 
 from porescale.common.core.errors import PorescaleError
 
+POLITE = ("SIGINT", "SIGTERM", "SIGBREAK")
+"""Names of the signals that request a stop, of which a system has two; SIGBREAK is Windows' for processes."""
+
 
 class Interrupted(PorescaleError):
     """A stop of the run was requested; its state is saved.  Exit code 130."""
@@ -25,9 +28,14 @@ class StopRequest:
         return self.requested
 
 
+def polite_signals() -> list[signal.Signals]:
+    """The signals of this system that request a stop."""
+    return [number for number in signal.Signals if number.name in POLITE]
+
+
 @contextmanager
 def polite_stop() -> Iterator[StopRequest]:
-    """Turn the first SIGINT or SIGTERM into a request; a second one acts as it did before.
+    """Turn the first SIGINT, SIGTERM or (Windows) SIGBREAK into a request; a second one acts as it did before.
 
     Outside the main thread, where signals cannot be caught, the request never comes.
     """
@@ -35,7 +43,7 @@ def polite_stop() -> Iterator[StopRequest]:
     if threading.current_thread() is not threading.main_thread():
         yield request
         return
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = {number: signal.getsignal(number) for number in polite_signals()}
 
     def restore() -> None:
         """Signals mean again what they did before."""

@@ -272,6 +272,15 @@ def read_frame(path: Path, index: int, cells: Collection[str] | None = None) -> 
         return kind, name, with_cells(Cloud(file["VTKHDF/Points"][rows][:, :2], data, units), read_cells(file, index))
 
 
+def read_array(frame: Frame, name: str) -> AnyArray:
+    """One array of a frame: of a grid (ny, nx[, 3]), of a cloud (n[, 3]), "position" (n, 3) m; or KeyError."""
+    with h5py.File(frame.path, "r") as file:
+        root = file["VTKHDF"]
+        if _kind(file) == "grids":
+            return np.asarray(root["CellData"][name][frame.index])
+        return np.asarray((root["Points"] if name == "position" else root["PointData"][name])[_rows(file, frame.index)])
+
+
 def _cells(frame: Frame) -> Cells:
     """The cells of one frame of a cloud's file."""
     with h5py.File(frame.path, "r") as file:

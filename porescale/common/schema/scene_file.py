@@ -1,5 +1,6 @@
 """Scene files: finding and reading them, laying one table over another, and `--set` entries."""
 
+import json
 import re
 import tomllib
 from collections.abc import Mapping
@@ -8,6 +9,7 @@ from typing import Any
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema.messages import Key, dotted, parse_key
+from porescale.common.schema.written import plain
 
 SCENE_FILE = "scene.toml"
 
@@ -105,10 +107,45 @@ def holds(table: Any, key: Key) -> bool:
     return True
 
 
+NAME = r"[\w-]+(\[\d+\])*(\.[\w-]+(\[\d+\])*)*"
+"""Of a key: ``fluid.spacing``, ``grains[0].radius`` or ``grains.0.radius``."""
+
+
+def parse_name(name: str) -> Key:
+    """``section.key`` as a key; InputError if it is none."""
+    if not isinstance(name, str) or not re.fullmatch(NAME, name):
+        raise InputError(Fault(repr(name), None, "is not section.key", repair='write it as "fluid.spacing"'))
+    key = parse_key(name)
+    if len(key) > DEEPEST:
+        problem = "has tables or lists within each other without end"
+        raise InputError(Fault(f"{name[:20]}…", None, problem, "", f"<= {DEEPEST} levels"))
+    return key
+
+
+def setting_text(name: str, value: Any) -> str:
+    """``section.key=value``, which `parse_setting` reads back to the bit; InputError where ``name`` is no key."""
+    parse_name(name)
+    return f"{name}={_value_text(plain(value))}"
+
+
+def _value_text(value: Any) -> str:
+    """A plain value as TOML in one line; "none" for None, which TOML has not."""
+    if isinstance(value, Mapping):
+        entries = [f"{_value_text(name)} = {_value_text(below)}" for name, below in value.items()]
+        return f"{{ {', '.join(entries)} }}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_value_text, value))}]"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):  # TOML's texts are those of JSON but for the sign of deletion
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return "none" if value is None else repr(value)
+
+
 def parse_setting(text: str) -> tuple[Key, Any]:
     """``section.key=value`` as key and value (a TOML value, else the text itself); else InputError."""
     name, equals, value = text.partition("=")
-    if not equals or not re.fullmatch(r"[\w-]+(\[\d+\])*(\.[\w-]+(\[\d+\])*)*", name.strip()):
+    if not equals or not re.fullmatch(NAME, name.strip()):
         repair = "write it as --set fluid.spacing=0.001"
         raise InputError(Fault(repr(text), None, "is not section.key=value", file="--set", repair=repair))
     key = parse_key(name.strip())
@@ -127,6 +164,21 @@ def parse_setting(text: str) -> tuple[Key, Any]:
 def assign(table: Mapping[str, Any], key: Key, value: Any) -> dict[str, Any]:
     """A copy of ``table`` with ``value`` at ``key``; missing tables are made.  InputError on bad indices."""
     return dict(_assigned(table, key, value, ()))
+
+
+def without(table: Mapping[str, Any], key: Key) -> dict[str, Any]:
+    """A copy of ``table`` without what is at ``key``, if there is something; InputError for an entry of a list."""
+    if not holds(table, key):
+        return dict(table)
+    if isinstance(key[-1], int):
+        problem, repair = "is an entry of a list, which cannot be taken out", "give the list without it"
+        raise InputError(Fault(dotted(key), None, problem, repair=repair))
+    if len(key) == 1:
+        return {name: value for name, value in table.items() if name != key[0]}
+    above: Any = table
+    for part in key[:-1]:
+        above = above[part]
+    return assign(table, key[:-1], {name: value for name, value in above.items() if name != key[-1]})
 
 
 def _assigned(below: Any, key: Key, value: Any, above: Key) -> Any:

@@ -14,6 +14,7 @@ from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema import scene_file
 from porescale.common.schema.messages import Key, dotted, nearest, translate
 from porescale.common.schema.quantity import Quantity, Refused, quantity
+from porescale.common.schema.written import Source, plain
 
 __all__ = [
     "LEVELS",
@@ -22,9 +23,11 @@ __all__ = [
     "Refused",
     "Section",
     "load",
+    "of_a_setting",
     "open_scene",
     "quantity",
     "scene_as_dict",
+    "try_scene",
     "validate",
 ]
 
@@ -46,6 +49,28 @@ class Section(BaseModel):
     that need physics, are registered here by the builders: sections import neither."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=True)
+
+    def __init__(self, /, **keys: Any) -> None:
+        """A section of its keys, nested ones as tables or sections; InputError with every fault, as of a file."""
+        keys = plain(keys, sections=True)
+        try:
+            super().__init__(**keys)
+        except ValidationError as error:
+            raise InputError([fault for _, fault in translate(error, type(self), keys)]) from None
+
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+    """Pydantic calls an ``__init__`` without this mark for every nested section as well: each would raise for itself,
+    without the faults of the others and without the folder of the file."""
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """InputError: sections do not change."""
+        if name.startswith("_"):
+            return super().__setattr__(name, value)
+        raise _unchangeable(self, name, value)
+
+    def __delattr__(self, name: str) -> None:
+        """InputError: sections do not change."""
+        raise _unchangeable(self, name, None)
 
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:
@@ -74,6 +99,9 @@ class Section(BaseModel):
         """What is wrong with the section by itself, whose fields are valid; ``checks`` follow where nothing is."""
         return []
 
+    def _remember(self, table: Mapping[str, Any], source: Source) -> None:
+        """Keep what the section was made from; only whole scenes do."""
+
     @classmethod
     def _spell_booleans(cls, table: Any) -> Any:
         """``table`` with true and false as words where a number is meant: pydantic takes them for 1 and 0."""
@@ -81,6 +109,17 @@ class Section(BaseModel):
             return table
         numbers = {name for name, field in cls.model_fields.items() if _is_plain_number(field)}
         return {k: str(v).lower() if isinstance(v, bool) and k in numbers else v for k, v in table.items()}
+
+
+def _unchangeable(section: Section, name: str, value: Any) -> InputError:
+    """The error for a value assigned to a section."""
+    known = {field.alias or key for key, field in type(section).model_fields.items()}
+    if name not in known:
+        return InputError(Fault(name, None, f"unknown key of {type(section).__name__}", repair=nearest(name, known)))
+    place = name if hasattr(section, "with_") else f"SECTION.{name}"
+    repair = f'make a changed copy, scene.with_({{"{place}": VALUE}})'
+    shown = value if isinstance(value, str | int | float) else None
+    return InputError(Fault(name, shown, "cannot be assigned, a scene never changes", repair=repair))
 
 
 def _is_plain_number(field: FieldInfo) -> bool:
@@ -114,10 +153,21 @@ def validate(scene_type: type[S], table: Mapping[str, Any], *, file: str = "", f
 
     Validators find ``folder`` as ``info.context["folder"]``: paths in a scene are relative to its file.
     """
-    scene, faults = _try(scene_type, table, folder)
+    scene, faults = try_scene(scene_type, table, folder)
     if scene is None:
         raise InputError([replace(fault, file=file) for _, fault in faults])
+    scene._remember(table, Source(folder=folder))
     return scene
+
+
+def try_scene(
+    scene_type: type[S], table: Mapping[str, Any], folder: Path | None
+) -> tuple[S | None, list[tuple[Key, Fault]]]:
+    """A scene, or None and what is wrong with each key; arguments as of `validate`."""
+    try:
+        return scene_type.model_validate(table, context={"folder": folder}), []
+    except ValidationError as error:
+        return None, translate(error, scene_type, table)
 
 
 def load(path: str | Path, scene_type: type[S], *, quality: str | None = None, overrides: Sequence[str] = ()) -> S:
@@ -140,21 +190,22 @@ def open_scene(
     base = {name: value for name, value in table.items() if name not in ("quality", "quality_default")}
     written = scene_file.merge(base, levels[level]) if level else base
     chosen, settings, wrong_settings = _with_settings(written, overrides)
-    scene, wrong = _try(scene_type, chosen, file.parent)
+    scene, wrong = try_scene(scene_type, chosen, file.parent)
     faults += wrong_settings
     for key, fault in wrong:
-        made = not scene_file.holds(written, key)  # by a setting within a section that the file does not have
-        if any(key[: len(it)] == it or (made and it[: len(key)] == key) for it in settings):
+        if of_a_setting(key, settings, written):
             faults.append(replace(fault, file="--set"))
         else:
             faults.append(_in_level(key, fault, level, levels[level]) if level else fault)
     for other in (name for name in levels if name != level):
-        _, wrong = _try(scene_type, scene_file.merge(base, levels[other]), file.parent)
+        _, wrong = try_scene(scene_type, scene_file.merge(base, levels[other]), file.parent)
         own = [(key, fault) for key, fault in wrong if scene_file.holds(levels[other], key)]
         faults += [_in_level(key, fault, other, levels[other]) for key, fault in own]
     if faults or scene is None:
         raise InputError(faults).in_file(str(file))
-    return Opened(scene, file, scene_file.name_of(file), level, tuple(levels), tuple(overrides))
+    opened = Opened(scene, file, scene_file.name_of(file), level, tuple(levels), tuple(overrides))
+    scene._remember(chosen, Source(file, file.parent.absolute(), opened.name, level, opened.levels, opened.settings))
+    return opened
 
 
 def _require_own_program(scene_type: type[Section], table: Mapping[str, Any], file: Path) -> None:
@@ -183,6 +234,12 @@ def _with_settings(
     return table, keys, faults
 
 
+def of_a_setting(key: Key, settings: Sequence[Key], written: Mapping[str, Any]) -> bool:
+    """Whether a fault at ``key`` is that of a setting: of the key, or within a section that ``written`` has not."""
+    made = not scene_file.holds(written, key)
+    return any(key[: len(it)] == it or (made and it[: len(key)] == key) for it in settings)
+
+
 def _in_level(key: Key, fault: Fault, level: str, entries: Mapping[str, Any]) -> Fault:
     """``fault`` with the key that a person must correct: the quality level's, if that is where it stands."""
     return replace(fault, key=dotted(("quality", level, *key))) if scene_file.holds(entries, key) else fault
@@ -191,16 +248,6 @@ def _in_level(key: Key, fault: Fault, level: str, entries: Mapping[str, Any]) ->
 def scene_as_dict(scene: Section) -> dict[str, Any]:
     """The full scene with its defaults, in SI, as JSON-able tables; `validate` makes the same scene of it."""
     return scene.model_dump(mode="json", by_alias=True)
-
-
-def _try(
-    scene_type: type[S], table: Mapping[str, Any], folder: Path | None
-) -> tuple[S | None, list[tuple[Key, Fault]]]:
-    """A scene, or None and what is wrong."""
-    try:
-        return scene_type.model_validate(table, context={"folder": folder}), []
-    except ValidationError as error:
-        return None, translate(error, scene_type, table)
 
 
 def _levels(table: Mapping[str, Any], chosen: str | None) -> tuple[dict[str, dict[str, Any]], str | None, list[Fault]]:

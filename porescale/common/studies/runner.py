@@ -25,6 +25,9 @@ FINISHED, UNSTABLE, REFUSED = "finished", "unstable", "refused"
 CODES = {0: FINISHED, 2: REFUSED, 3: UNSTABLE, 130: "interrupted"}
 """How a point's process ended, by exit code; anything else failed."""
 
+OWN_GROUP = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)
+STOP: int = getattr(signal, "CTRL_BREAK_EVENT", signal.SIGINT)
+"""What asks a process to save its state and end; Windows sends such things to groups of processes alone."""
 Run = Callable[[list[str]], tuple[int, str]]
 """Runs the words of a command line; gives exit code and what it said on stderr."""
 
@@ -147,7 +150,7 @@ class Campaign:
             process = subprocess.Popen(
                 [sys.executable, "-m", self.module, *words],
                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True,
-                errors="replace",
+                errors="replace", creationflags=OWN_GROUP,
             )  # fmt: skip
             self._alive.add(process)
         try:
@@ -162,7 +165,7 @@ class Campaign:
         with self._lock:
             self._stopped = True
             for process in self._alive:
-                process.send_signal(signal.SIGINT)
+                process.send_signal(STOP)
 
 
 @contextmanager

@@ -2,3 +2,7 @@
 
 Compression is positive, as in soil mechanics.  Nothing here changes the state.
 """
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

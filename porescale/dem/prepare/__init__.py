@@ -1,1 +1,5 @@
 """Packings: settled, compressed, merged; rock made of a packing."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,8 @@
+# The public names of continuum_sph.validation.soil: its topics.
+from . import bodies as bodies
+from . import element as element
+from . import energy as energy
+from . import setups as setups
+from . import slopes as slopes
+
+__all__ = ["bodies", "element", "energy", "setups", "slopes"]

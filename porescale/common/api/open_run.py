@@ -1,0 +1,224 @@
+"""A run in Python: its snapshots by number, its tables, and both as pandas, xarray, VTK, plots, pictures and films."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Collection, Iterator, Sequence
+from functools import cached_property
+from pathlib import Path
+from textwrap import shorten
+from typing import TYPE_CHECKING, Any, overload
+
+from porescale.common.core.html import html_table
+from porescale.common.record import open_run as record
+from porescale.common.record.columns import TIME, WIDE, Columns, missing
+from porescale.common.record.model import Snapshot
+
+if TYPE_CHECKING:
+    import pyvista
+    import xarray
+    from matplotlib.axes import Axes
+
+    from porescale.common.api.program import Program
+    from porescale.common.pictures.picture import Painter
+    from porescale.common.pictures.shown import Film, Picture
+
+
+MAIN = ("fields", "grains", "particles")
+"""Grids and clouds that come before others where arrays are looked for by name."""
+
+
+class RunSnapshot(Snapshot):
+    """A snapshot of a run, which notebooks show as a picture."""
+
+    run: Run
+
+    def picture(self) -> Picture:
+        """The snapshot as `show` paints it, in colours that suit the whole run."""
+        return self.run._painted(self)
+
+    def _repr_png_(self) -> bytes:
+        return self.picture()._repr_png_()
+
+
+class Run(record.Run):
+    """A run folder: what the run recorded, read on access.
+
+    ``run[k]`` is snapshot k (from the end where negative) and reads no other; ``run[2:5]`` is a list of snapshots, all
+    in memory; ``for snapshot in run`` reads one after the other; ``len(run)`` counts them.  ``run.times`` (s) and
+    ``run.steps`` say when they were taken.  Arrays and units: ``run[-1]["velocity"]``, ``run[-1].grids``, ``.clouds``.
+    """
+
+    def __init__(self, folder: Path, card: dict[str, Any], frames: Any, program: Program) -> None:
+        super().__init__(folder, card, frames)
+        self.program = program
+
+    @overload
+    def __getitem__(self, k: int) -> RunSnapshot: ...
+    @overload
+    def __getitem__(self, k: slice) -> list[RunSnapshot]: ...
+    def __getitem__(self, k: int | slice) -> RunSnapshot | list[RunSnapshot]:
+        if isinstance(k, slice):
+            return [self.snapshot(each) for each in range(len(self))[k]]
+        return self.snapshot(k)
+
+    def __iter__(self) -> Iterator[RunSnapshot]:
+        return (self.snapshot(k) for k in range(len(self)))
+
+    def snapshot(self, k: int, cells: Collection[str] | None = None) -> RunSnapshot:
+        """Snapshot ``k`` (negative from the end); of its grids only the arrays in ``cells``, if given.
+
+        IndexError beyond the last, InputError when its file is damaged.
+        """
+        if not -len(self) <= k < len(self):
+            there = f"0 to {len(self) - 1}" if len(self) else "none"
+            raise IndexError(f"snapshot {k} is not in this run: it has {len(self)} ({there})")
+        read = super().snapshot(k, cells)
+        grids = {name: read.grids[name] for name in sorted(read.grids, key=_place)}
+        clouds = {name: read.clouds[name] for name in sorted(read.clouds, key=_place)}
+        found = RunSnapshot(read.time, read.step, grids, clouds)
+        found.run = self
+        return found
+
+    @property
+    def outcome(self) -> str:
+        """How the run ended: finished, unstable, interrupted, failed; or running."""
+        return str(self.card.get("outcome", ""))
+
+    @property
+    def tables(self) -> list[str]:
+        """Names of the tables of numbers over time in the run folder: the series first, then by name."""
+        found = sorted(path.stem for path in self.folder.glob("[!.]*.csv") if _over_time(path))
+        return sorted(found, key=lambda name: name != "series")
+
+    def table(self, name: str) -> Columns:
+        """Columns of <name>.csv, such as "loads" or "probes"; InputError with the nearest name where there is none."""
+        if not (self.folder / f"{name}.csv").is_file():
+            raise missing("table", name, self.tables, "the run folder")
+        return super().table(name)
+
+    def xarray(self, arrays: Sequence[str] | None = None, *, of: str | None = None) -> xarray.Dataset:
+        """Arrays of all snapshots as an xarray Dataset with attributes ``units``; needs xarray (extra "notebook").
+
+        arrays : names, None: all of one grid or cloud;  of : its name (None: the first grid that has them, or else the
+        first cloud).
+
+        Of a grid (time, y, x), with the centres of cells in m as coordinates; of a cloud (time, point), with x and y of
+        each point as coordinates, filled up with nan (integers become floats) where the number of points changes; point
+        k is the k-th of the snapshot.  Vectors have a dimension component (x, y).
+
+        Nothing but names and sizes is read before values are used, and of a selection (``isel(time=-1)``) only its
+        snapshots; one snapshot is in memory at a time besides the result.  Values are read anew at each use:
+        ``.load()`` or ``.compute()`` keeps them.
+        """
+        from porescale.common.api.run_arrays import dataset
+
+        return dataset(self, arrays, of)
+
+    def vtk(self, k: int = -1) -> pyvista.MultiBlock:
+        """Snapshot ``k`` for pyvista and VTK; needs pyvista (extra "notebook").
+
+        A MultiBlock of an ImageData for each grid (values in cells) and a PolyData for each cloud (values at points),
+        by name.  ``block.user_dict["units"]`` and the information of each array hold the units; the time (s) is in
+        ``field_data["TimeValue"]``.
+        """
+        from porescale.common.api.run_vtk import blocks
+
+        return blocks(self.snapshot(k))
+
+    def plot(self, *columns: str, ax: Axes | None = None, table: str = "series") -> Any:
+        """Columns of a table over time as curves, with labels and units; returns the Axes.
+
+        Columns of different units get an Axes each, one below the other, which are returned as an array; with ``ax``
+        they must be of one unit.  InputError with the nearest name where there is no such column.
+        """
+        from porescale.common.api.run_plot import plot
+
+        return plot(self.series if table == "series" else self.table(table), columns, ax)
+
+    def picture(self, k: int = -1) -> Picture:
+        """Snapshot ``k`` as `show` paints it, in colours that suit the whole run; ``.save(path)`` writes it."""
+        return self._painted(self.snapshot(k, self._painter.survey.look.cells))
+
+    def film(self, path: Path | str | None = None, *, rate: int | None = None) -> Film:
+        """Write the film that `show` writes; displays in notebooks.
+
+        path : of the file (None: film in the run folder); the ending follows from the encoder, .mp4 or .webm;
+        rate : frames a second (None: so that it lasts about six seconds).
+        """
+        from porescale.common.pictures.film import film_of
+        from porescale.common.pictures.shown import Film
+
+        stem = self.folder / "film" if path is None else Path(path)
+        stem = stem.with_suffix("") if stem.suffix in (".mp4", ".webm") else stem
+        return Film(film_of(self, self._painter, stem, rate))
+
+    def show(self) -> list[Path]:
+        """Write pictures, film and profiles into the run folder, as the command `show` does; returns their paths."""
+        return [Path(path) for path in self.program.show(self.folder)]
+
+    @cached_property
+    def _painter(self) -> Painter:
+        """What paints snapshots in colours that suit all of them."""
+        from porescale.common.pictures.picture import painter_of
+
+        return painter_of(self, self.program.look(self))
+
+    def _painted(self, snapshot: Snapshot) -> Picture:
+        from porescale.common.pictures.shown import Picture
+
+        return Picture(self._painter.paint(snapshot), f"{self.name}, t = {snapshot.time:.6g} s")
+
+    def __repr__(self) -> str:
+        ended = f"{self.outcome or 'run'} at t = {float(self.card.get('time') or 0.0):.6g} s"
+        if self.outcome == "running":
+            ended = "running"
+        first = f"Run {self.name!r} of {self.card.get('package', self.program.name)}: {ended}, in {self.folder}"
+        return "\n".join((shorten(first, WIDE, placeholder=" …"), self._counted(), self._listed()))
+
+    def _counted(self) -> str:
+        """Snapshots and their times in a few words."""
+        if not len(self):
+            return "no snapshots"
+        times = self.times
+        return f"{len(self)} snapshots, t = {times[0]:.6g} to {times[-1]:.6g} s"
+
+    def _listed(self) -> str:
+        """Tables in one line."""
+        return shorten(f"tables: {', '.join(self.tables) or 'none'}", WIDE, placeholder=" …")
+
+    def _repr_png_(self) -> bytes | None:
+        return self.picture()._repr_png_() if len(self) else None
+
+    def _repr_html_(self) -> str:
+        rows = [("folder", self.folder), ("snapshots", self._counted()), ("tables", ", ".join(self.tables))]
+        keys = {"title": "", "outcome": "", "problem": "", "time": " s", "step": " steps", "seconds": " s of computing"}
+        card = {**self.card, "title": self.card["scene"].get("title")}
+        about = [(key, f"{card[key]}{unit}") for key, unit in keys.items() if card.get(key) not in (None, "")]
+        text = html_table(f"Run {self.name!r} of {self.card.get('package', self.program.name)}", (), [*about, *rows])
+        picture = self._repr_png_()
+        if picture is None:
+            return text
+        return f"{text}<img style='max-width:100%' src='data:image/png;base64,{b64encode(picture).decode()}'>"
+
+
+def open_run(folder: Path | str, program: Program) -> Run:
+    """Open a run folder of a program; InputError where it holds no run, that of another package, or a damaged one."""
+    lean = record.open_run(folder)
+    return Run(lean.folder, lean.card, dict(lean._frames), program)
+
+
+def _place(name: str) -> tuple[bool, str]:
+    """Sorts names: those of MAIN first."""
+    return name not in MAIN, name
+
+
+def _over_time(path: Path) -> bool:
+    """Whether a CSV file is a table of numbers over time, by its first two lines."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            head, row = file.readline(), file.readline()
+        [float(cell) for cell in row.split(",")] if row.strip() else None
+    except (OSError, ValueError):
+        return False
+    return head.startswith(TIME)

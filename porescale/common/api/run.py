@@ -1,0 +1,80 @@
+"""`run` from Python: a scene or a simulation through its time, with the run folder that the command writes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from porescale.common.api.folders import IN_PYTHON, check_folder, named_folder
+from porescale.common.api.run_scene import card_of_scene, check_scene_resume
+from porescale.common.core.errors import Fault, InputError, PorescaleWarning
+
+if TYPE_CHECKING:
+    from porescale.common.api.open_run import Run
+    from porescale.common.api.program import Program
+    from porescale.common.api.simulation import BaseSimulation
+
+
+def run(
+    program: Program,
+    given: Any,
+    out: str | Path | None,
+    *,
+    resume: bool = False,
+    overwrite: bool = False,
+    threads: int | None = None,
+    progress: bool = True,
+) -> Run:
+    """Run a scene, or a simulation at time 0, to the scene's end and open its folder; see ``run`` of the packages."""
+    from porescale.common.api.open_run import open_run
+    from porescale.common.api.simulation import BaseSimulation
+
+    model = given if isinstance(given, BaseSimulation) else None
+    scene = given if model is None else model.scene
+    if not isinstance(scene, program.scene()):
+        problem, repair = f"is no scene of {program.name}", "give a scene, or what build makes of one"
+        raise InputError(Fault("scene", type(given).__name__, problem, repair=repair))
+    if model is not None:
+        _require_start(model)
+    card = card_of_scene(program, scene)
+    folder = named_folder(out, card["name"], IN_PYTHON.out)
+    check_folder(folder, program.name, resume=resume, overwrite=overwrite, words=IN_PYTHON)
+    report = program.report(scene)  # what contradicts itself is refused
+    if resume:
+        check_scene_resume(program, folder, card)
+    if threads is not None:
+        set_threads(threads)
+    warn(report.warnings)
+    if model is None:
+        model = program.build(scene)
+    program.drive(model, folder, scene, card=card, resume=resume, quiet=not progress, overwrite=overwrite)
+    return open_run(folder, program)
+
+
+def _require_start(model: BaseSimulation) -> None:
+    """InputError unless a simulation is at time 0: its folder would lack what came before."""
+    if model.step:
+        problem, repair = "the simulation is no longer at time 0", "build another, or go on with it by its run()"
+        raise InputError(Fault("simulation", f"step {model.step}", problem, repair=repair))
+
+
+def warn(texts: list[str]) -> None:
+    """Give warnings of a report as those of Python, which can be silenced and caught."""
+    import warnings
+
+    for text in texts:
+        warnings.warn(text, PorescaleWarning, stacklevel=4)
+
+
+def set_threads(count: int | None) -> int:
+    """Use ``count`` threads in all that is computed from now on (None: all cores); returns it.
+
+    InputError unless this machine has as many.  Results are the same in every bit on any number of them.
+    """
+    from porescale.common.compiled import jit
+
+    try:
+        return jit.set_threads(count)
+    except InputError as error:
+        raise InputError([replace(fault, key="threads") for fault in error.faults]) from None

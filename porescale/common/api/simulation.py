@@ -1,0 +1,180 @@
+"""A simulation in Python: what the simulations of both packages can do besides their steps."""
+
+from __future__ import annotations
+
+import time as clock
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.record.model import variable_step
+from porescale.common.record.schedule import CHECK_EVERY, SLACK, block
+from porescale.common.record.stop import polite_stop
+
+if TYPE_CHECKING:
+    from porescale.common.core.types import Floats
+    from porescale.common.record.model import Snapshot
+    from porescale.common.record.part import Part
+    from porescale.common.record.progress import Watch
+
+
+class BaseSimulation(ABC):
+    """A `Model` of a scene that is run, looked at and changed from Python.
+
+    scene : what it was built from;  parts : what it consists of, in the order of their columns.
+    """
+
+    scene: Any
+    parts: list[Part]
+
+    @property
+    @abstractmethod
+    def step(self) -> int:
+        """Number of steps done since time 0."""
+
+    @property
+    @abstractmethod
+    def time(self) -> float:
+        """Time reached, in seconds."""
+
+    @property
+    @abstractmethod
+    def step_seconds(self) -> float:
+        """Length of a step, s (of the next one, if it varies)."""
+
+    @abstractmethod
+    def advance(self, steps: int) -> None:
+        """Do ``steps`` steps, and nothing else; may raise Unstable."""
+
+    @abstractmethod
+    def check(self) -> None:
+        """Raise Unstable where the state is not finite or out of bounds."""
+
+    @abstractmethod
+    def series(self) -> dict[str, float]:
+        """One row of series.csv: the time, and what is measured now, by column with unit."""
+
+    @abstractmethod
+    def snapshot(self) -> Snapshot:
+        """Grids and clouds now, as they are recorded; arrays may be views."""
+
+    @abstractmethod
+    def state(self) -> dict[str, Any]:
+        """Everything needed to go on bit for bit."""
+
+    @abstractmethod
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up a state of a simulation built from the same scene."""
+
+    @abstractmethod
+    def motion(self) -> tuple[Floats, Floats]:
+        """Positions (n, 2) m and velocities (n, 2) m/s of the discs or particles, as they lie in memory."""
+
+    @property
+    @abstractmethod
+    def radii(self) -> Floats:
+        """Radii of the grains, or half the spacing of the particles, (n,) m; a copy."""
+
+    @property
+    @abstractmethod
+    def masses(self) -> Floats:
+        """Masses of the grains or particles, (n,) kg per metre of depth; a copy."""
+
+    @property
+    def positions(self) -> Floats:
+        """Where the grains or particles are, (n, 2) m; a copy, which later steps leave as it is.
+
+        Positions go on counting where a side is periodic.  InputError where there is none.
+        """
+        return self.motion()[0].copy()
+
+    @property
+    def velocities(self) -> Floats:
+        """Velocities of the grains or particles, (n, 2) m/s, in the order of `positions`; a copy."""
+        return self.motion()[1].copy()
+
+    @property
+    def name(self) -> str:
+        """What the simulation is called in progress and pictures: the title of its scene."""
+        return self.scene.title or type(self.scene).__module__.partition(".")[0]
+
+    def run(
+        self,
+        until: float | None = None,
+        *,
+        seconds: float | None = None,
+        steps: int | None = None,
+        progress: bool = False,
+    ) -> Self:
+        """Go on to a time, for a while, or for some steps; writes no file.  Returns the simulation.
+
+        until : s, as the time of the scene counts; rounded to whole steps, and the first step at or after it where the
+        length of steps varies.  seconds : s from now;  steps : from now.  Without any of them: to the scene's end.
+        progress : a bar with the time left, in terminals and notebooks.
+
+        The state is checked every 100 steps and at the end.  Pieces of a run give the same bits as all in one.  Ctrl-C
+        ends it after a whole step with KeyboardInterrupt; it can be gone on with.  Raises Unstable, naming cell, grain
+        or particle, quantity and step, and InputError for a time that is past or no number.
+        """
+        end, last = self._end(until, seconds, steps)
+        if progress:
+            from porescale.common.record.progress import Watch
+
+            expected = self.time + (last or 0) * self.step_seconds - self.step * self.step_seconds
+            with Watch(self.name, self.time, expected if end is None else end) as watch:
+                self._go_on(end, last, watch)
+        else:
+            self._go_on(end, last, None)
+        return self
+
+    def _end(self, until: float | None, seconds: float | None, steps: int | None) -> tuple[float | None, int | None]:
+        """Time, s, and step of the end; the step is None where only the time decides, the time where only steps do."""
+        given = {"until": until, "seconds": seconds, "steps": steps}
+        if sum(value is not None for value in given.values()) > 1:
+            names = [name for name, value in given.items() if value is not None]
+            raise InputError(Fault(names[0], given[names[0]], f"contradicts {names[1]}", repair="give one of them"))
+        if steps is not None:
+            if not steps >= 0 or steps != int(steps):
+                raise InputError(Fault("steps", steps, "is no number of steps", allowed=">= 0, whole"))
+            last = self.step + int(steps)
+            return (None if variable_step(self) else last * self.step_seconds), last
+        key, value = ("seconds", seconds) if seconds is not None else ("until", until)
+        end = float(self.scene.time.end if value is None else value) + (self.time if seconds is not None else 0.0)
+        if not np.isfinite(end):
+            raise InputError(Fault(key, value, "is no time", "s"))
+        if end < self.time - (0.0 if variable_step(self) else 0.5 * self.step_seconds) - SLACK * abs(self.time):
+            problem, repair = f"is past: the simulation is at {self.time:.6g} s", "build another, or name a later time"
+            raise InputError(Fault(key, end if value is None else value, problem, "s", repair=repair))
+        return end, None if variable_step(self) else round(end / self.step_seconds)
+
+    def _go_on(self, end: float | None, last: int | None, watch: Watch | None) -> None:
+        """Blocks of steps to the end, with checks; between them the state is whole."""
+        rate = 0.0
+
+        def ended() -> bool:
+            """Whether the end is reached."""
+            if last is not None:
+                return self.step >= last
+            return end is None or self.time >= end - SLACK * abs(end)
+
+        with polite_stop() as stop:
+            while not ended():
+                began, before = clock.perf_counter(), self.step
+                self.advance(block(self, last, (), rate))
+                rate = (self.step - before) / max(clock.perf_counter() - began, 1e-9)
+                if watch is not None:
+                    watch.update(self.step, self.time)
+                if self.step % CHECK_EVERY == 0:
+                    self.check()
+                if stop and not ended():
+                    self.check()
+                    where = f"stopped at step {self.step} (t = {self.time:.6g} s)"
+                    raise KeyboardInterrupt(f"{where}; the simulation can be gone on with")
+        self.check()
+
+
+def absent(what: str, lacks: str, repair: str = "") -> InputError:
+    """The error of asking for ``what`` of a scene that ``lacks`` what it is of."""
+    return InputError(Fault(what, None, f"this scene has no {lacks}", repair=repair))

@@ -1,0 +1,18 @@
+"""Libraries that only some need: imported when asked for, with one clear line where they are not installed."""
+
+import importlib
+from typing import Any
+
+from porescale.common.core.errors import Fault, InputError
+
+EXTRAS = {"pandas": "notebook", "xarray": "notebook", "pyvista": "notebook"}
+"""Libraries, and the extra of this package that brings them."""
+
+
+def extra(library: str) -> Any:
+    """The imported ``library``; InputError with the pip command where it is not installed."""
+    try:
+        return importlib.import_module(library)
+    except ModuleNotFoundError:
+        repair = f"pip install 'porescale[{EXTRAS[library]}]'"
+        raise InputError(Fault(library, None, "is not installed", repair=repair)) from None

@@ -1,0 +1,97 @@
+"""What every scene can do as an object of Python: changed copies, where it comes from, equality by its values."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, Self
+
+import pydantic
+
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.schema import scene_file
+from porescale.common.schema.messages import Key, dotted, every_key, nearest
+from porescale.common.schema.sections import Section, of_a_setting, scene_as_dict, try_scene
+from porescale.common.schema.written import Source, plain
+
+
+class SceneBase(Section):
+    """Base of the scenes of all programs.  Two are equal where all their values are, wherever they come from."""
+
+    _source: Source = pydantic.PrivateAttr(default_factory=Source)
+    _written: dict[str, Any] = pydantic.PrivateAttr(default_factory=dict)
+    """Its tables as they were given, before defaults and what follows from other keys."""
+
+    def __init__(self, /, **keys: Any) -> None:
+        """A scene of its sections, as tables or sections; InputError with every fault, as of a file."""
+        super().__init__(**keys)
+        self._remember(keys, Source())
+
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    def __eq__(self, other: object) -> bool:
+        """Whether all values are equal, those of defaults included."""
+        if type(self) is not type(other):
+            return NotImplemented
+        return all(getattr(self, name) == getattr(other, name) for name in type(self).model_fields)
+
+    def __hash__(self) -> int:
+        """Equal scenes have equal hashes."""
+        return hash(tuple(getattr(self, name) for name in type(self).model_fields))
+
+    @property
+    def source(self) -> Source:
+        """File, name, quality level and settings that the scene comes from."""
+        return self._source
+
+    @property
+    def name(self) -> str:
+        """Name of the scene: of its file, or of the file's folder if that is a scene.toml; "" if made in Python."""
+        return self._source.name
+
+    def to_dict(self) -> dict[str, Any]:
+        """The full scene with its defaults, in SI, as JSON-able tables: ``Scene(**scene.to_dict())`` equals it."""
+        return scene_as_dict(self)
+
+    def with_(self, changes: Mapping[str, Any], /) -> Self:
+        """A copy with other values: ``scene.with_({"fluid.spacing": "0.3 mm", "probe[0].x": 0.1})``; this one stays.
+
+        changes : key -> SI number, text with a unit, list or whole table; None takes the key or section out, as if
+        the scene's file did not have it.  What follows from changed keys follows again, and files are read again.
+        Raises InputError with every fault, worded as those of a file.
+        """
+        table: Mapping[str, Any] = self._written
+        keys: list[Key] = []
+        faults: list[Fault] = []
+        for name, value in changes.items():
+            try:
+                key = scene_file.parse_name(name)
+                table = self._without(table, key) if value is None else scene_file.assign(table, key, plain(value))
+                keys.append(key)
+            except InputError as error:
+                faults += [replace(fault, file="") for fault in error.faults]
+        source = self._source
+        made, wrong = try_scene(type(self), table, source.folder)
+        for key, fault in wrong:
+            own = fault.file or of_a_setting(key, keys, self._written)
+            faults.append(fault if own else replace(fault, file=str(source.file or "")))
+        if made is None or faults:
+            raise InputError(faults)
+        settings = [scene_file.setting_text(name, value) for name, value in changes.items()]
+        made._remember(table, replace(source, settings=(*source.settings, *settings)))
+        return made
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """A copy, of pydantic: ``update`` is not checked; use `with_`."""
+        made = super().model_copy(update=update, deep=deep)
+        if update:
+            made._remember({name: getattr(made, name) for name in made.model_fields_set}, made._source)
+        return made
+
+    def _remember(self, table: Mapping[str, Any], source: Source) -> None:
+        self._written, self._source = plain(table), source
+
+    def _without(self, table: Mapping[str, Any], key: Key) -> dict[str, Any]:
+        """``table`` without ``key``; InputError where scenes have no such key."""
+        known = {dotted(place) for place in every_key(type(self))}
+        if (name := dotted(tuple(part for part in key if isinstance(part, str)))) not in known:
+            raise InputError(Fault(dotted(key), None, "unknown key", repair=nearest(name, known)))
+        return scene_file.without(table, key)

@@ -1,0 +1,5 @@
+# The public names of porescale.piv.estimate: displacements between two pictures.
+from .measure import Settings as Settings
+from .measure import measure as measure
+
+__all__ = ["Settings", "measure"]

@@ -1,0 +1,172 @@
+"""Simulations in Python: run in pieces, stopped, refused, and what is read of them."""
+
+import os
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import continuum_sph
+import porescale
+from porescale.cli.main import commands
+from porescale.common.cli.application import main
+from porescale.common.core.errors import InputError, Unstable
+from porescale.common.record.model import Model
+from tests.fingerprints.digest import fingerprint
+from tests.reference.same_run import differences
+from tests.reference.scenes import COLUMN, column, dry, refusals, table, water, write
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+
+END = 0.004
+SMALL_TANK = {
+    "tank": {"width": 0.2, "height": 0.2},
+    "water": {"column": [{"width": 0.1, "height": 0.1}]},
+    "numerics": {"spacing": 0.01},
+    "time": {"end": 0.02},
+    "output": {"snapshot_interval": 0.01, "series_interval": 0.002},
+}
+
+
+def tank(**changes):
+    """A column of 100 particles of water that falls."""
+    return continuum_sph.Scene(**table(SMALL_TANK, **changes))
+
+
+def build(scene):
+    return (porescale if isinstance(scene, porescale.Scene) else continuum_sph).build(scene)
+
+
+SCENES = {"coupled": lambda: column(time__end=END), "dry": lambda: dry(time__end=END), "tank": tank}
+
+
+@pytest.mark.parametrize("kind", SCENES)
+def test_pieces_are_the_whole_to_the_bit(kind):
+    scene = SCENES[kind]()
+    end = scene.time.end
+    whole, pieces = build(scene).run(until=end), build(scene)
+    assert isinstance(whole, Model)
+    for share in (0.3, 0.35, 1.0):
+        assert pieces.run(until=share * end) is pieces
+    assert whole.step == pieces.step
+    assert whole.time == pytest.approx(end, abs=whole.step_seconds)
+    assert fingerprint(whole.state()) == fingerprint(pieces.state())
+    assert fingerprint(build(scene).run(until=0.9 * end).state()) != fingerprint(pieces.state())  # it can tell
+
+
+def test_a_run_ends_where_it_is_said():
+    one = build(dry())
+    assert one.run(steps=3).step == 3
+    assert one.run(seconds=2 * one.step_seconds).step == 5
+    assert one.run(until=one.time).step == 5
+    two = build(tank())
+    two.run(until=0.01)
+    assert two.time >= 0.01 * (1 - 1e-9)
+    assert two.time - 0.01 < 2 * two.step_seconds  # the first step at or after it
+    assert build(tank(time__end=0.002)).run().time >= 0.002 * (1 - 1e-9)
+
+
+def test_times_that_are_none_are_refused_in_one_line():
+    simulation = build(dry()).run(steps=5)
+    assert "is past: the simulation is at" in refusals(lambda: simulation.run(until=0.0))[0]
+    assert "contradicts" in refusals(lambda: simulation.run(until=1.0, steps=3))[0]
+    assert "is no time" in refusals(lambda: simulation.run(until=float("nan")))[0]
+    assert "is no number of steps" in refusals(lambda: simulation.run(steps=-1))[0]
+    assert "is no number of steps" in refusals(lambda: simulation.run(steps=1.5))[0]
+    assert simulation.step == 5
+
+
+def test_a_state_that_is_none_ends_a_run():
+    simulation = build(dry())
+    simulation.grains.discs.velocity[3] = np.nan
+    with pytest.raises(Unstable, match="grain 3"):
+        simulation.run(steps=200)
+
+
+def test_ctrl_c_leaves_a_whole_state(monkeypatch):
+    stopped, whole = build(tank()), build(tank())
+    advance = stopped.advance
+
+    def stop_at_seven(steps):
+        advance(steps)
+        if stopped.step == 7:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    monkeypatch.setattr(stopped, "advance", stop_at_seven)
+    with pytest.raises(KeyboardInterrupt, match="stopped at step 7"):
+        stopped.run()
+    whole.advance(7)
+    assert fingerprint(stopped.state()) == fingerprint(whole.state())
+    assert fingerprint(stopped.run().state()) == fingerprint(whole.run().state())
+
+
+@pytest.mark.parametrize("kind", SCENES)
+def test_what_is_read_is_a_copy(kind):
+    simulation = build(SCENES[kind]())
+    before = fingerprint(simulation.state())
+    count = len(simulation.positions)
+    for name in ("positions", "velocities", "radii", "masses"):
+        values = getattr(simulation, name)
+        assert len(values) == count
+        values[:] = np.nan
+    assert fingerprint(simulation.state()) == before
+    start = simulation.positions
+    simulation.run(steps=20)
+    assert (simulation.positions != start).any()
+
+
+def test_grains_that_there_are_not_are_refused():
+    simulation = build(water())
+    for name in ("positions", "velocities", "radii", "spins"):
+        assert "this scene has no grains" in refusals(lambda name=name: getattr(simulation, name))[0]
+
+
+def test_a_run_from_python_is_that_of_the_command(tmp_path):
+    scene = write(tmp_path / "scene.toml", table(COLUMN, time__end=END))
+    assert main(commands(), ["run", str(scene), "--out", str(tmp_path / "typed"), "--quiet", "--threads", "1"]) == 0
+    run = porescale.run(porescale.load(scene), tmp_path / "called", progress=False)
+    assert run.folder == tmp_path / "called"
+    assert not differences(tmp_path / "typed", tmp_path / "called")
+    assert {it.name for it in (tmp_path / "typed").iterdir()} == {it.name for it in (tmp_path / "called").iterdir()}
+    one = porescale.build(porescale.load(scene)).run()
+    assert fingerprint(one.state())[0] == fingerprint(porescale.build(porescale.load(scene)).run(until=END).state())[0]
+    other = porescale.run(porescale.load(scene, settings=["contact.friction=0.4"]), tmp_path / "other", progress=False)
+    assert differences(tmp_path / "typed", other.folder)  # it can tell
+
+
+def test_a_folder_that_is_in_use_is_named_as_python_has_it(tmp_path):
+    scene = tank(time__end=0.002)
+    continuum_sph.run(scene, tmp_path / "one", progress=False)
+    line = refusals(lambda: continuum_sph.run(scene, tmp_path / "one"))[0]
+    assert "out = " in line
+    assert "resume=True" in line
+    assert "--" not in line
+    assert (
+        "contradicts overwrite=True"
+        in refusals(lambda: continuum_sph.run(scene, tmp_path / "one", resume=True, overwrite=True))[0]
+    )
+    assert "holds no run to resume" in refusals(lambda: continuum_sph.run(scene, tmp_path / "two", resume=True))[0]
+    assert not (tmp_path / "two").exists()
+    assert "is no scene of porescale" in refusals(lambda: porescale.run(scene, tmp_path / "two"))[0]
+    moved = continuum_sph.build(scene).run(steps=1)
+    assert "no longer at time 0" in refusals(lambda: continuum_sph.run(moved, tmp_path / "two"))[0]
+
+
+@pytest.mark.parametrize("kind", ["tank", "dry"])
+def test_a_scene_made_in_python_is_gone_on_with(kind, tmp_path, monkeypatch):
+    package = porescale if kind == "dry" else continuum_sph
+    scene = SCENES[kind]()
+    short = scene.model_copy(update={"time": scene.time.model_copy(update={"end": 0.5 * scene.time.end})})
+    package.run(short, tmp_path / "pieces", progress=False)
+    package.run(scene, tmp_path / "pieces", resume=True, progress=False)
+    whole = package.run(package.build(scene), tmp_path / "whole", progress=False)
+    assert not differences(tmp_path / "pieces", whole.folder)
+    assert whole.card["scene"]["time"]["end"] == scene.time.end
+    monkeypatch.chdir(tmp_path)
+    assert package.run(short, progress=False).folder == Path("runs") / package.__name__
+
+
+def test_threads_that_there_are_not_are_refused():
+    with pytest.raises(InputError, match=r"^threads = 0: is out of range"):
+        porescale.set_threads(0)

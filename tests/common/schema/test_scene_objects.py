@@ -1,0 +1,169 @@
+"""Scenes as objects of Python: the messages of files, changed copies, equality, pickles."""
+
+import copy
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pydantic
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from porescale.common.core.errors import Fault, InputError
+from porescale.common.schema.scene import SceneBase
+from porescale.common.schema.scene_file import parse_setting, setting_text
+from porescale.common.schema.sections import Section, load, quantity, validate
+
+
+class Probe(Section):
+    x: float = quantity("m", ge=0, le=1, help="place")
+    name: str = ""
+
+
+class Fluid(Section):
+    spacing: float = quantity("m", gt=0, le=1, help="cell size")
+    velocity: tuple[float, float] = quantity("m/s", (0.0, 0.0))
+
+    @pydantic.model_validator(mode="before")
+    @classmethod
+    def _folder(cls, table: Any, info: pydantic.ValidationInfo) -> Any:
+        if isinstance(table, dict) and (name := table.pop("read", None)):  # a key that is a file, as circles are
+            table["spacing"] = float(((info.context or {}).get("folder") or Path()).joinpath(name).read_text())
+        return table
+
+    def _faults(self) -> list[Fault]:
+        return [Fault("velocity", None, "is of a spacing that is none")] if self.spacing == 0.5 else []
+
+
+class Scene(SceneBase):
+    title: str = ""
+    fluid: Fluid | None = None
+    probe: tuple[Probe, ...] = ()
+
+
+def lines(act: Any) -> list[str]:
+    """The faults that ``act`` raises, one line each."""
+    with pytest.raises(InputError) as caught:
+        act()
+    return [fault.line() for fault in caught.value.faults]
+
+
+WRONG: dict[str, Any] = {"flud": {}, "fluid": {"spacin": 1, "velocity": ["1 kg", 2]}, "probe": [{"x": 3}, {"x": 0}]}
+
+
+def test_python_has_the_messages_of_files_every_fault_at_once() -> None:
+    found = lines(lambda: Scene(**WRONG))
+    assert found == lines(lambda: validate(Scene, WRONG))
+    assert "fluid.spacin = 1: unknown key; did you mean 'spacing'?" in found
+    assert len(found) == 5  # the spacing is missing, too
+    assert lines(lambda: Fluid(spacin=1, spacing=1)) == ["spacin = 1: unknown key; did you mean 'spacing'?"]
+    assert lines(lambda: Scene(probe=[{"x": 2}], fluid={"spacing": 0.5})) == [
+        "fluid.velocity: is of a spacing that is none",
+        "probe[0].x = 2 m: is out of range (allowed: >= 0 and <= 1 m); give the place in this range",
+    ]
+
+
+def test_nested_sections_are_no_doors_of_their_own(tmp_path: Path) -> None:
+    """Without the mark of its ``__init__`` pydantic would call that of every nested section, and lose the folder."""
+    (tmp_path / "spacing.txt").write_text("0.25")
+    assert validate(Scene, {"fluid": {"read": "spacing.txt"}}, folder=tmp_path).fluid.spacing == 0.25
+
+    class Door(Fluid):
+        def __init__(self, /, **keys: Any) -> None:
+            super().__init__(**keys)
+
+    class Deep(SceneBase):
+        fluid: Door
+
+    with pytest.raises(FileNotFoundError):  # the check that must fail
+        validate(Deep, {"fluid": {"read": "spacing.txt"}}, folder=tmp_path)
+
+
+def test_sections_tables_arrays_and_texts_make_the_same_scene() -> None:
+    whole = Scene(fluid=Fluid(spacing="1 mm", velocity=(1, 2)), probe=(Probe(x=1), {"x": "1 cm"}))
+    assert whole == Scene(fluid={"spacing": 1e-3, "velocity": np.array([1.0, 2.0])}, probe=[{"x": 1}, Probe(x=0.01)])
+    assert whole != Scene(fluid={"spacing": 1e-3, "velocity": [1, 2.5]}, probe=[{"x": 1}, {"x": 0.01}])
+    assert Scene(**whole.to_dict()) == whole
+    assert whole.with_({"fluid.velocity": np.float64(1.0) * np.ones(2)}).fluid.velocity == (1.0, 1.0)
+
+
+def test_a_scene_does_not_change() -> None:
+    scene = Scene(fluid={"spacing": 1e-3})
+    assert lines(lambda: setattr(scene.fluid, "spacing", 2.0)) == [
+        "spacing = 2.0: cannot be assigned, a scene never changes; "
+        'make a changed copy, scene.with_({"SECTION.spacing": VALUE})'
+    ]
+    assert "did you mean 'spacing'" in lines(lambda: setattr(scene.fluid, "spacin", 2.0))[0]
+    assert "with_" in lines(lambda: delattr(scene, "title"))[0]
+    assert scene.fluid.spacing == 1e-3
+
+
+def test_a_changed_copy_has_the_messages_of_settings(tmp_path: Path) -> None:
+    file = tmp_path / "dam.toml"
+    file.write_text("[fluid]\nspacing = 0.1\n[[probe]]\nx = 0.5\n")
+    scene = load(file, Scene)
+    before = scene.to_dict()
+    changed = scene.with_({"fluid.spacing": "2 mm", "probe.0.x": 0.25, "title": "t"})
+    assert (changed.fluid.spacing, changed.probe[0].x, changed.title, changed.name) == (2e-3, 0.25, "t", "dam")
+    assert scene.to_dict() == before
+    assert changed == load(file, Scene, overrides=changed.source.settings)
+    for key, value in (
+        ("fluid.spacin", 1),
+        ("fluid.spacing", "2 s"),
+        ("probe[1].x", 0),
+        ("flud.spacing", 1),
+        ("fluid", 3),
+    ):
+        asked = lines(lambda key=key, value=value: load(file, Scene, overrides=[setting_text(key, value)]))
+        told = lines(lambda key=key, value=value: scene.with_({key: value}))
+        assert told == [line.removeprefix("--set: ") for line in asked]
+    assert lines(lambda: scene.with_({"no key": 1})) == ["'no key': is not section.key; write it as \"fluid.spacing\""]
+    assert len(lines(lambda: scene.with_({"fluid.spacing": 3, "probe[0].x": -1, "titel": "a"}))) == 3
+
+
+def test_sections_come_and_go() -> None:
+    bare = Scene(title="bare")
+    full = bare.with_({"fluid.spacing": 0.25, "probe": [{"x": 0.5}, Probe(x=0.75, name="b")]})
+    assert full == Scene(title="bare", fluid={"spacing": 0.25}, probe=[{"x": 0.5}, {"x": 0.75, "name": "b"}])
+    assert full.with_({"fluid": None, "probe": None}) == bare
+    assert bare.with_({"fluid": None, "fluid.spacing": None}) == bare
+    assert lines(lambda: full.with_({"fluid.spacing": None})) == [
+        "fluid.spacing: is missing (allowed: > 0 and <= 1 m); add spacing = … (cell size)"
+    ]
+    assert lines(lambda: full.with_({"fluid.spacin": None}))[0].startswith("fluid.spacin: unknown key; did you mean")
+    assert "cannot be taken out" in lines(lambda: full.with_({"probe[0]": None}))[0]
+
+
+def test_names_of_files_go_on_meaning_the_same_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "spacing.txt").write_text("0.25")
+    (tmp_path / "scene.toml").write_text('[fluid]\nread = "spacing.txt"\n')
+    monkeypatch.chdir(tmp_path)
+    scene = load("scene.toml", Scene)
+    monkeypatch.chdir("/")
+    assert scene.with_({"title": "a"}).with_({"title": ""}) == scene
+    assert pickle.loads(pickle.dumps(scene)).with_({"title": "a"}).fluid.spacing == 0.25
+
+
+def test_equal_scenes_are_one_key_and_copies_are_equal(tmp_path: Path) -> None:
+    (tmp_path / "a.toml").write_text("[fluid]\nspacing = 0.1\n")
+    scene, made = load(tmp_path / "a.toml", Scene), Scene(fluid={"spacing": "10 cm"})
+    assert scene == made
+    assert len({scene, made, pickle.loads(pickle.dumps(scene)), copy.copy(scene), copy.deepcopy(scene)}) == 1
+    assert made.model_copy(update={"title": "b"}).with_({"fluid.spacing": 0.2}).title == "b"
+    assert len({scene, made.with_({"fluid.velocity": [0, 1]})}) == 2
+    assert pickle.loads(pickle.dumps(scene)).source == scene.source
+
+
+TEXTS = st.text(st.characters(codec="utf-8"))
+VALUES = st.recursive(
+    st.booleans() | st.integers(-(2**62), 2**62) | st.floats(allow_nan=False, allow_infinity=False) | TEXTS,
+    lambda below: st.lists(below, max_size=3) | st.dictionaries(TEXTS, below, max_size=3),
+    max_leaves=8,
+)  # fmt: skip
+
+
+@given(value=VALUES)
+def test_a_setting_keeps_every_bit_of_its_value(value: Any) -> None:
+    assert parse_setting(setting_text("a.b[2].c", value)) == (("a", "b", 2, "c"), value)
