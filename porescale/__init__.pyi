@@ -3,10 +3,12 @@ from . import piv as piv
 from .api import build as build
 from .api import cases as cases
 from .api import check as check
+from .api import diff as diff
 from .api import load as load
 from .api import open_run as open_run
 from .api import run as run
 from .api import set_threads as set_threads
+from .api import sweep as sweep
 from .builders.scene import Scene as Scene
 from .builders.simulation import Simulation as Simulation
 from .common.api.open_run import Run as Run
@@ -37,10 +39,12 @@ __all__ = [
     "cases",
     "check",
     "contact_law",
+    "diff",
     "inflow",
     "load",
     "open_run",
     "piv",
     "run",
     "set_threads",
+    "sweep",
 ]

@@ -6,13 +6,13 @@ was the last; resuming cuts both back to it.  Rows and snapshots that are there 
 start.
 """
 
-import sys
 import time as clock
+import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from porescale.common.core.errors import Fault, InputError, PorescaleError
+from porescale.common.core.errors import Fault, InputError, PorescaleError, PorescaleWarning
 from porescale.common.core.machine import peak_bytes
 from porescale.common.record import card as cards
 from porescale.common.record import snapshots
@@ -107,7 +107,8 @@ class Record:
         card["resumed"] = [*card.get("resumed", []), {"at": cards.now(), "step": model.step, "time": model.time, **now}]
         if changed:
             what = ", ".join(changed)
-            print(f"warning: resumed with other {what}: not promised to go on bit for bit", file=sys.stderr)
+            text = f"resumed with other {what}: not promised to go on bit for bit"
+            warnings.warn(text, PorescaleWarning, stacklevel=2)
         card.update(outcome=cards.RUNNING, ended=None)
         card.pop("problem", None)
         cards.write_card(folder, card)

@@ -2,7 +2,8 @@
 
 import functools
 import operator
-from collections.abc import Iterator
+import os
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args, get_origin
@@ -94,3 +95,27 @@ def require_files(scene: Any) -> None:
     ]  # fmt: skip
     if faults:
         raise InputError(faults)
+
+
+def named_from(table: Any, old: Path, new: Path) -> Any:
+    """``table`` with own laws by their names, and files of such names that were relative to the folder ``old`` as they
+    are seen from ``new``."""
+    if isinstance(table, Mapping):
+        return {key: named_from(value, old, new) for key, value in table.items()}
+    if isinstance(table, list | tuple):
+        return [named_from(value, old, new) for value in table]
+    if isinstance(table, OwnLaw) and table.file:
+        return f"{_seen_from(new, table.file.resolve())}:{table.name}"
+    if is_reference(table):
+        file, _, name = table.rpartition(":")
+        if (old / file).is_file() and not Path(file).is_absolute():
+            return f"{_seen_from(new, (old / file).resolve())}:{name}"
+    return table
+
+
+def _seen_from(folder: Path, file: Path) -> str:
+    """Name of a file as it is seen from a folder."""
+    try:
+        return Path(os.path.relpath(file, folder)).as_posix()
+    except ValueError:  # on another drive
+        return file.as_posix()
