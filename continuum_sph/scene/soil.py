@@ -1,7 +1,7 @@
 """The section of the soil."""
 
 import math
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 import pydantic
@@ -69,6 +69,8 @@ class SoilSection(Section):
     "none";  permeability_law : how k follows the porosity;  floor, sides : of the tank, "hold" the soil or let it
     "slip".
     """
+
+    files: ClassVar[tuple[str, ...]] = ("material",)
 
     strength: Literal["critical", "peak"] = "critical"
     origin: Origin | None = None

@@ -2,12 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, Self
 
 import pydantic
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema import scene_file
+from porescale.common.schema.describe import as_html, in_lines
 from porescale.common.schema.messages import Key, dotted, every_key, nearest
 from porescale.common.schema.sections import Section, of_a_setting, scene_as_dict, try_scene
 from porescale.common.schema.written import Source, plain
@@ -78,6 +80,27 @@ class SceneBase(Section):
         settings = [scene_file.setting_text(name, value) for name, value in changes.items()]
         made._remember(table, replace(source, settings=(*source.settings, *settings)))
         return made
+
+    def save(self, path: str | Path, *, overwrite: bool = False) -> Path:
+        """Write the scene as a TOML file that loads to an equal scene, whole or not at all; returns its path.
+
+        path : file, or an existing folder, which gets a scene.toml.  The file has the keys that differ from the
+        defaults, as they were written, with the chosen quality level and all changes in them; names of files that the
+        scene uses are those seen from the new place.  Raises InputError where there is a file, unless ``overwrite``.
+        """
+        from porescale.common.schema.save import save
+
+        return save(self, self._written, self._source.folder, Path(path), overwrite)
+
+    def __repr__(self) -> str:
+        """At most three lines."""
+        return in_lines(self, self.name, self._source.quality)
+
+    __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        """A table for notebooks."""
+        return as_html(self, f"Scene {self.name!r}" if self.name else "Scene")
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """A copy, of pydantic: ``update`` is not checked; use `with_`."""

@@ -12,6 +12,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema import scene_file
+from porescale.common.schema.describe import as_html, in_a_line
 from porescale.common.schema.messages import Key, dotted, nearest, translate
 from porescale.common.schema.quantity import Quantity, Refused, quantity
 from porescale.common.schema.written import Source, plain
@@ -44,6 +45,8 @@ class Section(BaseModel):
     """Of a scene: sections that it has not and every scene of another program has, and that program."""
     follows: ClassVar[Mapping[str, str]] = {}
     """Names that a person may give and no key has, and the keys that what they mean follows from."""
+    files: ClassVar[tuple[str, ...]] = ()
+    """Keys that are names of files, relative to the scene's folder; also such that no field has."""
     checks: ClassVar[list[Callable[[Any], list[Fault]]]] = []
     """Functions that return what is wrong with a valid section of this very class.  Checks between sections, and those
     that need physics, are registered here by the builders: sections import neither."""
@@ -61,6 +64,16 @@ class Section(BaseModel):
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
     """Pydantic calls an ``__init__`` without this mark for every nested section as well: each would raise for itself,
     without the faults of the others and without the folder of the file."""
+
+    def __repr__(self) -> str:
+        """What is not as by default, in one line."""
+        return in_a_line(self)
+
+    __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        """A table for notebooks."""
+        return as_html(self, type(self).__name__)
 
     def __setattr__(self, name: str, value: Any) -> None:
         """InputError: sections do not change."""
