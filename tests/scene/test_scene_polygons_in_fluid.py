@@ -48,6 +48,18 @@ def test_a_polygon_sinks_beside_a_grain_and_goes_on_bit_for_bit():
 
 
 @pytest.mark.usefixtures("one_thread")
+def test_the_load_of_a_held_disc_beside_polygons_is_its_own():
+    held = {"x": 0.002, "y": 0.002, "diameter": 0.001, "velocity_x": {"amplitude": 0.01, "frequency": 50, "phase": 1.0}}
+    model = build(wet(SQUARE, grains__grain=[grain(0.008, 0.005)], disc=[held], loads={"discs": [0]}))
+    model.advance(5)
+    row, force = model.tables()["loads"], model.coupled.fluid_force
+    assert row["disc 0 force x (N/m)"] == force[1, 0] < 0.0  # grain, held disc, four corners: it is drawn to the right
+    assert force[-1, 0] != force[1, 0]  # the twin: a corner's, the last row, is another
+    discs = model.grains.discs
+    assert discs.position[1, 0] == pytest.approx(0.002 + model.scene.disc[0].travelled(model.time)[0], rel=1e-14)
+
+
+@pytest.mark.usefixtures("one_thread")
 def test_a_polygon_that_is_told_stays():
     simulation = build(wet(SQUARE | {"held": True}, grains__grain=[grain(0.008, 0.005)]))
     simulation.advance(5)
