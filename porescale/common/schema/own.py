@@ -44,6 +44,12 @@ class OrOwn:
         )
 
 
+def or_own(kind: str, field: Any) -> Any:
+    """A field (of `quantity`, say) that may also name an own law of a ``kind``."""
+    field.metadata.append(OrOwn(kind))
+    return field
+
+
 def _without_own(source: Any) -> Any:
     """An annotation without OwnLaw in a union."""
     parts = [it for it in get_args(source) if it is not OwnLaw] if get_origin(source) is not None else []
