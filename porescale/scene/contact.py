@@ -113,6 +113,11 @@ class Contact(Touch):
             return {key: value for key, value in table.items() if key in cls.model_fields and key != "own"}
         return table if law is None else {**_without(table, law), "own": _numbers(table, law)}
 
+    def __hash__(self) -> int:
+        """Equal sections have equal hashes."""
+        values = (getattr(self, name) for name in type(self).model_fields if name != "own")
+        return hash((*values, *sorted(self.own.items())))
+
     def numbers(self) -> dict[str, float]:
         """The numbers that are given, by key, those of an own law among them."""
         return {**super().numbers(), **self.own}
