@@ -5,6 +5,7 @@ from typing import Any, Literal
 import pydantic
 
 from porescale.common.core.errors import Fault
+from porescale.common.schema.json_schema import choice
 from porescale.common.schema.messages import nearest
 from porescale.common.schema.sections import Refused, Section, quantity
 from porescale.scene.ranges import FRICTION
@@ -73,7 +74,7 @@ class Contact(Touch):
     "linear": springs and dashpots;  "hertz": of Hertz and Mindlin, for spheres of the discs' radii, one a metre.
     """
 
-    law: str = "linear"
+    law: str = pydantic.Field("linear", description="contact law")
     tangential_stiffness: float = quantity("N/m", 0.0, **STIFFNESS, help="tangential stiffness per metre of depth")
     tangential_damping: float = quantity("N s/m", 0.0, **DASHPOT, help="tangential damping per metre of depth")
     friction: float = quantity("", 0.0, **FRICTION, help="friction coefficient between grains")
@@ -91,6 +92,11 @@ class Contact(Touch):
     )
     deepest: float = quantity("", 0.02, gt=0, le=0.3, help='overlap over radius that the step of "hertz" allows for')
     pair: tuple[Pair, ...] = ()
+
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        keys = schema["properties"]
+        return {**schema, "properties": {**keys, "law": choice(LAWS, keys["law"])}}
 
     @pydantic.field_validator("law")
     @classmethod

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from porescale.common.pictures.look import Look
     from porescale.common.record.drive import Outcome
     from porescale.common.record.open_run import Run
-    from porescale.common.schema.sections import Section
+    from porescale.common.schema.scene import SceneBase
 
 
 class Drive(Protocol):
@@ -62,7 +62,7 @@ class Program:
     name: str
     module: str
     version: str
-    scene: Callable[[], type[Section]]
+    scene: Callable[[], type[SceneBase]]
     build: Callable[[Any], Any]
     drive: Drive
     report: Callable[[Any], Report]

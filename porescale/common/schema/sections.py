@@ -108,6 +108,22 @@ class Section(BaseModel):
 
         return core_schema.no_info_wrap_validator_function(collect, handler(source))
 
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: pydantic.GetJsonSchemaHandler) -> dict[str, Any]:
+        """The JSON schema of the section as files write it."""
+        made: dict[str, Any] = handler(core)
+        table = handler.resolve_ref_schema(made)
+        if "$comment" not in table:  # pydantic asks once for each validator around the section
+            changed = {**cls._schema(dict(table)), "$comment": cls.__name__}
+            table.clear()
+            table.update(changed)
+        return made
+
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        """The JSON ``schema`` of the fields with what validators take besides, as a word in place of a table."""
+        return schema
+
     def _faults(self) -> list[Fault]:
         """What is wrong with the section by itself, whose fields are valid; ``checks`` follow where nothing is."""
         return []
