@@ -11,6 +11,7 @@ from .api import load as load
 from .api import open_run as open_run
 from .api import run as run
 from .api import set_threads as set_threads
+from .api import sweep as sweep
 from .builders.simulation import Simulation as Simulation
 from .run_folder import Run as Run
 from .scene.sections import Scene as Scene
@@ -33,4 +34,5 @@ __all__ = [
     "open_run",
     "run",
     "set_threads",
+    "sweep",
 ]

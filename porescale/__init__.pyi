@@ -8,6 +8,7 @@ from .api import load as load
 from .api import open_run as open_run
 from .api import run as run
 from .api import set_threads as set_threads
+from .api import sweep as sweep
 from .builders.scene import Scene as Scene
 from .builders.simulation import Simulation as Simulation
 from .common.api.open_run import Run as Run
@@ -39,4 +40,5 @@ __all__ = [
     "piv",
     "run",
     "set_threads",
+    "sweep",
 ]
