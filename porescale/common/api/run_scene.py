@@ -79,6 +79,7 @@ def _completing(
 
 def card_of(program: Program, opened: Opened[Any]) -> dict[str, Any]:
     """The entries of a run card that describe the request."""
+    from porescale.common.schema.own import on_card
     from porescale.common.schema.sections import scene_as_dict
 
     return {
@@ -88,11 +89,13 @@ def card_of(program: Program, opened: Opened[Any]) -> dict[str, Any]:
         "scene_file": str(opened.file.resolve()),
         "quality": opened.quality,
         "settings": list(opened.settings),
+        **on_card(opened.scene),
     }
 
 
 def card_of_scene(program: Program, scene: Any) -> dict[str, Any]:
     """`card_of` of a scene by itself: what it knows of where it comes from."""
+    from porescale.common.schema.own import on_card
     from porescale.common.schema.sections import scene_as_dict
 
     source = scene.source
@@ -104,4 +107,5 @@ def card_of_scene(program: Program, scene: Any) -> dict[str, Any]:
         "scene_file": str(file.resolve()) if file else None,
         "quality": source.quality,
         "settings": list(source.settings),
+        **on_card(scene),
     }

@@ -250,6 +250,7 @@ def check_changes(folder: Path, given: dict[str, Any], today: Today | None = Non
             way = "" if whole is old else f"set it to {was!r} to go on as that did, or "
         value = now if now is not None else "absent"
         faults.append(Fault(key or "scene", value, problem, repair=f"{way}start another run"))
+    faults += cards.changed_laws(cards.read_card(folder), cards.plain(given))
     faults += changed_hooks(cards.read_card(folder).get("hooks") or {}, given.get("hooks") or {})
     if faults:
         raise InputError(faults)
