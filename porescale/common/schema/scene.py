@@ -35,9 +35,7 @@ class SceneBase(Section):
             return NotImplemented
         return all(getattr(self, name) == getattr(other, name) for name in type(self).model_fields)
 
-    def __hash__(self) -> int:
-        """Equal scenes have equal hashes."""
-        return hash(tuple(getattr(self, name) for name in type(self).model_fields))
+    __hash__ = Section.__hash__
 
     @property
     def source(self) -> Source:
