@@ -114,6 +114,13 @@ TWO = {0: ("water", "#5b8fd0"), 1: ("second fluid", "#e8a33d")}
 """Names and colours of two fluids."""
 
 
+def measure(run: Run, scene: Scene) -> dict[str, dict[str, list[float]]]:
+    """What the measuring sections of ``scene`` read at every snapshot of a run."""
+    from continuum_sph.builders.measure_run import measure_run
+
+    return measure_run(run, scene)
+
+
 PROGRAM = Program(
     name="continuum-sph",
     module="continuum_sph",
@@ -124,5 +131,7 @@ PROGRAM = Program(
     report=report,
     show=show,
     look=look_of,
+    measured=("probe", "level"),
+    measure=measure,
     formerly=FORMERLY,
 )
