@@ -12,6 +12,9 @@ from .api import sweep as sweep
 from .builders.scene import Scene as Scene
 from .builders.simulation import Simulation as Simulation
 from .common.api.open_run import Run as Run
+from .common.compiled.own import body_force as body_force
+from .common.compiled.own import contact_law as contact_law
+from .common.compiled.own import inflow as inflow
 from .common.core.constants import GRAVITY as GRAVITY
 from .common.core.errors import InputError as InputError
 from .common.core.errors import PorescaleError as PorescaleError
@@ -31,10 +34,13 @@ __all__ = [
     "Simulation",
     "Unstable",
     "__version__",
+    "body_force",
     "build",
     "cases",
     "check",
+    "contact_law",
     "diff",
+    "inflow",
     "load",
     "open_run",
     "piv",

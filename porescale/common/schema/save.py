@@ -12,6 +12,7 @@ from pydantic import BaseModel
 from porescale.common.core.atomic import write_text
 from porescale.common.core.errors import Fault, InputError
 from porescale.common.schema.messages import sections_in
+from porescale.common.schema.own import named_from, require_files
 from porescale.common.schema.scene_file import SCENE_FILE
 from porescale.common.schema.sections import Section, scene_as_dict, try_scene
 from porescale.common.schema.written import plain
@@ -23,8 +24,10 @@ def save(scene: Section, written: Mapping[str, Any], folder: Path | None, path: 
     if file.exists() and not overwrite:
         repair = "name another file, or give overwrite=True"
         raise InputError(Fault(str(file), None, "exists already", repair=repair))
+    require_files(scene)
     file.parent.mkdir(parents=True, exist_ok=True)  # names of files are read from there
-    moved = _moved(dict(written), type(scene), (folder or Path()).resolve(), file.parent.resolve())
+    old, new = (folder or Path()).resolve(), file.parent.resolve()
+    moved = named_from(_moved(dict(written), type(scene), old, new), old, new)
     for table in (_changed(moved, scene), moved, plain(scene_as_dict(scene))):
         text = tomli_w.dumps(table)
         read, _ = try_scene(type(scene), tomllib.loads(text), file.parent.resolve())
