@@ -81,7 +81,7 @@ SOIL = ("mean_stress", "plastic_strain", "velocity")
 
 def measure(run: Run, scene: Scene) -> dict[str, dict[str, list[float]]]:
     """What the measuring sections of ``scene`` read at every snapshot of a run."""
-    from continuum_sph.builders.measure_run import measure_run
+    from continuum_sph.measure_run import measure_run
 
     return measure_run(run, scene)
 

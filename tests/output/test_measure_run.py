@@ -166,8 +166,8 @@ def test_the_command_writes_tables_and_replaces_none(wet, tmp_path):
 
 
 def test_a_run_that_replaces_a_measured_one_leaves_no_table_of_it(tmp_path):
-    from porescale.common.cli.application import main
     from porescale.cli.main import commands
+    from porescale.common.cli.application import main
 
     scene = water(time__end=0.004)
     driven(scene, tmp_path / "run")

@@ -66,7 +66,7 @@ def write_tables(tables: Tables, folder: Path) -> list[Path]:
 
 
 def register(run: Run, tables: Tables) -> None:
-    """Name tables that were written into the run's own folder on its card: a run that replaces this one removes them."""
+    """Name tables that were written into the run folder on its card: a run that replaces this one removes them."""
     from porescale.common.record.card import RUNNING, write_card
     from porescale.common.record.record import TABLES
 
