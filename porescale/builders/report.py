@@ -34,7 +34,7 @@ def report(scene: Scene) -> Report:
     if derived.scales:
         _lattice(derived, out)
     if scene.fluid:
-        _operators(scene.fluid, bool(scene.grains or scene.disc or scene.rectangle), out)
+        _operators(scene.fluid, bool(scene.grains or scene.disc or scene.rectangle or scene.ring), out)
     if scene.disc:
         _discs(scene.disc, derived, out)
     if scene.grains:

@@ -15,6 +15,7 @@ from porescale.scene.bodies.control import Controlled
 from porescale.scene.bodies.disc import Disc
 from porescale.scene.bodies.gate import Gate
 from porescale.scene.bodies.rectangle import Rectangle
+from porescale.scene.bodies.ring import Ring
 from porescale.scene.bodies.rock import Rock
 from porescale.scene.bodies.segments import Container, PolygonBody, SegmentBody
 from porescale.scene.bodies.wall import Wall
@@ -63,6 +64,7 @@ class Scene(SceneBase):
     gate: Gate | None = None
     disc: tuple[Disc, ...] = ()
     rectangle: tuple[Rectangle, ...] = ()
+    ring: Ring | None = None
     probe: tuple[Probe, ...] = ()
     line: tuple[Line, ...] = ()
     flux: tuple[Flux, ...] = ()

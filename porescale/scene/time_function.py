@@ -1,5 +1,6 @@
 """Numbers that change with time: constant, a sine, a table; and what they prescribe of a component."""
 
+import bisect
 import itertools
 import math
 from collections.abc import Mapping
@@ -50,6 +51,28 @@ class TimeFunction(Section):
         pairs = list(zip(self.times, self.values, strict=True))
         slopes = [abs((b - a) / (later - time)) for (time, a), (later, b) in itertools.pairwise(pairs)]
         return max([*slopes, 2.0 * math.pi * self.frequency * abs(self.amplitude)])
+
+    def value(self, time: float) -> float:
+        """The number at ``time`` (s)."""
+        if self.times:
+            k = bisect.bisect_right(self.times, time)
+            if k in (0, len(self.times)):
+                return self.values[max(k - 1, 0)]
+            share = (time - self.times[k - 1]) / (self.times[k] - self.times[k - 1])
+            return self.values[k - 1] + share * (self.values[k] - self.values[k - 1])
+        return self.mean + self.amplitude * math.sin(2.0 * math.pi * self.frequency * time + self.phase)
+
+    def integral(self, time: float) -> float:
+        """Its exact integral from 0 to ``time`` (s), s of its unit: the way of a velocity."""
+        if self.times:
+            corners = [0.0, *(it for it in self.times if 0.0 < it < time), time]
+            # Straight between corners, so that the trapezoidal rule is exact.
+            return sum(0.5 * (b - a) * (self.value(a) + self.value(b)) for a, b in itertools.pairwise(corners))
+        if not self.amplitude:
+            return self.mean * time
+        pulsation = 2.0 * math.pi * self.frequency
+        swung = self.amplitude / pulsation * (math.cos(self.phase) - math.cos(pulsation * time + self.phase))
+        return self.mean * time + swung
 
 
 def as_table(value: Any, unit: str, help: str) -> Any:

@@ -96,7 +96,7 @@ def _held(discs: Sequence[Disc], density: float) -> Discs:
     """The discs whose motion is prescribed; their mass has no effect."""
     return make_discs(
         [(it.x, it.y) for it in discs], np.array([it.diameter / 2 for it in discs]), density,
-        np.array([it.velocity for it in discs]), np.array([it.spin for it in discs]),
+        np.array([it.motion(0.0)[:2] for it in discs]), np.array([it.motion(0.0)[2] for it in discs]),
     )  # fmt: skip
 
 
