@@ -79,7 +79,7 @@ class Simulation(ShownSimulation):
     @property
     def masses(self) -> Floats:
         """Masses of the particles, (n,) kg per metre of depth; a copy."""
-        return self.shown.masses()
+        return self.shown.masses().copy()
 
     def _sizes(self) -> str:
         return f"{len(self.motion()[0])} particles, {self.scene.numerics.spacing:.4g} m apart"

@@ -34,9 +34,13 @@ def report(scene: Scene) -> Report:
     if derived.scales:
         _lattice(derived, out)
     if scene.fluid:
-        _operators(scene.fluid, bool(scene.grains or scene.disc or scene.rectangle), out)
+        _operators(scene.fluid, bool(scene.grains or scene.disc or scene.rectangle or scene.ring), out)
     if scene.disc:
         _discs(scene.disc, derived, out)
+    if scene.ring and derived.scales:
+        out.heading("Ring")
+        out.row("cells across", scene.ring.diameter / derived.scales.spacing, "", "each row of the box is partly solid")
+        out.row("speed of its wall", 0.5 * abs(scene.ring.spin) * scene.ring.diameter, "m/s")
     if scene.grains:
         _grains(scene.grains, derived.grain_count - len(scene.disc), derived, out)
         _contact(derived, out)

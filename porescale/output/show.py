@@ -57,7 +57,7 @@ def look_of_scene(scene: dict[str, Any], name: str) -> Look:
         cloud="grains",
         label="speed of the fluid",
         lines=solid_lines(scene),
-        walls="solid_fraction" if scene.get("rectangle") else "",
+        walls="solid_fraction" if scene.get("rectangle") or scene.get("ring") else "",
         streamlines=scene.get("fluid") is not None,
         colour="velocity" if scene.get("fluid") is None else None,
         shapes=FRAMES,

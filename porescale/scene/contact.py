@@ -7,8 +7,9 @@ import pydantic
 
 from porescale.common.compiled.own import CONTACT_LAW, OwnLaw, number_of
 from porescale.common.core.errors import Fault
+from porescale.common.schema.json_schema import choice, number
 from porescale.common.schema.messages import nearest
-from porescale.common.schema.own import OrOwn, folder_of, own_law
+from porescale.common.schema.own import OWN_LAW, OrOwn, folder_of, own_law
 from porescale.common.schema.sections import Quantity, Refused, Section, quantity
 from porescale.scene.ranges import FRICTION
 
@@ -77,7 +78,9 @@ class Contact(Touch):
     "laws.py:NAME": a function of a user's file, whose own keys stand beside the others.
     """
 
-    law: Annotated[str | OwnLaw, OrOwn(CONTACT_LAW)] = "linear"
+    law: Annotated[str | OwnLaw, OrOwn(CONTACT_LAW)] = pydantic.Field(
+        "linear", description='contact law, or "laws.py:NAME"'
+    )
     own: dict[str, float] = pydantic.Field(
         {}, description="numbers of a law of a user's file, by key; in scenes they may stand in [contact] itself"
     )
@@ -100,6 +103,14 @@ class Contact(Touch):
         "", 0.02, gt=0, le=0.3, help='overlap over radius that the step of "hertz" and own laws allows for'
     )
     pair: tuple[Pair, ...] = ()
+
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        keys, about = schema["properties"], schema["properties"]["law"]
+        ours = {**schema, "properties": {**keys, "law": choice(LAWS, about)}}
+        own = {**schema, "properties": {**keys, "law": {**OWN_LAW, "description": about["description"]}}}
+        own |= {"required": ["law"], "additionalProperties": number()}  # its numbers, by keys that only it knows
+        return {"description": schema["description"], "anyOf": [ours, own]}
 
     @pydantic.model_validator(mode="before")
     @classmethod

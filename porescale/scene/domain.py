@@ -6,6 +6,7 @@ import pydantic
 
 from porescale.common.compiled.own import INFLOW, OwnLaw
 from porescale.common.core.errors import Fault
+from porescale.common.schema.json_schema import with_units, word_or
 from porescale.common.schema.messages import nearest
 from porescale.common.schema.own import or_own
 from porescale.common.schema.sections import Refused, Section, quantity
@@ -44,6 +45,10 @@ class Side(Section):
     stress: TimeFunction | None = None
     force: TimeFunction | None = None
     fastest: float | None = quantity("m/s", None, gt=0, le=1e4, help="largest speed under stress or force")
+
+    @classmethod
+    def _schema(cls, schema: dict[str, Any]) -> dict[str, Any]:
+        return word_or(KINDS, with_units(schema, SERVO))
 
     @pydantic.model_validator(mode="before")
     @classmethod
