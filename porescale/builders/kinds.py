@@ -42,11 +42,11 @@ def _measures_grains(system: System) -> bool:
 
 
 KINDS = (
-    Kind((), lambda it: bool(it.scene.fluid and isinstance(it.scene.fluid.body_force, OwnLaw)), "own_flow.OwnForce"),
+    Kind((), lambda it: bool(it.scene.fluid and isinstance(it.scene.fluid.body_force, OwnLaw)), "user_forces.OwnForce"),
     Kind(
         (),
         lambda it: any(isinstance(side.velocity, OwnLaw) for side in it.scene.domain.sides.values()),
-        "own_flow.OwnInflow",
+        "user_forces.OwnInflow",
     ),
     Kind(("grains",), _free, "grain_series.GrainSeries"),
     Kind(("sleep",), lambda it: bool(it.grains and it.scene.sleep), "sleep.SleepPart"),
